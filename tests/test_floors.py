@@ -1,0 +1,100 @@
+"""Imports go down the floors, never up and never in a circle; SymPy stays with the symbols."""
+
+import ast
+from collections.abc import Iterator
+from fnmatch import fnmatch
+from pathlib import Path
+
+import pytest
+
+FLOORS = (
+    ("vectors", "formula", "unit", "program", "scene*", "graph", "schedule", "catalogue"),
+    ("particles", "arithmetic", "shape"),
+    ("step", "notation"),
+    ("lecture",),
+    ("specialise*", "arrange*", "lower*", "expand*", "derivative*", "stage*"),
+    ("emit*", "page*"),
+    ("reference*", "compiler", "check*", "measure*", "bench"),
+    ("cli",),
+)
+WITHOUT_SYMPY = (
+    *("program", "formula", "unit", "scene*", "graph", "derivative*", "stage*", "arithmetic"),
+    *("emit", "emit_c*"),
+)
+PACKAGE = Path(__file__).parent.parent / "derive"
+FILES = sorted(p for p in PACKAGE.rglob("*.py") if p.relative_to(PACKAGE).parts != ("__init__.py",))
+
+
+def room(path: Path) -> str:
+    """Return the module or the package folder, right below ``derive``, that holds a file."""
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+def floor(name: str) -> int:
+    """Return the height of a room; a room without a floor is an error with a sentence."""
+    for height, patterns in enumerate(FLOORS):
+        if any(fnmatch(name, pattern) for pattern in patterns):
+            return height
+    raise LookupError(f"module 'derive.{name}' has no floor: give it one in tests/test_floors.py")
+
+
+def imported(text: str) -> Iterator[str]:
+    """Yield the dotted name of every module that a source text imports, wherever it does."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module == "derive":
+            yield from (f"derive.{alias.name}" for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+
+
+def faults(name: str, text: str) -> list[str]:
+    """Return a sentence for every import of room ``name`` that goes up."""
+    rooms = {m.split(".")[1] for m in imported(text) if m.startswith("derive.")}
+    rooms -= {name, "__version__"}
+    return [
+        f"derive.{name} (floor {floor(name)}) imports derive.{other} (floor {floor(other)})"
+        for other in sorted(rooms)
+        if floor(other) > floor(name)
+    ]
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(PACKAGE)))
+def test_a_module_imports_only_from_its_floor_or_below(path: Path) -> None:
+    assert faults(room(path), path.read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(PACKAGE)))
+def test_sympy_stays_out_of_the_modules_that_must_not_know_it(path: Path) -> None:
+    barred = any(fnmatch(room(path), pattern) for pattern in WITHOUT_SYMPY)
+    roots = {m.split(".")[0] for m in imported(path.read_text(encoding="utf-8"))}
+    assert not (barred and "sympy" in roots)
+
+
+def test_an_import_that_goes_up_is_found() -> None:
+    assert faults("program", "from derive.cli import main") == [
+        "derive.program (floor 0) imports derive.cli (floor 7)"
+    ]
+    assert faults("program", "def f():\n    from derive import emit") != []
+
+
+def test_a_module_without_a_floor_is_named() -> None:
+    with pytest.raises(LookupError, match=r"'derive\.helpers' has no floor"):
+        floor("helpers")
+
+
+def test_no_import_goes_round_in_a_circle() -> None:
+    graph = {_dotted(path): _modules(path) for path in FILES}
+    while leaves := {name for name, needs in graph.items() if not needs & graph.keys()}:
+        graph = {name: needs for name, needs in graph.items() if name not in leaves}
+    assert graph == {}
+
+
+def _dotted(path: Path) -> str:
+    parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
+    return ".".join(parts).removesuffix(".__init__")
+
+
+def _modules(path: Path) -> set[str]:
+    return set(imported(path.read_text(encoding="utf-8"))) - {_dotted(path)}
