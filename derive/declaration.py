@@ -1,0 +1,159 @@
+"""What a scene declares, as plain values: the types that ``derive.scene`` returns.
+
+All numbers are exact fractions, all formulas exact trees, all units SI. Vectors are triples along
+the scene's axes unless said otherwise; a product of inertia is I_xy = +sum x y dm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+from derive.formula import Formula
+
+Axis = Literal["x", "y", "z"]
+Triple = tuple[Formula, Formula, Formula]
+Sextuple = tuple[Formula, Formula, Formula, Formula, Formula, Formula]
+
+
+class SceneError(ValueError):
+    """A scene that breaks a rule; the sentence names scene, quantity, rule and value found."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A constant of the scene; with a ``value`` it is a number in the code, not an argument."""
+
+    name: str
+    unit: str
+    low: Fraction
+    high: Fraction
+    meaning: str
+    value: Fraction | None
+
+
+@dataclass(frozen=True)
+class Input:
+    """A scalar that varies with time and enters from outside."""
+
+    name: str
+    unit: str
+    low: Fraction
+    high: Fraction
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """An angle that axes or bodies are turned through.
+
+    A rate or acceleration of None is zero for a prescribed coordinate, unknown for a free one.
+    """
+
+    name: str
+    unit: str
+    low: Fraction
+    high: Fraction
+    meaning: str
+    motion: Literal["free", "prescribed"]
+    rate: Input | None
+    acceleration: Input | None
+
+
+@dataclass(frozen=True)
+class Speed:
+    """An angular rate given directly, without an angle; a rate of None is zero (steady)."""
+
+    name: str
+    unit: str
+    low: Fraction
+    high: Fraction
+    meaning: str
+    rate: Input | None
+
+
+@dataclass(frozen=True)
+class Turn:
+    """One turn about an axis of the axes so far, through a coordinate."""
+
+    axis: Axis
+    coordinate: str
+
+
+@dataclass(frozen=True)
+class Axes:
+    """The moving axes xyz: body axes, turned from the inertial axes, or Omega given along them."""
+
+    kind: Literal["body", "turned", "given"]
+    turned: tuple[Turn, ...]
+    quaternion: bool
+    fixed_in_body: bool
+    angular_velocity: Triple | None
+
+
+@dataclass(frozen=True)
+class Body:
+    """The rigid body; inertia (xx, yy, zz, xy, xz, yz) and centre along the axes it is turned to.
+
+    The inertia is about the scene's point; ``axis`` is the axis of symmetry, if there is one.
+    """
+
+    kind: Literal["general", "principal", "axisymmetric", "spherical", "rod"]
+    mass: Formula | None
+    inertia: Sextuple
+    centre: Triple | None
+    axis: Axis | None
+    turned: tuple[Turn, ...]
+    spin: Formula | None
+
+
+@dataclass(frozen=True)
+class Wheel:
+    """A balanced axisymmetric wheel on the carrier: relative speed (a state) and motor torque."""
+
+    name: str
+    axis: Triple
+    axial: Formula
+    speed: Input
+    torque: Input
+
+
+@dataclass(frozen=True)
+class Given:
+    """A known vector: formulas, or a range for three fresh inputs."""
+
+    low: Fraction
+    high: Fraction
+    formulas: Triple | None
+
+
+@dataclass(frozen=True)
+class Point:
+    """The point that moments and inertia refer to; a moving one has a known acceleration."""
+
+    kind: Literal["centre_of_mass", "fixed", "moving"]
+    acceleration: Given | None
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything the user declared, checked; ``text`` is the file as it was read."""
+
+    name: str
+    title: str
+    text: str
+    parameters: tuple[Parameter, ...]
+    coordinates: tuple[Coordinate, ...]
+    speeds: tuple[Speed, ...]
+    axes: Axes
+    body: Body
+    wheels: tuple[Wheel, ...]
+    point: Point
+    known: Mapping[str, Given]
+    position: Given | None
+    velocity: Given | None
+    wanted: tuple[str, ...]
+    form: Literal["fast", "accurate"]
+    warnings: tuple[str, ...]

@@ -1,0 +1,230 @@
+"""The scene file: its tables read into declarations, each by one function.
+
+Every value is checked where it is read (type, unit, range, symbols); what must hold between the
+tables is in ``derive.scene_rules``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Literal, cast
+
+from derive.declaration import Axes, Given, Input, Point, Scene, SceneError, Triple, Wheel
+from derive.scene_body import read_body
+from derive.scene_names import distinct
+from derive.scene_symbols import (
+    Symbols,
+    accelerations,
+    anything,
+    constants,
+    motions,
+    rates,
+    read_symbols,
+    turns,
+)
+from derive.scene_table import (
+    Scope,
+    Table,
+    formula,
+    interval,
+    keys,
+    nearest,
+    shown,
+    table,
+    text,
+    triple,
+    word,
+)
+from derive.unit import (
+    ACCELERATION,
+    ANGULAR_ACCELERATION,
+    ANGULAR_VELOCITY,
+    FORCE,
+    INERTIA,
+    MOMENT,
+    NONE,
+    Dimension,
+)
+
+FUNCTIONS = (
+    "angular_momentum",
+    "angular_momentum_rate",
+    "moment",
+    "acceleration",
+    "state_rate",
+    "kinetic_energy",
+)
+WANTED = (*FUNCTIONS, *(f"{name}_jacobian" for name in FUNCTIONS))
+TABLES = ("parameters", "coordinates", "speeds", "axes", "body", "point", "known", "position")
+LATER = ("frames", "bodies", "loads")
+KNOWN: Mapping[str, tuple[Dimension, int]] = {
+    "angular_velocity": (ANGULAR_VELOCITY, 10),
+    "angular_acceleration": (ANGULAR_ACCELERATION, 50),
+    "moment": (MOMENT, 1),
+    "force": (FORCE, 10),
+}
+"""Dimension of each known vector, and the end of its range where none is given."""
+PointKind = Literal["centre_of_mass", "fixed", "moving"]
+
+
+def read_scene(document: Mapping[str, object], name: str, source: str) -> Scene:
+    """Return the scene of a parsed TOML document, checked table by table."""
+    _top_level(document)
+    part = {key: table(document.get(key, {}), key) for key in TABLES}
+    symbols = read_symbols(part["parameters"], part["coordinates"], part["speeds"])
+    wheels = _wheels(document.get("wheels", []), constants(symbols))
+    distinct(_declared(symbols, wheels, "position" in document))
+    scope = anything(symbols, tuple(wheel.speed for wheel in wheels))
+    point = _point(part["point"], scope)
+    ranges = _position(part["position"]) if "position" in document else (None, None)
+    return Scene(
+        name=name,
+        title=text(document.get("title", name), "title"),
+        text=source,
+        parameters=symbols.parameters,
+        coordinates=symbols.coordinates,
+        speeds=symbols.speeds,
+        axes=_axes(part["axes"], symbols),
+        body=read_body(part["body"], point.kind, symbols),
+        wheels=wheels,
+        point=point,
+        known=_known(part["known"], scope, symbols),
+        position=ranges[0],
+        velocity=ranges[1],
+        wanted=_wanted(document["wanted"]),
+        form="accurate" if _form(document) == "accurate" else "fast",
+        warnings=(),
+    )
+
+
+def _top_level(document: Mapping[str, object]) -> None:
+    for key in document:
+        if key in LATER:
+            raise SceneError(f"table '{key}' is reserved for a later version; use body and axes")
+    optional = (*(name for name in TABLES if name != "body"), "wheels", "title", "form")
+    keys(Table("the file", document), ("wanted", "body"), optional)
+
+
+def _form(document: Mapping[str, object]) -> str:
+    return word(document.get("form", "fast"), "form", ("fast", "accurate"))
+
+
+def _wanted(value: object) -> tuple[str, ...]:
+    if not isinstance(value, list) or not value:
+        raise SceneError(f"wanted must be a list of at least one function, not {shown(value)}")
+    for name in value:
+        if not isinstance(name, str) or name not in WANTED:
+            hint = nearest(name, WANTED) if isinstance(name, str) else ""
+            raise SceneError(f"wanted has {shown(name)}, which is no function{hint or _functions()}")
+        if value.count(name) > 1:
+            raise SceneError(f"wanted has '{name}' twice")
+    return tuple(value)
+
+
+def _functions() -> str:
+    return f" (known: {', '.join(FUNCTIONS)}, and each with _jacobian)"
+
+
+def _axes(given: Table, symbols: Symbols) -> Axes:
+    keys(given, (), ("fixed_in", "attitude", "turned", "angular_velocity"))
+    entries = given.entries
+    if "turned" in entries and "angular_velocity" in entries:
+        raise SceneError("axes have both turned and angular_velocity; the one follows from the other")
+    fixed = "fixed_in" in entries or not ("turned" in entries or "angular_velocity" in entries)
+    word(entries.get("fixed_in", "body"), "axes.fixed_in", ("body",))
+    word(entries.get("attitude", "quaternion"), "axes.attitude", ("quaternion",))
+    quaternion = "attitude" in entries
+    if "turned" in entries:
+        turned = turns(entries["turned"], "axes.turned", symbols)
+        return Axes("turned", turned, quaternion, fixed, None)
+    if "angular_velocity" in entries:
+        value, scope = entries["angular_velocity"], motions(symbols)
+        omega = triple(value, "axes.angular_velocity", scope, ANGULAR_VELOCITY)
+        return Axes("given", (), quaternion, fixed, omega)
+    return Axes("body", (), quaternion, True, None)
+
+
+def _wheels(value: object, scope: Scope) -> tuple[Wheel, ...]:
+    if not isinstance(value, list):
+        raise SceneError(f"wheels must be a list of tables [[wheels]], not {shown(value)}")
+    return tuple(_wheel(table(entry, f"wheel {i + 1}"), scope) for i, entry in enumerate(value))
+
+
+def _wheel(given: Table, scope: Scope) -> Wheel:
+    keys(given, ("name", "axis", "axial", "speed_range", "torque_range"), ())
+    name = given.entries["name"]
+    if not isinstance(name, str) or not name.isascii() or not name.isalnum() or len(name) > 20:
+        raise SceneError(f"{given.label}: name must be up to 20 letters and digits, not {shown(name)}")
+    label = f"wheel '{name}'"
+    speed = interval(given.entries["speed_range"], f"{label}: speed_range")
+    torque = interval(given.entries["torque_range"], f"{label}: torque_range")
+    return Wheel(
+        name,
+        triple(given.entries["axis"], f"{label}: axis", scope, NONE),
+        formula(given.entries["axial"], f"{label}: axial", scope, INERTIA),
+        Input(f"s_{name}", "rad/s", *speed, f"speed of {label} relative to the carrier"),
+        Input(f"u_{name}", "N m", *torque, f"motor torque on {label} about its axis"),
+    )
+
+
+def _declared(
+    symbols: Symbols, wheels: tuple[Wheel, ...], with_position: bool
+) -> list[tuple[str, str]]:
+    """List every name of the scene with what it is, derived ones included."""
+    found = [(entry.name, f"parameter '{entry.name}'") for entry in symbols.parameters]
+    found += [(entry.name, f"coordinate '{entry.name}'") for entry in symbols.coordinates]
+    found += [(entry.name, f"speed '{entry.name}'") for entry in symbols.speeds]
+    derived = [entry.name for entry in (*rates(symbols), *accelerations(symbols))]
+    free = [entry.name for entry in symbols.coordinates if entry.motion == "free"]
+    derived += [f"{name}_{dots}" for name in free for dots in ("dot", "ddot")]
+    found += [(name, f"the rate '{name}'") for name in derived]
+    for wheel in wheels:
+        found += [(wheel.speed.name, f"the speed of wheel '{wheel.name}'")]
+        found += [(wheel.torque.name, f"the torque on wheel '{wheel.name}'")]
+    if with_position:
+        found += [("p", "the position 'p'"), ("v", "the velocity 'v'")]
+    return found
+
+
+def _point(given: Table, scope: Scope) -> Point:
+    keys(given, (), ("kind", "acceleration"))
+    kind = word(given.entries.get("kind", "centre_of_mass"), "point.kind", PointKind.__args__)
+    if kind != "moving":
+        if "acceleration" in given.entries:
+            raise SceneError(f"point.acceleration needs point.kind = 'moving', not '{kind}'")
+        return Point(cast(PointKind, kind), None)
+    if "acceleration" not in given.entries:
+        raise SceneError("a moving point needs point.acceleration, a range or three formulas")
+    value = given.entries["acceleration"]
+    return Point("moving", _given(value, "point.acceleration", scope, ACCELERATION))
+
+
+def _given(value: object, label: str, scope: Scope, expected: Dimension) -> Given:
+    if isinstance(value, list):
+        return Given(Fraction(0), Fraction(0), triple(value, label, scope, expected))
+    inner = table(value, label)
+    keys(inner, ("range",), ())
+    return Given(*interval(inner.entries["range"], f"{label}.range"), None)
+
+
+def _known(given: Table, scope: Scope, symbols: Symbols) -> Mapping[str, Given]:
+    keys(given, (), KNOWN)
+    result = {}
+    for name, (expected, end) in KNOWN.items():
+        allowed = motions(symbols) if name == "angular_velocity" else scope
+        if name in given.entries:
+            result[name] = _given(given.entries[name], f"known.{name}", allowed, expected)
+        else:
+            result[name] = Given(Fraction(-end), Fraction(end), None)
+    return result
+
+
+def _position(given: Table) -> tuple[Given, Given]:
+    keys(given, ("position", "velocity"), ())
+    found = []
+    for key in ("position", "velocity"):
+        if isinstance(given.entries[key], list):
+            raise SceneError(f"position.{key} must be {{ range = [low, high] }}, not formulas")
+        found.append(_given(given.entries[key], f"position.{key}", Scope({}, {}, ""), NONE))
+    return found[0], found[1]

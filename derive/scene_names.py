@@ -1,0 +1,64 @@
+"""Names that a scene may give: identifiers in C and Python at once, and not taken by the tool.
+
+A name goes unchanged into C structs, CasADi inputs and JSON, so it must be usable in all of them.
+"""
+
+from __future__ import annotations
+
+import keyword
+import re
+from collections.abc import Mapping
+
+from derive.declaration import SceneError
+from derive.formula import FUNCTIONS
+
+LONGEST_NAME = 40
+_IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*")
+_C_WORDS = frozenset(
+    "auto bool break case catch char class const constexpr continue default delete do double else "
+    "enum explicit export extern false float for friend goto if inline int long main mutable "
+    "namespace new nullptr operator private protected public register restrict return short signed "
+    "sizeof static struct switch template this throw true try typedef typename union unsigned "
+    "using virtual void volatile while NULL".split()
+)
+_C_FUNCTIONS = frozenset(
+    "abs acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cosh div erf erfc exp exp2 "
+    "expm1 fabs fdim floor fma fmax fmin fmod frexp hypot ilogb index isfinite isinf isnan ldexp "
+    "lgamma log log10 log1p log2 logb lrint lround modf nan nearbyint nextafter pow remainder "
+    "remquo rint round scalbln scalbn sinh tanh tgamma time trunc j0 j1 jn y0 y1 yn".split()
+)
+GENERATED: Mapping[str, str] = {
+    "omega": "the angular velocity of the body",
+    "omega_dot": "the angular acceleration of the body",
+    "Omega": "the angular velocity of the axes",
+    "Omega_dot": "the angular acceleration of the axes",
+    "M": "the moment",
+    "F": "the force",
+    "q": "the attitude quaternion",
+    "pi": "the number pi, which no formula needs; give it as a parameter with a value",
+}
+"""Names that the emitted code uses itself, and for what."""
+
+
+def identifier(name: str, label: str) -> str:
+    """Return a name that is an identifier in C and Python and not a word of either."""
+    if not _IDENTIFIER.fullmatch(name) or len(name) > LONGEST_NAME:
+        rule = f"letters, digits and single underscores, a letter first, at most {LONGEST_NAME}"
+        raise SceneError(f"{label} has the name {name[:60]!r}; a name is {rule}")
+    if keyword.iskeyword(name) or name in _C_WORDS | _C_FUNCTIONS | frozenset(FUNCTIONS):
+        raise SceneError(f"{label} has the name '{name}', which is a word of C or Python")
+    return name
+
+
+def distinct(declared: list[tuple[str, str]]) -> None:
+    """Refuse a name that is declared twice or that the emitted code uses itself.
+
+    declared : (name, what it is) in order of declaration, derived rates included
+    """
+    seen: dict[str, str] = {}
+    for name, meaning in declared:
+        if name in GENERATED:
+            raise SceneError(f"{meaning} has the name '{name}', which is taken: {GENERATED[name]}")
+        if name in seen:
+            raise SceneError(f"'{name}' is declared twice: {seen[name]} and {meaning}")
+        seen[name] = meaning

@@ -1,0 +1,169 @@
+"""A table of a scene file, read strictly: known keys, right types, exact numbers, right units.
+
+Every function here raises SceneError with a sentence that begins at the table's own name.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+
+from derive.declaration import SceneError, Triple
+from derive.formula import Formula, FormulaError, number, symbols
+from derive.grammar import LARGEST_DECIMAL_EXPONENT, parse
+from derive.unit import Dimension, UnitError, dimension, dimension_of, spelled
+
+LONGEST_INTEGER_BITS = 1000
+
+
+@dataclass(frozen=True)
+class Table:
+    """One TOML table and the name that its errors begin with."""
+
+    label: str
+    entries: Mapping[str, object]
+
+
+@dataclass(frozen=True)
+class Scope:
+    """The symbols that a formula may use, and the scene's others with what they are."""
+
+    dimensions: Mapping[str, Dimension]
+    others: Mapping[str, str]
+    rule: str
+
+
+def table(value: object, label: str) -> Table:
+    """Return a TOML value as a table."""
+    if not isinstance(value, dict):
+        raise SceneError(f"{label} must be a table, not {shown(value)}")
+    return Table(label, value)
+
+
+def keys(given: Table, required: Iterable[str], optional: Iterable[str]) -> None:
+    """Refuse a table that misses a required key or has an unknown one."""
+    required, optional = tuple(required), tuple(optional)
+    for key in given.entries:
+        if key not in required + optional:
+            raise SceneError(f"{given.label} has an unknown key '{key}'{nearest(key, required + optional)}")
+    for key in required:
+        if key not in given.entries:
+            raise SceneError(f"{given.label} needs '{key}'")
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Return a hint at the known name that resembles an unknown one most, or all of a few."""
+    known = tuple(known)
+    close = difflib.get_close_matches(name, known, 1)
+    if close:
+        return f" (did you mean '{close[0]}'?)"
+    return f" (known: {', '.join(known)})" if 0 < len(known) <= 12 else ""
+
+
+def shown(value: object) -> str:
+    """Return a TOML value as an error shows it: its kind, and itself if it is short."""
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, list):
+        return f"a list of {len(value)}"
+    if isinstance(value, int) and value.bit_length() > LONGEST_INTEGER_BITS:
+        return f"a number of {value.bit_length()} bits"
+    text = repr(value) if isinstance(value, str) else str(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def word(value: object, label: str, known: Iterable[str]) -> str:
+    """Return a value that must be one of a few words."""
+    known = tuple(known)
+    if not isinstance(value, str) or value not in known:
+        raise SceneError(f"{label} must be one of {', '.join(known)}, not {shown(value)}")
+    return value
+
+
+def text(value: object, label: str) -> str:
+    """Return a value that must be one line of text."""
+    if not isinstance(value, str) or not value.strip() or not value.isprintable():
+        raise SceneError(f"{label} must be one line of text, not {shown(value)}")
+    return value
+
+
+def rational(value: object, label: str) -> Fraction:
+    """Return an exact, finite number."""
+    if isinstance(value, bool) or not isinstance(value, int | Decimal):
+        raise SceneError(f"{label} must be a number, not {shown(value)}")
+    long = isinstance(value, int) and value.bit_length() > LONGEST_INTEGER_BITS
+    if not long and not Decimal(value).is_finite():
+        raise SceneError(f"{label} must be finite, not {value}")
+    if long or (value and abs(Decimal(value).adjusted()) > LARGEST_DECIMAL_EXPONENT):
+        most = f"1e-{LARGEST_DECIMAL_EXPONENT} to 1e{LARGEST_DECIMAL_EXPONENT}"
+        raise SceneError(f"{label} must be 0 or of size {most}, not {shown(value)}")
+    return Fraction(value)
+
+
+def listed(value: object, label: str, size: int) -> list[object]:
+    """Return a list of the size that the quantity needs."""
+    if not isinstance(value, list) or len(value) != size:
+        raise SceneError(f"{label} must be a list of {size}, not {shown(value)}")
+    return value
+
+
+def interval(value: object, label: str) -> tuple[Fraction, Fraction]:
+    """Return a range [low, high] with low < high."""
+    low, high = (rational(end, label) for end in listed(value, label, 2))
+    if low >= high:
+        state = "empty" if low == high else "reversed"
+        raise SceneError(f"{label} is {state}: [{float(low):g}, {float(high):g}]")
+    return low, high
+
+
+def unit(given: Table) -> Dimension:
+    """Return the dimension of a table's unit."""
+    try:
+        return dimension(text(given.entries["unit"], f"{given.label}.unit"))
+    except UnitError as error:
+        raise SceneError(f"{given.label}: {error}") from None
+
+
+def formula(value: object, label: str, scope: Scope, expected: Dimension) -> Formula:
+    """Return a formula in known symbols and of the expected dimension.
+
+    A plain number stands for itself in the SI unit of the quantity.
+    """
+    read = _read(value, label)
+    _check_symbols(read, label, scope)
+    try:
+        found = dimension_of(read, scope.dimensions)
+    except UnitError as error:
+        raise SceneError(f"{label}: {error}") from None
+    if found not in (None, expected) and read.operator != "number":
+        raise SceneError(f"{label} = '{read}' is in {spelled(found or expected)}, not {spelled(expected)}")
+    return read
+
+
+def _read(value: object, label: str) -> Formula:
+    try:
+        return parse(value) if isinstance(value, str) else number(rational(value, label))
+    except FormulaError as error:
+        raise SceneError(f"{label} = {shown(value)}: {error}") from None
+
+
+def _check_symbols(read: Formula, label: str, scope: Scope) -> None:
+    for name in symbols(read):
+        if name in scope.others:
+            raise SceneError(f"{label} uses '{name}', {scope.others[name]}; {scope.rule}")
+        if name not in scope.dimensions:
+            hint = nearest(name, scope.dimensions)
+            raise SceneError(f"{label} uses '{name}', which the scene does not declare{hint}")
+
+
+def triple(value: object, label: str, scope: Scope, expected: Dimension) -> Triple:
+    """Return three formulas along x, y and z."""
+    parts = listed(value, label, 3)
+    x, y, z = (
+        formula(part, f"{label}.{axis}", scope, expected)
+        for part, axis in zip(parts, "xyz", strict=True)
+    )
+    return x, y, z

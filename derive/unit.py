@@ -1,0 +1,159 @@
+"""Units of a scene: their dimensions, and the dimension of a formula.
+
+Only coherent SI units are read, so that a number never needs a factor; a degree or a millimetre
+is refused with the unit to give instead. The radian is dimensionless.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from fractions import Fraction
+
+from derive.formula import FUNCTIONS, Formula
+
+Dimension = tuple[Fraction, Fraction, Fraction]
+"""Powers of metre, kilogram and second."""
+
+
+class UnitError(ValueError):
+    """A unit that is not SI, or a formula whose terms do not agree in dimension."""
+
+
+def _dimension(metre: int, kilogram: int, second: int) -> Dimension:
+    return Fraction(metre), Fraction(kilogram), Fraction(second)
+
+
+UNITS: Mapping[str, Dimension] = {
+    "1": _dimension(0, 0, 0),
+    "rad": _dimension(0, 0, 0),
+    "m": _dimension(1, 0, 0),
+    "kg": _dimension(0, 1, 0),
+    "s": _dimension(0, 0, 1),
+    "N": _dimension(1, 1, -2),
+    "J": _dimension(2, 1, -2),
+    "W": _dimension(2, 1, -3),
+    "Pa": _dimension(-1, 1, -2),
+}
+REFUSED: Mapping[str, str] = {
+    **dict.fromkeys(("deg", "degree", "degrees", "°"), "rad"),
+    **dict.fromkeys(("rpm", "Hz", "rev"), "rad/s"),
+    **dict.fromkeys(("mm", "cm", "km", "um", "in", "ft"), "m"),
+    **dict.fromkeys(("g", "mg", "t", "lb"), "kg"),
+    **dict.fromkeys(("ms", "us", "min", "h"), "s"),
+    **dict.fromkeys(("kN", "mN", "lbf"), "N"),
+    **dict.fromkeys(("Nm", "kNm", "mNm"), "N m"),
+}
+NONE = UNITS["1"]
+ANGULAR_VELOCITY = _dimension(0, 0, -1)
+ANGULAR_ACCELERATION = _dimension(0, 0, -2)
+INERTIA = _dimension(2, 1, 0)
+MASS, LENGTH, MOMENT, FORCE = UNITS["kg"], UNITS["m"], UNITS["J"], UNITS["N"]
+VELOCITY, ACCELERATION = _dimension(1, 0, -1), _dimension(1, 0, -2)
+
+_FACTOR = re.compile(r"(?P<name>[A-Za-z°]+|1)(?:\^?(?P<power>-?[0-9]))?")
+_SEPARATOR = re.compile(r" */ *|[ *·]+")
+
+
+def dimension(unit: str) -> Dimension:
+    """Return the dimension of a unit such as "kg m^2", "N m", "m/s^2" or "1".
+
+    Factors are joined by a space, "*" or "·"; each "/" divides by the one factor after it.
+    Raises UnitError for a unit that is unknown or not coherent SI.
+
+    >>> dimension("N m") == dimension("kg m^2/s^2")
+    True
+    """
+    result, place, divide = NONE, 0, False
+    while True:
+        match = _FACTOR.match(unit, place)
+        if match is None:
+            raise UnitError(f"unit '{unit}' cannot be read at {place + 1}")
+        power = int(match["power"] or 1) * (-1 if divide else 1)
+        result = multiplied(result, raised(_unit(match["name"], unit), Fraction(power)))
+        place = match.end()
+        if place == len(unit):
+            return result
+        separator = _SEPARATOR.match(unit, place)
+        if separator is None:
+            raise UnitError(f"unit '{unit}' cannot be read at {place + 1}")
+        if divide and "/" not in separator.group():
+            raise UnitError(f"unit '{unit}' is ambiguous: divide by each factor with its own '/'")
+        divide, place = "/" in separator.group(), separator.end()
+
+
+def _unit(name: str, unit: str) -> Dimension:
+    if name in REFUSED:
+        raise UnitError(f"unit '{unit}' is not coherent SI: give '{REFUSED[name]}', not '{name}'")
+    if name not in UNITS:
+        raise UnitError(f"unit '{unit}' has an unknown part '{name}' (known: {', '.join(UNITS)})")
+    return UNITS[name]
+
+
+def multiplied(left: Dimension, right: Dimension) -> Dimension:
+    """Return the dimension of a product."""
+    return left[0] + right[0], left[1] + right[1], left[2] + right[2]
+
+
+def raised(base: Dimension, power: Fraction) -> Dimension:
+    """Return the dimension of a power."""
+    return base[0] * power, base[1] * power, base[2] * power
+
+
+def spelled(found: Dimension) -> str:
+    """Return a dimension as a unit text, named where a name is usual.
+
+    >>> spelled(dimension("kg m/s^2")), spelled(dimension("kg m^2"))
+    ('N', 'kg m^2')
+    """
+    for name, known in UNITS.items():
+        if known == found:
+            return "N m" if name == "J" else name
+    parts = [(name, power) for name, power in zip(("kg", "m", "s"), (found[1], found[0], found[2]), strict=True) if power]
+    above = " ".join(_factor(name, power) for name, power in parts if power > 0) or "1"
+    return above + "".join("/" + _factor(name, -power) for name, power in parts if power < 0)
+
+
+def _factor(name: str, power: Fraction) -> str:
+    return name if power == 1 else f"{name}^{power}"
+
+
+def dimension_of(formula: Formula, dims: Mapping[str, Dimension]) -> Dimension | None:
+    """Return the dimension of a formula; None for zero, which agrees with any.
+
+    dims : dimension of each symbol of the formula
+    Raises UnitError naming the terms that do not agree.
+    """
+    match formula.operator:
+        case "symbol":
+            return dims[formula.name]
+        case "number":
+            return NONE if formula.number else None
+        case "add" | "sub":
+            return _agreed(formula, dims)
+        case "neg":
+            return dimension_of(formula.operands[0], dims)
+    parts = [dimension_of(part, dims) or NONE for part in formula.operands]
+    match formula.operator:
+        case "mul":
+            return multiplied(parts[0], parts[1])
+        case "div":
+            return multiplied(parts[0], raised(parts[1], Fraction(-1)))
+        case "power":
+            return raised(parts[0], formula.number)
+        case "sqrt":
+            return raised(parts[0], Fraction(1, 2))
+    assert formula.operator in FUNCTIONS
+    if parts[0] != NONE:
+        raise UnitError(f"'{formula}' needs an angle or a plain number, not {spelled(parts[0])}")
+    return NONE
+
+
+def _agreed(formula: Formula, dims: Mapping[str, Dimension]) -> Dimension | None:
+    left, right = (dimension_of(part, dims) for part in formula.operands)
+    if left is None or right is None or left == right:
+        return right if left is None else left
+    first, second = formula.operands
+    raise UnitError(
+        f"'{formula}' joins '{first}' in {spelled(left)} and '{second}' in {spelled(right)}"
+    )
