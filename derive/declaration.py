@@ -6,12 +6,14 @@ the scene's axes unless said otherwise; a product of inertia is I_xy = +sum x y 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from fractions import Fraction
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from derive.formula import Formula
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from fractions import Fraction
 
 Axis = Literal["x", "y", "z"]
 Triple = tuple[Formula, Formula, Formula]

@@ -25,7 +25,7 @@ class FormulaError(ValueError):
 
 @dataclass(frozen=True)
 class Formula:
-    """A number, a symbol, or an operator on formulas; ``power`` keeps its exponent in ``number``."""
+    """A number, a symbol or an operator on formulas; ``power`` has its exponent in ``number``."""
 
     operator: str
     operands: tuple[Formula, ...] = ()

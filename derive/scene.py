@@ -27,7 +27,7 @@ from derive.declaration import (
 from derive.scene_file import read_scene
 from derive.scene_names import identifier
 from derive.scene_rules import check, warnings
-from derive.scene_table import nearest
+from derive.scene_table import nearest, table
 
 __all__ = [
     "Axes",
@@ -94,11 +94,13 @@ def parse_scene(text: str, name: str) -> Scene:
     """
     try:
         identifier(name, "the file")
-        scene = read_scene(_document(text), name, text)
-        check(scene)
+        document = _document(text)
+        scene = read_scene(document, name, text)
+        said = tuple(table(document.get("known", {}), "known").entries)
+        check(scene, said)
+        return replace(scene, warnings=warnings(scene, said))
     except SceneError as error:
         raise SceneError(f"scene '{name}': {error}") from None
-    return replace(scene, warnings=warnings(scene))
 
 
 def _document(text: str) -> dict[str, object]:

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Literal, cast
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, cast
 
 from derive.declaration import Axis, Body, SceneError, Sextuple, Triple
 from derive.formula import ZERO, Formula, number
+from derive.scene_numbers import positive
 from derive.scene_symbols import Symbols, constants, motions, turns
 from derive.scene_table import Scope, Table, formula, keys, shown, triple, word
-from derive.shape import (
-    CONE_CENTRE,
-    SHAPES,
-    about_axis,
-    apex_transverse,
-    axial_and_transverse,
-    box,
-    diagonal,
-    moved,
-)
-from derive.unit import ANGULAR_VELOCITY, INERTIA, LENGTH, MASS
+from derive.shape import CONE_CENTRE, ROUND, SHAPES, about_axis, box, diagonal, moment, moved
+from derive.unit import ANGULAR_VELOCITY, INERTIA, LENGTH, MASS, Dimension
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 Kind = Literal["general", "principal", "axisymmetric", "spherical", "rod"]
+AXES: tuple[Axis, ...] = ("x", "y", "z")
 KINDS: Mapping[str, tuple[str, ...]] = {
     "general": ("products",),
     "principal": (),
@@ -33,29 +29,43 @@ KINDS: Mapping[str, tuple[str, ...]] = {
 COMMON = ("mass", "centre", "turned", "spin")
 
 
+@dataclass(frozen=True)
+class Part:
+    """What a kind or a shape says of the body."""
+
+    kind: str
+    inertia: Sextuple
+    centre: Triple | None
+    axis: Axis | None
+
+
 def read_body(given: Table, point: str, symbols: Symbols) -> Body:
     """Return the body, its inertia about the scene's point along its own axes.
 
     point : the kind of the scene's point; a shape is moved to it unless it is the mass centre
     """
-    scope = constants(symbols)
-    if ("shape" in given.entries) == ("kind" in given.entries):
+    entries = given.entries
+    if ("shape" in entries) == ("kind" in entries):
         raise SceneError("body needs either a kind or a shape")
-    mass = _optional(given, "mass", scope)
-    if "shape" in given.entries:
-        kind, inertia, centre, axis = _shaped(given, point, scope)
-    else:
-        kind, inertia, axis = _of_kind(given, scope)
-        centre = _centre(given, scope)
-    turned = turns(given.entries["turned"], "body.turned", symbols) if "turned" in given.entries else ()
+    read = _shaped(given, point, symbols) if "shape" in entries else _of_kind(given, symbols)
     spin = None
-    if "spin" in given.entries:
-        spin = formula(given.entries["spin"], "body.spin", motions(symbols), ANGULAR_VELOCITY)
-    return Body(kind, mass, inertia, centre, axis, turned, spin)
+    if "spin" in entries:
+        spin = formula(entries["spin"], "body.spin", motions(symbols), ANGULAR_VELOCITY)
+    return Body(
+        cast("Kind", read.kind),
+        _positive(given, "mass", MASS, symbols) if "mass" in entries else None,
+        read.inertia,
+        read.centre,
+        read.axis,
+        turns(entries["turned"], "body.turned", symbols) if "turned" in entries else (),
+        spin,
+    )
 
 
-def _optional(given: Table, key: str, scope: Scope) -> Formula | None:
-    return formula(given.entries[key], f"body.{key}", scope, MASS) if key in given.entries else None
+def _positive(given: Table, key: str, expected: Dimension, symbols: Symbols) -> Formula:
+    label = f"body.{key}"
+    found = formula(given.entries[key], label, constants(symbols), expected)
+    return positive(found, label, symbols.parameters)
 
 
 def _centre(given: Table, scope: Scope) -> Triple | None:
@@ -65,27 +75,29 @@ def _centre(given: Table, scope: Scope) -> Triple | None:
 
 
 def _axis(given: Table) -> Axis:
-    return cast(Axis, word(given.entries["axis"], "body.axis", ("x", "y", "z")))
+    return cast("Axis", word(given.entries["axis"], "body.axis", AXES))
 
 
 def _moment(given: Table, key: str, scope: Scope) -> Formula:
     return formula(given.entries[key], f"body.{key}", scope, INERTIA)
 
 
-def _of_kind(given: Table, scope: Scope) -> tuple[Kind, Sextuple, Axis | None]:
-    kind = cast(Kind, word(given.entries["kind"], "body.kind", KINDS))
+def _of_kind(given: Table, symbols: Symbols) -> Part:
+    kind, scope = word(given.entries["kind"], "body.kind", KINDS), constants(symbols)
     three = ("moments", "second_moments") if kind in ("general", "principal") else ()
     keys(given, ("kind", *KINDS[kind]), (*three, *COMMON))
+    centre = _centre(given, scope)
     if three:
-        return kind, _three_moments(given, scope), None
+        return Part(kind, _three_moments(given, scope), centre, None)
     if kind == "spherical":
-        moment = _moment(given, "moment", scope)
-        return kind, diagonal(moment, moment, moment), None
+        common = _moment(given, "moment", scope)
+        return Part(kind, diagonal(common, common, common), centre, None)
     axis = _axis(given)
     if kind == "rod":
-        return kind, about_axis(axis, ZERO, _moment(given, "moment", scope)), axis
+        inertia = about_axis(axis, ZERO, _moment(given, "moment", scope))
+        return Part(kind, inertia, centre, axis)
     axial, transverse = _moment(given, "axial", scope), _moment(given, "transverse", scope)
-    return kind, about_axis(axis, axial, transverse), axis
+    return Part(kind, about_axis(axis, axial, transverse), centre, axis)
 
 
 def _three_moments(given: Table, scope: Scope) -> Sextuple:
@@ -112,54 +124,68 @@ def _products(given: Table, scope: Scope) -> Triple:
     return xy, xz, yz
 
 
-def _shaped(given: Table, point: str, scope: Scope) -> tuple[Kind, Sextuple, Triple | None, Axis | None]:
+def _shaped(given: Table, point: str, symbols: Symbols) -> Part:
     name = word(given.entries["shape"], "body.shape", SHAPES)
-    shape = SHAPES[name]
-    about = ("about",) if name == "cone" else ()
-    axes = ("axis",) if shape.has_axis else ()
-    keys(given, ("shape", "mass", *shape.lengths, *axes), (*about, *COMMON))
-    mass = formula(given.entries["mass"], "body.mass", scope, MASS)
-    axis = _axis(given) if shape.has_axis else None
+    scope = constants(symbols)
     if name == "box":
-        inertia = box(mass, triple(given.entries["lengths"], "body.lengths", scope, LENGTH))
-        return _at_point(shape.kind, inertia, mass, _centre(given, scope), None, point)
-    lengths = {
-        key: formula(given.entries[key], f"body.{key}", scope, LENGTH) for key in shape.lengths
-    }
+        keys(given, ("shape", "mass", "lengths"), COMMON)
+        mass = _positive(given, "mass", MASS, symbols)
+        lengths = triple(given.entries["lengths"], "body.lengths", scope, LENGTH)
+        for length, label in zip(lengths, "xyz", strict=True):
+            positive(length, f"body.lengths.{label}", symbols.parameters)
+        return _at_point("principal", box(mass, lengths), mass, _centre(given, scope), None, point)
+    return _round(given, name, point, symbols)
+
+
+def _round(given: Table, name: str, point: str, symbols: Symbols) -> Part:
+    """Return a shape with an axis, or a sphere."""
+    shape = ROUND[name]
+    axes = () if shape.kind == "spherical" else ("axis",)
+    about = ("about",) if name == "cone" else ()
+    keys(given, ("shape", "mass", *shape.lengths, *axes), (*about, *COMMON))
+    mass = _positive(given, "mass", MASS, symbols)
+    lengths = {key: _positive(given, key, LENGTH, symbols) for key in shape.lengths}
+    axis = _axis(given) if axes else None
+    axial = moment(shape.axial, mass, lengths)
+    inertia = about_axis(axis, axial, moment(shape.transverse, mass, lengths))
+    centre = _centre(given, constants(symbols))
     if word(given.entries.get("about", "centre"), "body.about", ("centre", "apex")) == "apex":
-        return _cone_about_apex(given, mass, lengths, cast(Axis, axis), point)
-    axial, transverse = axial_and_transverse(name, mass, lengths)
-    inertia = about_axis(axis, axial, transverse) if axis else diagonal(axial, axial, axial)
-    return _at_point(shape.kind, inertia, mass, _centre(given, scope), axis, point)
+        centre = _from_apex(given, lengths, axis, point)
+    return _at_point(shape.kind, inertia, mass, centre, axis, point)
 
 
-def _cone_about_apex(
-    given: Table, mass: Formula, lengths: Mapping[str, Formula], axis: Axis, point: str
-) -> tuple[Kind, Sextuple, Triple | None, Axis | None]:
-    """Return a cone that opens from the scene's point along its positive axis."""
+def _from_apex(
+    given: Table, lengths: Mapping[str, Formula], axis: Axis | None, point: str
+) -> Triple:
+    """Return the mass centre of a cone that opens from the point along its positive axis."""
     if point == "centre_of_mass":
         raise SceneError("body.about = 'apex' needs a fixed or moving point, not 'centre_of_mass'")
     if "centre" in given.entries:
         raise SceneError("body.centre follows from body.about = 'apex'; leave it out")
-    axial, _ = axial_and_transverse("cone", mass, lengths)
     distance = number(CONE_CENTRE) * lengths["height"]
-    x, y, z = (distance if name == axis else ZERO for name in "xyz")
-    inertia = about_axis(axis, axial, apex_transverse(mass, lengths))
-    return "axisymmetric", inertia, (x, y, z), axis
+    x, y, z = (distance if name == axis else ZERO for name in ("x", "y", "z"))
+    return x, y, z
 
 
 def _at_point(
-    kind: str, inertia: Sextuple, mass: Formula, centre: Triple | None, axis: Axis | None, point: str
-) -> tuple[Kind, Sextuple, Triple | None, Axis | None]:
+    kind: str,
+    inertia: Sextuple,
+    mass: Formula,
+    centre: Triple | None,
+    axis: Axis | None,
+    point: str,
+) -> Part:
     """Move a shape's inertia to the scene's point, and say what kind of body it is about it."""
-    if point == "centre_of_mass" or centre is None:
-        return cast(Kind, kind), inertia, centre, axis
+    if point == "centre_of_mass":
+        return Part(kind, inertia, centre, axis)
+    if centre is None:
+        raise SceneError(f"a shape about a {point} point needs body.centre, from that point")
     inertia = moved(inertia, mass, centre)
-    off = [name for name, length in zip("xyz", centre, strict=True) if length != ZERO]
-    if not off or (axis and off == [axis]):
-        return cast(Kind, kind), inertia, centre, axis
+    off = [name for name, length in zip(AXES, centre, strict=True) if length != ZERO]
+    if not off or off == [axis]:
+        return Part(kind, inertia, centre, axis)
     if any(product != ZERO for product in inertia[3:]):
-        return "general", inertia, centre, None
+        return Part("general", inertia, centre, None)
     if kind == "spherical":
-        return "axisymmetric", inertia, centre, cast(Axis, off[0])
-    return "principal", inertia, centre, None
+        return Part("axisymmetric", inertia, centre, off[0])
+    return Part("principal", inertia, centre, None)

@@ -6,13 +6,13 @@ tables is in ``derive.scene_rules``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
-from typing import Literal, cast
+from typing import TYPE_CHECKING, Literal, cast
 
-from derive.declaration import Axes, Given, Input, Point, Scene, SceneError, Triple, Wheel
+from derive.declaration import Axes, Given, Input, Point, Scene, SceneError, Wheel
 from derive.scene_body import read_body
 from derive.scene_names import distinct
+from derive.scene_numbers import positive
 from derive.scene_symbols import (
     Symbols,
     accelerations,
@@ -47,6 +47,9 @@ from derive.unit import (
     Dimension,
 )
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
 FUNCTIONS = (
     "angular_momentum",
     "angular_momentum_rate",
@@ -66,6 +69,7 @@ KNOWN: Mapping[str, tuple[Dimension, int]] = {
 }
 """Dimension of each known vector, and the end of its range where none is given."""
 PointKind = Literal["centre_of_mass", "fixed", "moving"]
+POINTS: tuple[PointKind, ...] = ("centre_of_mass", "fixed", "moving")
 
 
 def read_scene(document: Mapping[str, object], name: str, source: str) -> Scene:
@@ -73,9 +77,10 @@ def read_scene(document: Mapping[str, object], name: str, source: str) -> Scene:
     _top_level(document)
     part = {key: table(document.get(key, {}), key) for key in TABLES}
     symbols = read_symbols(part["parameters"], part["coordinates"], part["speeds"])
-    wheels = _wheels(document.get("wheels", []), constants(symbols))
-    distinct(_declared(symbols, wheels, "position" in document))
-    scope = anything(symbols, tuple(wheel.speed for wheel in wheels))
+    wheels = _wheels(document.get("wheels", []), symbols)
+    states = ("p", "v") if "position" in document else ()
+    distinct(_declared(symbols, wheels, states))
+    scope = anything(symbols, wheels)
     point = _point(part["point"], scope)
     ranges = _position(part["position"]) if "position" in document else (None, None)
     return Scene(
@@ -103,6 +108,8 @@ def _top_level(document: Mapping[str, object]) -> None:
         if key in LATER:
             raise SceneError(f"table '{key}' is reserved for a later version; use body and axes")
     optional = (*(name for name in TABLES if name != "body"), "wheels", "title", "form")
+    if "wanted" not in document:
+        raise SceneError("the file needs 'wanted', above its first [table]")
     keys(Table("the file", document), ("wanted", "body"), optional)
 
 
@@ -116,21 +123,18 @@ def _wanted(value: object) -> tuple[str, ...]:
     for name in value:
         if not isinstance(name, str) or name not in WANTED:
             hint = nearest(name, WANTED) if isinstance(name, str) else ""
-            raise SceneError(f"wanted has {shown(name)}, which is no function{hint or _functions()}")
+            hint = hint or f" (known: {', '.join(FUNCTIONS)}, and each with _jacobian)"
+            raise SceneError(f"wanted has {shown(name)}, which is no function{hint}")
         if value.count(name) > 1:
             raise SceneError(f"wanted has '{name}' twice")
     return tuple(value)
-
-
-def _functions() -> str:
-    return f" (known: {', '.join(FUNCTIONS)}, and each with _jacobian)"
 
 
 def _axes(given: Table, symbols: Symbols) -> Axes:
     keys(given, (), ("fixed_in", "attitude", "turned", "angular_velocity"))
     entries = given.entries
     if "turned" in entries and "angular_velocity" in entries:
-        raise SceneError("axes have both turned and angular_velocity; the one follows from the other")
+        raise SceneError("axes have both turned and angular_velocity; give one of them")
     fixed = "fixed_in" in entries or not ("turned" in entries or "angular_velocity" in entries)
     word(entries.get("fixed_in", "body"), "axes.fixed_in", ("body",))
     word(entries.get("attitude", "quaternion"), "axes.attitude", ("quaternion",))
@@ -142,34 +146,36 @@ def _axes(given: Table, symbols: Symbols) -> Axes:
         value, scope = entries["angular_velocity"], motions(symbols)
         omega = triple(value, "axes.angular_velocity", scope, ANGULAR_VELOCITY)
         return Axes("given", (), quaternion, fixed, omega)
-    return Axes("body", (), quaternion, True, None)
+    return Axes("body", (), quaternion, fixed_in_body=True, angular_velocity=None)
 
 
-def _wheels(value: object, scope: Scope) -> tuple[Wheel, ...]:
+def _wheels(value: object, symbols: Symbols) -> tuple[Wheel, ...]:
     if not isinstance(value, list):
         raise SceneError(f"wheels must be a list of tables [[wheels]], not {shown(value)}")
-    return tuple(_wheel(table(entry, f"wheel {i + 1}"), scope) for i, entry in enumerate(value))
+    return tuple(_wheel(table(entry, f"wheel {i + 1}"), symbols) for i, entry in enumerate(value))
 
 
-def _wheel(given: Table, scope: Scope) -> Wheel:
+def _wheel(given: Table, symbols: Symbols) -> Wheel:
     keys(given, ("name", "axis", "axial", "speed_range", "torque_range"), ())
     name = given.entries["name"]
     if not isinstance(name, str) or not name.isascii() or not name.isalnum() or len(name) > 20:
-        raise SceneError(f"{given.label}: name must be up to 20 letters and digits, not {shown(name)}")
-    label = f"wheel '{name}'"
+        rule = "name must be up to 20 letters and digits"
+        raise SceneError(f"{given.label}: {rule}, not {shown(name)}")
+    label, scope = f"wheel '{name}'", constants(symbols)
+    axial = formula(given.entries["axial"], f"{label}: axial", scope, INERTIA)
     speed = interval(given.entries["speed_range"], f"{label}: speed_range")
     torque = interval(given.entries["torque_range"], f"{label}: torque_range")
     return Wheel(
         name,
         triple(given.entries["axis"], f"{label}: axis", scope, NONE),
-        formula(given.entries["axial"], f"{label}: axial", scope, INERTIA),
+        positive(axial, f"{label}: axial", symbols.parameters),
         Input(f"s_{name}", "rad/s", *speed, f"speed of {label} relative to the carrier"),
         Input(f"u_{name}", "N m", *torque, f"motor torque on {label} about its axis"),
     )
 
 
 def _declared(
-    symbols: Symbols, wheels: tuple[Wheel, ...], with_position: bool
+    symbols: Symbols, wheels: tuple[Wheel, ...], states: tuple[str, ...]
 ) -> list[tuple[str, str]]:
     """List every name of the scene with what it is, derived ones included."""
     found = [(entry.name, f"parameter '{entry.name}'") for entry in symbols.parameters]
@@ -182,18 +188,16 @@ def _declared(
     for wheel in wheels:
         found += [(wheel.speed.name, f"the speed of wheel '{wheel.name}'")]
         found += [(wheel.torque.name, f"the torque on wheel '{wheel.name}'")]
-    if with_position:
-        found += [("p", "the position 'p'"), ("v", "the velocity 'v'")]
-    return found
+    return found + [(name, f"the state '{name}' of [position]") for name in states]
 
 
 def _point(given: Table, scope: Scope) -> Point:
     keys(given, (), ("kind", "acceleration"))
-    kind = word(given.entries.get("kind", "centre_of_mass"), "point.kind", PointKind.__args__)
+    kind = cast("PointKind", word(given.entries.get("kind", POINTS[0]), "point.kind", POINTS))
     if kind != "moving":
         if "acceleration" in given.entries:
             raise SceneError(f"point.acceleration needs point.kind = 'moving', not '{kind}'")
-        return Point(cast(PointKind, kind), None)
+        return Point(kind, None)
     if "acceleration" not in given.entries:
         raise SceneError("a moving point needs point.acceleration, a range or three formulas")
     value = given.entries["acceleration"]

@@ -7,26 +7,30 @@ from __future__ import annotations
 
 import keyword
 import re
-from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 from derive.declaration import SceneError
 from derive.formula import FUNCTIONS
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
 LONGEST_NAME = 40
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*")
-_C_WORDS = frozenset(
+_C_WORDS = (
     "auto bool break case catch char class const constexpr continue default delete do double else "
     "enum explicit export extern false float for friend goto if inline int long main mutable "
     "namespace new nullptr operator private protected public register restrict return short signed "
     "sizeof static struct switch template this throw true try typedef typename union unsigned "
-    "using virtual void volatile while NULL".split()
+    "using virtual void volatile while NULL"
 )
-_C_FUNCTIONS = frozenset(
+_C_FUNCTIONS = (
     "abs acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cosh div erf erfc exp exp2 "
     "expm1 fabs fdim floor fma fmax fmin fmod frexp hypot ilogb index isfinite isinf isnan ldexp "
     "lgamma log log10 log1p log2 logb lrint lround modf nan nearbyint nextafter pow remainder "
-    "remquo rint round scalbln scalbn sinh tanh tgamma time trunc j0 j1 jn y0 y1 yn".split()
+    "remquo rint round scalbln scalbn sinh tanh tgamma time trunc j0 j1 jn y0 y1 yn"
 )
+_WORDS = frozenset((*keyword.kwlist, *_C_WORDS.split(), *_C_FUNCTIONS.split(), *FUNCTIONS))
 GENERATED: Mapping[str, str] = {
     "omega": "the angular velocity of the body",
     "omega_dot": "the angular acceleration of the body",
@@ -45,7 +49,7 @@ def identifier(name: str, label: str) -> str:
     if not _IDENTIFIER.fullmatch(name) or len(name) > LONGEST_NAME:
         rule = f"letters, digits and single underscores, a letter first, at most {LONGEST_NAME}"
         raise SceneError(f"{label} has the name {name[:60]!r}; a name is {rule}")
-    if keyword.iskeyword(name) or name in _C_WORDS | _C_FUNCTIONS | frozenset(FUNCTIONS):
+    if name in _WORDS:
         raise SceneError(f"{label} has the name '{name}', which is a word of C or Python")
     return name
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal, cast
 
-from derive.declaration import Coordinate, Input, Parameter, SceneError, Speed, Turn
+from derive.declaration import Axis, Coordinate, Input, Parameter, SceneError, Speed, Turn, Wheel
 from derive.scene_names import identifier
 from derive.scene_table import (
     Scope,
@@ -22,6 +22,13 @@ from derive.scene_table import (
     word,
 )
 from derive.unit import ANGULAR_VELOCITY, NONE, Dimension, dimension, spelled
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+Scalar = Parameter | Coordinate | Speed | Input
+Motion = Literal["free", "prescribed"]
+MOTIONS: tuple[Motion, ...] = ("free", "prescribed")
 
 
 @dataclass(frozen=True)
@@ -63,18 +70,18 @@ def _parameter(name: str, given: Table) -> Parameter:
 
 
 def _meaning(given: Table) -> str:
-    return text(given.entries["meaning"], f"{given.label}: meaning") if "meaning" in given.entries else ""
+    value = given.entries.get("meaning")
+    return "" if value is None else text(value, f"{given.label}: meaning")
 
 
 def _coordinate(name: str, given: Table) -> Coordinate:
     keys(given, ("unit", "range"), ("meaning", "motion", "rate", "acceleration"))
     _require_unit(given, NONE, "rad")
     low, high = interval(given.entries["range"], f"{given.label}: range")
-    motion: Literal["free", "prescribed"] = "free"
-    if word(given.entries.get("motion", "free"), f"{given.label}: motion", ("free", "prescribed")) != "free":
-        motion = "prescribed"
+    motion = word(given.entries.get("motion", "free"), f"{given.label}: motion", MOTIONS)
     rate, acceleration = _derivatives(name, given, motion)
-    return Coordinate(name, "rad", low, high, _meaning(given), motion, rate, acceleration)
+    meaning, kept = _meaning(given), cast("Motion", motion)
+    return Coordinate(name, "rad", low, high, meaning, kept, rate, acceleration)
 
 
 def _derivatives(name: str, given: Table, motion: str) -> tuple[Input | None, Input | None]:
@@ -101,7 +108,8 @@ def _rate(given: Table, key: str, name: str, spelling: str) -> Input | None:
         return Input(name, spelling, low, high, _meaning(inner))
     if value is None or rational(value, f"{given.label}: {key}") != 0:
         found = "" if value is None else f", not {shown(value)}"
-        raise SceneError(f"{given.label} needs {key} = {{ range = [low, high] }} or {key} = 0{found}")
+        rule = f"needs {key} = {{ range = [low, high] }} or {key} = 0"
+        raise SceneError(f"{given.label} {rule}{found}")
     return None
 
 
@@ -121,20 +129,20 @@ def _require_unit(given: Table, expected: Dimension, spelling: str) -> None:
 def turns(value: object, label: str, symbols: Symbols) -> tuple[Turn, ...]:
     """Return the turns of a list such as ["z psi", "x theta"]."""
     if not isinstance(value, list) or not value:
-        raise SceneError(f"{label} must be a list such as [\"z psi\"], not {shown(value)}")
+        raise SceneError(f"{label} must be a list such as ['z psi'], not {shown(value)}")
     return tuple(_turn(entry, label, symbols) for entry in value)
 
 
 def _turn(entry: object, label: str, symbols: Symbols) -> Turn:
     parts = entry.split() if isinstance(entry, str) else []
     if len(parts) != 2 or parts[0] not in ("x", "y", "z"):
-        raise SceneError(f"{label}: a turn is an axis and a coordinate, as \"z psi\", not {shown(entry)}")
+        rule = "a turn is an axis and a coordinate, as 'z psi'"
+        raise SceneError(f"{label}: {rule}, not {shown(entry)}")
     known = [coordinate.name for coordinate in symbols.coordinates]
     if parts[1] not in known:
-        hint = nearest(parts[1], known)
-        raise SceneError(f"{label} turns through '{parts[1]}', which is no coordinate of the scene{hint}")
-    axis: Literal["x", "y", "z"] = "x" if parts[0] == "x" else "y" if parts[0] == "y" else "z"
-    return Turn(axis, parts[1])
+        rule = f"turns through '{parts[1]}', which is no coordinate of the scene"
+        raise SceneError(f"{label} {rule}{nearest(parts[1], known)}")
+    return Turn(cast("Axis", parts[0]), parts[1])
 
 
 def rates(symbols: Symbols) -> tuple[Input, ...]:
@@ -162,31 +170,34 @@ def constants(symbols: Symbols) -> Scope:
 def motions(symbols: Symbols) -> Scope:
     """Return the scope of a prescribed angular velocity: what has a known rate."""
     usable = [entry for entry in symbols.coordinates if entry.motion == "prescribed"]
+    free = [entry for entry in symbols.coordinates if entry.motion == "free"]
     others = {
-        **{entry.name: "a free coordinate" for entry in symbols.coordinates if entry not in usable},
+        **{entry.name: "a free coordinate" for entry in free},
         **{entry.name: "an acceleration" for entry in accelerations(symbols)},
     }
     rule = "only parameters, speeds, prescribed coordinates and their rates may stand here"
-    return Scope(_dimensions((*symbols.parameters, *usable, *symbols.speeds, *rates(symbols))), others, rule)
+    scalars: tuple[Scalar, ...] = (*symbols.parameters, *usable, *symbols.speeds, *rates(symbols))
+    return Scope(_dimensions(scalars), others, rule)
 
 
-def anything(symbols: Symbols, wheel_speeds: tuple[Input, ...]) -> Scope:
-    """Return the scope of a known force or moment: every scalar of the scene."""
-    return Scope(
-        _dimensions(
-            (
-                *symbols.parameters,
-                *symbols.coordinates,
-                *symbols.speeds,
-                *rates(symbols),
-                *accelerations(symbols),
-                *wheel_speeds,
-            )
-        ),
-        {f"{entry.name}_dot": "the rate of a free coordinate" for entry in symbols.coordinates if entry.motion == "free"},
-        "a known vector may depend on coordinates, but not on rates that are found",
+def anything(symbols: Symbols, wheels: tuple[Wheel, ...]) -> Scope:
+    """Return the scope of a known force or moment: every scalar that is known with the state."""
+    free = [entry.name for entry in symbols.coordinates if entry.motion == "free"]
+    others = {
+        **{f"{name}_dot": "the rate of a free coordinate" for name in free},
+        **{wheel.torque.name: "a motor torque" for wheel in wheels},
+    }
+    scalars: tuple[Scalar, ...] = (
+        *symbols.parameters,
+        *symbols.coordinates,
+        *symbols.speeds,
+        *rates(symbols),
+        *accelerations(symbols),
+        *(wheel.speed for wheel in wheels),
     )
+    rule = "a known vector is a formula of parameters, coordinates, speeds and given rates"
+    return Scope(_dimensions(scalars), others, rule)
 
 
-def _dimensions(entries: tuple[Parameter | Coordinate | Speed | Input, ...]) -> Mapping[str, Dimension]:
-    return {entry.name: dimension(entry.unit) for entry in entries}
+def _dimensions(scalars: tuple[Scalar, ...]) -> Mapping[str, Dimension]:
+    return {entry.name: dimension(entry.unit) for entry in scalars}

@@ -6,15 +6,18 @@ Every function here raises SceneError with a sentence that begins at the table's
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from derive.declaration import SceneError, Triple
 from derive.formula import Formula, FormulaError, number, symbols
 from derive.grammar import LARGEST_DECIMAL_EXPONENT, parse
 from derive.unit import Dimension, UnitError, dimension, dimension_of, spelled
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
 
 LONGEST_INTEGER_BITS = 1000
 
@@ -48,7 +51,8 @@ def keys(given: Table, required: Iterable[str], optional: Iterable[str]) -> None
     required, optional = tuple(required), tuple(optional)
     for key in given.entries:
         if key not in required + optional:
-            raise SceneError(f"{given.label} has an unknown key '{key}'{nearest(key, required + optional)}")
+            hint = nearest(key, required + optional)
+            raise SceneError(f"{given.label} has an unknown key {shown(key)}{hint}")
     for key in required:
         if key not in given.entries:
             raise SceneError(f"{given.label} needs '{key}'")
@@ -71,7 +75,7 @@ def shown(value: object) -> str:
         return f"a list of {len(value)}"
     if isinstance(value, int) and value.bit_length() > LONGEST_INTEGER_BITS:
         return f"a number of {value.bit_length()} bits"
-    text = repr(value) if isinstance(value, str) else str(value)
+    text = repr(value) if isinstance(value, str) else str(value).lower()
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
@@ -138,8 +142,8 @@ def formula(value: object, label: str, scope: Scope, expected: Dimension) -> For
         found = dimension_of(read, scope.dimensions)
     except UnitError as error:
         raise SceneError(f"{label}: {error}") from None
-    if found not in (None, expected) and read.operator != "number":
-        raise SceneError(f"{label} = '{read}' is in {spelled(found or expected)}, not {spelled(expected)}")
+    if found is not None and found != expected and read.operator != "number":
+        raise SceneError(f"{label} = '{read}' is in {spelled(found)}, not {spelled(expected)}")
     return read
 
 

@@ -1,80 +1,77 @@
-"""Inertia of named homogeneous shapes: axial and transverse moments, or three, with exact factors.
+"""Inertia of named homogeneous shapes, with exact factors, and its parallel axes.
 
-Each row of a table is a function of mass and dimensions; ``tests/scenes`` integrates every one of
-them again, by quadrature over the volume, surface or line.
+A shape is a row of ``ROUND``: each moment about the mass centre is the mass times a sum of factors
+times squared lengths. The tests integrate every shape again, by quadrature over its mass.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
-from derive.declaration import Axis, Sextuple, Triple
 from derive.formula import ZERO, Formula, number
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from derive.declaration import Axis, Sextuple, Triple
+
+Terms = tuple[tuple[Fraction, str], ...]
 
 
 @dataclass(frozen=True)
-class Shape:
-    """What a shape needs to be said, and what kind of body it is."""
+class Round:
+    """A shape with an axis, or a sphere: its moments along the axis and across it."""
 
     kind: str
     lengths: tuple[str, ...]
-    has_axis: bool
+    axial: Terms
+    transverse: Terms
 
 
-SHAPES: Mapping[str, Shape] = {
-    "cylinder": Shape("axisymmetric", ("radius", "length"), True),
-    "disc": Shape("axisymmetric", ("radius",), True),
-    "cone": Shape("axisymmetric", ("radius", "height"), True),
-    "hoop": Shape("axisymmetric", ("radius",), True),
-    "rod": Shape("rod", ("length",), True),
-    "box": Shape("principal", ("lengths",), False),
-    "sphere": Shape("spherical", ("radius",), False),
-    "hollow_sphere": Shape("spherical", ("radius",), False),
+def _terms(*rows: tuple[int, int, str]) -> Terms:
+    return tuple((Fraction(above, below), length) for above, below, length in rows)
+
+
+ROUND: Mapping[str, Round] = {
+    "cylinder": Round(
+        "axisymmetric",
+        ("radius", "length"),
+        _terms((1, 2, "radius")),
+        _terms((1, 4, "radius"), (1, 12, "length")),
+    ),
+    "disc": Round("axisymmetric", ("radius",), _terms((1, 2, "radius")), _terms((1, 4, "radius"))),
+    "hoop": Round("axisymmetric", ("radius",), _terms((1, 1, "radius")), _terms((1, 2, "radius"))),
+    "cone": Round(
+        "axisymmetric",
+        ("radius", "height"),
+        _terms((3, 10, "radius")),
+        _terms((3, 20, "radius"), (3, 80, "height")),
+    ),
+    "rod": Round("rod", ("length",), (), _terms((1, 12, "length"))),
+    "sphere": Round("spherical", ("radius",), _terms((2, 5, "radius")), _terms((2, 5, "radius"))),
+    "hollow_sphere": Round(
+        "spherical", ("radius",), _terms((2, 3, "radius")), _terms((2, 3, "radius"))
+    ),
 }
-
-
-def axial_and_transverse(shape: str, mass: Formula, lengths: Mapping[str, Formula]) -> tuple[Formula, Formula]:
-    """Return the moments about the axis and across it, about the mass centre.
-
-    shape : a row of SHAPES other than "box"        mass, lengths : formulas in kg and m
-    """
-    if shape == "rod":
-        return ZERO, _times(Fraction(1, 12), mass, lengths["length"])
-    radius = lengths["radius"]
-    match shape:
-        case "cylinder":
-            transverse = _times(Fraction(1, 4), mass, radius) + _times(
-                Fraction(1, 12), mass, lengths["length"]
-            )
-            return _times(Fraction(1, 2), mass, radius), transverse
-        case "cone":
-            transverse = _times(Fraction(3, 20), mass, radius) + _times(
-                Fraction(3, 80), mass, lengths["height"]
-            )
-            return _times(Fraction(3, 10), mass, radius), transverse
-    axial, transverse = _ROUND[shape]
-    return _times(axial, mass, radius), _times(transverse, mass, radius)
-
-
-_ROUND = {
-    "disc": (Fraction(1, 2), Fraction(1, 4)),
-    "hoop": (Fraction(1), Fraction(1, 2)),
-    "sphere": (Fraction(2, 5), Fraction(2, 5)),
-    "hollow_sphere": (Fraction(2, 3), Fraction(2, 3)),
-}
+SHAPES = (*ROUND, "box")
 CONE_CENTRE = Fraction(3, 4)
 """How far the mass centre of a cone lies from its apex, in heights."""
 
 
-def _times(factor: Fraction, mass: Formula, length: Formula) -> Formula:
-    return number(factor) * mass * length**2
+def moment(terms: Terms, mass: Formula, lengths: Mapping[str, Formula]) -> Formula:
+    """Return the moment of inertia that a row of terms says, in kg m^2."""
+    result = ZERO
+    for factor, name in terms:
+        result = result + number(factor) * mass * lengths[name] ** 2
+    return result
 
 
 def box(mass: Formula, lengths: Triple) -> Sextuple:
     """Return the inertia of a box about its mass centre, edges along x, y and z."""
-    a, b, c = (_times(Fraction(1, 12), mass, length) for length in lengths)
+    twelfth = number(Fraction(1, 12))
+    a, b, c = (twelfth * mass * length**2 for length in lengths)
     return diagonal(b + c, a + c, a + b)
 
 
@@ -83,9 +80,12 @@ def diagonal(xx: Formula, yy: Formula, zz: Formula) -> Sextuple:
     return xx, yy, zz, ZERO, ZERO, ZERO
 
 
-def about_axis(axis: Axis, axial: Formula, transverse: Formula) -> Sextuple:
-    """Return the inertia of an axisymmetric body; its two equal moments are one formula."""
-    xx, yy, zz = (axial if name == axis else transverse for name in "xyz")
+def about_axis(axis: Axis | None, axial: Formula, transverse: Formula) -> Sextuple:
+    """Return the inertia of an axisymmetric body; its two equal moments are one formula.
+
+    axis : None for a sphere, whose moments are all transverse
+    """
+    xx, yy, zz = (axial if name == axis else transverse for name in ("x", "y", "z"))
     return diagonal(xx, yy, zz)
 
 
@@ -96,16 +96,13 @@ def moved(inertia: Sextuple, mass: Formula, centre: Triple) -> Sextuple:
     Source: lecture step "parallel_axes".
     """
     x, y, z = centre
-    squares = [length**2 if length != ZERO else ZERO for length in centre]
-    added = (
-        *(mass * (squares[i] + squares[j]) for i, j in ((1, 2), (0, 2), (0, 1))),
-        *(mass * (first * second) for first, second in ((x, y), (x, z), (y, z))),
+    xx, yy, zz, xy, xz, yz = inertia
+    a, b, c = (ZERO if length == ZERO else length**2 for length in centre)
+    return (
+        xx + mass * (b + c),
+        yy + mass * (a + c),
+        zz + mass * (a + b),
+        xy + mass * (x * y),
+        xz + mass * (x * z),
+        yz + mass * (y * z),
     )
-    xx, yy, zz, xy, xz, yz = (before + more for before, more in zip(inertia, added, strict=True))
-    return xx, yy, zz, xy, xz, yz
-
-
-def apex_transverse(mass: Formula, lengths: Mapping[str, Formula]) -> Formula:
-    """Return the transverse moment of a cone about its apex."""
-    radius = _times(Fraction(3, 20), mass, lengths["radius"])
-    return radius + _times(Fraction(3, 5), mass, lengths["height"])

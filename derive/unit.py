@@ -7,10 +7,13 @@ is refused with the unit to give instead. The radian is dimensionless.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
-from derive.formula import FUNCTIONS, Formula
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from derive.formula import Formula
 
 Dimension = tuple[Fraction, Fraction, Fraction]
 """Powers of metre, kilogram and second."""
@@ -109,9 +112,10 @@ def spelled(found: Dimension) -> str:
     for name, known in UNITS.items():
         if known == found:
             return "N m" if name == "J" else name
-    parts = [(name, power) for name, power in zip(("kg", "m", "s"), (found[1], found[0], found[2]), strict=True) if power]
-    above = " ".join(_factor(name, power) for name, power in parts if power > 0) or "1"
-    return above + "".join("/" + _factor(name, -power) for name, power in parts if power < 0)
+    parts = (("kg", found[1]), ("m", found[0]), ("s", found[2]))
+    above = " ".join(_factor(name, power) for name, power in parts if power > 0)
+    below = "".join("/" + _factor(name, -power) for name, power in parts if power < 0)
+    return (above or "1") + below
 
 
 def _factor(name: str, power: Fraction) -> str:
@@ -143,7 +147,6 @@ def dimension_of(formula: Formula, dims: Mapping[str, Dimension]) -> Dimension |
             return raised(parts[0], formula.number)
         case "sqrt":
             return raised(parts[0], Fraction(1, 2))
-    assert formula.operator in FUNCTIONS
     if parts[0] != NONE:
         raise UnitError(f"'{formula}' needs an angle or a plain number, not {spelled(parts[0])}")
     return NONE
