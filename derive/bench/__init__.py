@@ -1,0 +1,1 @@
+"""The bench: every function beside the best hand-written form and what other tools emit."""

@@ -1,0 +1,159 @@
+"""The problems of the bench: what goes in, what comes out, and which scene of ours solves it."""
+
+from dataclasses import dataclass
+
+AXES = ("x", "y", "z")
+TENSOR = ("I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
+
+
+def along(name: str) -> tuple[str, ...]:
+    """Return the names of a vector's components.
+
+    >>> along("omega")
+    ('omega_x', 'omega_y', 'omega_z')
+    """
+    return tuple(f"{name}_{axis}" for axis in AXES)
+
+
+OMEGA, MOMENT, FORCE = along("omega"), along("M"), along("F")
+POSITION, VELOCITY = along("p"), along("v")
+QUATERNION = ("q_w", "q_x", "q_y", "q_z")
+RIGID_STATE = POSITION + QUATERNION + VELOCITY + OMEGA
+
+
+@dataclass(frozen=True)
+class Block:
+    """Outputs whose error is taken together, as the norm of one vector."""
+
+    name: str
+    places: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One function that every tool is asked for.
+
+    scene, function : where ours stands in ``generated/``
+    outputs : components in order; a Jacobian follows as ``pattern``, in compressed-column order
+    """
+
+    name: str
+    says: str
+    scene: str
+    function: str
+    parameters: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    blocks: tuple[Block, ...]
+    pattern: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def width(self) -> int:
+        """Return the number of values that come out."""
+        return len(self.outputs) + len(self.pattern)
+
+
+def _block(name: str, start: int, stop: int) -> Block:
+    return Block(name, tuple(range(start, stop)))
+
+
+def _dot(names: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(f"{name}_dot" for name in names)
+
+
+def _rigid_pattern() -> tuple[tuple[str, str], ...]:
+    """Return (row, column) of the 66 nonzeros of the rigid body's Jacobian, column by column."""
+    rows = {
+        **{c: [r for r in QUATERNION if r != c] + list(VELOCITY) for c in QUATERNION},
+        **{v: [p] for v, p in zip(VELOCITY, POSITION, strict=True)},
+        **dict.fromkeys(OMEGA, [*QUATERNION, *OMEGA]),
+        **dict.fromkeys(FORCE, VELOCITY),
+        **dict.fromkeys(MOMENT, OMEGA),
+    }
+    return tuple((f"{row}_dot", column) for column, of in rows.items() for row in of)
+
+
+def _jacobian_blocks(pattern: tuple[tuple[str, str], ...], start: int) -> tuple[Block, ...]:
+    """Return a block for each pair of vectors, such as v_dot by q."""
+    blocks: dict[str, list[int]] = {}
+    for place, (row, column) in enumerate(pattern):
+        name = f"{row.partition('_')[0]}_dot by {column.partition('_')[0]}"
+        blocks.setdefault(name, []).append(start + place)
+    return tuple(Block(name, tuple(places)) for name, places in blocks.items())
+
+
+FREE_BODY = Problem(
+    "free_body",
+    "omega_dot, full tensor",
+    "free_body",
+    "acceleration",
+    TENSOR,
+    OMEGA + MOMENT,
+    _dot(OMEGA),
+    (_block("omega_dot", 0, 3),),
+)
+
+PRINCIPAL = Problem(
+    "free_body_principal",
+    "omega_dot, principal axes",
+    "free_body_principal",
+    "acceleration",
+    TENSOR[:3],
+    OMEGA + MOMENT,
+    _dot(OMEGA),
+    (_block("omega_dot", 0, 3),),
+)
+
+HEAVY_TOP = Problem(
+    "heavy_top",
+    "heavy top in the nutation frame, 6 states",
+    "heavy_top",
+    "state_rate",
+    ("A", "C", "m", "g", "l"),
+    ("psi", "theta", "phi", *OMEGA),
+    _dot(("psi", "theta", "phi", *OMEGA)),
+    (_block("angle rates", 0, 3), _block("omega_dot", 3, 6)),
+)
+
+GYROSTAT = Problem(
+    "gyrostat",
+    "carrier and 3 wheels, 9 states",
+    "gyrostat",
+    "state_rate",
+    (*TENSOR, "C_1", "C_2", "C_3"),
+    ("phi", "theta", "psi", *OMEGA, "s_1", "s_2", "s_3", *MOMENT, "u_1", "u_2", "u_3"),
+    _dot(("phi", "theta", "psi", *OMEGA, "s_1", "s_2", "s_3")),
+    (_block("angle rates", 0, 3), _block("omega_dot", 3, 6), _block("s_dot", 6, 9)),
+)
+
+RIGID_BLOCKS = (
+    _block("p_dot", 0, 3),
+    _block("q_dot", 3, 7),
+    _block("v_dot", 7, 10),
+    _block("omega_dot", 10, 13),
+)
+
+RIGID_BODY = Problem(
+    "rigid_body",
+    "free body, 13 states",
+    "rigid_body",
+    "state_rate",
+    ("m", *TENSOR),
+    RIGID_STATE + FORCE + MOMENT,
+    _dot(RIGID_STATE),
+    RIGID_BLOCKS,
+)
+
+RIGID_JACOBIAN = Problem(
+    "rigid_body_jacobian",
+    "the same with its Jacobian, 66 nonzeros",
+    "rigid_body",
+    "state_rate_jacobian",
+    ("m", *TENSOR),
+    RIGID_STATE + FORCE + MOMENT,
+    _dot(RIGID_STATE),
+    RIGID_BLOCKS + _jacobian_blocks(_rigid_pattern(), len(RIGID_STATE)),
+    _rigid_pattern(),
+)
+
+PROBLEMS = (FREE_BODY, PRINCIPAL, HEAVY_TOP, GYROSTAT, RIGID_BODY, RIGID_JACOBIAN)
