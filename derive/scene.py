@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import os
 import tomllib
 from dataclasses import replace
 from decimal import Decimal, InvalidOperation
@@ -71,20 +72,28 @@ def load(source: str | Path) -> Scene:
     if isinstance(source, str) and source in catalogue():
         source = CATALOGUE / f"{source}.toml"
     path = Path(source)
-    if path.suffix != ".toml" and not path.exists():
+    if path.suffix != ".toml" and not os.path.exists(path):
         hint = nearest(str(source), catalogue())
         raise SceneError(f"scene '{source}': neither in the catalogue nor a file{hint}")
     return parse_scene(_contents(path), path.stem)
 
 
 def _contents(path: Path) -> str:
+    start = f"scene '{path.stem}': {path}"
+    if not os.path.isfile(path):
+        state = "is not a file" if os.path.exists(path) else "does not exist"
+        raise SceneError(f"{start} {state}")
     try:
-        return path.read_bytes().decode("utf-8")
+        with path.open("rb") as file:
+            content = file.read(LONGEST_FILE + 1)
+    except OSError as error:
+        raise SceneError(f"{start} cannot be read: {error.strerror}") from None
+    if len(content) > LONGEST_FILE:
+        raise SceneError(f"{start} is longer than {LONGEST_FILE} bytes")
+    try:
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        reason = f"is not UTF-8 (byte {error.start})"
-    except (OSError, ValueError) as error:
-        reason = "cannot be read: " + (getattr(error, "strerror", None) or str(error)).lower()
-    raise SceneError(f"scene '{path.stem}': file {path} {reason}")
+        raise SceneError(f"{start} is not UTF-8 (byte {error.start})") from None
 
 
 def parse_scene(text: str, name: str) -> Scene:
@@ -107,7 +116,7 @@ def _document(text: str) -> dict[str, object]:
     if not text.strip():
         raise SceneError("the file is empty")
     if len(text) > LONGEST_FILE:
-        raise SceneError(f"the file has {len(text)} characters; {LONGEST_FILE} is the most")
+        raise SceneError(f"the file is longer than {LONGEST_FILE} characters")
     try:
         return tomllib.loads(text, parse_float=_decimal)
     except ValueError as error:

@@ -39,7 +39,7 @@ GENERATED: Mapping[str, str] = {
     "M": "the moment",
     "F": "the force",
     "q": "the attitude quaternion",
-    "pi": "the number pi, which no formula needs; give it as a parameter with a value",
+    "pi": "the number pi is no symbol of a scene",
 }
 """Names that the emitted code uses itself, and for what."""
 
@@ -62,7 +62,7 @@ def distinct(declared: list[tuple[str, str]]) -> None:
     seen: dict[str, str] = {}
     for name, meaning in declared:
         if name in GENERATED:
-            raise SceneError(f"{meaning} has the name '{name}', which is taken: {GENERATED[name]}")
+            raise SceneError(f"{meaning} has a name that is taken: {GENERATED[name]}")
         if name in seen:
             raise SceneError(f"'{name}' is declared twice: {seen[name]} and {meaning}")
         seen[name] = meaning

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     from derive.declaration import Body, Coordinate, Parameter, Sextuple, Wheel
 
-MOST_ENDS = 1024
-"""Enough for every combination of the ends of ten ranges."""
+MOST_ENDS = 256
+"""Enough for every combination of the ends of eight ranges."""
 UNIT_LENGTH = 1e-9
 """How far the length of a wheel's axis may be from 1: nine digits typed by hand."""
 ROUNDING = 1e-12

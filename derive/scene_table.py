@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 LONGEST_INTEGER_BITS = 1000
+MARKS = ("*/", "/*", "\\", '"""', "??")
 
 
 @dataclass(frozen=True)
@@ -83,14 +84,18 @@ def word(value: object, label: str, known: Iterable[str]) -> str:
     """Return a value that must be one of a few words."""
     known = tuple(known)
     if not isinstance(value, str) or value not in known:
-        raise SceneError(f"{label} must be one of {', '.join(known)}, not {shown(value)}")
+        choice = f"one of {', '.join(known)}" if len(known) > 1 else f"'{known[0]}'"
+        raise SceneError(f"{label} must be {choice}, not {shown(value)}")
     return value
 
 
 def text(value: object, label: str) -> str:
-    """Return a value that must be one line of text."""
+    """Return one line of text that may stand in a comment of C and in a string of Python."""
     if not isinstance(value, str) or not value.strip() or not value.isprintable():
         raise SceneError(f"{label} must be one line of text, not {shown(value)}")
+    for mark in MARKS:
+        if mark in value:
+            raise SceneError(f"{label} must not hold {mark}, which ends a comment or a string")
     return value
 
 

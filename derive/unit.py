@@ -112,6 +112,8 @@ def spelled(found: Dimension) -> str:
     for name, known in UNITS.items():
         if known == found:
             return "N m" if name == "J" else name
+    if found in (ANGULAR_VELOCITY, ANGULAR_ACCELERATION):
+        return "rad/s" if found == ANGULAR_VELOCITY else "rad/s^2"
     parts = (("kg", found[1]), ("m", found[0]), ("s", found[2]))
     above = " ".join(_factor(name, power) for name, power in parts if power > 0)
     below = "".join("/" + _factor(name, -power) for name, power in parts if power < 0)
