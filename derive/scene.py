@@ -28,7 +28,7 @@ from derive.declaration import (
 from derive.scene_file import read_scene
 from derive.scene_names import identifier
 from derive.scene_rules import check, warnings
-from derive.scene_table import nearest, table
+from derive.scene_table import nearest, shown, table
 
 __all__ = [
     "Axes",
@@ -74,7 +74,7 @@ def load(source: str | Path) -> Scene:
     path = Path(source)
     if path.suffix != ".toml" and not os.path.exists(path):
         hint = nearest(str(source), catalogue())
-        raise SceneError(f"scene '{source}': neither in the catalogue nor a file{hint}")
+        raise SceneError(f"scene {shown(str(source))}: neither in the catalogue nor a file{hint}")
     return parse_scene(_contents(path), path.stem)
 
 
