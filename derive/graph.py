@@ -1,0 +1,154 @@
+"""Expressions as a graph in sum-of-products form, in which equal values are one node.
+
+A value is an exact coefficient times a node. Sums and products are kept flat and in canonical
+order (the order in which nodes came to be), so what is equal is found equal whatever the symbols
+are called. A ``let`` names a value that is worth computing once; a ``cut`` does so for good:
+``expand`` looks through a let and stops at a cut.
+"""
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+
+Node = tuple  # ("input", name) | ("one",) | ("sum", terms) | ("product", factors) | ("call", f, values) | (let|cut, value)
+Value = tuple[Fraction, int]
+
+ONE = 0
+ZERO: Value = (Fraction(0), ONE)
+UNIT: Value = (Fraction(1), ONE)
+
+
+class Graph:
+    """An arena of nodes; node numbers order the arena and never depend on names."""
+
+    def __init__(self) -> None:
+        self.nodes: list[Node] = [("one",)]
+        self.fixed: list[bool] = [True]
+        self.names: dict[int, str] = {}
+        self._number: dict[Node, int] = {("one",): ONE}
+
+    def _node(self, node: Node, fixed: bool) -> int:
+        if node not in self._number:
+            self._number[node] = len(self.nodes)
+            self.nodes.append(node)
+            self.fixed.append(fixed)
+        return self._number[node]
+
+    def parameter(self, name: str) -> Value:
+        """Return the leaf of a parameter: known before the function is called."""
+        return Fraction(1), self._node(("input", name), True)
+
+    def variable(self, name: str) -> Value:
+        """Return the leaf of an input that changes from call to call."""
+        return Fraction(1), self._node(("input", name), False)
+
+    def number(self, value: Fraction | int) -> Value:
+        """Return an exact number."""
+        return Fraction(value), ONE
+
+    def add(self, values: Iterable[Value]) -> Value:
+        """Return the sum of ``values``, flat, like terms collected."""
+        terms: dict[int, Fraction] = {}
+        for coefficient, node in values:
+            inner = self.nodes[node][1] if self.nodes[node][0] == "sum" else ((Fraction(1), node),)
+            for factor, term in inner:
+                terms[term] = terms.get(term, Fraction(0)) + coefficient * factor
+        flat = sorted((node, c) for node, c in terms.items() if c)
+        if not flat:
+            return ZERO
+        if len(flat) == 1:
+            return flat[0][1], flat[0][0]
+        sign = 1 if flat[0][1] > 0 else -1
+        alike = len({abs(c) for _, c in flat}) == 1
+        content = sign * (abs(flat[0][1]) if alike else Fraction(1))
+        node = ("sum", tuple((c / content, n) for n, c in flat))
+        return content, self._node(node, all(self.fixed[n] for n, _ in flat))
+
+    def mul(self, values: Iterable[Value]) -> Value:
+        """Return the product of ``values``, flat, powers collected."""
+        coefficient, powers = Fraction(1), dict[int, int]()
+        for factor, node in values:
+            coefficient *= factor
+            inner = self.nodes[node][1] if self.nodes[node][0] == "product" else ((node, 1),)
+            for base, power in inner:
+                powers[base] = powers.get(base, 0) + power
+        flat = tuple(sorted((n, p) for n, p in powers.items() if p and n != ONE))
+        if not coefficient or not flat:
+            return coefficient, ONE
+        if len(flat) == 1 and flat[0][1] == 1:
+            return coefficient, flat[0][0]
+        return coefficient, self._node(("product", flat), all(self.fixed[n] for n, _ in flat))
+
+    def power(self, value: Value, exponent: int) -> Value:
+        """Return ``value`` to an integer power, negative for a division."""
+        coefficient, node = value
+        inner = self.nodes[node][1] if self.nodes[node][0] == "product" else ((node, 1),)
+        factors = [(Fraction(1), base) for base, power in inner for _ in range(abs(power * exponent))]
+        signs = [1 if power * exponent > 0 else -1 for _, power in inner for _ in range(abs(power * exponent))]
+        raised = [self._raised(base, sign) for (_, base), sign in zip(factors, signs, strict=True)]
+        return self.mul([(coefficient**exponent, ONE), *raised])
+
+    def _raised(self, base: int, sign: int) -> Value:
+        if sign > 0 or base == ONE:
+            return Fraction(1), base
+        return Fraction(1), self._node(("product", ((base, -1),)), self.fixed[base])
+
+    def call(self, function: str, *values: Value) -> Value:
+        """Return ``function`` of ``values``: sin, cos, sqrt or power_of_two."""
+        return Fraction(1), self._node(
+            ("call", function, values), all(self.fixed[node] for _, node in values)
+        )
+
+    def let(self, name: str, value: Value) -> Value:
+        """Name a value that is worth computing once; plain leaves and numbers stay themselves."""
+        return self._named("let", name, value)
+
+    def cut(self, name: str, value: Value) -> Value:
+        """Name a value that must be computed as it stands, even when its users are expanded."""
+        return self._named("cut", name, value)
+
+    def _named(self, kind: str, name: str, value: Value) -> Value:
+        coefficient, node = value
+        if self.nodes[node][0] in ("one", "input", "let", "cut") and abs(coefficient) in (0, 1):
+            return value
+        if node == ONE:
+            return value
+        number = self._node((kind, value), self.fixed[node])
+        self.names.setdefault(number, name)
+        return Fraction(1), number
+
+    def leaf_names(self) -> set[str]:
+        """Return the names of all inputs."""
+        return {node[1] for node in self.nodes if node[0] == "input"}
+
+    def inside(self, node: int) -> Value | None:
+        """Return what a let or cut stands for, else None."""
+        kind, *rest = self.nodes[node]
+        return rest[0] if kind in ("let", "cut") else None
+
+
+def replace(graph: Graph, value: Value, by: Mapping[int, Value]) -> Value:
+    """Return ``value`` with some nodes replaced."""
+    memory: dict[int, Value] = dict(by)
+
+    def visit(node: int) -> Value:
+        if node not in memory:
+            memory[node] = rebuilt(graph, node, visit)
+        return memory[node]
+
+    return graph.mul([(value[0], ONE), visit(value[1])])
+
+
+def rebuilt(graph: Graph, node: int, visit) -> Value:  # type: ignore[no-untyped-def]
+    """Return ``node`` built anew from its visited parts."""
+    kind, *rest = graph.nodes[node]
+    match kind:
+        case "sum":
+            return graph.add([graph.mul([(c, ONE), visit(n)]) for c, n in rest[0]])
+        case "product":
+            return graph.mul([graph.power(visit(n), p) for n, p in rest[0]])
+        case "call":
+            return graph.call(rest[0], *(graph.mul([(c, ONE), visit(n)]) for c, n in rest[1]))
+        case "let" | "cut":
+            value = graph.mul([(rest[0][0], ONE), visit(rest[0][1])])
+            return graph._named(kind, graph.names[node], value)
+    return Fraction(1), node

@@ -1,0 +1,116 @@
+"""A program: named inputs, straight-line operations, named outputs.
+
+This is the only thing the derivation hands to the printers. SymPy stops before it: an operand
+is the name of an earlier value or an exact number.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+Operand = str | Fraction
+
+FLOPS = ("add", "sub", "mul", "div")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One input or output: what it is called, measured in, seen from, and may range over."""
+
+    name: str
+    components: tuple[str, ...]
+    shape: tuple[int, ...]
+    unit: str
+    frame: str
+    low: Fraction | None
+    high: Fraction | None
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Sparsity:
+    """The pattern of a matrix in compressed-column order, with its row and column labels."""
+
+    rows: tuple[str, ...]
+    columns: tuple[str, ...]
+    colind: tuple[int, ...]
+    row: tuple[int, ...]
+
+    def places(self) -> tuple[tuple[int, int], ...]:
+        """Return (row, column) of each nonzero, in storage order."""
+        return tuple(
+            (self.row[k], column)
+            for column in range(len(self.columns))
+            for k in range(self.colind[column], self.colind[column + 1])
+        )
+
+
+@dataclass(frozen=True)
+class Op:
+    """``result = operator(*operands)``."""
+
+    result: str
+    operator: str
+    operands: tuple[Operand, ...]
+
+
+@dataclass(frozen=True)
+class Program:
+    """A function without branches or loops, ready for any arithmetic.
+
+    ``results`` are the values of the outputs' components in order; ``sparsity`` gives the pattern
+    of an output that holds the nonzeros of a matrix; ``positive`` are results of ``ops`` that
+    must be above zero for the inputs to be admissible.
+    """
+
+    name: str
+    says: str
+    inputs: tuple[Quantity, ...]
+    outputs: tuple[Quantity, ...]
+    ops: tuple[Op, ...]
+    results: tuple[Operand, ...]
+    postcondition: str = ""
+    steps: tuple[str, ...] = ()
+    assumptions: tuple[str, ...] = ()
+    sparsity: Mapping[str, Sparsity] | None = None
+    positive: tuple[Operand, ...] = ()
+
+    def count(self) -> dict[str, int]:
+        """Return how often each operator is used."""
+        kinds = sorted({op.operator for op in self.ops})
+        return {kind: sum(op.operator == kind for op in self.ops) for kind in kinds}
+
+    def flops(self) -> int:
+        """Return the number of + - * / in the operations."""
+        return sum(op.operator in FLOPS for op in self.ops)
+
+
+def run(program: Program, arithmetic: Mapping[str, Callable[..., Any]], values: Sequence[Any]) -> list[Any]:
+    """Run ``program`` in an arithmetic: floats, exact fractions, intervals, CasADi.
+
+    ``values`` are the input components in declared order. The arithmetic maps each operator,
+    and "number" for constants, to a callable.
+    """
+    names = [name for quantity in program.inputs for name in quantity.components]
+    known = dict(zip(names, values, strict=True))
+
+    def value(operand: Operand) -> Any:
+        return known[operand] if isinstance(operand, str) else arithmetic["number"](operand)
+
+    for op in program.ops:
+        known[op.result] = arithmetic[op.operator](*map(value, op.operands))
+    return [value(result) for result in program.results]
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """The error of one output of one function in one precision, in ulps of its largest term."""
+
+    function: str
+    precision: str
+    output: str
+    median: float
+    worst: float
+    sample: int
+    samples: int
