@@ -78,8 +78,7 @@ def read_scene(document: Mapping[str, object], name: str, source: str) -> Scene:
     part = {key: table(document.get(key, {}), key) for key in TABLES}
     symbols = read_symbols(part["parameters"], part["coordinates"], part["speeds"])
     wheels = _wheels(document.get("wheels", []), symbols)
-    states = ("p", "v") if "position" in document else ()
-    distinct(_declared(symbols, wheels, states))
+    distinct(_declared(symbols, wheels))
     scope = anything(symbols, wheels)
     point = _point(part["point"], scope)
     ranges = _position(part["position"]) if "position" in document else (None, None)
@@ -174,9 +173,7 @@ def _wheel(given: Table, symbols: Symbols) -> Wheel:
     )
 
 
-def _declared(
-    symbols: Symbols, wheels: tuple[Wheel, ...], states: tuple[str, ...]
-) -> list[tuple[str, str]]:
+def _declared(symbols: Symbols, wheels: tuple[Wheel, ...]) -> list[tuple[str, str]]:
     """List every name of the scene with what it is, derived ones included."""
     found = [(entry.name, f"parameter '{entry.name}'") for entry in symbols.parameters]
     found += [(entry.name, f"coordinate '{entry.name}'") for entry in symbols.coordinates]
@@ -188,7 +185,8 @@ def _declared(
     for wheel in wheels:
         found += [(wheel.speed.name, f"the speed of wheel '{wheel.name}'")]
         found += [(wheel.torque.name, f"the torque on wheel '{wheel.name}'")]
-    return found + [(name, f"the state '{name}' of [position]") for name in states]
+        found += [(f"{wheel.speed.name}_dot", f"the rate of wheel '{wheel.name}'")]
+    return found
 
 
 def _point(given: Table, scope: Scope) -> Point:

@@ -36,12 +36,31 @@ GENERATED: Mapping[str, str] = {
     "omega_dot": "the angular acceleration of the body",
     "Omega": "the angular velocity of the axes",
     "Omega_dot": "the angular acceleration of the axes",
-    "M": "the moment",
-    "F": "the force",
-    "q": "the attitude quaternion",
+    "moment": "the moment",
+    "force": "the force",
+    "position": "the position of the mass centre",
+    "position_rate": "the rate of the position",
+    "velocity": "the velocity of the mass centre",
+    "velocity_rate": "the rate of the velocity",
+    "attitude": "the attitude quaternion",
+    "attitude_rate": "the rate of the attitude quaternion",
+    "point_acceleration": "the acceleration of the moving point",
+    "angular_momentum": "the angular momentum",
+    "rate_in_axes": "the rate of the angular momentum in the axes",
+    "rate_absolute": "the absolute rate of the angular momentum",
+    "kinetic_energy": "the kinetic energy",
+    "coordinate_rates": "the rates of the coordinates",
+    "wheel_speeds": "the speeds of the wheels",
+    "wheel_accelerations": "the accelerations of the wheels",
+    "wheel_torques": "the torques on the wheels",
+    "jacobian": "a Jacobian",
+    "dense": "a Jacobian with its zeros",
+    "parameters": "the parameters of the CasADi functions",
+    "constants": "what set-up computes",
     "pi": "the number pi is no symbol of a scene",
 }
-"""Names that the emitted code uses itself, and for what."""
+"""Names that the emitted code uses itself, and for what; so are their components, as omega_x."""
+_COMPONENT = re.compile(r"(_[wxyz])?(_in)?$")
 
 
 def identifier(name: str, label: str) -> str:
@@ -61,8 +80,9 @@ def distinct(declared: list[tuple[str, str]]) -> None:
     """
     seen: dict[str, str] = {}
     for name, meaning in declared:
-        if name in GENERATED:
-            raise SceneError(f"{meaning} has a name that is taken: {GENERATED[name]}")
+        whole = name if name in GENERATED else _COMPONENT.sub("", name)
+        if whole in GENERATED:
+            raise SceneError(f"{meaning} has a name that is taken: {GENERATED[whole]}")
         if name in seen:
             raise SceneError(f"'{name}' is declared twice: {seen[name]} and {meaning}")
         seen[name] = meaning

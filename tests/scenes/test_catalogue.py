@@ -6,7 +6,9 @@ import pytest
 
 from derive.formula import ZERO, symbol
 from derive.grammar import parse
-from derive.scene import CATALOGUE, Scene, Turn, catalogue, load
+from derive.scene import CATALOGUE, Scene, SceneError, Turn, catalogue, load
+from derive.scene_names import distinct
+from derive.vocabulary import vocabulary
 
 NAMES = (
     "free_body",
@@ -105,3 +107,18 @@ def test_numbers_of_a_file_are_exact() -> None:
     top: Scene = load("heavy_top")
     assert top.parameters[0].low == Fraction(1, 1000)
     assert top.coordinates[0].high == Fraction(314, 100)
+
+
+@pytest.mark.parametrize("name", catalogue())
+def test_no_name_of_a_user_can_meet_a_name_of_the_emitted_code(name: str) -> None:
+    """Every quantity that is not the user's own must be refused as the name of a parameter."""
+    scene = load(name)
+    own = {entry.name for entry in (*scene.parameters, *scene.coordinates, *scene.speeds)}
+    words = vocabulary(scene)
+    names = {part for q in words.every() for part in (q.name, *q.components)} - own
+    derived = {f"{entry}_{dots}" for entry in own for dots in ("dot", "ddot")}
+    wheels = {f"{letter}_{wheel.name}" for wheel in scene.wheels for letter in "su"}
+    wheels |= {f"s_{wheel.name}_dot" for wheel in scene.wheels}
+    for part in sorted(names - derived - wheels):
+        with pytest.raises(SceneError, match="taken"):
+            distinct([(part, f"parameter '{part}'")])
