@@ -36,4 +36,6 @@ def _error(places: Sequence[int], row: Sequence[float], column: Column) -> float
         return float("inf")
     size = sum((arb(column[n]) ** 2 for n in places), arb(0))
     wrong = sum(((arb(row[n]) - column[n]) ** 2 for n in places), arb(0))
-    return float((wrong / size).sqrt()) / UNIT if size > 0 else (0.0 if wrong == 0 else float("inf"))
+    if size > 0:
+        return float((wrong / size).sqrt()) / UNIT
+    return 0.0 if wrong == 0 else float("inf")

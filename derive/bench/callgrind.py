@@ -36,5 +36,5 @@ def instructions(program: Path, rows: Sequence[Row]) -> float:
 def _run(program: Path, given: bytes, rounds: int) -> int:
     out = program.with_suffix(f".{rounds}.callgrind")
     tool = ("valgrind", "--tool=callgrind", "-q", f"--callgrind-out-file={out}")
-    run((*tool, str(program), str(rounds)), given)
+    run((*tool, str(program), f"{rounds:03d}"), given)  # as many digits: the same start
     return total(out.read_text(encoding="utf-8"))

@@ -19,7 +19,7 @@ TYPES = {"double", "float", "int", "long", "void", "char", "const", "Scalar", "c
 LOOPS = {"for", "while", "do", "goto"}
 BINARY = {"+": "add", "-": "sub", "*": "mul", "/": "div"}
 COMPARISONS = {"==", "!=", "<=", ">="}
-FUNCTIONS = {"sin": "sin", "cos": "cos", "sqrt": "sqrt"}
+FUNCTIONS = {"sin", "cos", "tan", "sqrt"}
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,7 @@ class Flops:
     sqrt: int = 0
     sin: int = 0
     cos: int = 0
+    tan: int = 0
     pow: int = 0
 
     @property
@@ -55,7 +56,7 @@ def count(text: str, functions: Sequence[str]) -> Flops:
     Raises ValueError if a function is missing or holds a loop, whose cost no text tells.
 
     >>> count("void f(const double *x, double *y) { y[0] = -x[1] * x[2] + 1.0e-3; }", ["f"])
-    Flops(add=1, sub=0, mul=1, div=0, sqrt=0, sin=0, cos=0, pow=0)
+    Flops(add=1, sub=0, mul=1, div=0, sqrt=0, sin=0, cos=0, tan=0, pow=0)
     """
     tokens = tuple(_tokens(text))
     return sum((_body_flops(body(tokens, name), name) for name in functions), Flops())
@@ -108,7 +109,7 @@ def _token_flops(tokens: Sequence[str], place: int) -> Flops:
     if token[0] in BINARY and token[1:] == "=":
         return Flops(**{BINARY[token[0]]: 1})
     if token in FUNCTIONS:
-        return Flops(**{FUNCTIONS[token]: 1})
+        return Flops(**{token: 1})
     if token == "casadi_sq":
         return Flops(mul=1)
     return _power_flops(tokens, place) if token == "pow" else Flops()

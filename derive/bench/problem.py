@@ -15,10 +15,19 @@ def along(name: str) -> tuple[str, ...]:
     return tuple(f"{name}_{axis}" for axis in AXES)
 
 
-OMEGA, MOMENT, FORCE = along("omega"), along("M"), along("F")
-POSITION, VELOCITY = along("p"), along("v")
-QUATERNION = ("q_w", "q_x", "q_y", "q_z")
-RIGID_STATE = POSITION + QUATERNION + VELOCITY + OMEGA
+OMEGA, MOMENT, FORCE = along("omega"), along("moment"), along("force")
+POSITION, VELOCITY = along("position"), along("velocity")
+ATTITUDE = ("attitude_w", *along("attitude"))
+ANGLES, WHEEL_SPEEDS = ("phi", "theta", "psi"), ("s_1", "s_2", "s_3")
+RIGID_STATE = POSITION + ATTITUDE + VELOCITY + OMEGA
+OMEGA_DOT = along("omega_dot")
+RIGID_RATE = (
+    *along("position_rate"),
+    *("attitude_rate_w", *along("attitude_rate")),
+    *along("velocity_rate"),
+    *OMEGA_DOT,
+)
+RATE_OF = dict(zip(RIGID_STATE, RIGID_RATE, strict=True))
 
 
 @dataclass(frozen=True)
@@ -64,20 +73,20 @@ def _dot(names: tuple[str, ...]) -> tuple[str, ...]:
 def _rigid_pattern() -> tuple[tuple[str, str], ...]:
     """Return (row, column) of the 66 nonzeros of the rigid body's Jacobian, column by column."""
     rows = {
-        **{c: [r for r in QUATERNION if r != c] + list(VELOCITY) for c in QUATERNION},
-        **{v: [p] for v, p in zip(VELOCITY, POSITION, strict=True)},
-        **dict.fromkeys(OMEGA, [*QUATERNION, *OMEGA]),
+        **{c: (*(r for r in ATTITUDE if r != c), *VELOCITY) for c in ATTITUDE},
+        **{v: (p,) for v, p in zip(VELOCITY, POSITION, strict=True)},
+        **dict.fromkeys(OMEGA, ATTITUDE + OMEGA),
         **dict.fromkeys(FORCE, VELOCITY),
         **dict.fromkeys(MOMENT, OMEGA),
     }
-    return tuple((f"{row}_dot", column) for column, of in rows.items() for row in of)
+    return tuple((RATE_OF[row], column) for column, of in rows.items() for row in of)
 
 
 def _jacobian_blocks(pattern: tuple[tuple[str, str], ...], start: int) -> tuple[Block, ...]:
-    """Return a block for each pair of vectors, such as v_dot by q."""
+    """Return a block for each pair of vectors, such as velocity_rate by attitude."""
     blocks: dict[str, list[int]] = {}
     for place, (row, column) in enumerate(pattern):
-        name = f"{row.partition('_')[0]}_dot by {column.partition('_')[0]}"
+        name = f"{row.rpartition('_')[0]} by {column.rpartition('_')[0]}"
         blocks.setdefault(name, []).append(start + place)
     return tuple(Block(name, tuple(places)) for name, places in blocks.items())
 
@@ -89,7 +98,7 @@ FREE_BODY = Problem(
     "acceleration",
     TENSOR,
     OMEGA + MOMENT,
-    _dot(OMEGA),
+    OMEGA_DOT,
     (_block("omega_dot", 0, 3),),
 )
 
@@ -100,7 +109,7 @@ PRINCIPAL = Problem(
     "acceleration",
     TENSOR[:3],
     OMEGA + MOMENT,
-    _dot(OMEGA),
+    OMEGA_DOT,
     (_block("omega_dot", 0, 3),),
 )
 
@@ -111,7 +120,7 @@ HEAVY_TOP = Problem(
     "state_rate",
     ("A", "C", "m", "g", "l"),
     ("psi", "theta", "phi", *OMEGA),
-    _dot(("psi", "theta", "phi", *OMEGA)),
+    (*_dot(("psi", "theta", "phi")), *OMEGA_DOT),
     (_block("angle rates", 0, 3), _block("omega_dot", 3, 6)),
 )
 
@@ -121,15 +130,15 @@ GYROSTAT = Problem(
     "gyrostat",
     "state_rate",
     (*TENSOR, "C_1", "C_2", "C_3"),
-    ("phi", "theta", "psi", *OMEGA, "s_1", "s_2", "s_3", *MOMENT, "u_1", "u_2", "u_3"),
-    _dot(("phi", "theta", "psi", *OMEGA, "s_1", "s_2", "s_3")),
+    (*ANGLES, *OMEGA, *WHEEL_SPEEDS, *MOMENT, "u_1", "u_2", "u_3"),
+    (*_dot(ANGLES), *OMEGA_DOT, *_dot(WHEEL_SPEEDS)),
     (_block("angle rates", 0, 3), _block("omega_dot", 3, 6), _block("s_dot", 6, 9)),
 )
 
 RIGID_BLOCKS = (
-    _block("p_dot", 0, 3),
-    _block("q_dot", 3, 7),
-    _block("v_dot", 7, 10),
+    _block("position_rate", 0, 3),
+    _block("attitude_rate", 3, 7),
+    _block("velocity_rate", 7, 10),
     _block("omega_dot", 10, 13),
 )
 
@@ -140,7 +149,7 @@ RIGID_BODY = Problem(
     "state_rate",
     ("m", *TENSOR),
     RIGID_STATE + FORCE + MOMENT,
-    _dot(RIGID_STATE),
+    RIGID_RATE,
     RIGID_BLOCKS,
 )
 
@@ -151,7 +160,7 @@ RIGID_JACOBIAN = Problem(
     "state_rate_jacobian",
     ("m", *TENSOR),
     RIGID_STATE + FORCE + MOMENT,
-    _dot(RIGID_STATE),
+    RIGID_RATE,
     RIGID_BLOCKS + _jacobian_blocks(_rigid_pattern(), len(RIGID_STATE)),
     _rigid_pattern(),
 )

@@ -67,14 +67,14 @@ def _inputs(problem: Problem, dice: random.Random) -> Row:
     values = {name: dice.uniform(-1, 1) * _size(name) for name in values}
     if problem.name in STEEP:
         values["theta"] = dice.uniform(*STEEP[problem.name])
-    names = [name for name in values if name.startswith("q_")]
+    names = [name for name in values if name.startswith("attitude_")]
     values.update(zip(names, _unit(dice, len(names)), strict=True))
     return tuple(values.values())
 
 
 def _size(name: str) -> float:
-    sizes = {"omega": 10, "M": 1, "F": 10, "p": 100, "v": 20, "s": 300, "u": 0.2}
-    return sizes.get(name.partition("_")[0], math.pi)
+    sizes = {"omega": 10, "moment": 1, "force": 10, "position": 100, "velocity": 20}
+    return {**sizes, "s": 300, "u": 0.2}.get(name.partition("_")[0], math.pi)
 
 
 def _unit(dice: random.Random, length: int) -> Row:
