@@ -32,7 +32,7 @@ def _exact_power_of_two(x: Fraction) -> Fraction:
 # sin, cos and sqrt of exact numbers have no row: a proof must bring its own (see ``prove``).
 EXACT: Table = _PYTHON | {"number": Fraction, "power_of_two": _exact_power_of_two}
 
-MANTISSA = {np.float64: 53, np.float32: 24}
+MANTISSA: dict[type, int] = {np.float64: 53, np.float32: 24}
 
 
 def rounded(q: Fraction, dtype: type) -> Any:
@@ -44,7 +44,11 @@ def rounded(q: Fraction, dtype: type) -> Any:
     if dtype is np.float64:
         return np.float64(q.numerator / q.denominator)
     first = np.float32(q.numerator / q.denominator)
-    near = (np.nextafter(first, np.float32(-np.inf)), first, np.nextafter(first, np.float32(np.inf)))
+    near = (
+        np.nextafter(first, np.float32(-np.inf)),
+        first,
+        np.nextafter(first, np.float32(np.inf)),
+    )
     finite = [x for x in near if np.isfinite(x)]
     best = min(abs(Fraction(float(x)) - q) for x in finite)
     ties = [x for x in finite if abs(Fraction(float(x)) - q) == best]
@@ -169,6 +173,7 @@ def extended(dtype: type) -> Table:
         "add": pair_add,
         "sub": lambda a, b: pair_add(a, _minus(b)),
         "neg": _minus,
+        "low": lambda a: (a[1], a[1] * 0),
         "mul": lambda a, b: pair_mul(a, b, factor),
         "div": lambda a, b: pair_div(a, b, factor),
         "sqrt": lambda a: pair_sqrt(a, factor, np.sqrt),

@@ -46,7 +46,9 @@ def _by_rule(graph: Graph, node: int, visit: Callable[[int], Value]) -> Value:
         case "sum":
             return graph.add([graph.mul([(c, ONE), visit(n)]) for c, n in rest[0]])
         case "product":
-            return graph.add([_one_factor(graph, rest[0], place, visit) for place in range(len(rest[0]))])
+            return graph.add(
+                [_one_factor(graph, rest[0], place, visit) for place in range(len(rest[0]))]
+            )
         case "let" | "cut":
             return graph.mul([(rest[0][0], ONE), visit(rest[0][1])])
         case "call":
@@ -56,7 +58,9 @@ def _by_rule(graph: Graph, node: int, visit: Callable[[int], Value]) -> Value:
     return ZERO
 
 
-def _one_factor(graph: Graph, factors: Sequence[tuple[int, int]], place: int, visit: Callable[[int], Value]) -> Value:
+def _one_factor(
+    graph: Graph, factors: Sequence[tuple[int, int]], place: int, visit: Callable[[int], Value]
+) -> Value:
     base, power = factors[place]
     inner = visit(base)
     if not inner[0]:

@@ -5,29 +5,65 @@ once in set-up; differences such as I_yy - I_zz then lose nothing to cancellatio
 """
 
 from collections import Counter
+from collections.abc import Callable
 
 from derive.graph import ONE, UNIT, Graph, Value
 
 Monomial = tuple[tuple[int, int], ...]
 Terms = dict[Monomial, Value]
+Visit = Callable[[int], Terms]
 
 
-def terms(graph: Graph, value: Value) -> Terms:
+def terms(graph: Graph, value: Value, kept: frozenset[str] = frozenset()) -> Terms:
     """Return the coefficient, made of parameters, of every monomial in the variables.
 
-    Calls, cuts and denominators that vary count as variables of their own.
+    Calls, cuts and denominators that vary count as variables of their own, and so do the lets
+    whose family is ``kept``; what these stand for is multiplied out in itself.
     """
     memory: dict[int, Terms] = {}
 
     def visit(node: int) -> Terms:
         if node not in memory:
-            memory[node] = _terms(graph, node, visit)
+            if graph.nodes[node][0] == "let" and family(graph, node) in kept:
+                memory[node] = _kept(graph, node, visit)
+            else:
+                memory[node] = _terms(graph, node, visit)
         return memory[node]
 
     return _scaled(graph, visit(value[1]), (value[0], ONE))
 
 
-def _terms(graph: Graph, node: int, visit) -> Terms:  # type: ignore[no-untyped-def]
+def family(graph: Graph, node: int) -> str:
+    """Return the name that a let shares with the other components of its vector."""
+    return graph.names[node].partition("_")[0]
+
+
+def families(graph: Graph, value: Value) -> list[str]:
+    """Return the families of the lets that ``value`` varies by, innermost first."""
+    found: dict[str, None] = {}
+    seen: set[int] = set()
+
+    def visit(node: int) -> None:
+        if node in seen or graph.fixed[node]:
+            return
+        seen.add(node)
+        for inner in graph.below(node):
+            visit(inner)
+        if graph.nodes[node][0] == "let":
+            found[family(graph, node)] = None
+
+    visit(value[1])
+    return list(found)
+
+
+def _kept(graph: Graph, node: int, visit: Visit) -> Terms:
+    factor, inner = graph.nodes[node][1]
+    inside = factored(graph, _scaled(graph, visit(inner), (factor, ONE)))
+    coefficient, named = graph.let(graph.names[node], inside)
+    return {((named, 1),): (coefficient, ONE)} if coefficient else {}
+
+
+def _terms(graph: Graph, node: int, visit: Visit) -> Terms:
     if graph.fixed[node]:
         return {(): (UNIT[0], node)}
     kind, *rest = graph.nodes[node]
@@ -45,7 +81,7 @@ def _terms(graph: Graph, node: int, visit) -> Terms:  # type: ignore[no-untyped-
     return {((node, 1),): UNIT}
 
 
-def _powered(graph: Graph, base: int, power: int, visit) -> Terms:  # type: ignore[no-untyped-def]
+def _powered(graph: Graph, base: int, power: int, visit: Visit) -> Terms:
     if power < 0:
         if graph.fixed[base]:
             return {(): graph.power((UNIT[0], base), power)}
@@ -91,7 +127,9 @@ def grouped(graph: Graph, these: Terms) -> Value:
     groups: dict[int, list[Value]] = {}
     for monomial, (factor, node) in these.items():
         groups.setdefault(node, []).append(_term(graph, monomial, (factor, ONE)))
-    return graph.add([graph.mul([(UNIT[0], node), graph.add(parts)]) for node, parts in groups.items()])
+    return graph.add(
+        [graph.mul([(UNIT[0], node), graph.add(parts)]) for node, parts in groups.items()]
+    )
 
 
 def _term(graph: Graph, monomial: Monomial, coefficient: Value) -> Value:

@@ -6,55 +6,63 @@ hand, a block that is homogeneous in its inputs follows from that by Euler's the
 y = sum over blocks z of (dy/dz) z / degree. Fewest operations win; a tie goes to the first form.
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations, product
 
 from derive.derivative import derivative
-from derive.expand import Terms, collected, degree, factored, terms
-from derive.graph import ONE, Graph, Value
+from derive.expand import Terms, collected, degree, factored, families, terms
+from derive.graph import Graph, Value
 from derive.program import FLOPS, Op
-from derive.schedule import schedule
+from derive.schedule import draft
 
 MANY_TERMS = 60  # beyond this, multiplying out has never been the cheaper form
-MANY_CHOICES = 100
+MANY_CHOICES = 30
+FINALISTS = 4  # of values and of Jacobians, each judged alone, that are then judged together
+WAYS: tuple[Callable[[Graph, Terms], Value], ...] = (factored, collected)
 
 
 @dataclass(frozen=True)
 class Block:
-    """Outputs that belong together, and the input leaves they are differentiated by, by quantity."""
+    """Outputs that belong together, and the inputs, by quantity, of their derivatives."""
 
     values: tuple[Value, ...]
     inputs: tuple[tuple[Value, ...], ...]
 
 
 def cost(graph: Graph, outputs: Sequence[Value]) -> tuple[int, int]:
-    """Return the number of + - * /, then of all operations, that ``outputs`` take."""
-    ops = operations(graph, outputs)
-    return sum(op.operator in FLOPS for op in ops), len(ops)
+    """Return the number of + - * /, then of all operations and loads, that ``outputs`` take."""
+    ops = draft(graph, outputs, lambda node: graph.fixed[node])
+    return sum(op.operator in FLOPS for op in ops), len(ops) + _loads(ops)
 
 
-def operations(graph: Graph, outputs: Sequence[Value]) -> tuple[Op, ...]:
-    """Return the hot operations of ``outputs``, constants left as they come."""
-    def constant(value: Value) -> Fraction | str:
-        return value[0] if value[1] == ONE else f"constant{value}"
+def _loads(ops: Sequence[Op]) -> int:
+    """Return how many operands must be loaded on their own.
 
-    return schedule(graph, outputs, lambda node: graph.fixed[node], constant, "t")[0]
+    An operation takes one operand from memory as it goes; what several operations read is loaded
+    once and stays.
+    """
+    made = {op.result for op in ops}
+    uses = Counter(o for op in ops for o in op.operands if o not in made)
+    alone = [sum(uses[o] == 1 for o in op.operands if o not in made) for op in ops]
+    return sum(n > 1 for n in uses.values()) + sum(n > 1 for n in alone)
 
 
 def value_forms(graph: Graph, block: Block) -> list[tuple[Value, ...]]:
     """Return the ways to compute the values of ``block``, the arranged one first."""
-    expanded = _expanded(graph, block)
-    if expanded is None:
-        return [block.values]
-    ways: list[Callable[[Graph, Terms], Value]] = [factored, collected]
-    forms = [block.values, *(tuple(way(graph, t) for t in expanded) for way in ways)]
+    forms = [block.values]
+    kept = dict.fromkeys(f for value in block.values for f in families(graph, value))
+    for stop in (frozenset[str](), *(frozenset([name]) for name in kept)):
+        expanded = _expanded(graph, block, stop)
+        if expanded is not None:
+            forms += [tuple(way(graph, t) for t in expanded) for way in WAYS]
     return list(dict.fromkeys(forms))
 
 
-def _expanded(graph: Graph, block: Block) -> list[Terms] | None:
-    expanded = [terms(graph, value) for value in block.values]
+def _expanded(graph: Graph, block: Block, kept: frozenset[str]) -> list[Terms] | None:
+    expanded = [terms(graph, value, kept) for value in block.values]
     return None if any(len(t) > MANY_TERMS for t in expanded) else expanded
 
 
@@ -76,27 +84,40 @@ def jacobian(graph: Graph, values: Iterable[Value], leaves: Sequence[Value]) -> 
     return [[derivative(graph, value, leaf) for leaf in leaves] for value in values]
 
 
-def best_with_jacobian(graph: Graph, block: Block, shared: Sequence[Value]) -> tuple[list[Value], list[list[Value]]]:
+def best_with_jacobian(
+    graph: Graph, block: Block, shared: Sequence[Value]
+) -> tuple[list[Value], list[list[Value]]]:
     """Return the cheapest values and Jacobian rows of ``block``.
 
     shared : values that are computed anyway, which both may use
     """
     leaves = [leaf for quantity in block.inputs for leaf in quantity]
     forms = value_forms(graph, block)
-    jacobians = [jacobian(graph, form, leaves) for form in forms]
-    choices = []
+    jacobians = _cheapest(graph, [jacobian(graph, form, leaves) for form in forms])
+    forms = sorted(forms, key=lambda form: cost(graph, form))[:FINALISTS]
+    choices: list[tuple[tuple[int, int], list[Value], list[list[Value]]]] = []
     for rows in jacobians:
         homogeneous = by_euler(graph, block, rows)
         for values in [*forms, *([homogeneous] if homogeneous else [])]:
-            flat = [entry for row in rows for entry in row]
-            choices.append((cost(graph, [*shared, *values, *flat]), list(values), rows))
+            total = cost(graph, [*shared, *values, *_flat(rows)])
+            choices.append((total, list(values), rows))
     _, values, rows = min(choices, key=lambda choice: choice[0])
     return values, rows
 
 
-def by_euler(graph: Graph, block: Block, rows: Sequence[Sequence[Value]]) -> tuple[Value, ...] | None:
-    """Return the values of ``block`` from its Jacobian by Euler's theorem, None if it does not apply."""
-    expanded = _expanded(graph, block)
+def _cheapest(graph: Graph, jacobians: list[list[list[Value]]]) -> list[list[list[Value]]]:
+    return sorted(jacobians, key=lambda rows: cost(graph, _flat(rows)))[:FINALISTS]
+
+
+def _flat(rows: Sequence[Sequence[Value]]) -> list[Value]:
+    return [entry for row in rows for entry in row]
+
+
+def by_euler(
+    graph: Graph, block: Block, rows: Sequence[Sequence[Value]]
+) -> tuple[Value, ...] | None:
+    """Return the values of ``block`` from its Jacobian, None if Euler's theorem does not apply."""
+    expanded = _expanded(graph, block, frozenset())
     degrees = None if expanded is None else _degrees(block, [m for t in expanded for m in t])
     if degrees is None:
         return None
@@ -119,7 +140,9 @@ def _contracted(
     return graph.add(parts)
 
 
-def _degrees(block: Block, monomials: Sequence[tuple[tuple[int, int], ...]]) -> dict[int, int] | None:
+def _degrees(
+    block: Block, monomials: Sequence[tuple[tuple[int, int], ...]]
+) -> dict[int, int] | None:
     """Return input quantities with degrees k such that every monomial has sum(degree / k) = 1."""
     nodes = [frozenset(leaf[1] for leaf in quantity) for quantity in block.inputs]
     found = [[degree(m, own) for own in nodes] for m in monomials]

@@ -8,8 +8,11 @@ are called. A ``let`` names a value that is worth computing once; a ``cut`` does
 
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
+from typing import Any
 
-Node = tuple  # ("input", name) | ("one",) | ("sum", terms) | ("product", factors) | ("call", f, values) | (let|cut, value)
+# A node's kind and what it is made of: one; input and its name; sum and its (coefficient, node)
+# terms; product and its (node, power) factors; call, function and values; let or cut and a value.
+Node = tuple[Any, ...]
 Value = tuple[Fraction, int]
 
 ONE = 0
@@ -26,20 +29,23 @@ class Graph:
         self.names: dict[int, str] = {}
         self._number: dict[Node, int] = {("one",): ONE}
 
-    def _node(self, node: Node, fixed: bool) -> int:
+    def _node(self, node: Node, parts: Iterable[int]) -> int:
+        """Return the number of a node; it is fixed if all its parts are."""
         if node not in self._number:
             self._number[node] = len(self.nodes)
             self.nodes.append(node)
-            self.fixed.append(fixed)
+            self.fixed.append(all(self.fixed[part] for part in parts))
         return self._number[node]
 
     def parameter(self, name: str) -> Value:
         """Return the leaf of a parameter: known before the function is called."""
-        return Fraction(1), self._node(("input", name), True)
+        return Fraction(1), self._node(("input", name), ())
 
     def variable(self, name: str) -> Value:
         """Return the leaf of an input that changes from call to call."""
-        return Fraction(1), self._node(("input", name), False)
+        node = self._node(("input", name), ())
+        self.fixed[node] = False
+        return Fraction(1), node
 
     def number(self, value: Fraction | int) -> Value:
         """Return an exact number."""
@@ -60,8 +66,8 @@ class Graph:
         sign = 1 if flat[0][1] > 0 else -1
         alike = len({abs(c) for _, c in flat}) == 1
         content = sign * (abs(flat[0][1]) if alike else Fraction(1))
-        node = ("sum", tuple((c / content, n) for n, c in flat))
-        return content, self._node(node, all(self.fixed[n] for n, _ in flat))
+        made = ("sum", tuple((c / content, n) for n, c in flat))
+        return content, self._node(made, [n for n, _ in flat])
 
     def mul(self, values: Iterable[Value]) -> Value:
         """Return the product of ``values``, flat, powers collected."""
@@ -71,32 +77,53 @@ class Graph:
             inner = self.nodes[node][1] if self.nodes[node][0] == "product" else ((node, 1),)
             for base, power in inner:
                 powers[base] = powers.get(base, 0) + power
+        squared = [
+            n for n, p in powers.items() if abs(p) > 1 and self.nodes[n][:2] == ("call", "sqrt")
+        ]
+        if squared:
+            return self.mul([(coefficient, ONE), *self._without_roots(powers)])
         flat = tuple(sorted((n, p) for n, p in powers.items() if p and n != ONE))
         if not coefficient or not flat:
             return coefficient, ONE
         if len(flat) == 1 and flat[0][1] == 1:
             return coefficient, flat[0][0]
-        return coefficient, self._node(("product", flat), all(self.fixed[n] for n, _ in flat))
+        return coefficient, self._node(("product", flat), [n for n, _ in flat])
+
+    def _without_roots(self, powers: Mapping[int, int]) -> list[Value]:
+        """Return factors with every square of a square root replaced by what is under it."""
+        factors: list[Value] = []
+        for node, power in powers.items():
+            pairs, rest = divmod(power, 2)
+            if self.nodes[node][:2] == ("call", "sqrt") and abs(power) > 1:
+                factors += [self.power(self.nodes[node][2][0], pairs)]
+                factors += [(Fraction(1), node)] * rest
+            else:
+                factors.append(self.power((Fraction(1), node), power))
+        return factors
 
     def power(self, value: Value, exponent: int) -> Value:
         """Return ``value`` to an integer power, negative for a division."""
         coefficient, node = value
         inner = self.nodes[node][1] if self.nodes[node][0] == "product" else ((node, 1),)
-        factors = [(Fraction(1), base) for base, power in inner for _ in range(abs(power * exponent))]
-        signs = [1 if power * exponent > 0 else -1 for _, power in inner for _ in range(abs(power * exponent))]
+        factors = [
+            (Fraction(1), base) for base, power in inner for _ in range(abs(power * exponent))
+        ]
+        signs = [
+            1 if power * exponent > 0 else -1
+            for _, power in inner
+            for _ in range(abs(power * exponent))
+        ]
         raised = [self._raised(base, sign) for (_, base), sign in zip(factors, signs, strict=True)]
         return self.mul([(coefficient**exponent, ONE), *raised])
 
     def _raised(self, base: int, sign: int) -> Value:
         if sign > 0 or base == ONE:
             return Fraction(1), base
-        return Fraction(1), self._node(("product", ((base, -1),)), self.fixed[base])
+        return Fraction(1), self._node(("product", ((base, -1),)), [base])
 
     def call(self, function: str, *values: Value) -> Value:
         """Return ``function`` of ``values``: sin, cos, sqrt or power_of_two."""
-        return Fraction(1), self._node(
-            ("call", function, values), all(self.fixed[node] for _, node in values)
-        )
+        return Fraction(1), self._node(("call", function, values), [node for _, node in values])
 
     def let(self, name: str, value: Value) -> Value:
         """Name a value that is worth computing once; plain leaves and numbers stay themselves."""
@@ -112,9 +139,18 @@ class Graph:
             return value
         if node == ONE:
             return value
-        number = self._node((kind, value), self.fixed[node])
+        number = self._node((kind, value), [node])
         self.names.setdefault(number, name)
         return Fraction(1), number
+
+    def below(self, node: int) -> list[int]:
+        """Return the nodes that ``node`` is made of."""
+        kind, *rest = self.nodes[node]
+        if kind in ("let", "cut"):
+            return [rest[0][1]]
+        if kind in ("sum", "call"):
+            return [n for _, n in rest[-1]]
+        return [n for n, _ in rest[0]] if kind == "product" else []
 
     def leaf_names(self) -> set[str]:
         """Return the names of all inputs."""
@@ -124,31 +160,3 @@ class Graph:
         """Return what a let or cut stands for, else None."""
         kind, *rest = self.nodes[node]
         return rest[0] if kind in ("let", "cut") else None
-
-
-def replace(graph: Graph, value: Value, by: Mapping[int, Value]) -> Value:
-    """Return ``value`` with some nodes replaced."""
-    memory: dict[int, Value] = dict(by)
-
-    def visit(node: int) -> Value:
-        if node not in memory:
-            memory[node] = rebuilt(graph, node, visit)
-        return memory[node]
-
-    return graph.mul([(value[0], ONE), visit(value[1])])
-
-
-def rebuilt(graph: Graph, node: int, visit) -> Value:  # type: ignore[no-untyped-def]
-    """Return ``node`` built anew from its visited parts."""
-    kind, *rest = graph.nodes[node]
-    match kind:
-        case "sum":
-            return graph.add([graph.mul([(c, ONE), visit(n)]) for c, n in rest[0]])
-        case "product":
-            return graph.mul([graph.power(visit(n), p) for n, p in rest[0]])
-        case "call":
-            return graph.call(rest[0], *(graph.mul([(c, ONE), visit(n)]) for c, n in rest[1]))
-        case "let" | "cut":
-            value = graph.mul([(rest[0][0], ONE), visit(rest[0][1])])
-            return graph._named(kind, graph.names[node], value)
-    return Fraction(1), node

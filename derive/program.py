@@ -7,7 +7,7 @@ is the name of an earlier value or an exact number.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, Literal
 
 Operand = str | Fraction
 
@@ -61,7 +61,8 @@ class Program:
 
     ``results`` are the values of the outputs' components in order; ``sparsity`` gives the pattern
     of an output that holds the nonzeros of a matrix; ``positive`` are results of ``ops`` that
-    must be above zero for the inputs to be admissible.
+    must be above zero for the inputs to be admissible. In ``arithmetic`` "pairs" every operation
+    works on pairs of floats, and results are rounded once.
     """
 
     name: str
@@ -75,6 +76,7 @@ class Program:
     assumptions: tuple[str, ...] = ()
     sparsity: Mapping[str, Sparsity] | None = None
     positive: tuple[Operand, ...] = ()
+    arithmetic: Literal["working", "pairs"] = "working"
 
     def count(self) -> dict[str, int]:
         """Return how often each operator is used."""
@@ -86,7 +88,9 @@ class Program:
         return sum(op.operator in FLOPS for op in self.ops)
 
 
-def run(program: Program, arithmetic: Mapping[str, Callable[..., Any]], values: Sequence[Any]) -> list[Any]:
+def run(
+    program: Program, arithmetic: Mapping[str, Callable[..., Any]], values: Sequence[Any]
+) -> list[Any]:
     """Run ``program`` in an arithmetic: floats, exact fractions, intervals, CasADi.
 
     ``values`` are the input components in declared order. The arithmetic maps each operator,

@@ -11,6 +11,7 @@ from itertools import combinations
 from derive.graph import UNIT
 from derive.table import Signed, Table, product
 
+
 def halve(table: Table) -> None:
     """Write 2 x as x + x where x is there anyway, so that sums can share it."""
     for key, addends in table.addends.items():
@@ -46,8 +47,8 @@ def share_products(table: Table) -> None:
         if best is None:
             return
         key, _ = table.key("product", *best)
-        for product, factors in table.factors.items():
-            while product != key and not Counter(best) - Counter(factors):
+        for whole, factors in table.factors.items():
+            while whole != key and not Counter(best) - Counter(factors):
                 for factor in best:
                     factors.remove(factor)
                 factors.append(key)

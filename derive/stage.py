@@ -5,17 +5,18 @@ in twice the working precision and rounds each constant once.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from derive.graph import ONE, Graph, Value
 from derive.program import Op, Operand, Program, Quantity, Sparsity
 from derive.schedule import schedule
+from derive.wording import spelling
 
 
 @dataclass
 class Constants:
-    """The constants that a scene's hot functions need, in the order in which they were asked for."""
+    """The constants that a scene's hot functions need, in the order they were asked for."""
 
     graph: Graph
     names: dict[Value, str] = field(default_factory=dict)
@@ -50,44 +51,6 @@ class Constant:
     formula: str
 
 
-_COEFFICIENTS = {Fraction(1): "", Fraction(2): "twice_", Fraction(1, 2): "half_", Fraction(-1): "minus_"}
-SPELLED_FACTORS = 4
-
-
-def spelling(graph: Graph, value: Value) -> str:
-    """Return a name that spells a short product, quotient or difference of names, or nothing.
-
-    >>> g = Graph()
-    >>> spelling(g, g.mul([g.number(Fraction(1, 2)), g.parameter("C"), g.power(g.parameter("A"), -1)]))
-    'half_C_over_A'
-    """
-    coefficient, node = value
-    if coefficient not in _COEFFICIENTS:
-        return ""
-    kind, *rest = graph.nodes[node]
-    name = ""
-    if kind == "product" and sum(abs(p) for _, p in rest[0]) <= SPELLED_FACTORS:
-        top = [_named(graph, n) for n, p in rest[0] for _ in range(p)]
-        bottom = [_named(graph, n) for n, p in rest[0] for _ in range(-p)]
-        if all((*top, *bottom)):
-            name = "_".join(top or ["one"]) + ("_over_" + "_".join(bottom) if bottom else "")
-    elif kind == "sum" and len(rest[0]) == 2 and all(abs(c) == 1 for c, _ in rest[0]):
-        (first, a), (second, b) = rest[0]
-        if _named(graph, a) and _named(graph, b):
-            joint = "_plus_" if first * second > 0 else "_minus_"
-            name = _named(graph, a) + joint + _named(graph, b)
-    else:
-        name = _named(graph, node)
-    spelled = _COEFFICIENTS[coefficient] + name if name else ""
-    return spelled.replace("twice_one_over", "two_over").replace("half_one_over", "half_over")
-
-
-def _named(graph: Graph, node: int) -> str:
-    kind, *rest = graph.nodes[node]
-    own = str(rest[0]) if kind == "input" else graph.names.get(node, "")
-    return own if own.isidentifier() else ""
-
-
 def hot(
     graph: Graph, constants: Constants, values: Sequence[Value]
 ) -> tuple[tuple[Op, ...], tuple[Operand, ...]]:
@@ -103,6 +66,38 @@ def free_prefix(letter: str, taken: set[str]) -> str:
     return letter
 
 
+def in_pairs(program: Program, constants: set[str]) -> Program:
+    """Return ``program`` for pairs of floats: each constant comes with what its rounding left."""
+    used = operands_of(program.ops, program.results) & constants
+    ordered = [c for q in program.inputs for c in q.components if c in used]
+    prefix = free_prefix("w", operands_of(program.ops, program.results))
+    whole: dict[Operand, str] = {c: f"{prefix}{place}" for place, c in enumerate(ordered)}
+    joined = tuple(Op(name, "add", (str(c), f"{c}_low")) for c, name in whole.items())
+    ops = tuple(
+        Op(op.result, op.operator, tuple(whole.get(o, o) for o in op.operands))
+        for op in program.ops
+    )
+    results = tuple(whole.get(r, r) for r in program.results)
+    return replace(program, ops=joined + ops, results=results, arithmetic="pairs")
+
+
+def with_low_parts(made: Program) -> Program:
+    """Return set-up that also gives what rounding each constant left."""
+    (constants,) = made.outputs
+    lows = tuple(Op(f"{prefix_}low", "low", (r,)) for prefix_, r in _named_results(made))
+    low_of = {r: op.result for (_, r), op in zip(_named_results(made), lows, strict=True)}
+    names = tuple(n for c in constants.components for n in (c, f"{c}_low"))
+    zero = Fraction(0)
+    results = tuple(x for r in made.results for x in (r, low_of.get(r, zero)))
+    both = replace(constants, components=names, shape=(len(names),))
+    return replace(made, outputs=(both,), ops=made.ops + lows, results=results)
+
+
+def _named_results(made: Program) -> list[tuple[str, str]]:
+    computed = {op.result for op in made.ops}
+    return [(r, r) for r in dict.fromkeys(made.results) if isinstance(r, str) and r in computed]
+
+
 def setup(
     graph: Graph, constants: Constants, parameters: Sequence[Quantity], positive: Sequence[Value]
 ) -> Program:
@@ -112,7 +107,9 @@ def setup(
     def number(value: Value) -> Fraction:
         return value[0]
 
-    ops, results = schedule(graph, values, lambda node: node == ONE, number, free_prefix("s", graph.leaf_names()))
+    ops, results = schedule(
+        graph, values, lambda node: node == ONE, number, free_prefix("s", graph.leaf_names())
+    )
     count = len(constants.names)
     names = tuple(constants.names.values())
     says = "constants made of parameters only, for the functions of this scene"
@@ -120,8 +117,13 @@ def setup(
     used = operands_of(ops, results)
     inputs = tuple(p for p in parameters if used & set(p.components))
     return Program(
-        "setup", "Make the constants of this scene from its parameters; call it once.",
-        inputs, (output,) if count else (), ops, results[:count], positive=results[count:],
+        "setup",
+        "Make the constants of this scene from its parameters; call it once.",
+        inputs,
+        (output,) if count else (),
+        ops,
+        results[:count],
+        positive=results[count:],
     )
 
 
@@ -131,13 +133,17 @@ def operands_of(ops: Sequence[Op], results: Sequence[Operand]) -> set[str]:
     return {operand for operand in named | set(results) if isinstance(operand, str)}
 
 
-def used_inputs(quantities: Sequence[Quantity], ops: Sequence[Op], results: Sequence[Operand]) -> tuple[Quantity, ...]:
+def used_inputs(
+    quantities: Sequence[Quantity], ops: Sequence[Op], results: Sequence[Operand]
+) -> tuple[Quantity, ...]:
     """Return the quantities of which some component is used: inputs follow from use."""
     used = operands_of(ops, results)
     return tuple(q for q in quantities if used & set(q.components))
 
 
-def compressed(rows: Sequence[Sequence[Value]], row_names: Sequence[str], column_names: Sequence[str]) -> tuple[Sparsity, list[Value]]:
+def compressed(
+    rows: Sequence[Sequence[Value]], row_names: Sequence[str], column_names: Sequence[str]
+) -> tuple[Sparsity, list[Value]]:
     """Return the pattern and the nonzeros of a matrix in compressed-column order."""
     colind, row, nonzeros = [0], list[int](), list[Value]()
     for column in range(len(column_names)):
@@ -147,47 +153,3 @@ def compressed(rows: Sequence[Sequence[Value]], row_names: Sequence[str], column
                 nonzeros.append(entries[column])
         colind.append(len(row))
     return Sparsity(tuple(row_names), tuple(column_names), tuple(colind), tuple(row)), nonzeros
-
-
-def formula(graph: Graph, value: Value) -> str:
-    """Return ``value`` as text in parameters and named values.
-
-    >>> g = Graph()
-    >>> formula(g, g.mul([g.number(2), g.parameter("m"), g.power(g.parameter("r"), 2)]))
-    '2*m*r^2'
-    """
-    coefficient, node = value
-    sign = "-" if coefficient < 0 else ""
-    factor = "" if abs(coefficient) == 1 else str(abs(coefficient))
-    if node == ONE:
-        return str(coefficient)
-    body = _node_text(graph, node)
-    if factor and graph.nodes[node][0] == "sum":
-        body = f"({body})"
-    return sign + (f"{factor}*{body}" if factor else body)
-
-
-def _node_text(graph: Graph, node: int) -> str:
-    if node in graph.names:
-        return graph.names[node]
-    kind, *rest = graph.nodes[node]
-    if kind == "input":
-        return str(rest[0])
-    if kind == "call":
-        return f"{rest[0]}({', '.join(formula(graph, v) for v in rest[1])})"
-    if kind == "sum":
-        text = " + ".join(formula(graph, v) for v in rest[0])
-        return text.replace("+ -", "- ")
-    top = [_power_text(graph, n, p) for n, p in rest[0] if p > 0]
-    bottom = [_power_text(graph, n, -p) for n, p in rest[0] if p < 0]
-    above = "*".join(top) or "1"
-    if not bottom:
-        return above
-    return f"{above}/{bottom[0]}" if len(bottom) == 1 else f"{above}/({'*'.join(bottom)})"
-
-
-def _power_text(graph: Graph, node: int, power: int) -> str:
-    body = _node_text(graph, node)
-    if graph.nodes[node][0] in ("sum", "product") and node not in graph.names:
-        body = f"({body})"
-    return body if power == 1 else f"{body}^{power}"

@@ -19,7 +19,7 @@ class Table:
 
     graph: Graph
     known: Callable[[int], bool]
-    keys: dict[tuple, int] = field(default_factory=dict)
+    keys: dict[tuple[object, ...], int] = field(default_factory=dict)
     factors: dict[int, list[int]] = field(default_factory=dict)
     addends: dict[int, list[Signed]] = field(default_factory=dict)
     constants: dict[int, Value] = field(default_factory=dict)
@@ -46,7 +46,10 @@ def enter(table: Table, value: Value) -> Signed:
         return sign, _scaled_sum(table, abs(coefficient), node)
     powers = graph.nodes[node][1] if graph.nodes[node][0] == "product" else ((node, 1),)
     constant = graph.mul(
-        [(abs(coefficient), ONE), *(graph.power((UNIT[0], n), p) for n, p in powers if table.known(n))]
+        [
+            (abs(coefficient), ONE),
+            *(graph.power((UNIT[0], n), p) for n, p in powers if table.known(n)),
+        ]
     )
     sign *= 1 if constant[0] > 0 else -1
     factors: list[int] = []
@@ -61,7 +64,7 @@ def enter(table: Table, value: Value) -> Signed:
 
 
 def _absorbs(table: Table, node: int) -> bool:
-    """Tell whether a number in front of a sum vanishes into constants that its terms have anyway."""
+    """Tell whether a number in front of a sum vanishes into constants of all its terms."""
     kind, *rest = table.graph.nodes[node]
     return kind == "sum" and all(table.known(n) or _has_constant(table, n) for _, n in rest[0])
 

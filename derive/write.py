@@ -23,7 +23,7 @@ class Writer:
     written: dict[tuple[object, ...], str] = field(default_factory=dict)
 
     def emit(self, operator: str, *operands: Operand) -> str:
-        """Return the name of an operation's result; an operation that was written is not repeated."""
+        """Return the name of an operation's result; no operation is written twice."""
         same = sorted(operands, key=str) if operator in ("add", "mul") else operands
         key = (operator, *same)
         if key not in self.written:
@@ -76,7 +76,10 @@ class Writer:
     def _multiplied(self, factors: list[int]) -> Operand:
         shared = {f for f in factors if f in self.done}
         top = [f for f in factors if f not in self.table.inverse or f in shared]
-        bottom = [self.table.inverse[f] for f in factors if f in self.table.inverse and f not in shared]
+        top.sort(key=lambda f: f in self.table.constants)  # constants last: they come from memory
+        bottom = [
+            self.table.inverse[f] for f in factors if f in self.table.inverse and f not in shared
+        ]
         total: Operand = self.operand(top[0]) if top else Fraction(1)
         for key in top[1:]:
             total = self.emit("mul", total, self.operand(key))

@@ -13,8 +13,12 @@ from derive.arithmetic import MANTISSA, extended, power_of_two, rounded
 # than 10 for a product, 15 for the quotient as it is done here.
 SQUARES_OF_U = {"add": 3, "sub": 3, "mul": 10, "div": 15}
 
-doubles = st.floats(min_value=-1e60, max_value=1e60, width=64).filter(lambda x: x == 0 or abs(x) > 1e-60)
-singles = st.floats(min_value=-1e6, max_value=1e6, width=32).filter(lambda x: x == 0 or abs(x) > 1e-6)
+doubles = st.floats(min_value=-1e60, max_value=1e60, width=64).filter(
+    lambda x: x == 0 or abs(x) > 1e-60
+)
+singles = st.floats(min_value=-1e6, max_value=1e6, width=32).filter(
+    lambda x: x == 0 or abs(x) > 1e-6
+)
 
 
 def exact(pair) -> Fraction:

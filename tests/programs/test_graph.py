@@ -30,7 +30,9 @@ def value_at(g: Graph, values: list[Value], point: dict[str, Fraction]) -> list[
 
 expressions = st.recursive(
     st.sampled_from(NAMES) | st.integers(-3, 3),
-    lambda inner: st.tuples(st.sampled_from(["add", "mul"]), st.lists(inner, min_size=2, max_size=3)),
+    lambda inner: st.tuples(
+        st.sampled_from(["add", "mul"]), st.lists(inner, min_size=2, max_size=3)
+    ),
     max_leaves=12,
 )
 points = st.fixed_dictionaries(
@@ -87,6 +89,13 @@ def test_what_cancels_leaves_nothing():
     assert g.mul([x, g.power(x, -1)]) == g.number(1)
 
 
+def test_the_square_of_a_root_is_what_is_under_it():
+    g, leaves = graph_with_leaves()
+    root = g.call("sqrt", leaves["x"])
+    assert g.mul([root, root]) == leaves["x"]
+    assert g.power(root, -3) == g.mul([g.power(leaves["x"], -2), root])
+
+
 def test_a_let_is_looked_through_and_a_cut_is_not():
     g, leaves = graph_with_leaves()
     x, y = leaves["x"], leaves["y"]
@@ -106,5 +115,7 @@ def test_a_pair_that_several_sums_share_is_added_once():
 def test_a_negative_result_costs_no_negation_where_the_terms_can_be_swapped():
     g, leaves = graph_with_leaves()
     x, y = leaves["x"], leaves["y"]
-    ops, _ = schedule(g, [g.add([y, (Fraction(-1), x[1])])], lambda n: n == ONE, lambda v: v[0], "t")
+    ops, _ = schedule(
+        g, [g.add([y, (Fraction(-1), x[1])])], lambda n: n == ONE, lambda v: v[0], "t"
+    )
     assert [(op.operator, op.operands) for op in ops] == [("sub", ("y", "x"))]
