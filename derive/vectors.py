@@ -268,6 +268,10 @@ def components(expression: Expression, bindings: Mapping[str, Any] | None = None
 
 def _sum(expression: Expression, bound: Mapping[str, Any]) -> Any:
     if expression.name not in bound:
-        raise KeyError(f"a sum over '{expression.name}' has no components until its members are bound")
-    members = [components(expression.operands[0], {**bound, **each}) for each in bound[expression.name]]
+        raise KeyError(
+            f"a sum over '{expression.name}' has no components until its members are bound"
+        )
+    members = [
+        components(expression.operands[0], {**bound, **each}) for each in bound[expression.name]
+    ]
     return reduce(lambda a, b: a + b, members, _leaf(zero(*expression.shape)))

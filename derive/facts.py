@@ -1,0 +1,139 @@
+"""What a step may use: some reasons explain a symbol, the others relate what is left unexplained."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from sympy import Expr, MatrixBase
+
+from derive.particles import entries, expanded, reading
+from derive.rate import rate, rate_of, seen_from_axes, seen_from_N
+from derive.relations import remainders
+from derive.tree import collected, rebuilt, renamed, symbols
+from derive.vectors import Expression
+
+Claim = tuple[Expression, Expression]
+_LONG = 6  # terms beyond which an explained leftover is no longer read with pleasure
+ANY = "u_any"  # a vector of which nothing is assumed: what is shown for it holds for every vector
+_PAIR = ("P_ij", "P_ji")  # explained only after i and j were exchanged
+
+
+class Circular(ValueError):
+    """Two reasons explain a symbol by itself."""
+
+
+@dataclass(frozen=True)
+class Facts:
+    """The explanations of symbols, the relations, and what was already explained."""
+
+    explained: dict[str, Expression]
+    related: tuple[Claim, ...]
+    _full: dict[str, Expression] = field(default_factory=dict)
+
+    @staticmethod
+    def of(reasons: Iterable[Sequence[Claim]], names: dict[str, str]) -> Facts:
+        """Sort the claims of ``reasons``: the first to explain a symbol does, a later one relates."""
+        facts = Facts({}, ())
+        for left, right in (claim for claims in reasons for claim in claims):
+            claim = (renamed(left, names), renamed(right, names))
+            bare = left.operator in ("symbol", "inertia") and left.name not in symbols(right)
+            if bare and facts.explanation(claim[0]) is None:
+                facts.explained[claim[0].name] = claim[1]
+            else:
+                facts = Facts(facts.explained, (*facts.related, claim))
+        return facts
+
+    def explanation(self, symbol: Expression) -> Expression | None:
+        """Return what the reasons say a symbol is: outright, as a rate, or as they say of any vector."""
+        if symbol.name in self.explained:
+            return self.explained[symbol.name]
+        below = rate_of(symbol.name)
+        if below is None:
+            return None
+        base = Expression(symbol.operator, shape=symbol.shape, name=below[0])
+        if (reason := self.explanation(base)) is not None:
+            return rate(reason, below[1])
+        of_any = self.explained.get(seen_from_N(ANY))
+        if of_any is None or below[1] is not seen_from_N or symbol.shape != (3,):
+            return None
+        return renamed(of_any, {ANY: base.name, seen_from_axes(ANY): seen_from_axes(base.name)})
+
+    def explain(self, expression: Expression, within: tuple[str, ...] = ()) -> Expression:
+        """Return ``expression`` with every symbol that the reasons explain replaced."""
+        if expression.operator not in ("symbol", "inertia"):
+            return rebuilt(expression, lambda operand: self.explain(operand, within))
+        name = expression.name
+        if name in within:
+            raise Circular(f"the reasons explain {name} by itself")
+        if name not in self._full:
+            reason = None if name in _PAIR else self.explanation(expression)
+            self._full[name] = (
+                expression if reason is None else self.explain(reason, (*within, name))
+            )
+        return self._full[name]
+
+    def read(self, expression: Expression) -> Any:
+        """Return the components of ``expression`` after every explanation."""
+        return expanded(reading(self.explain(expression), self._pairs()))
+
+    def _pairs(self) -> dict[str, Any]:
+        bindings: dict[str, Any] = {}
+        for name in _PAIR:
+            if name in self.explained:
+                bindings[name] = reading(self.explain(self.explained[name]), bindings)
+        return bindings
+
+    def differences(self, claims: Sequence[Claim]) -> tuple[Expr, ...]:
+        """Return left - right of every claim, entry by entry."""
+        return tuple(d for left, right in claims for d in self._difference(left, right))
+
+    def _difference(self, left: Expression, right: Expression) -> list[Expr]:
+        sides = self.read(left), self.read(right)
+        if isinstance(sides[0], MatrixBase):
+            return entries(expanded(sides[0] - sides[1]))
+        return entries(expanded(sides[0] - sides[1]))
+
+    def relations(self) -> tuple[Expr, ...]:
+        """Return what the reasons say is zero."""
+        return tuple(d for d in self.differences(self.related) if d != 0)
+
+    def rates(self) -> tuple[Expr, ...]:
+        """Return the rates of the relations, which are zero too."""
+        moving = self.differences([(rate(left), rate(right)) for left, right in self.related])
+        return tuple(d for d in moving if d != 0)
+
+    def gap(self, claims: Sequence[Claim]) -> tuple[Expr, ...]:
+        """Return what is left of left - right of every claim, entry by entry."""
+        differences = self.differences(claims)
+        if not any(differences) or not self.related:
+            return differences
+        return remainders(differences, self.relations(), self.rates())
+
+    def leftover(self, left: Expression, right: Expression) -> Expression:
+        """Return left - right for people: explained as far as it stays short."""
+        short = collected(self._rewritten(left) - self._rewritten(right))
+        full = collected(self.explain(left) - self.explain(right))
+        return full if len(symbols(full)) and _length(full) <= _length(short) + _LONG else short
+
+    def _rewritten(self, expression: Expression) -> Expression:
+        """Return ``expression`` with the left sides of reasons replaced, once, as they stand."""
+        for left, right in self.related:
+            if expression == left:
+                return right
+        if expression.operator in ("symbol", "inertia"):
+            reason = self.explanation(expression)
+            return expression if reason is None else reason
+        return rebuilt(expression, self._rewritten)
+
+
+def _length(expression: Expression) -> int:
+    if expression.operator in ("add", "negate"):
+        return sum(_length(operand) for operand in expression.operands)
+    return 1
+
+
+def sides(side: Expression | tuple[Expression, ...]) -> tuple[Expression, ...]:
+    """Return the expressions of one side of a step, one or several."""
+    return side if isinstance(side, tuple) else (side,)

@@ -1,0 +1,90 @@
+"""What is left of an expression once polynomial relations are used: exact, and never too little.
+
+Reasons such as R^T R = 1 or |q| = 1 do not explain one symbol; they are relations. A difference
+follows from them if its remainder is zero. The remainder is taken by a Groebner basis, which proves
+whatever follows, or, where a basis would be huge, by the relations as they stand: that may leave too
+much, never too little, so what is accepted is always proved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+from sympy import Expr, Integer, Poly, Symbol, cos, expand, fraction, groebner, sin, together
+from sympy.polys.polytools import reduced
+
+
+_FEW = 15  # symbols up to which a nonlinear Groebner basis takes a fraction of a second
+
+
+class Contradiction(ValueError):
+    """The relations exclude one another, so that anything would follow from them."""
+
+
+def remainders(
+    differences: Sequence[Expr], relations: Sequence[Expr], rates: Sequence[Expr] = ()
+) -> tuple[Expr, ...]:
+    """Return what is left of each difference when every relation, and every rate of one, is zero.
+
+    >>> from sympy.abc import x, y
+    >>> remainders([x**2 - y**2, x], [x - y])
+    (0, y)
+    """
+    wanted = [polynomial(difference) for difference in differences]
+    if not any(wanted):
+        return tuple(wanted)
+    given, moving = ([polynomial(each) for each in some] for some in (relations, rates))
+    spoken = {s for each in (*given, *wanted) for s in each.free_symbols}
+    moving = [each for each in moving if each.free_symbols <= spoken]
+    circles = _circles([*given, *moving, *wanted])
+    basis = _basis(tuple(sorted({g for g in (*given, *circles) if g != 0}, key=str)))
+    left = tuple(_remainder(each, basis) for each in wanted)
+    if not any(left) or not any(moving):
+        return left
+    if len({s for r in (*given, *moving, *circles) for s in r.free_symbols}) <= _FEW:
+        basis = _basis(tuple(sorted({g for g in (*basis, *moving) if g != 0}, key=str)))
+        return tuple(_remainder(each, basis) for each in left)
+    return tuple(_remainder(each, (*basis, *filter(None, moving))) for each in left)
+
+
+def polynomial(difference: Expr) -> Expr:
+    """Return a polynomial that vanishes where ``difference`` does; sines and cosines become symbols."""
+    difference = expand(difference)
+    turns = difference.atoms(sin, cos)
+    difference = difference.xreplace({turn: Symbol(str(turn), real=True) for turn in turns})
+    if difference.is_polynomial(*difference.free_symbols):
+        return difference
+    return expand(fraction(together(difference))[0])
+
+
+def _circles(polynomials: Sequence[Expr]) -> list[Expr]:
+    """Return sin^2 + cos^2 - 1 for every angle whose sine or cosine occurs."""
+    names = {s.name for p in polynomials for s in p.free_symbols}
+    angles = sorted({name[4:-1] for name in names if name.startswith(("sin(", "cos("))})
+    return [
+        Symbol(f"sin({angle})", real=True) ** 2 + Symbol(f"cos({angle})", real=True) ** 2 - 1
+        for angle in angles
+    ]
+
+
+@lru_cache(maxsize=1024)
+def _basis(relations: tuple[Expr, ...]) -> tuple[Expr, ...]:
+    if not relations:
+        return ()
+    symbols = sorted({s for r in relations for s in r.free_symbols}, key=str)
+    if not symbols:
+        raise Contradiction(f"the reasons contradict one another: {relations[0]} = 0")
+    if len(symbols) > _FEW and any(Poly(r, *symbols).total_degree() > 1 for r in relations):
+        return relations
+    basis = tuple(groebner(relations, *symbols, order="grevlex").exprs)
+    if basis == (Integer(1),):
+        raise Contradiction("the reasons contradict one another")
+    return basis
+
+
+def _remainder(difference: Expr, basis: tuple[Expr, ...]) -> Expr:
+    if difference == 0 or not basis:
+        return difference
+    symbols = {s for each in (difference, *basis) for s in each.free_symbols}
+    return reduced(difference, basis, *sorted(symbols, key=str), order="grevlex")[1]
