@@ -1,0 +1,181 @@
+"""A program as C99 text: one line an operation, everything computed before anything is stored."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from derive.arithmetic import rounded
+from derive.program import Op, Operand, Program, Quantity
+
+
+@dataclass(frozen=True)
+class Precision:
+    """A C scalar type with the names and the suffixes that go with it."""
+
+    name: str
+    scalar: str
+    dtype: type
+    suffix: str
+    digits: int
+    bits: int
+    functions: Mapping[str, str]
+
+    @property
+    def unit_roundoff(self) -> float:
+        """Return u, half the distance from one to the next float."""
+        return 2.0**-self.bits
+
+
+F64 = Precision(
+    "f64", "double", np.float64, "", 17, 53, {"sin": "sin", "cos": "cos", "sqrt": "sqrt"}
+)
+F32 = Precision(
+    "f32", "float", np.float32, "F", 9, 24, {"sin": "sinf", "cos": "cosf", "sqrt": "sqrtf"}
+)
+PRECISIONS = (F32, F64)
+
+_INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
+
+
+def literal(q: Fraction, precision: Precision) -> str:
+    """Return a constant that reads back as the float nearest to ``q``.
+
+    >>> literal(Fraction(1, 3), F32), literal(Fraction(-2), F64)
+    ('0.333333343F', '(-2.0)')
+    """
+    text = f"{float(rounded(q, precision.dtype)):.{precision.digits}g}"
+    if precision is F64:
+        text = repr(float(rounded(q, precision.dtype)))
+    if not any(mark in text for mark in ".en"):
+        text += ".0"
+    return f"({text}{precision.suffix})" if q < 0 else text + precision.suffix
+
+
+def places(quantities: tuple[Quantity, ...]) -> dict[str, str]:
+    """Return where in C each component of ``quantities`` is found."""
+    found: dict[str, str] = {}
+    for q in quantities:
+        for i, name in enumerate(q.components):
+            if q.name == "constants":
+                found[name] = f"constants->{name}"
+            else:
+                found[name] = f"{q.name}[{i}]" if q.shape else q.name
+    return found
+
+
+def body(program: Program, precision: Precision) -> list[str]:
+    """Return the lines between the braces of a hot function."""
+    place = places(program.inputs)
+
+    def text(operand: Operand) -> str:
+        if isinstance(operand, Fraction):
+            return literal(operand, precision)
+        return place.get(operand, operand)
+
+    lines = [
+        f"const {precision.scalar} {op.result} = {_operation(op, text, precision)};"
+        for op in program.ops
+    ]
+    return lines + _stores(program, text, precision)
+
+
+def _operation(op: Op, text: Callable[[Operand], str], precision: Precision) -> str:
+    operands = [text(operand) for operand in op.operands]
+    if op.operator in _INFIX:
+        return f"{operands[0]} {_INFIX[op.operator]} {operands[1]}"
+    if op.operator == "neg":
+        return f"-{operands[0]}"
+    if op.operator == "pi":
+        return literal(Fraction(np.pi), precision)
+    return f"{precision.functions[op.operator]}({operands[0]})"
+
+
+def _stores(program: Program, text: Callable[[Operand], str], precision: Precision) -> list[str]:
+    """Return the stores; an input that is also a result is read first: outputs may lie over it."""
+    slots = [slot for q in program.outputs for slot in _slots(q)]
+    arrays = {c for q in program.inputs if q.shape and q.name != "constants" for c in q.components}
+    read = [r for r in dict.fromkeys(program.results) if r in arrays]
+    loads = [f"const {precision.scalar} {name}_in = {text(name)};" for name in read]
+    held = [f"{r}_in" if r in arrays else text(r) for r in program.results]
+    return [*loads, *(f"{slot} = {value};" for slot, value in zip(slots, held, strict=True))]
+
+
+def _slots(q: Quantity) -> list[str]:
+    if q.name == "constants":
+        return [f"constants->{name}" for name in q.components]
+    return [f"{q.name}[{i}]" for i in range(len(q.components))] if q.shape else [f"*{q.name}"]
+
+
+def pair_body(program: Program, scene: str, precision: Precision) -> list[str]:
+    """Return the lines of a program in pairs of floats: rounded once, at the end."""
+    place = places(program.inputs) if program.name != "setup" else _by_value(program)
+    pair = f"{scene}_pair_{precision.name}"
+
+    def text(operand: Operand) -> str:
+        if isinstance(operand, Fraction):
+            return _pair_literal(operand, pair, precision)
+        if operand in place:
+            return f"({pair}){{{place[operand]}, {literal(Fraction(0), precision)}}}"
+        return operand
+
+    lines = [
+        f"const {pair} {op.result} = {scene}_{op.operator}_{precision.name}"
+        f"({', '.join(text(operand) for operand in op.operands)});"
+        for op in program.ops
+    ]
+
+    def stored(operand: Operand) -> str:
+        if isinstance(operand, str) and operand not in place:
+            return f"{operand}.high"
+        return literal(operand, precision) if isinstance(operand, Fraction) else place[operand]
+
+    return lines + _stores(program, stored, precision)
+
+
+def _by_value(program: Program) -> dict[str, str]:
+    return {c: c for q in program.inputs for c in q.components}
+
+
+def _pair_literal(q: Fraction, pair: str, precision: Precision) -> str:
+    high = rounded(q, precision.dtype)
+    low = q - Fraction(float(high))
+    return f"({pair}){{{literal(Fraction(float(high)), precision)}, {literal(low, precision)}}}"
+
+
+def _rounded(operand: Operand, names: set[str], precision: Precision) -> str:
+    if isinstance(operand, Fraction):
+        return literal(operand, precision)
+    return operand if operand in names else f"{operand}.high"
+
+
+def admissible(program: Program, precision: Precision) -> str:
+    """Return the C condition that set-up's parameters are admissible, empty if they always are."""
+    names = {c for q in program.inputs for c in q.components}
+    zero = literal(Fraction(0), precision)
+    tests = [f"{_rounded(p, names, precision)} > {zero}" for p in dict.fromkeys(program.positive)]
+    return " && ".join(tests)
+
+
+RESTS_ON: dict[str, tuple[str, ...]] = {
+    "neg": (),
+    "low": (),
+    "add": (),
+    "sub": ("neg", "add"),
+    "two_product": (),
+    "mul": ("two_product",),
+    "div": ("neg", "add", "two_product", "mul"),
+    "sqrt": ("neg", "add", "two_product"),
+    "sin": (),
+    "cos": (),
+    "power_of_two": (),
+    "pi": (),
+}
+
+
+def pair_functions(programs: Iterable[Program]) -> list[str]:
+    """Return the pair operations that programs in pairs need, each after those it rests on."""
+    used = {op.operator for program in programs for op in program.ops}
+    wanted = used | {name for kind in used for name in RESTS_ON[kind]}
+    return [name for name in RESTS_ON if name in wanted]

@@ -1,0 +1,112 @@
+"""The scene's functions as CasADi: Python that builds them, operation by operation as the C."""
+
+from collections.abc import Callable
+from fractions import Fraction
+
+from derive.arithmetic import rounded
+from derive.c_text import F64
+from derive.emit import TEMPLATES, first_line
+from derive.library import Library
+from derive.program import Op, Operand, Program, Quantity
+
+Text = Callable[[Operand], str]
+_INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
+
+
+def casadi_file(library: Library) -> str:
+    """Return the text of ``<scene>_casadi.py``."""
+    name = library.known.scene.name
+    has_setup = bool(library.constants)
+    return TEMPLATES.get_template("casadi.py.jinja").render(
+        first_line=first_line(library),
+        title=library.known.scene.title,
+        scene=name,
+        setup=_setup(library.setup, name) if has_setup else None,
+        pairs=has_setup or any(p.arithmetic == "pairs" for p in library.functions),
+        functions=[_function(p, name) for p in library.functions],
+    )
+
+
+def _pairs(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
+    """Return the lines of a program in pairs, and how to read a result rounded."""
+
+    def text(operand: Operand) -> str:
+        if isinstance(operand, Fraction):
+            high = float(rounded(operand, F64.dtype))
+            return f"({high!r}, {float(rounded(operand - Fraction(high), F64.dtype))!r})"
+        return f"({place[operand]}, 0.0)" if operand in place else operand
+
+    def stored(operand: Operand) -> str:
+        if isinstance(operand, Fraction):
+            return repr(float(rounded(operand, F64.dtype)))
+        return place.get(operand, f"{operand}[0]")
+
+    lines = [
+        f"{op.result} = _{op.operator}({', '.join(text(operand) for operand in op.operands)})"
+        for op in program.ops
+    ]
+    return lines, stored
+
+
+def _setup(program: Program, scene: str) -> dict[str, object]:
+    names = {c: f"parameters[{i}]" for i, c in enumerate(_components(program.inputs))}
+    lines, stored = _pairs(program, names)
+    return {
+        "name": f"{scene}_setup",
+        "parameters": _components(program.inputs),
+        "constants": _components(program.outputs),
+        "lines": lines,
+        "results": [stored(r) for r in program.results],
+    }
+
+
+def _components(quantities: tuple[Quantity, ...]) -> list[str]:
+    return [c for q in quantities for c in q.components]
+
+
+def _plain(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
+    """Return the lines of a program in the working precision, and how to read a result."""
+
+    def text(operand: Operand) -> str:
+        if isinstance(operand, Fraction):
+            return repr(float(rounded(operand, F64.dtype)))
+        return place.get(operand, operand)
+
+    return [f"{op.result} = {_operation(op, text)}" for op in program.ops], text
+
+
+def _function(program: Program, scene: str) -> dict[str, object]:
+    place = {c: f"{q.name}[{i}]" for q in program.inputs for i, c in enumerate(q.components)}
+    lines, text = (_pairs if program.arithmetic == "pairs" else _plain)(program, place)
+    return {
+        "builder": program.name,
+        "name": f"{scene}_{program.name}",
+        "says": program.says,
+        "inputs": [{"name": q.name, "size": len(q.components)} for q in program.inputs],
+        "needs_constants": any(q.name == "constants" for q in program.inputs),
+        "lines": lines,
+        "outputs": _outputs(program, text),
+    }
+
+
+def _operation(op: Op, text: Text) -> str:
+    operands = [text(operand) for operand in op.operands]
+    if op.operator in _INFIX:
+        return f"{operands[0]} {_INFIX[op.operator]} {operands[1]}"
+    if op.operator == "neg":
+        return f"-{operands[0]}"
+    return f"ca.{op.operator}({', '.join(operands)})"
+
+
+def _outputs(program: Program, text: Text) -> list[dict[str, object]]:
+    outputs, place = [], 0
+    for q in program.outputs:
+        values = [text(r) for r in program.results[place : place + len(q.components)]]
+        pattern = (program.sparsity or {}).get(q.name)
+        shape = None
+        if pattern is not None:
+            size = f"{len(pattern.rows)}, {len(pattern.columns)}"
+            shape = f"{size}, {list(pattern.colind)}, {list(pattern.row)}"
+        outputs.append({"name": q.name, "values": values, "sparsity": shape})
+        place += len(q.components)
+    return outputs

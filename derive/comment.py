@@ -1,0 +1,89 @@
+"""The comment block of a C function: given, returned, postcondition, error, cost, reasons."""
+
+from collections.abc import Sequence
+from textwrap import wrap
+
+from derive.lecture import LECTURE
+from derive.notation import equation_text
+from derive.program import Measurement, Program, Quantity
+
+WIDTH = 96
+
+
+def comment(program: Program, figures: Sequence[Measurement]) -> str:
+    """Return the comment block of ``program`` as C text."""
+    if program.name == "setup":
+        lines = _setup(program)
+    else:
+        lines = [program.says, *_arguments(program), *_postconditions(program)]
+        lines += _labelled("Error:", _error(program, figures))
+        pairs = " (on pairs of floats)" if program.arithmetic == "pairs" else ""
+        lines += _labelled("Cost:", cost(program) + pairs + ".")
+        lines += _labelled("Rests on:", ", ".join(program.assumptions) + ".")
+    text = "\n".join(f" * {line}".rstrip() for line in lines)
+    return f"/*{text[2:]}\n */" if text.startswith(" *") else text
+
+
+def _labelled(label: str, text: str) -> list[str]:
+    return wrap(f"{label} {text}", WIDTH, subsequent_indent=" " * 11, break_long_words=False)
+
+
+def _setup(program: Program) -> list[str]:
+    lines = [program.says, *_arguments(program)]
+    if program.positive:
+        lines.append("Returns 0, or 1 if the inertia is not positive definite or not a number.")
+    lines += _labelled(
+        "Error:", "each constant is rounded once from twice the working precision; at most 1 ulp."
+    )
+    return [*lines, *_labelled("Cost:", f"once; {program.flops()} operations on pairs.")]
+
+
+def _arguments(program: Program) -> list[str]:
+    given = [_line(q, _range(q)) for q in program.inputs]
+    returned = [_line(q, "") for q in program.outputs]
+    pad = " " * 11
+    lines = [("Given:".ljust(11) if i == 0 else pad) + text for i, text in enumerate(given)]
+    return lines + [
+        ("Returned:".ljust(11) if i == 0 else pad) + text for i, text in enumerate(returned)
+    ]
+
+
+def _line(q: Quantity, bounds: str) -> str:
+    size = f"[{len(q.components)}]" if q.shape and q.name != "constants" else ""
+    frame = f"along {q.frame}" if q.frame in ("B", "xyz", "N") else q.frame
+    return "  ".join(part for part in (f"{q.name}{size}", q.unit, frame, bounds, q.meaning) if part)
+
+
+def _range(q: Quantity) -> str:
+    if q.low is None or q.high is None or q.name == "attitude":
+        return ""
+    return f"{float(q.low):g} .. {float(q.high):g}"
+
+
+def _postconditions(program: Program) -> list[str]:
+    lines: list[str] = []
+    for name in program.steps:
+        lines += _labelled(
+            "Postcondition:", f"{equation_text(LECTURE[name])}   [lecture step {name}]"
+        )
+    return lines
+
+
+def _error(program: Program, figures: Sequence[Measurement]) -> str:
+    own = [m for m in figures if m.function == program.name]
+    if not own:
+        return "not measured."
+    worst = max(own, key=lambda m: m.worst)
+    median = max(m.median for m in own)
+    return (
+        f"median {median:.2g}, largest {worst.worst:.2g} ulp of the largest term "
+        f"(sampled: {worst.samples} points, worst at {worst.output}, point {worst.sample})."
+    )
+
+
+def cost(program: Program) -> str:
+    """Return the operations of a program in words."""
+    counts = program.count()
+    order = ("add", "sub", "mul", "div", "neg", "sqrt", "sin", "cos")
+    listed = [f"{counts[kind]} {kind}" for kind in order if kind in counts]
+    return ", ".join(listed) or "no operations"

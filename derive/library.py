@@ -1,0 +1,204 @@
+"""All programs of a scene: one set-up, and for every wanted function its hot part."""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from derive.arrange import arrange
+from derive.forms import Block, best_values, best_with_jacobian
+from derive.graph import Graph, Value
+from derive.lecture import LECTURE
+from derive.lower import lower
+from derive.program import Program, Quantity, Sparsity
+from derive.scene import Scene
+from derive.specialise import Specialised, specialise
+from derive.stage import (
+    Constant,
+    Constants,
+    compressed,
+    hot,
+    in_pairs,
+    setup,
+    used_inputs,
+    with_low_parts,
+)
+from derive.truth import Truth, truth
+from derive.wording import formula
+
+JACOBIAN = "_jacobian"
+INVERSE = re.compile("J_[xyz][xyz]")
+
+
+@dataclass(frozen=True)
+class Library:
+    """What a scene's files are printed from."""
+
+    known: Specialised
+    setup: Program
+    functions: tuple[Program, ...]
+    constants: tuple[Constant, ...]
+    truths: Mapping[str, Truth]
+
+    def __getitem__(self, name: str) -> Program:
+        return next(p for p in (self.setup, *self.functions) if p.name == name)
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A wanted function in the graph: its truth, and its output components by quantity."""
+
+    fact: Truth
+    outputs: tuple[tuple[Value, ...], ...]
+    positive: tuple[Value, ...]
+
+
+def library(scene: Scene) -> Library:
+    """Return the programs that ``scene`` asks for."""
+    known = specialise(scene)
+    graph = Graph()
+    leaves = _leaves(graph, known)
+    constants = Constants(graph)
+    truths = {base: truth(known, base) for base in dict.fromkeys(map(_base, scene.wanted))}
+    wanted = {base: _wanted(graph, known, fact, leaves) for base, fact in truths.items()}
+    functions = tuple(
+        _with_jacobian(graph, constants, known, wanted[_base(name)], leaves)
+        if name.endswith(JACOBIAN)
+        else _values_only(graph, constants, known, wanted[name])
+        for name in scene.wanted
+    )
+    positive = list(
+        dict.fromkeys(p for w in wanted.values() for p in w.positive if graph.fixed[p[1]])
+    )
+    made = setup(graph, constants, known.words.parameters, positive)
+    meanings = {name: _meaning(graph, value) for value, name in constants.names.items()}
+    if scene.form == "accurate" and made.outputs:
+        made = with_low_parts(made)
+        meanings |= {f"{name}_low": f"what rounding {name} left" for name in list(meanings)}
+    functions = _in_parameters(made, functions)
+    if scene.form == "accurate":
+        functions = tuple(in_pairs(f, set(constants.names.values())) for f in functions)
+    fields = [c for q in made.outputs for c in q.components]
+    named = tuple(Constant(name, meanings[name]) for name in fields)
+    return Library(known, made, functions, named, truths)
+
+
+def _meaning(graph: Graph, value: Value) -> str:
+    text = formula(graph, value)
+    return f"{text[2:]} of the inverse inertia tensor" if INVERSE.fullmatch(text) else text
+
+
+def _base(name: str) -> str:
+    return name.removesuffix(JACOBIAN)
+
+
+def _leaves(graph: Graph, known: Specialised) -> dict[str, Value]:
+    words = known.words
+    leaves = {c: graph.parameter(c) for q in words.parameters for c in q.components}
+    varying = [c for q in (*words.states, *words.inputs) for c in q.components]
+    return leaves | {c: graph.variable(c) for c in varying}
+
+
+def _wanted(graph: Graph, known: Specialised, fact: Truth, leaves: Mapping[str, Value]) -> Wanted:
+    by_symbol = {known.words.symbols[c]: value for c, value in leaves.items()}
+    values, positive = lower(graph, arrange(known, fact), by_symbol)
+    outputs, place = [], 0
+    for quantity in fact.outputs:
+        outputs.append(tuple(values[place : place + len(quantity.components)]))
+        place += len(quantity.components)
+    return Wanted(fact, tuple(outputs), tuple(positive))
+
+
+def _values_only(graph: Graph, constants: Constants, known: Specialised, wanted: Wanted) -> Program:
+    values = best_values(graph, [Block(output, ()) for output in wanted.outputs])
+    return _program(graph, constants, known, wanted.fact, values)
+
+
+def _with_jacobian(
+    graph: Graph,
+    constants: Constants,
+    known: Specialised,
+    wanted: Wanted,
+    leaves: Mapping[str, Value],
+) -> Program:
+    columns = _columns(graph, known, wanted)
+    inputs = tuple(tuple(leaves[c] for c in q.components) for q in columns)
+    values: list[Value] = []
+    rows: list[list[Value]] = []
+    for output in wanted.outputs:
+        shared = values + [entry for row in rows for entry in row]
+        own, derivatives = best_with_jacobian(graph, Block(output, inputs), shared)
+        values += own
+        rows += derivatives
+    row_names = [c for q in wanted.fact.outputs for c in q.components]
+    column_names = [c for q in columns for c in q.components]
+    pattern, nonzeros = compressed(rows, row_names, column_names)
+    program = _program(graph, constants, known, wanted.fact, [*values, *nonzeros])
+    return replace(
+        program,
+        name=wanted.fact.name + JACOBIAN,
+        says=wanted.fact.says.rstrip(".") + ", with its Jacobian.",
+        outputs=(*program.outputs, _jacobian_quantity(pattern)),
+        sparsity={"jacobian": pattern},
+    )
+
+
+def _jacobian_quantity(pattern: Sparsity) -> Quantity:
+    parts = tuple(f"d({pattern.rows[i]})/d({pattern.columns[k]})" for i, k in pattern.places())
+    says = "nonzeros of the Jacobian, in compressed-column order"
+    return Quantity("jacobian", parts, (len(parts),), "", "", None, None, says)
+
+
+def _columns(graph: Graph, known: Specialised, wanted: Wanted) -> tuple[Quantity, ...]:
+    """Return what the Jacobian is taken by: every state of a state rate, and all that is used."""
+    words = known.words
+    used = _inputs_below(graph, [v for output in wanted.outputs for v in output])
+    every = (*words.states, *words.inputs)
+    whole = words.states if wanted.fact.name == "state_rate" else ()
+    return tuple(q for q in every if q in whole or used & set(q.components))
+
+
+def _inputs_below(graph: Graph, values: Iterable[Value]) -> set[str]:
+    """Return the names of all inputs that ``values`` are made of."""
+    names: set[str] = set()
+    seen: set[int] = set()
+    waiting = [node for _, node in values]
+    while waiting:
+        node = waiting.pop()
+        if node in seen:
+            continue
+        seen.add(node)
+        if graph.nodes[node][0] == "input":
+            names.add(graph.nodes[node][1])
+        waiting += graph.below(node)
+    return names
+
+
+def _program(
+    graph: Graph, constants: Constants, known: Specialised, fact: Truth, values: Sequence[Value]
+) -> Program:
+    ops, results = hot(graph, constants, values)
+    inputs = used_inputs((*known.words.states, *known.words.inputs), ops, results)
+    assumptions = sorted({a for step in fact.steps for a in LECTURE.assumptions(step)})
+    return Program(
+        fact.name,
+        fact.says,
+        inputs,
+        fact.outputs,
+        ops,
+        results,
+        steps=fact.steps,
+        assumptions=tuple(assumptions),
+    )
+
+
+def _in_parameters(made: Program, functions: Sequence[Program]) -> tuple[Program, ...]:
+    """Return the functions, each with the constants as its first input if it uses any."""
+    names = {c for q in made.outputs for c in q.components}
+    return tuple(
+        replace(f, inputs=(*made.outputs, *f.inputs)) if _reads(f, names) else f for f in functions
+    )
+
+
+def _reads(program: Program, names: set[str]) -> bool:
+    operands = {o for op in program.ops for o in op.operands} | set(program.results)
+    return any(o in names for o in operands if isinstance(o, str))

@@ -1,0 +1,56 @@
+"""From SymPy expressions to the graph: the last file that knows SymPy."""
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from sympy import Add, Expr, Mul, Pow, Rational, Symbol, pi, tan
+
+from derive.draft import Arrangement
+from derive.graph import Graph, Value
+
+
+def lower(
+    graph: Graph, arrangement: Arrangement, leaves: Mapping[Symbol, Value]
+) -> tuple[list[Value], list[Value]]:
+    """Return the values of the outputs, and of what must be positive, in ``graph``.
+
+    leaves : the graph's value of every input's symbol
+    """
+    known = dict(leaves)
+    for stage in arrangement.stages:
+        named = graph.let if stage.kind == "let" else graph.cut
+        known[stage.symbol] = named(stage.symbol.name, value_of(graph, stage.value, known))
+    return (
+        [value_of(graph, e, known) for e in arrangement.outputs],
+        [value_of(graph, e, known) for e in arrangement.positive],
+    )
+
+
+def value_of(graph: Graph, e: Expr, known: Mapping[Symbol, Value]) -> Value:
+    """Return the graph's value of one expression."""
+    match e:
+        case Symbol():
+            return known[e]
+        case Rational():
+            return graph.number(Fraction(int(e.p), int(e.q)))
+        case Add():
+            return graph.add([value_of(graph, a, known) for a in e.args])
+        case Mul():
+            return graph.mul([value_of(graph, a, known) for a in e.args])
+        case Pow(exp=n) if n.is_Integer:
+            return graph.power(value_of(graph, e.base, known), int(n))
+        case Pow(exp=n) if n.is_Rational and n.q == 2:
+            return graph.power(graph.call("sqrt", value_of(graph, e.base, known)), int(n.p))
+        case tan():
+            angle = value_of(graph, e.args[0], known)
+            return graph.mul([graph.call("sin", angle), graph.power(graph.call("cos", angle), -1)])
+    return _called(graph, e, known)
+
+
+def _called(graph: Graph, e: Expr, known: Mapping[Symbol, Value]) -> Value:
+    if e == pi:
+        return graph.call("pi")
+    name = e.func.__name__
+    if name not in ("sin", "cos", "power_of_two"):
+        raise NotImplementedError(f"no operator for {e}")
+    return graph.call(name, value_of(graph, e.args[0], known))

@@ -1,0 +1,103 @@
+"""A scene in the lecture's terms: what each of the lecture's symbols stands for in it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from sympy import Matrix, zeros
+
+from derive.lecture import LECTURE
+from derive.motion import Motion, motion, reduced, rotation
+from derive.scene import Scene, SceneError
+from derive.vectors import components
+from derive.vocabulary import Vocabulary, vocabulary
+
+
+@dataclass(frozen=True)
+class Specialised:
+    """A scene in the lecture's terms: its words, its motion, what the lecture's symbols mean."""
+
+    scene: Scene
+    words: Vocabulary
+    motion: Motion
+    bindings: Mapping[str, Any]
+
+
+def specialise(scene: Scene) -> Specialised:
+    """Return ``scene`` with every symbol of the lecture bound to the scene's own quantities."""
+    words = vocabulary(scene)
+    moves = motion(scene, words)
+    bindings: dict[str, Any] = {
+        "I": moves.tensor,
+        "omega": moves.omega,
+        "omega_dot": moves.omega_dot,
+        "Omega": moves.Omega,
+        "M": moment(scene, words),
+        "h": zeros(3, 1),
+        "h_dot": zeros(3, 1),
+        "v_G": words.column("velocity") if "velocity" in words else zeros(3, 1),
+        "F": words.column("force") if "force" in words else zeros(3, 1),
+    }
+    if scene.body.mass is not None:
+        bindings["m"] = words.expression(scene.body.mass)
+    if scene.point.kind == "moving":
+        bindings |= _moving_point(scene, words)
+    if scene.wheels:
+        bindings["h"], bindings["h_dot"] = _wheel_momentum(scene, words)
+    seen_from_axes = {"I": moves.tensor, "omega": moves.relative, "Omega": zeros(3, 1)}
+    bindings["I_dot"] = stated("inertia_rate_in_axes", seen_from_axes).applyfunc(reduced)
+    return Specialised(scene, words, moves, bindings)
+
+
+def stated(step: str, bindings: Mapping[str, Any]) -> Any:
+    """Return the right side of a lecture step in the components that ``bindings`` give."""
+    return components(LECTURE[step].right, bindings)
+
+
+def moment(scene: Scene, words: Vocabulary) -> Matrix:
+    """Return the external moment along the axes: formulas of the scene, or inputs."""
+    given = scene.known.get("moment")
+    if given is not None and given.formulas is not None:
+        return Matrix([words.expression(f) for f in given.formulas])
+    return words.column("moment")
+
+
+def _moving_point(scene: Scene, words: Vocabulary) -> dict[str, Any]:
+    given, centre = scene.point.acceleration, scene.body.centre
+    if centre is None:
+        raise SceneError(f"scene '{scene.name}': point 'moving' needs body.centre")
+    own = Matrix([words.expression(f) for f in centre])
+    a_A = words.column("point_acceleration")
+    if given is not None and given.formulas is not None:
+        a_A = Matrix([words.expression(f) for f in given.formulas])
+    return {"rho_G": rotation(words, scene.body.turned) * own, "a_A": a_A}
+
+
+def wheel_axes(scene: Scene, words: Vocabulary) -> list[Matrix]:
+    """Return each wheel's unit vector along the axes."""
+    return [Matrix([words.expression(f) for f in wheel.axis]) for wheel in scene.wheels]
+
+
+def _wheel_momentum(scene: Scene, words: Vocabulary) -> tuple[Matrix, Matrix]:
+    speeds, rates = words.column("wheel_speeds"), words.column("wheel_accelerations")
+    h, h_dot = zeros(3, 1), zeros(3, 1)
+    for wheel, axis, s, s_dot in zip(
+        scene.wheels, wheel_axes(scene, words), speeds, rates, strict=True
+    ):
+        one = {"C": words.expression(wheel.axial), "a": axis}
+        h += stated("wheel_momentum", one | {"s": s})
+        h_dot += stated("wheel_momentum", one | {"s": s_dot})
+    return h, h_dot
+
+
+def balance_step(scene: Scene) -> str:
+    """Return the lecture step that balances moments in this scene."""
+    if scene.wheels:
+        return "gyrostat_form"
+    return "moving_point_form" if scene.point.kind == "moving" else "general_form"
+
+
+def quaternion(known: Specialised) -> dict[str, Any]:
+    """Return the bindings of the scene's attitude quaternion, omega included."""
+    w, x, y, z = known.words.column("attitude")
+    return {"q_w": w, "q_v": Matrix([x, y, z]), "omega": known.motion.omega}

@@ -1,0 +1,76 @@
+"""The same inputs give the same bytes: under any hash seed and whatever the symbols are called."""
+
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+
+from derive.library import library
+from derive.scene import catalogue, load, parse_scene
+
+DIGEST = """
+import hashlib
+from derive.casadi_text import casadi_file
+from derive.emit import c_files
+from derive.library import library
+from derive.manifest import manifest
+from derive.scene import catalogue, load
+digest = hashlib.sha256()
+for name in catalogue():
+    made = library(load(name))
+    for text in [*c_files(made, ()).values(), casadi_file(made), manifest(made, ())]:
+        digest.update(text.encode())
+print(digest.hexdigest())
+"""
+
+
+def test_the_hash_seed_changes_no_byte():
+    found = set()
+    running = [
+        subprocess.Popen(
+            [sys.executable, "-c", DIGEST],
+            env=os.environ | {"PYTHONHASHSEED": seed},
+            stdout=subprocess.PIPE,
+        )
+        for seed in ("0", "1", "4242")
+    ]
+    for process in running:
+        found.add(process.communicate()[0])
+        assert process.returncode == 0
+    assert len(found) == 1
+
+
+def renamed(text: str, names: dict[str, str]) -> str:
+    parts = re.split(r'(unit\s*=\s*"[^"]*")', text)
+    words = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+    other = [
+        p if i % 2 else words.sub(lambda m: names.get(m[0], m[0]), p) for i, p in enumerate(parts)
+    ]
+    return "".join(other)
+
+
+@pytest.mark.parametrize("name", catalogue())
+def test_other_names_give_the_same_operations(name):
+    scene = load(name)
+    given = (
+        [p.name for p in scene.parameters]
+        + [c.name for c in scene.coordinates]
+        + [s.name for s in scene.speeds]
+    )
+    other = {old: f"Zz{len(given) - i}{old[::-1].strip('_')}" for i, old in enumerate(given)}
+    disguised = parse_scene(renamed(scene.text, other), name)
+    first, second = library(scene), library(disguised)
+    for one, two in zip(
+        (first.setup, *first.functions), (second.setup, *second.functions), strict=True
+    ):
+        assert shape(one) == shape(two)
+
+
+def shape(program) -> tuple:
+    """Return a program with every input and constant called by its place."""
+    names = [c for q in program.inputs for c in q.components]
+    place = {n: f"input {i}" for i, n in enumerate(names)}
+    ops = tuple((op.operator, tuple(place.get(o, o) for o in op.operands)) for op in program.ops)
+    return ops, tuple(place.get(r, r) for r in program.results)

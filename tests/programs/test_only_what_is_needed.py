@@ -1,0 +1,71 @@
+"""What vanishes in a scene leaves no trace in its programs."""
+
+from derive.library import library
+from derive.scene import parse_scene
+
+SCENE = """
+title = "A body made to order"
+wanted = ["{wanted}"]
+[parameters]
+A = {{ unit = "kg m^2", range = [1, 2], meaning = "moment" }}
+B = {{ unit = "kg m^2", range = [1, 2], meaning = "moment" }}
+C = {{ unit = "kg m^2", range = [1, 2], meaning = "moment" }}
+D = {{ unit = "kg m^2", range = [-0.1, 0.1], meaning = "product" }}
+[body]
+{body}
+"""
+
+
+def flops(body: str, wanted: str = "acceleration") -> int:
+    text = SCENE.format(body=body, wanted=wanted)
+    return library(parse_scene(text, "made"))[wanted].flops()
+
+
+def general(products: str) -> str:
+    return f'kind = "general"\nmoments = ["A", "B", "C"]\nproducts = {products}'
+
+
+def test_a_body_costs_less_the_more_symmetry_it_has():
+    full = flops(general('["D", "D", "D"]'))
+    one_plane = flops(general('["D", "0", "0"]'))
+    principal = flops('kind = "principal"\nmoments = ["A", "B", "C"]')
+    axisymmetric = flops('kind = "axisymmetric"\naxis = "z"\naxial = "C"\ntransverse = "A"')
+    spherical = flops('kind = "spherical"\nmoment = "A"')
+    assert full > one_plane > principal > axisymmetric > spherical
+    assert (principal, axisymmetric, spherical) == (12, 8, 3)
+
+
+def test_zero_products_make_a_general_body_a_principal_one():
+    assert flops(general('["0", "0", "0"]')) == 12
+
+
+def test_a_sphere_has_no_gyroscopic_moment():
+    text = SCENE.format(body='kind = "spherical"\nmoment = "A"', wanted="acceleration")
+    program = library(parse_scene(text, "made"))["acceleration"]
+    assert [q.name for q in program.inputs] == ["constants", "moment"]
+
+
+def test_a_steady_rate_has_no_derivative_in_the_signature():
+    text = """
+title = "Rotor on a ship that turns steadily"
+wanted = ["moment"]
+[parameters]
+A = { unit = "kg m^2", range = [1, 2], meaning = "transverse" }
+C = { unit = "kg m^2", range = [1, 2], meaning = "axial" }
+[speeds]
+W = { unit = "rad/s", range = [-1, 1], meaning = "turn rate", rate = 0 }
+p = { unit = "rad/s", range = [1, 9], meaning = "spin", rate = 0 }
+[axes]
+angular_velocity = ["0", "0", "W"]
+[body]
+kind = "axisymmetric"
+axis = "x"
+axial = "C"
+transverse = "A"
+spin = "p"
+"""
+    made = library(parse_scene(text, "ship"))
+    program = made["moment"]
+    assert [q.name for q in program.inputs] == ["constants", "W", "p"]
+    assert [c.name for c in made.constants] == ["C"]
+    assert program.flops() == 2
