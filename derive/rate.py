@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from derive.vectors import Expression, cosine, reciprocal, sine, zero
+from derive.vectors import Expression, cosine, reciprocal, sine, turn_written_out, zero
 
 Naming = Callable[[str, tuple[int, ...]], str]
 
@@ -87,6 +87,8 @@ def rate(expression: Expression, naming: Naming = seen_from_axes) -> Expression:
     rates = [rate(operand, naming) for operand in operands]
     if operator in _LINEAR or operator in ("sum", "others"):
         return _simple(Expression(operator, tuple(rates), shape, expression.name))
+    if operator == "turn":
+        return rate(turn_written_out(*operands), naming)
     if operator in _BILINEAR:
         return _product(operator, shape, operands, rates)
     return _chain(operator, operands[0], rates[0])

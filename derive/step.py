@@ -167,15 +167,16 @@ def _fault(derivation: Derivation, step: Step, spoken: set[str], above: set[str]
 
 def _smuggled(step: Step, spoken: set[str]) -> str:
     """A definition may only name something new, so that no claim enters the lecture as a definition."""
-    named: set[str] = set()
+    known = set(spoken)
     for left, right in step.claims:
         if left.operator not in ("symbol", "inertia"):
             return "a definition must have a bare symbol on its left"
-        if root(left.name) in spoken | named:
+        above = {root(name) for name in symbols(right)}
+        if root(left.name) in known:
             return f"defines {left.name} again"
-        named.add(root(left.name))
-        if named & {root(name) for name in symbols(right)}:
+        if root(left.name) in above:
             return f"defines {left.name} by itself"
+        known |= above | {root(left.name)}
     return ""
 
 

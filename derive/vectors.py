@@ -155,6 +155,17 @@ def cosine(angle: Expression) -> Expression:
     return Expression("cos", (angle,))
 
 
+def turn(axis: Expression, angle: Expression) -> Expression:
+    """Return the tensor that turns vectors by an angle in rad about a unit vector."""
+    return Expression("turn", (axis, angle), (3, 3))
+
+
+def turn_written_out(axis: Expression, angle: Expression) -> Expression:
+    """Return ``turn(axis, angle)`` in products, sines and cosines."""
+    along = outer(axis, axis)
+    return cosine(angle) * (IDENTITY - along) + sine(angle) * cross_tensor(axis) + along
+
+
 def total(summand: Expression, over: str = "body") -> Expression:
     """Return the sum of ``summand`` over the members of ``over`` (``particles`` gives it meaning)."""
     return Expression("sum", (summand,), summand.shape, over)
@@ -189,6 +200,11 @@ def cross_matrix(v: Matrix) -> Matrix:
 
 def _axial(t: Matrix) -> Matrix:
     return Matrix([t[2, 1] - t[1, 2], t[0, 2] - t[2, 0], t[1, 0] - t[0, 1]]) / 2
+
+
+def _turn(axis: Matrix, angle: Expr) -> Matrix:
+    along = axis * axis.T
+    return cos(angle) * (eye(3) - along) + sin(angle) * cross_matrix(axis) + along
 
 
 def _quantity(t: Matrix, pair: str) -> Expr:
@@ -229,6 +245,7 @@ COMPONENTS: dict[str, Callable[..., Any]] = {
     "transpose": lambda t: t.T,
     "trace": lambda t: t.trace(),
     "axial": _axial,
+    "turn": _turn,
     "reciprocal": lambda s: 1 / s,
     "sin": sin,
     "cos": cos,

@@ -10,8 +10,8 @@ from derive.lecture.letters import (
 from derive.lecture.rigid_body import HALF
 from derive.step import Step
 from derive.vectors import (
-    IDENTITY, Expression, axial, component, cosine, cross, cross_tensor, dot, number, outer, scalar,
-    sine, tensor, transpose, vector, zero,
+    IDENTITY, Expression, axial, component, cosine, cross, cross_tensor, dot, number, scalar,
+    sine, tensor, transpose, turn, vector, zero,
 )  # fmt: skip
 
 any_v = vector("v")
@@ -22,12 +22,6 @@ psi_dot, theta_dot, phi_dot = scalar("psi_dot"), scalar("theta_dot"), scalar("ph
 sec = scalar("sec_theta")
 twice_conj_q_q_dot = 2 * (q_w * q_v_dot - q_w_dot * q_v - cross(q_v, q_v_dot))
 o_x, o_y, o_z = (component(omega, axis) for axis in "xyz")
-
-
-def turn(axis: Expression, by: Expression) -> Expression:
-    """Return the tensor that turns vectors by an angle about a unit vector."""
-    along = outer(axis, axis)
-    return cosine(by) * (IDENTITY - along) + sine(by) * cross_tensor(axis) + along
 
 
 def columns(t: Expression) -> tuple[Expression, Expression, Expression]:
@@ -115,6 +109,14 @@ COMPOSED = (
         "deduce", Omega_1, transpose(R_2) @ Omega + Omega_2,
         ("further_axes", "composed_turns", "rotation_rate", "axes_are_orthonormal",
          "further_axes_are_right_handed"),
+    ),
+    Step(
+        "turn_of_vector",
+        "A turn by an angle about a unit vector e keeps what lies along e, and takes the rest partly "
+        "into e x v.",
+        "deduce", turn(e, angle) @ any_v,
+        cosine(angle) * any_v + sine(angle) * cross(e, any_v)
+        + ((number(1) - cosine(angle)) * dot(e, any_v)) * e,
     ),
     Step("simple_turn", "Let the turn be by an angle about a fixed unit vector e.", "assume",
          R_2, turn(e, angle)),

@@ -10,13 +10,15 @@ from derive.lecture.letters import (
 from derive.lecture.rigid_body import HALF, inertia_of
 from derive.step import Step
 from derive.vectors import (
-    IDENTITY, Expression, cross, dot, inertia, number, outer, scalar, total, vector, zero,
+    IDENTITY, Expression, cross, dot, inertia, number, outer, reciprocal, scalar, total, vector, zero,
 )  # fmt: skip
 
 sigma, sigma_dot, sigma_N_dot = vector("sigma_i"), vector("sigma_i_dot"), vector("sigma_i_N_dot")
 r_w, d_dot, d_N_dot, a_dot = vector("r_w"), vector("d_dot"), vector("d_N_dot"), vector("a_dot")
 l_c, I_c, I_c_dot = vector("l_c"), inertia("I_c"), inertia("I_c_dot")
 l_w, I_w, I_w_dot = vector("l_w"), inertia("I_w"), inertia("I_w_dot")
+m_w, r_Gw, sigma_G = scalar("m_w"), vector("r_Gw"), vector("sigma_G")
+r_w_N_ddot = vector("r_w_N_ddot")
 l_s, l_s_N_dot, M_w = vector("l_s"), vector("l_s_N_dot"), vector("M_w")
 h_w, T_w, K, K_c, K_w = vector("h_w"), scalar("T_w"), scalar("K"), scalar("K_c"), scalar("K_w")
 velocity = d_N_dot + sigma_N_dot
@@ -209,12 +211,31 @@ MOTOR = (
         (over_wheel(cross(sigma, dm * sigma_N_dot)), over_wheel(cross(sigma, F_i))),
     ),
     Step(
+        "mass_centre_of_wheel",
+        "It has a mass and a centre of mass, too.",
+        "define", (m_w, r_Gw, sigma_G),
+        (over_wheel(dm), reciprocal(m_w) * over_wheel(dm * r), r_Gw - r_w),
+    ),
+    Step(
         "wheel_obeys_the_same_law",
-        "The law about the centre of mass was shown for any cloud of particles, so for the wheel's.",
+        "The law about a moving point was shown for any cloud of particles, so for the wheel's.",
+        "deduce", M_w, l_s_N_dot + cross(sigma_G, m_w * r_w_N_ddot),
+        ("moving_point",),
+        (("body", "wheel"), ("r_A", "r_w"), ("a_A", "r_w_N_ddot"), ("r_G", "r_Gw"),
+         ("rho_G", "sigma_G"), ("m", "m_w"), ("rho_i", "sigma_i"),
+         ("rho_i_N_dot", "sigma_i_N_dot"), ("l", "l_s"), ("l_N_dot", "l_s_N_dot"), ("M", "M_w")),
+    ),
+    Step(
+        "centre_of_wheel_is_its_mass_centre",
+        "A balanced wheel has no arm between its centre and its centre of mass.",
+        "deduce", sigma_G, zero(3),
+        ("mass_centre_of_wheel", "position_in_wheel", "wheel_is_balanced"),
+    ),
+    Step(
+        "law_of_wheel",
+        "So the moment on a balanced wheel is the rate of its own momentum, however it is carried.",
         "deduce", M_w, l_s_N_dot,
-        ("law_about_mass_centre",),
-        (("body", "wheel"), ("r_A", "r_w"), ("rho_i", "sigma_i"), ("rho_i_N_dot", "sigma_i_N_dot"),
-         ("l", "l_s"), ("l_N_dot", "l_s_N_dot"), ("M", "M_w")),
+        ("wheel_obeys_the_same_law", "centre_of_wheel_is_its_mass_centre"),
     ),
     Step(
         "motor_torque",
@@ -233,7 +254,7 @@ MOTOR = (
         "Along the axis the gyroscopic terms drop out: the motor turns C against the whole turning "
         "about the axis.",
         "deduce", u, C * (dot(a, omega_dot) + s_dot),
-        ("motor_torque", "wheel_obeys_the_same_law", "transport_of_any_vector", "body_axes",
+        ("motor_torque", "law_of_wheel", "transport_of_any_vector", "body_axes",
          "spin_momentum_of_wheel", "wheel_on_carrier", "wheel_axis_is_unit",
          "axial_moment_is_constant"),
     ),

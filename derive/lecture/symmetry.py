@@ -10,7 +10,7 @@ from derive.vectors import (
     IDENTITY, Expression, component, cross, dot, number, outer, quantity, scalar, total, zero,
 )  # fmt: skip
 
-cos_turn, sin_turn, t = scalar("c_turn"), scalar("s_turn"), scalar("t")
+cos_turn, sin_turn, t = scalar("c_n"), scalar("s_n"), scalar("t_n")
 xx, yy, zz, xy, xz, yz = (quantity(I, pair) for pair in ("xx", "yy", "zz", "xy", "xz", "yz"))
 n_z = component(n, "z")
 
@@ -21,7 +21,7 @@ def mirrored(axis: Expression) -> Expression:
 
 
 turned = (
-    cos_turn * rho + sin_turn * cross(e_z, rho) + ((-cos_turn) * dot(e_z, rho) + dot(e_z, rho)) * e_z
+    cos_turn * rho + sin_turn * cross(e_z, rho) + ((number(1) - cos_turn) * dot(e_z, rho)) * e_z
 )
 
 
@@ -59,7 +59,7 @@ MIRRORS = (
 ROTATION = (
     Step(
         "rotational_symmetry",
-        "The body looks the same after a turn about z whose cosine is c and whose sine is s.",
+        "The body looks the same after a turn about z whose cosine is c_n and whose sine is s_n.",
         "assume", second_moments(turned), second_moments(rho),
     ),
     Step(
@@ -69,7 +69,7 @@ ROTATION = (
     ),
     Step(
         "turn_is_proper",
-        "The turn is neither nothing nor half a turn: its sine is not zero and has an inverse t. Every "
+        "The turn is neither nothing nor half a turn: its sine is not zero and has an inverse t_n. Every "
         "n-fold axis with n = 3 or more has such a turn.",
         "assume", sin_turn * t, number(1),
     ),
