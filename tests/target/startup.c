@@ -1,0 +1,52 @@
+/* Start-up of a Cortex-M with semihosting: vector table, data and bss, floating-point unit. */
+#include <stdint.h>
+
+extern uint32_t stack_top, data_load, data_start, data_end, bss_start, bss_end;
+int main(void);
+void reset(void);
+void fault(void);
+void say(const char *text);
+
+__attribute__((section(".vectors"), used)) static const void *const vectors[16] = {
+    &stack_top, (void *)reset, (void *)fault, (void *)fault, (void *)fault,
+    (void *)fault, (void *)fault,
+};
+
+static void semihost(uint32_t operation, const void *argument)
+{
+    register uint32_t r0 __asm__("r0") = operation;
+    register const void *r1 __asm__("r1") = argument;
+    __asm__ volatile("bkpt 0xAB" : "+r"(r0) : "r"(r1) : "memory");
+}
+
+void say(const char *text) { semihost(0x04, text); /* SYS_WRITE0 */ }
+
+static void leave(void)
+{
+    semihost(0x18, (const void *)0x20026); /* SYS_EXIT, ended by the application */
+    for (;;) {
+    }
+}
+
+void fault(void)
+{
+    say("fault\n");
+    leave();
+}
+
+void reset(void)
+{
+    const uint32_t *from = &data_load;
+    for (uint32_t *to = &data_start; to < &data_end; to++) {
+        *to = *from++;
+    }
+    for (uint32_t *to = &bss_start; to < &bss_end; to++) {
+        *to = 0;
+    }
+#if defined(__ARM_FP)
+    *(volatile uint32_t *)0xE000ED88 |= 0xFu << 20; /* CPACR: full access to the FPU */
+    __asm__ volatile("dsb\n isb");
+#endif
+    main();
+    leave();
+}
