@@ -1,0 +1,54 @@
+"""The project's own promises: two commands, five verbs, and a wheel that is complete."""
+
+import re
+import tomllib
+import zipfile
+from pathlib import Path
+
+from hatchling.builders.wheel import WheelBuilder
+
+ROOT = Path(__file__).parent.parent
+SETUP = "python3.11 -m venv .venv && .venv/bin/python -m pip install -q -e"
+TEST = f"{SETUP} '.[dev]' && .venv/bin/python -m pytest -q -n auto"
+GENERATE = f"{SETUP} . && .venv/bin/derive generate"
+
+
+def test_the_readme_has_one_command_for_the_job_and_one_for_the_tests() -> None:
+    lines = [line.strip() for line in (ROOT / "README.md").read_text().splitlines()]
+    assert lines.count(GENERATE) == 1
+    assert [line for line in lines if line.startswith("python3.11") and "pytest" in line] == [TEST]
+
+
+def test_continuous_integration_runs_the_readmes_test_command() -> None:
+    pattern = re.search(r"sed -n 's/\^ \*\\\((.*)\\\)\$/\\1/p' README\.md", ci())
+    assert pattern
+    found = re.findall(rf"^ *({pattern[1]})$", (ROOT / "README.md").read_text(), re.MULTILINE)
+    assert found == [TEST]
+
+
+def ci() -> str:
+    """Return the text of the script that continuous integration runs."""
+    return (ROOT / ".ci" / "run").read_text()
+
+
+def test_the_makefile_has_five_verbs() -> None:
+    verbs = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    assert verbs == ["generate", "test", "lint", "check", "bench"]
+
+
+def test_the_wheel_holds_every_template_and_every_scene(tmp_path: Path) -> None:
+    wheel = next(WheelBuilder(str(ROOT)).build(directory=str(tmp_path), versions=["standard"]))
+    held = set(zipfile.ZipFile(wheel).namelist())
+    templates = {f"derive/{p.relative_to(ROOT)}" for p in (ROOT / "templates").rglob("*.jinja")}
+    data = {str(p.relative_to(ROOT)) for p in (ROOT / "derive").rglob("*.[tc]*") if p.is_file()}
+    wanted = templates | {name for name in data if name.endswith((".toml", ".c"))}
+    assert len(templates) > 0
+    assert wanted - held == set()
+
+
+def test_every_dependency_has_a_lower_bound() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    every = [*project["dependencies"]]
+    for extra in project["optional-dependencies"].values():
+        every += extra
+    assert [name for name in every if not re.fullmatch(r"[\w-]+>=[\d.]+", name)] == []
