@@ -14,8 +14,7 @@ from sympy import Matrix, Symbol, eye, zeros
 from derive.attitude import centre_acceleration, coordinate_rates, quaternion_rate
 from derive.draft import Arrangement, Draft, symmetric
 from derive.inverse import inverse
-from derive.lecture import LECTURE
-from derive.specialise import Specialised, balance_step, stated, wheel_axes
+from derive.specialise import Specialised, balance_step, law, stated, wheel_axes
 from derive.truth import Truth
 from derive.vectors import COMPONENTS, Expression, components
 
@@ -76,32 +75,30 @@ def _momentum_step(draft: Draft) -> str:
 
 
 def _angular_momentum(draft: Draft) -> dict[str, Any]:
-    return {
-        "angular_momentum": staged(draft, LECTURE[_momentum_step(draft)].right, _bindings(draft))
-    }
+    return {"angular_momentum": staged(draft, law(_momentum_step(draft)), _bindings(draft))}
 
 
 def _angular_momentum_rate(draft: Draft) -> dict[str, Any]:
     bindings = _bindings(draft)
-    momentum = staged(draft, LECTURE[_momentum_step(draft)].right, bindings)
-    own = staged(draft, LECTURE["rate_in_axes"].right, bindings) + bindings["h_dot"]
+    momentum = staged(draft, law(_momentum_step(draft)), bindings)
+    own = staged(draft, law("rate_in_axes"), bindings) + bindings["h_dot"]
     own = draft.column("let", "l_dot", own)
     turned = dict(bindings) | {"l_dot": own, "l": draft.column("let", "l", momentum)}
     return {
         "rate_in_axes": own,
-        "rate_absolute": staged(draft, LECTURE["transport_theorem"].right, turned),
+        "rate_absolute": staged(draft, law("transport_theorem"), turned),
     }
 
 
 def _moment(draft: Draft) -> dict[str, Any]:
     step = balance_step(draft.known.scene)
-    return {"moment": staged(draft, LECTURE[step].right, _bindings(draft))}
+    return {"moment": staged(draft, law(step), _bindings(draft))}
 
 
 def _kinetic_energy(draft: Draft) -> dict[str, Any]:
     known, bindings = draft.known, _bindings(draft)
     step = "koenig" if "velocity" in known.words else "kinetic_energy_about_point"
-    energy = staged(draft, LECTURE[step].right, bindings)
+    energy = staged(draft, law(step), bindings)
     speeds = known.words.column("wheel_speeds") if known.scene.wheels else []
     for wheel, axis, s in zip(
         known.scene.wheels, wheel_axes(known.scene, known.words), speeds, strict=True
@@ -135,7 +132,7 @@ def _forward(draft: Draft, bindings: dict[str, Any]) -> dict[str, Any]:
     """Return omega_dot (and wheel accelerations) from the moment: solve the balance for them."""
     known = draft.known
     at_rest = bindings | {"omega_dot": zeros(3, 1), "h_dot": zeros(3, 1)}
-    rest = staged(draft, LECTURE[balance_step(known.scene)].right, at_rest)
+    rest = staged(draft, law(balance_step(known.scene)), at_rest)
     torques, tensor = zeros(3, 1), bindings["I"]
     axes = wheel_axes(known.scene, known.words)
     axial = [known.words.expression(wheel.axial) for wheel in known.scene.wheels]

@@ -99,7 +99,8 @@ def _operation(op: Op, text: Text) -> str:
 
 
 def _outputs(program: Program, text: Text) -> list[dict[str, object]]:
-    outputs, place = [], 0
+    outputs: list[dict[str, object]] = []
+    place = 0
     for q in program.outputs:
         values = [text(r) for r in program.results[place : place + len(q.components)]]
         pattern = (program.sparsity or {}).get(q.name)

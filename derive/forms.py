@@ -95,14 +95,13 @@ def best_with_jacobian(
     forms = value_forms(graph, block)
     jacobians = _cheapest(graph, [jacobian(graph, form, leaves) for form in forms])
     forms = sorted(forms, key=lambda form: cost(graph, form))[:FINALISTS]
-    choices: list[tuple[tuple[int, int], list[Value], list[list[Value]]]] = []
+    choices: list[tuple[tuple[int, int], tuple[Value, ...], list[list[Value]]]] = []
     for rows in jacobians:
         homogeneous = by_euler(graph, block, rows)
-        for values in [*forms, *([homogeneous] if homogeneous else [])]:
-            total = cost(graph, [*shared, *values, *_flat(rows)])
-            choices.append((total, list(values), rows))
-    _, values, rows = min(choices, key=lambda choice: choice[0])
-    return values, rows
+        either = [*forms, *([homogeneous] if homogeneous else [])]
+        choices += [(cost(graph, [*shared, *form, *_flat(rows)]), form, rows) for form in either]
+    _, best, rows = min(choices, key=lambda choice: choice[0])
+    return list(best), rows
 
 
 def _cheapest(graph: Graph, jacobians: list[list[list[Value]]]) -> list[list[list[Value]]]:

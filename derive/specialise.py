@@ -9,7 +9,7 @@ from sympy import Matrix, zeros
 from derive.lecture import LECTURE
 from derive.motion import Motion, motion, reduced, rotation
 from derive.scene import Scene, SceneError
-from derive.vectors import components
+from derive.vectors import Expression, components
 from derive.vocabulary import Vocabulary, vocabulary
 
 
@@ -51,7 +51,15 @@ def specialise(scene: Scene) -> Specialised:
 
 def stated(step: str, bindings: Mapping[str, Any]) -> Any:
     """Return the right side of a lecture step in the components that ``bindings`` give."""
-    return components(LECTURE[step].right, bindings)
+    return components(law(step), bindings)
+
+
+def law(step: str) -> Expression:
+    """Return the right side of a lecture step that makes one claim."""
+    right = LECTURE[step].right
+    if isinstance(right, tuple):
+        raise TypeError(f"lecture step '{step}' makes {len(right)} claims, not one")
+    return right
 
 
 def moment(scene: Scene, words: Vocabulary) -> Matrix:

@@ -71,8 +71,10 @@ def in_pairs(program: Program, constants: set[str]) -> Program:
     used = operands_of(program.ops, program.results) & constants
     ordered = [c for q in program.inputs for c in q.components if c in used]
     prefix = free_prefix("w", operands_of(program.ops, program.results))
-    whole: dict[Operand, str] = {c: f"{prefix}{place}" for place, c in enumerate(ordered)}
-    joined = tuple(Op(name, "add", (str(c), f"{c}_low")) for c, name in whole.items())
+    whole: dict[Operand, Operand] = {c: f"{prefix}{place}" for place, c in enumerate(ordered)}
+    joined = tuple(
+        Op(f"{prefix}{place}", "add", (c, f"{c}_low")) for place, c in enumerate(ordered)
+    )
     ops = tuple(
         Op(op.result, op.operator, tuple(whole.get(o, o) for o in op.operands))
         for op in program.ops
@@ -84,18 +86,15 @@ def in_pairs(program: Program, constants: set[str]) -> Program:
 def with_low_parts(made: Program) -> Program:
     """Return set-up that also gives what rounding each constant left."""
     (constants,) = made.outputs
-    lows = tuple(Op(f"{prefix_}low", "low", (r,)) for prefix_, r in _named_results(made))
-    low_of = {r: op.result for (_, r), op in zip(_named_results(made), lows, strict=True)}
+    computed = {op.result for op in made.ops}
+    rounded = [r for r in dict.fromkeys(made.results) if isinstance(r, str) and r in computed]
+    lows = tuple(Op(f"{r}low", "low", (r,)) for r in rounded)
+    low_of: dict[Operand, str] = {r: op.result for r, op in zip(rounded, lows, strict=True)}
     names = tuple(n for c in constants.components for n in (c, f"{c}_low"))
     zero = Fraction(0)
     results = tuple(x for r in made.results for x in (r, low_of.get(r, zero)))
     both = replace(constants, components=names, shape=(len(names),))
     return replace(made, outputs=(both,), ops=made.ops + lows, results=results)
-
-
-def _named_results(made: Program) -> list[tuple[str, str]]:
-    computed = {op.result for op in made.ops}
-    return [(r, r) for r in dict.fromkeys(made.results) if isinstance(r, str) and r in computed]
 
 
 def setup(

@@ -79,11 +79,12 @@ def _moment(known: Specialised) -> Truth:
 def _kinetic_energy(known: Specialised) -> Truth:
     if known.scene.point.kind == "moving":
         raise SceneError(
-            f"scene '{known.scene.name}': kinetic_energy needs a fixed point or the centre of mass, "
+            f"scene '{known.scene.name}': kinetic_energy needs a fixed point or the mass centre, "
             "not 'moving'"
         )
     step = "koenig" if "velocity" in known.words else "kinetic_energy_about_point"
-    energy, steps = stated(step, known.bindings), (step,)
+    energy: Expr = stated(step, known.bindings)
+    steps: tuple[str, ...] = (step,)
     if known.scene.wheels:
         energy, steps = energy + _wheel_energy(known), (step, "wheel_energy")
     return _explicit(known, "kinetic_energy", "Kinetic energy.", {"kinetic_energy": energy}, steps)
@@ -183,7 +184,8 @@ def _state_rate(known: Specialised) -> Truth:
 
 def _kinematics(known: Specialised) -> list[tuple[str, list[str], Matrix]]:
     """Return name, steps and residual of the rates of position, attitude and velocity."""
-    words, found = known.words, []
+    words = known.words
+    found: list[tuple[str, list[str], Matrix]] = []
     if "position_rate" in words:
         found.append(
             ("position_rate", [], words.column("velocity") - words.column("position_rate"))
