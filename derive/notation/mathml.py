@@ -1,0 +1,166 @@
+"""A layout as presentation MathML: vectors bold italic, tensors bold upright, no script needed.
+
+Bold letters are characters of their own, since browsers no longer agree on the attribute for them.
+"""
+
+from collections.abc import Callable
+from html import escape
+
+from derive.notation.glyph import GREEK, Glyph, glyph
+from derive.notation.layout import Layout
+
+_XML = "http://www.w3.org/1998/Math/MathML"
+_SIGNS = {"x": "×", ".": "·"}
+_UNDER = {"body": "<mi>i</mi>", "others": "<mi>j</mi><mo>≠</mo><mi>i</mi>",
+          "pairs": "<mi>i</mi><mo>&lt;</mo><mi>j</mi>"}  # fmt: skip
+# First characters of the mathematical alphabets: Latin capital and small, Greek capital and small.
+_ALPHABETS = {
+    "scalar": (0x1D434, 0x1D44E, 0x1D6E2, 0x1D6FC),
+    "vector": (0x1D468, 0x1D482, 0x1D71C, 0x1D736),
+    "tensor": (0x1D400, 0x1D41A, 0x1D6A8, 0x1D6C2),
+}
+_PLACES = (("A", "Z"), ("a", "z"), ("Α", "Ω"), ("α", "ω"))
+_PLANCK = "ℎ"  # the italic small h has its place outside the alphabet
+_BOLD_DIGITS = 0x1D7CE
+
+
+def math(inside: str, display: str) -> str:
+    """Return one MathML element, inline or, with display "block", on a line of its own."""
+    block = f' display="{display}"' if display else ""
+    return f'<math xmlns="{_XML}"{block}>{inside}</math>'
+
+
+def styled(text: str, style: str) -> str:
+    """Return letters in the mathematical alphabet of a style; other characters stay.
+
+    >>> styled("ω", "vector"), styled("I", "tensor"), styled("1", "tensor")
+    ('𝝎', '𝐈', '𝟏')
+    """
+    return "".join(_character(c, style) for c in text)
+
+
+def _character(c: str, style: str) -> str:
+    if c == "h" and style == "scalar":
+        return _PLANCK
+    for start, (first, last) in zip(_ALPHABETS[style], _PLACES, strict=True):
+        if first <= c <= last:
+            return chr(start + ord(c) - ord(first))
+    return chr(_BOLD_DIGITS + int(c)) if c.isdigit() and style == "tensor" else c
+
+
+def row(layout: Layout) -> str:
+    """Return ``layout`` as the inside of a MathML element."""
+    if layout.kind not in _FORMS:
+        raise LookupError(f"MathML has no form for the layout '{layout.kind}'")
+    return _FORMS[layout.kind](layout)
+
+
+def _call(layout: Layout) -> str:
+    if layout.text == "sqrt":
+        return f"<msqrt>{row(layout.parts[0])}</msqrt>"
+    return _named(f"<mi>{layout.text}</mi>", layout)
+
+
+def _named(name: str, call: Layout) -> str:
+    inside = "<mo>,</mo>".join(map(row, call.parts))
+    return f"<mrow>{name}<mo>&#8289;</mo>{_argument(call, inside)}</mrow>"
+
+
+def _power(layout: Layout) -> str:
+    """Return a power; that of a sine is written on its name."""
+    base, exponent = layout.parts
+    if base.kind == "call" and base.text != "sqrt":
+        return _named(f"<msup><mi>{base.text}</mi>{row(exponent)}</msup>", base)
+    return f"<msup>{row(base)}{row(exponent)}</msup>"
+
+
+def _total(layout: Layout) -> str:
+    under = _UNDER.get(layout.text, f"<mtext>{escape(layout.text)}</mtext>")
+    sign = f'<munder><mo movablelimits="false">∑</mo><mrow>{under}</mrow></munder>'
+    return f"<mrow>{sign}{_open(layout.parts[0])}</mrow>"
+
+
+def _joined(sign: str) -> Callable[[Layout], str]:
+    return lambda layout: f"<mrow>{f'<mo>{sign}</mo>'.join(map(row, layout.parts))}</mrow>"
+
+
+def _argument(layout: Layout, inside: str) -> str:
+    bare = len(layout.parts) == 1 and layout.parts[0].kind in ("name", "number")
+    return inside if bare else _fenced("(", inside, ")")
+
+
+def _open(part: Layout) -> str:
+    """Return a sum in parentheses, anything else as it is."""
+    return _fenced("(", row(part), ")") if part.kind == "sum" else row(part)
+
+
+def _fenced(left: str, inside: str, right: str) -> str:
+    return f'<mrow><mo stretchy="false">{left}</mo>{inside}<mo stretchy="false">{right}</mo></mrow>'
+
+
+def _sum(layout: Layout) -> str:
+    first, *rest = layout.parts
+    text = row(first)
+    for term in rest:
+        minus = term.kind == "negative"
+        text += f"<mo>{'−' if minus else '+'}</mo>{_open(term.parts[0]) if minus else row(term)}"
+    return f"<mrow>{text}</mrow>"
+
+
+def _name(parts: Glyph, style: str) -> str:
+    base = _accented(parts, _letter(parts.base, style))
+    if parts.seen_from:
+        below = _indices(parts.indices) if parts.indices else "<mrow></mrow>"
+        after = f"{below}<mrow></mrow><mprescripts/><mrow></mrow><mi>{parts.seen_from}</mi>"
+        return f"<mmultiscripts>{base}{after}</mmultiscripts>"
+    return f"<msub>{base}{_indices(parts.indices)}</msub>" if parts.indices else base
+
+
+def _accented(parts: Glyph, base: str) -> str:
+    if parts.prime:
+        base = f"<msup>{base}<mo>′</mo></msup>"
+    if parts.dots:
+        accent = "˙" if parts.dots == 1 else "¨"
+        base = f'<mover accent="true">{base}<mo stretchy="false">{accent}</mo></mover>'
+    return base
+
+
+def _letter(base: str, style: str) -> str:
+    letter = GREEK.get(base, base)
+    if style != "scalar" or base == "dm":
+        letter = styled(letter, style)
+    if letter.isdigit():
+        return f"<mn>{letter}</mn>"
+    return f"<mi>{escape(letter)}</mi>"
+
+
+def _indices(indices: tuple[str, ...]) -> str:
+    items = [_index(index) for index in indices]
+    gap = '<mspace width="0.15em"/>'
+    return items[0] if len(items) == 1 else f"<mrow>{gap.join(items)}</mrow>"
+
+
+def _index(index: str) -> str:
+    if index.isdigit():
+        return f"<mn>{index}</mn>"
+    return f"<mi>{escape(GREEK.get(index, index))}</mi>"
+
+
+# One row a kind of layout.
+_FORMS: dict[str, Callable[[Layout], str]] = {
+    "name": lambda x: _name(glyph(x.text), x.style),
+    "number": lambda x: f"<mn>{x.number}</mn>",
+    "negative": lambda x: f"<mrow><mo>−</mo>{_open(x.parts[0])}</mrow>",
+    "sum": _sum,
+    "product": _joined("&#8290;"),
+    "infix": lambda x: _joined(_SIGNS[x.text])(x),
+    "equal": _joined("="),
+    "fraction": lambda x: f"<mfrac>{row(x.parts[0])}{row(x.parts[1])}</mfrac>",
+    "power": _power,
+    "transposed": lambda x: f'<msup>{row(x.parts[0])}<mi mathvariant="normal">T</mi></msup>',
+    "index": lambda x: f"<msub>{row(x.parts[0])}{_index(x.text)}</msub>",
+    "skew": lambda x: f"<msub>{_fenced('[', row(x.parts[0]), ']')}<mo>×</mo></msub>",
+    "group": lambda x: _fenced("(", row(x.parts[0]), ")"),
+    "call": _call,
+    "total": _total,
+}
