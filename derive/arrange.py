@@ -14,6 +14,7 @@ from sympy import Matrix, Symbol, eye, zeros
 from derive.attitude import centre_acceleration, coordinate_rates, quaternion_rate
 from derive.draft import Arrangement, Draft, symmetric
 from derive.inverse import inverse
+from derive.motion import own_tensor, rotation
 from derive.specialise import Specialised, balance_step, law, stated, wheel_axes
 from derive.truth import Truth
 from derive.vectors import COMPONENTS, Expression, components
@@ -62,8 +63,9 @@ def _varying(known: Specialised) -> set[Symbol]:
 
 
 def _bindings(draft: Draft) -> dict[str, Any]:
-    """Return the lecture's bindings with a varying tensor named component by component."""
+    """Return the lecture's bindings, the rates of free coordinates and a varying tensor named."""
     bindings = dict(draft.known.bindings)
+    bindings |= coordinate_rates(draft, bindings)
     if bindings["I"].free_symbols & _varying(draft.known):
         bindings["I"] = symmetric(draft, "I", bindings["I"])
     bindings["I_dot"] = symmetric(draft, "I_dot", bindings["I_dot"])
@@ -109,16 +111,12 @@ def _kinetic_energy(draft: Draft) -> dict[str, Any]:
 
 
 def _acceleration(draft: Draft) -> dict[str, Any]:
-    bindings = _bindings(draft)
-    rates = coordinate_rates(draft, bindings)
-    rotational = _forward(draft, bindings)
-    return rotational | rates
+    return _forward(draft, _bindings(draft))
 
 
 def _state_rate(draft: Draft) -> dict[str, Any]:
-    bindings = _bindings(draft)
-    found = coordinate_rates(draft, bindings)
-    words = draft.known.words
+    bindings, words = _bindings(draft), draft.known.words
+    found = {name: bindings[name] for name in ("coordinate_rates",) if name in bindings}
     if "position_rate" in words:
         found["position_rate"] = words.column("velocity")
     if "attitude_rate" in words:
@@ -141,9 +139,22 @@ def _forward(draft: Draft, bindings: dict[str, Any]) -> dict[str, Any]:
         torques += a * u
         tensor = tensor - C * a * a.T
     tau = draft.column("let", "tau", bindings["M"] - torques - rest)
-    omega_dot = draft.column("let", "omega_dot", inverse(draft, tensor) * tau)
+    omega_dot = draft.column("let", "omega_dot", _solved(draft, tensor, tau))
     wheels = [u / C - (a.T * omega_dot)[0] for a, C, u in zip(axes, axial, motors, strict=True)]
     return {"omega_dot": omega_dot, "wheel_accelerations": wheels}
+
+
+def _solved(draft: Draft, tensor: Matrix, tau: Matrix) -> Matrix:
+    """Return the vector that ``tensor`` takes to ``tau``.
+
+    A tensor that varies along the axes is constant along the body's own: solve there.
+    """
+    if not draft.known.bindings["I"].free_symbols & _varying(draft.known):
+        return inverse(draft, tensor) * tau
+    R = rotation(draft.known.words, draft.known.scene.body.turned)
+    own = inverse(draft, own_tensor(draft.known.scene, draft.known.words))
+    along_body = draft.column("let", "b", R.T * tau)
+    return R * draft.column("let", "a", own * along_body)
 
 
 _ARRANGED = {

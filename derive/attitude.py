@@ -10,7 +10,7 @@ from derive.scene import Turn
 
 
 def coordinate_rates(draft: Draft, bindings: dict[str, Any]) -> dict[str, Any]:
-    """Return the free coordinates' rates; put what they make of Omega into ``bindings``.
+    """Return the free coordinates' rates, and what they make of Omega and of the tensor's rate.
 
     Seen from the axes after the second of three turns, the third turns about a coordinate axis,
     the second too, and the first has no part along the second: three equations in a row.
@@ -30,15 +30,14 @@ def coordinate_rates(draft: Draft, bindings: dict[str, Any]) -> dict[str, Any]:
         second.coordinate: omega[k2],
         third.coordinate: omega[k3] - carried,
     }
-    if len(scene.axes.turned) == 2:
-        Omega = zeros(3, 1)
-        Omega[r], Omega[k2], Omega[k3] = omega[r], omega[k2], carried
-        bindings["Omega"] = Omega
     named = words["coordinate_rates"].components
     found = [rates[name.removesuffix("_dot")] for name in named]
     unknowns = dict(zip(words.column("coordinate_rates"), found, strict=True))
-    bindings |= {name: bindings[name].subs(unknowns) for name in ("I_dot", "Omega")}
-    return {"coordinate_rates": found}
+    seen = {name: bindings[name].subs(unknowns) for name in ("I_dot", "Omega")}
+    if len(scene.axes.turned) == 2:
+        seen["Omega"] = zeros(3, 1)
+        seen["Omega"][r], seen["Omega"][k2], seen["Omega"][k3] = omega[r], omega[k2], carried
+    return seen | {"coordinate_rates": found}
 
 
 def _seen_after_second(draft: Draft, turns: tuple[Turn, ...], axes_after: int) -> Matrix:

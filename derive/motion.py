@@ -154,8 +154,13 @@ def _axes_turning(scene: Scene, words: Vocabulary, rates: dict[str, Expr]) -> Ma
 
 def tensor(scene: Scene, words: Vocabulary) -> Matrix:
     """Return the inertia tensor along the axes, (3, 3) kg m^2, about the scene's point."""
-    xx, yy, zz, xy, xz, yz = (words.expression(f) for f in scene.body.inertia)
-    own = Matrix([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]])
+    own = own_tensor(scene, words)
     R = rotation(words, scene.body.turned)
     turned = (R * own * R.T).applyfunc(reduced)
     return own if turned == own.applyfunc(reduced) else turned
+
+
+def own_tensor(scene: Scene, words: Vocabulary) -> Matrix:
+    """Return the inertia tensor along the body's own axes, (3, 3) kg m^2, about the point."""
+    xx, yy, zz, xy, xz, yz = (words.expression(f) for f in scene.body.inertia)
+    return Matrix([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]])

@@ -40,9 +40,12 @@ def _explicit(
     words = known.words
     unknowns = [s for output in parts for s in words.column(output)]
     values = [v for value in parts.values() for v in Matrix([value])]
-    residuals = tuple(v - s for s, v in zip(unknowns, values, strict=True))
+    residuals = [v - s for s, v in zip(unknowns, values, strict=True)]
     outputs = tuple(words[output] for output in parts)
-    return Truth(name, says, outputs, tuple(unknowns), residuals, steps)
+    rates, closure, more = _closure(known)
+    if set(rates) & {s for r in residuals for s in r.free_symbols}:
+        unknowns, residuals, steps = unknowns + rates, residuals + closure, (*steps, *more)
+    return Truth(name, says, outputs, tuple(unknowns), tuple(residuals), steps)
 
 
 def _angular_momentum(known: Specialised) -> Truth:

@@ -10,7 +10,9 @@ from derive.library import Library, library
 from derive.program import run
 from derive.scene import load, parse_scene
 
-PARAMETERS = [Fraction(n, 64) for n in (90, 110, 125, 7, -5, 3)]  # I_xx .. I_yz, exact in both types
+PARAMETERS = [
+    Fraction(n, 64) for n in (90, 110, 125, 7, -5, 3)
+]  # I_xx .. I_yz, exact in both types
 OMEGA = (1.6123456789012345, -2.6789012345678901, 4.3456789012345678)
 # One rounding of the result, and what the pairs leave: far below a thousandth of it.
 ROUNDED_ONCE = 0.501
@@ -23,7 +25,7 @@ def made(form: str) -> Library:
 
 
 def exact_constants(lib: Library) -> list[Fraction]:
-    return run(lib.setup, EXACT | {"low": lambda a: Fraction(0)}, PARAMETERS)
+    return run(lib.setup, EXACT | {"low": lambda a: a * 0}, PARAMETERS)
 
 
 def nearly_cancelling(lib: Library, dtype: type) -> list[Fraction]:

@@ -8,7 +8,7 @@ from derive.library import Library, library
 from derive.program import Program
 from derive.scene import catalogue, load
 
-# Flops (+ - * /), divisions, calls of sin and cos: the best forms written by hand, ANCHORS section 1.
+# Flops (+ - * /), divisions, calls of sin and cos of the best forms written by hand.
 TARGETS = {
     ("free_body", "acceleration"): (40, 0, 0),
     ("free_body_principal", "acceleration"): (12, 0, 0),
