@@ -22,6 +22,8 @@ __all__ = [
     "equation_text",
     "expression_text",
     "mathml",
+    "name_mathml",
+    "sympy_equation_mathml",
     "sympy_mathml",
     "sympy_text",
 ]
@@ -79,6 +81,17 @@ def sympy_text(expression: Expr, names: Mapping[Symbol, str]) -> str:
 def sympy_mathml(expression: Expr, names: Mapping[Symbol, str]) -> str:
     """Return a SymPy expression as inline MathML, its symbols called as ``names`` says."""
     return math(row(symbolic_layout(expression, names)), "")
+
+
+def sympy_equation_mathml(left: Expr, right: Expr, names: Mapping[Symbol, str]) -> str:
+    """Return ``left = right`` in SymPy expressions as MathML on a line of its own."""
+    sides = symbolic_layout(left, names), symbolic_layout(right, names)
+    return math(row(Layout("equal", sides)), "block")
+
+
+def name_mathml(name: str, style: str) -> str:
+    """Return the name of a quantity as inline MathML; style is scalar, vector or tensor."""
+    return math(row(Layout("name", text=name, style=style)), "")
 
 
 def _layout(expression: Any) -> Layout:

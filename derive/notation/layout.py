@@ -86,7 +86,7 @@ def _squared(factors: list[Layout]) -> list[Layout]:
 
 
 def applied(tensor: Layout, to: Layout) -> Layout:
-    """Return a tensor before what it acts on; a multiple of the identity keeps its own parentheses."""
+    """Return a tensor before what it acts on; a multiple of the identity is grouped."""
     multiple = tensor.kind == "product" and tensor.parts[-1] == IDENTITY
     return multiplied([group(tensor) if multiple else tensor, to])
 

@@ -11,8 +11,13 @@ from derive.notation.layout import Layout
 
 _XML = "http://www.w3.org/1998/Math/MathML"
 _SIGNS = {"x": "×", ".": "·"}
-_UNDER = {"body": "<mi>i</mi>", "others": "<mi>j</mi><mo>≠</mo><mi>i</mi>",
-          "pairs": "<mi>i</mi><mo>&lt;</mo><mi>j</mi>"}  # fmt: skip
+_UNDER = {
+    "body": "<mi>i</mi>",
+    "others": "<mi>j</mi><mo>≠</mo><mi>i</mi>",
+    "pairs": "<mi>i</mi><mo>&lt;</mo><mi>j</mi>",
+    "carrier": "<mi>i</mi><mo>∈</mo><mtext>carrier</mtext>",
+    "wheel": "<mi>i</mi><mo>∈</mo><mtext>wheel</mtext>",
+}
 # First characters of the mathematical alphabets: Latin capital and small, Greek capital and small.
 _ALPHABETS = {
     "scalar": (0x1D434, 0x1D44E, 0x1D6E2, 0x1D6FC),

@@ -43,8 +43,17 @@ def _sum(expression: Add, names: Names) -> Layout:
 
 def _term_key(term: Expr, names: Names) -> tuple[int, list[str], str]:
     factors = [f for f in Mul.make_args(term) if not isinstance(f, Rational)]
-    degree = sum(abs(int(f.exp)) if isinstance(f, Pow) and f.exp.is_Integer else 1 for f in factors)
-    return degree, sorted(map(_first, factors)), plain(symbolic_layout(term, names))
+    text = plain(symbolic_layout(term, names))
+    return sum(map(_degree, factors)), sorted(map(_first, factors)), text
+
+
+def _degree(factor: Expr) -> int:
+    """Return how many symbols and functions a factor multiplies; of a sum, the most of any term."""
+    if isinstance(factor, Add):
+        return max(sum(map(_degree, Mul.make_args(term))) for term in factor.args)
+    if isinstance(factor, Pow) and factor.exp.is_Integer:
+        return _degree(factor.base) * abs(int(factor.exp))
+    return 0 if isinstance(factor, Rational) else 1
 
 
 def _first(factor: Expr) -> str:

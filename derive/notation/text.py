@@ -2,7 +2,7 @@
 
 from derive.notation.layout import Layout, group, is_number, operand
 
-_TOTALS = {"body": "sum", "pairs": "sum_pairs", "others": "sum_others"}
+_TOTALS = {"body": "sum"}  # every other sum says what it runs over
 
 
 def plain(layout: Layout) -> str:
