@@ -17,7 +17,7 @@ from derive.inverse import inverse
 from derive.motion import own_tensor, rotation
 from derive.specialise import Specialised, balance_step, law, stated, wheel_axes
 from derive.truth import Truth
-from derive.vectors import COMPONENTS, Expression, components
+from derive.vectors import COMPONENTS, Expression, components, cross, vector
 
 
 def arrange(known: Specialised, fact: Truth) -> Arrangement:
@@ -81,15 +81,12 @@ def _angular_momentum(draft: Draft) -> dict[str, Any]:
 
 
 def _angular_momentum_rate(draft: Draft) -> dict[str, Any]:
+    """Return both rates; that of the axes' turning comes from l = I omega (+ h) as it stands."""
     bindings = _bindings(draft)
-    momentum = staged(draft, law(_momentum_step(draft)), bindings)
     own = staged(draft, law("rate_in_axes"), bindings) + bindings["h_dot"]
     own = draft.column("let", "l_dot", own)
-    turned = dict(bindings) | {"l_dot": own, "l": draft.column("let", "l", momentum)}
-    return {
-        "rate_in_axes": own,
-        "rate_absolute": staged(draft, law("transport_theorem"), turned),
-    }
+    carried = cross(vector("Omega"), law(_momentum_step(draft)))
+    return {"rate_in_axes": own, "rate_absolute": own + staged(draft, carried, bindings)}
 
 
 def _moment(draft: Draft) -> dict[str, Any]:

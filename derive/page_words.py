@@ -28,8 +28,8 @@ def given(scene: Scene) -> list[str]:
 def _wheels(scene: Scene) -> str:
     each = [f"wheel {w.name} along {_column(w.axis)}" for w in scene.wheels]
     return (
-        f"It carries {_listed(each)}; each wheel is balanced and axisymmetric, and the body's tensor "
-        "is that of the whole with the wheels locked."
+        f"It carries {_listed(each)}; each wheel is balanced and axisymmetric, and the tensor of "
+        "the body is that of the whole with the wheels locked."
     )
 
 

@@ -17,6 +17,8 @@ from sympy.polys.polytools import reduced
 
 _FEW = 15  # symbols up to which a nonlinear Groebner basis takes a fraction of a second
 
+_FEWER = 8  # the same where the rates of the relations join them
+
 
 class Contradiction(ValueError):
     """The relations exclude one another, so that anything would follow from them."""
@@ -42,7 +44,7 @@ def remainders(
     left = tuple(_remainder(each, basis) for each in wanted)
     if not any(left) or not any(moving):
         return left
-    if len({s for r in (*given, *moving, *circles) for s in r.free_symbols}) <= _FEW:
+    if len({s for r in (*given, *moving, *circles) for s in r.free_symbols}) <= _FEWER:
         basis = _basis(tuple(sorted({g for g in (*basis, *moving) if g != 0}, key=str)))
         return tuple(_remainder(each, basis) for each in left)
     return tuple(_remainder(each, (*basis, *filter(None, moving))) for each in left)

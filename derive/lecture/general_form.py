@@ -78,8 +78,14 @@ GENERAL = (
 CONSTANT_TENSOR = (
     Step("relative_turning", "Let w be how the body turns in the axes.", "define", w, relative),
     Step(
+        "third_direction",
+        "Take two directions, and the one that completes them to a right-handed triad.",
+        "define", e_3, cross(e_1, e_2),
+    ),
+    Step(
         "principal_directions",
-        "Every tensor has three perpendicular principal directions; principal.py computes them.",
+        "Let them be principal directions of the body. Every tensor has three that are perpendicular; "
+        "principal.py computes them.",
         "assume", I, I_1 * outer(e_1, e_1) + I_2 * outer(e_2, e_2) + I_3 * outer(e_3, e_3),
     ),
     Step(
@@ -87,7 +93,6 @@ CONSTANT_TENSOR = (
         "The first two are perpendicular and of unit length.",
         "assume", (dot(e_1, e_1), dot(e_2, e_2), dot(e_1, e_2)), (number(1), number(1), zero()),
     ),
-    Step("third_direction", "The third completes them.", "assume", e_3, cross(e_1, e_2)),
     Step(
         "inertia_rate_is_three_products",
         "Along the principal directions the rate of the tensor is three products, each of a difference "

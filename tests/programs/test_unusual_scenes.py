@@ -75,7 +75,8 @@ SCENES = {
         ANGLES
         + '[axes]\nturned = ["z psi", "y theta", "x phi"]\nfixed_in = "body"\n'
         + GENERAL
-        + 'mass = "m"\n[position]\nposition = { range = [-9, 9] }\nvelocity = { range = [-5, 5] }\n',
+        + 'mass = "m"\n[position]\nposition = { range = [-9, 9] }\n'
+        + "velocity = { range = [-5, 5] }\n",
     ),
     "prescribed turns": (
         '"moment", "moment_jacobian", "kinetic_energy", "angular_momentum_rate"',
