@@ -15,7 +15,6 @@ from derive.page_equation import Passage, letter, passages, taken_names
 from derive.page_pattern import pattern
 from derive.page_words import given
 from derive.program import Measurement, Program, Quantity
-from derive.step import Step
 
 _PRECISIONS = ("f32", "f64")
 
