@@ -1,0 +1,243 @@
+"""Emitted C beside its program, beside CasADi, beside the reference, and over its own inputs.
+
+Bits are compared where both sides run the same operations: sine and cosine are taken from the
+library that the C is linked with, all other operations are IEEE's.
+"""
+
+import ctypes
+import struct
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi
+import numpy as np
+
+from derive.arithmetic import Table, working
+from derive.emitted import Emitted, inputs
+from derive.library import Library
+from derive.measure import Errors, errors, measurement, references, replayed
+from derive.program import Program
+from derive.sample import Sample
+from derive.verdict import JUDGED, Outcome, Verdict
+
+MEDIAN_BOUND, LARGEST_BOUND = 2.0, 16.0
+FACTOR = 3.0  # more samples than the printed figure's may find an error this much larger
+TRANSCENDENTAL = {"sin", "cos"}
+
+
+def same_bits(a: Sequence[float], b: Sequence[float]) -> bool:
+    """Tell whether two rows of numbers are the same to the last bit, signs of zeros included.
+
+    >>> same_bits([0.0], [-0.0])
+    False
+    """
+    return struct.pack(f"{len(a)}d", *a) == struct.pack(f"{len(b)}d", *b)
+
+
+def linked_arithmetic(emitted: Emitted) -> Table:
+    """Return the file's arithmetic with the sine and cosine that the C is linked with."""
+    loaded, dtype = ctypes.CDLL(str(emitted.shared)), emitted.precision.dtype
+    return working(dtype) | {
+        name: _linked(loaded, emitted.precision.functions[name], dtype) for name in TRANSCENDENTAL
+    }
+
+
+def _linked(loaded: ctypes.CDLL, symbol: str, dtype: type) -> Callable[[Any], Any]:
+    def each(x: Any) -> Any:
+        function = loaded[symbol]
+        function.restype = ctypes.c_double if dtype is np.float64 else ctypes.c_float
+        function.argtypes = [function.restype]
+        return np.array([function(float(v)) for v in np.ravel(x)], dtype).reshape(np.shape(x))
+
+    return each
+
+
+def replay(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
+    """Yield whether the C of every function gives the bits of its program."""
+    uses_libm = any(
+        op.operator in TRANSCENDENTAL for f in emitted.library.functions for op in f.ops
+    )
+    table = linked_arithmetic(emitted) if uses_libm else working(emitted.precision.dtype)
+    expected = replayed(emitted.library, each, emitted.precision, table)
+    for program in emitted.library.functions:
+        reason = _not_replayed(emitted.library, program)
+        if reason:
+            yield _verdict(emitted, program, "bits of the program", "skipped", reason)
+            continue
+        rows = np.array([np.broadcast_to(r, len(each)) for r in expected[program.name]]).T
+        worst = [
+            s.number
+            for s, row in zip(each, rows.tolist(), strict=True)
+            if not same_bits(row, emitted.results(program, s))
+        ]
+        says = f"{len(each)} samples" if not worst else f"{len(worst)} differ, first {worst[0]}"
+        yield _verdict(emitted, program, "bits of the program", JUDGED[not worst], says)
+
+
+def _not_replayed(library: Library, program: Program) -> str:
+    """Return why a program's bits cannot be told: sines in pairs of floats are libm's own."""
+    in_pairs = [library.setup] + ([program] if program.arithmetic == "pairs" else [])
+    if any(op.operator in TRANSCENDENTAL for p in in_pairs for op in p.ops):
+        return "sine or cosine in pairs of floats differ with the platform"
+    return ""
+
+
+def accuracy(
+    emitted: Emitted, each: Sequence[Sample], printed: Mapping[str, Any]
+) -> Iterator[Verdict]:
+    """Yield whether the C is as close to the reference as promised, output by output."""
+    for program, true in references(emitted.library, each):
+        rows = [emitted.results(program, s) for s in each]
+        columns = [np.array(column) for column in zip(*rows, strict=True)]
+        for found in errors(program, columns, true, emitted.precision):
+            yield _accurate(emitted, program, found, each, printed.get(program.name, {}))
+
+
+def _accurate(
+    emitted: Emitted,
+    program: Program,
+    found: Errors,
+    each: Sequence[Sample],
+    printed: Mapping[str, Any],
+) -> Verdict:
+    size = measurement(found, emitted.precision, each)
+    kind = next(s.kind for s in each if s.number == size.sample)
+    says = (
+        f"{found.output}: median {size.median:.2g} u, largest {size.worst:.2g} u "
+        f"at sample {size.sample} ({kind}) of {len(each)}"
+    )
+    allowed = min(LARGEST_BOUND, FACTOR * max(1.0, _figure(printed, emitted, found.output)))
+    holds = size.median <= MEDIAN_BOUND and size.worst <= allowed
+    says += "" if holds else f"; allowed {MEDIAN_BOUND:.2g} u and {allowed:.2g} u"
+    return _verdict(emitted, program, "error", JUDGED[holds], says)
+
+
+def _figure(printed: Mapping[str, Any], emitted: Emitted, output: str) -> float:
+    """Return the largest error that the scene's JSON states, or the bound if it states none."""
+    stated = printed.get(emitted.precision.name, {}).get(output)
+    return float(stated["largest_ulp"]) if stated else LARGEST_BOUND
+
+
+def casadi_bits(emitted: Emitted, module: Any, each: Sequence[Sample]) -> Iterator[Verdict]:
+    """Yield whether CasADi's functions give the bits of double C, from parameters on."""
+    library, makes = emitted.library, None
+    if library.constants:
+        makes = module.setup()
+        differ = [s.number for s in each if not _same_setup(emitted, module, makes, s)]
+        yield _verdict(
+            emitted, library.setup, "CasADi's bits", JUDGED[not differ], _differing(differ, each)
+        )
+    for program in library.functions:
+        built = _built(module, program)
+        differ = [s.number for s in each if not _same(emitted, built, s)]
+        yield _verdict(
+            emitted, program, "CasADi's bits", JUDGED[not differ], _differing(differ, each)
+        )
+        yield from _same_patterns(emitted, program, built.whole)
+
+
+@dataclass(frozen=True)
+class _Built:
+    """A function of a CasADi module from parameters, and from constants if it uses any."""
+
+    program: Program
+    parameters: tuple[str, ...]
+    whole: Any
+    hot: Any
+
+
+def _built(module: Any, program: Program) -> _Built:
+    whole = getattr(module, program.name)()
+    if not any(q.name == "constants" for q in program.inputs):
+        return _Built(program, (), whole, whole)
+    hot = getattr(module, f"{program.name}_hot")()
+    return _Built(program, tuple(module.PARAMETERS), whole, hot)
+
+
+def _differing(differ: Sequence[int], each: Sequence[Sample]) -> str:
+    return f"{len(differ)} differ, first {differ[0]}" if differ else f"{len(each)} samples"
+
+
+def _numbers(function: Any, given: Sequence[Any]) -> list[float]:
+    return [x for output in function.call([casadi.DM(v) for v in given]) for x in output.nonzeros()]
+
+
+def _same_setup(emitted: Emitted, module: Any, makes: Any, sample: Sample) -> bool:
+    given = [sample.values[name] for name in module.PARAMETERS]
+    return same_bits(_numbers(makes, [given]), emitted.constants(sample)["constants"])
+
+
+def _same(emitted: Emitted, built: _Built, sample: Sample) -> bool:
+    given = inputs(built.program, sample, emitted.constants(sample))
+    ours = emitted.results(built.program, sample)
+    rest = [v for name, v in given.items() if name != "constants"]
+    first = [[sample.values[name] for name in built.parameters]] if built.parameters else []
+    return same_bits(_numbers(built.hot, list(given.values())), ours) and same_bits(
+        _numbers(built.whole, [*first, *rest]), ours
+    )
+
+
+def _same_patterns(emitted: Emitted, program: Program, function: Any) -> Iterator[Verdict]:
+    for name, pattern in (program.sparsity or {}).items():
+        own = function.sparsity_out(name)
+        shape = (len(pattern.rows), len(pattern.columns))
+        same = (own.shape, list(own.colind()), list(own.row())) == (
+            shape,
+            list(pattern.colind),
+            list(pattern.row),
+        )
+        says = f"{name}: {own.nnz()} nonzeros of {shape[0]} x {shape[1]}"
+        yield _verdict(emitted, program, "sparsity", JUDGED[same], says)
+
+
+def aliasing(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
+    """Yield whether outputs written over inputs are the outputs written elsewhere."""
+    for program in emitted.library.functions:
+        function = emitted.functions[program.name]
+        given = [inputs(program, s, emitted.constants(s)) for s in each]
+        pairs = [
+            (o.name, i.name)
+            for o in function.arguments
+            for i in function.arguments
+            if o.output and i.kind == "array" and not i.output
+        ]
+        bad = [
+            f"{o} over {i}"
+            for o, i in pairs
+            if any(not _same_over(function, values, o, i) for values in given)
+        ]
+        says = f"{len(pairs)} pairs" if not bad else f"{', '.join(bad)} changes the result"
+        yield _verdict(emitted, program, "outputs over inputs", JUDGED[not bad], says)
+
+
+def _same_over(function: Any, values: Mapping[str, Any], output: str, over: str) -> bool:
+    apart, joint = function(values), function.over(values, output, over)
+    return all(same_bits(apart[name], joint[name]) for name in apart)
+
+
+def dense(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
+    """Yield whether the whole matrices hold the nonzeros in their places, and zeros elsewhere."""
+    for program in emitted.library.functions:
+        for name, pattern in (program.sparsity or {}).items():
+            bad = [s.number for s in each if not _same_matrix(emitted, program, name, s)]
+            says = _differing(bad, each) + f", {len(pattern.rows)} x {len(pattern.columns)}"
+            yield _verdict(emitted, program, "whole matrix", JUDGED[not bad], says)
+
+
+def _same_matrix(emitted: Emitted, program: Program, name: str, sample: Sample) -> bool:
+    given = inputs(program, sample, emitted.constants(sample))
+    sparse = emitted.functions[program.name](given)[name]
+    whole = emitted.functions[f"{program.name}_dense"](given)[name]
+    pattern = (program.sparsity or {})[name]
+    expected = [0.0] * len(whole)
+    for (row, column), x in zip(pattern.places(), sparse, strict=True):
+        expected[column * len(pattern.rows) + row] = x
+    return same_bits(expected, whole)
+
+
+def _verdict(
+    emitted: Emitted, program: Program, check: str, outcome: Outcome, says: str
+) -> Verdict:
+    scene = emitted.library.known.scene.name
+    return Verdict(scene, program.name, emitted.precision.name, check, outcome, says)

@@ -1,0 +1,99 @@
+"""Everything that is checked of a scene's emitted files, as rows of evidence.
+
+C is compiled with warnings as errors, loaded, and compared with its programs, with CasADi, with
+the reference, and with laws of mechanics. Nothing is left out silently: a check that a scene
+cannot take is a row that says why.
+"""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from derive.agreement import accuracy, aliasing, casadi_bits, dense, replay
+from derive.compiler import Compiler, CompilerError, compiler
+from derive.emitted import Emitted, Files, casadi_module, files, is_double, loaded
+from derive.invariants import power_balance, turned_axes
+from derive.library import Library, library
+from derive.prove import ProofError, prove
+from derive.sample import Sample, samples
+from derive.scene import load
+from derive.verdict import Verdict
+
+ORDINARY, CORNERS, FEW = 300, 6, 8
+
+
+def check(sources: Sequence[str], folder: Path) -> Iterator[Verdict]:
+    """Yield the verdicts on the emitted files of scenes, as they lie below ``folder`` or are made.
+
+    Raises CompilerError if there is no C compiler.
+    """
+    with_ = compiler()
+    for source in sources:
+        made = library(load(source))
+        with TemporaryDirectory(prefix="derive-") as workshop:
+            yield from check_library(made, files(made, folder), Path(workshop), with_, ORDINARY)
+
+
+def check_library(
+    made: Library, found: Files, workshop: Path, with_: Compiler, ordinary: int
+) -> Iterator[Verdict]:
+    """Yield the verdicts on one scene's files, at so many ordinary samples and the corners."""
+    yield proof(made)
+    emitted = loaded(made, found, workshop, with_)
+    try:
+        for one in emitted:
+            says = f"{with_.name}, {found.origin}"
+            yield _on_files(one, "compiles without warnings", says)
+            yield from _checks(one, found, workshop, ordinary)
+    except CompilerError as error:
+        name = made.known.scene.name
+        yield Verdict(name, "all", "", "compiles without warnings", "FAILS", str(error))
+
+
+def proof(made: Library) -> Verdict:
+    """Return whether the programs satisfy the lecture's equations exactly."""
+    name = made.known.scene.name
+    try:
+        prove(made)
+    except ProofError as error:
+        return Verdict(name, "all", "exact", "satisfies the lecture", "FAILS", str(error))
+    says = f"{len(made.functions)} functions, at random exact points"
+    return Verdict(name, "all", "exact", "satisfies the lecture", "holds", says)
+
+
+def _on_files(one: Emitted, check_: str, says: str) -> Verdict:
+    scene = one.library.known.scene.name
+    return Verdict(scene, "all", one.precision.name, check_, "holds", says)
+
+
+def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterator[Verdict]:
+    drawn = samples(one.library.known, one.precision, ordinary, CORNERS)
+    each, few = drawn.each, spread(drawn.each)
+    printed = {f["name"]: f.get("error", {}) for f in found.manifest["functions"]}
+    yield from accuracy(one, each, {n: e for n, e in printed.items() if isinstance(e, dict)})
+    yield from replay(one, each)
+    yield from dense(one, few)
+    yield from aliasing(one, few)
+    if is_double(one):
+        yield from casadi_bits(one, casadi_module(one.library, found, workshop), each)
+        plain = [s for s in each if s.kind == "ordinary"][: FEW * FEW]
+        yield from power_balance(one, plain)
+        yield from turned_axes(one, plain)
+    for kind in drawn.skipped:
+        yield Verdict(
+            one.library.known.scene.name,
+            "all",
+            one.precision.name,
+            f"corner '{kind}'",
+            "skipped",
+            "the scene cannot take it",
+        )
+
+
+def spread(each: Sequence[Sample]) -> tuple[Sample, ...]:
+    """Return the first samples of every kind, a few of them ordinary."""
+    by_kind: dict[str, list[Sample]] = {}
+    for s in each:
+        by_kind.setdefault(s.kind, []).append(s)
+    firsts = [own[: FEW if kind == "ordinary" else 1] for kind, own in by_kind.items()]
+    return tuple(s for own in firsts for s in own)

@@ -1,0 +1,74 @@
+"""A C compiler, found or explained, and shared libraries made by it with the strictest warnings."""
+
+import hashlib
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+WARNINGS = (
+    *("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow"),
+    *("-Wstrict-prototypes", "-Wfloat-equal", "-Werror"),
+)
+FLAGS = ("-std=c99", "-O2", *WARNINGS, "-fPIC", "-shared")
+HOW_TO_GET_ONE = (
+    "no C compiler: set CC, put gcc, cc or clang on the PATH, or `python -m pip install ziglang`"
+)
+
+
+class CompilerError(RuntimeError):
+    """No compiler, or a file that it refuses; the message is the sentence or what it said."""
+
+
+@dataclass(frozen=True)
+class Compiler:
+    """A command that compiles C."""
+
+    command: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """Return the command as one would type it."""
+        return "python -m ziglang cc" if "ziglang" in self.command else " ".join(self.command)
+
+
+def compiler() -> Compiler:
+    """Return the first of $CC, gcc, cc, clang and the ziglang wheel.
+
+    Raises CompilerError with one sentence that says how to get one.
+    """
+    named = shlex.split(os.environ.get("CC", ""))
+    for command in (named, ["gcc"], ["cc"], ["clang"]):
+        if command and shutil.which(command[0]):
+            return Compiler(tuple(command))
+    if find_spec("ziglang") is not None:
+        return Compiler((sys.executable, "-m", "ziglang", "cc"))
+    raise CompilerError(HOW_TO_GET_ONE)
+
+
+def compiled(texts: Mapping[str, str], source: str, folder: Path, with_: Compiler) -> Path:
+    """Return a shared library made of one source among ``texts``, headers beside it.
+
+    The same texts are compiled once a folder. Raises CompilerError with the compiler's complaint;
+    a warning is one.
+    """
+    content = "\0".join((*with_.command, source, *(f"{n}\0{t}" for n, t in sorted(texts.items()))))
+    place = folder / hashlib.sha256(content.encode()).hexdigest()[:16]
+    library = place / f"{Path(source).stem}.so"
+    if not library.exists():
+        place.mkdir(parents=True, exist_ok=True)
+        for name, text in texts.items():
+            (place / name).write_text(text, encoding="utf-8")
+        _run((*with_.command, *FLAGS, source, "-o", library.name, "-lm"), place)
+    return library
+
+
+def _run(command: tuple[str, ...], folder: Path) -> None:
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise CompilerError(f"`{' '.join(command)}` said: {done.stderr.strip()[-2000:]}")

@@ -1,0 +1,103 @@
+"""The emitted files of a scene, compiled and loaded: what a user would run."""
+
+import importlib.util
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from derive.c_text import F64, PRECISIONS, Precision
+from derive.call import Function, functions
+from derive.compiler import Compiler, compiled
+from derive.files import scene_files
+from derive.library import Library
+from derive.measure import figures
+from derive.program import Program
+from derive.sample import Sample
+
+
+@dataclass(frozen=True)
+class Files:
+    """The texts of a scene's files by name, and where they are from."""
+
+    texts: Mapping[str, str]
+    origin: str
+
+    @property
+    def manifest(self) -> Mapping[str, Any]:
+        """Return the scene's JSON."""
+        name = next(name for name in self.texts if name.endswith(".json"))
+        found: Mapping[str, Any] = json.loads(self.texts[name])
+        return found
+
+
+@dataclass(frozen=True)
+class Emitted:
+    """A scene's programs beside the compiled C of one precision that was printed from them."""
+
+    library: Library
+    precision: Precision
+    functions: Mapping[str, Function]
+    shared: Path
+
+    def constants(self, sample: Sample) -> dict[str, list[float]]:
+        """Return what set-up makes of a sample's parameters; nothing where a scene needs none."""
+        setup = self.functions.get("setup")
+        return {} if setup is None else setup(inputs(self.library.setup, sample, {}))
+
+    def results(self, program: Program, sample: Sample) -> list[float]:
+        """Return all components that a function of C gives at a sample."""
+        found = self.functions[program.name](inputs(program, sample, self.constants(sample)))
+        return [x for q in program.outputs for x in found[q.name]]
+
+
+def inputs(
+    program: Program, sample: Sample, constants: Mapping[str, Sequence[float]]
+) -> dict[str, Sequence[float]]:
+    """Return a function's inputs by name at a sample."""
+    return {
+        q.name: constants["constants"]
+        if q.name == "constants"
+        else [sample.values[c] for c in q.components]
+        for q in program.inputs
+    }
+
+
+def files(library: Library, folder: Path) -> Files:
+    """Return a scene's files as they lie below ``folder``, or made in memory if they do not."""
+    name = library.known.scene.name
+    place = folder / name
+    if (place / f"{name}.json").is_file():
+        texts = {p.name: p.read_text(encoding="utf-8") for p in sorted(place.iterdir())}
+        return Files(texts, f"{place}")
+    made = scene_files(library, figures(library))
+    return Files({path.partition("/")[2]: text for path, text in made.items()}, "made in memory")
+
+
+def loaded(library: Library, found: Files, workshop: Path, with_: Compiler) -> Iterator[Emitted]:
+    """Yield the compiled C of each precision; raises CompilerError at a warning."""
+    name = library.known.scene.name
+    for precision in PRECISIONS:
+        own = {n: t for n, t in found.texts.items() if n.endswith((".c", ".h"))}
+        shared = compiled(own, f"{name}_{precision.name}.c", workshop, with_)
+        callable_ = functions(found.manifest, shared, precision.name)
+        yield Emitted(library, precision, callable_, shared)
+
+
+def casadi_module(library: Library, found: Files, workshop: Path) -> Any:
+    """Return the scene's CasADi file as a module."""
+    name = f"{library.known.scene.name}_casadi"
+    path = workshop / f"{name}.py"
+    path.write_text(found.texts[path.name], encoding="utf-8")
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise ImportError(f"{path} is not a Python module")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def is_double(emitted: Emitted) -> bool:
+    """Tell whether this is the precision that CasADi computes in."""
+    return emitted.precision is F64

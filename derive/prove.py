@@ -1,0 +1,183 @@
+"""Proof that programs satisfy the lecture's equations, by exact values at random points.
+
+Two rational functions that agree at random points of a wide grid are equal but for odds below one
+in a million a point; sine and cosine enter as a pair of rationals with unit norm. Where a scene
+holds a root, balls of 4000 bits stand in for fractions.
+"""
+
+import operator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from random import Random
+from typing import Any
+
+from flint import arb, ctx, fmpq, fmpq_mat
+
+from derive.equations import Equations, equations
+from derive.library import JACOBIAN, Library
+from derive.program import Program, run
+from derive.reference import BALLS, Known, solution
+
+POINTS = 2
+SEED = "derive: proof by exact values"
+BITS = 4000
+SPAN = 9973  # numerators up to this, denominators up to its hundredth
+
+Table = dict[str, Callable[..., Any]]
+
+
+class ProofError(ArithmeticError):
+    """A program that does not satisfy its equations; the sentence says where and by how much."""
+
+
+class IrrationalError(ArithmeticError):
+    """A root that no fraction is."""
+
+
+def _root(x: Any) -> Any:
+    top, bottom = fmpq(x).p, fmpq(x).q
+    if x < 0 or top.isqrt() ** 2 != top or bottom.isqrt() ** 2 != bottom:
+        raise IrrationalError
+    return fmpq(top.isqrt(), bottom.isqrt())
+
+
+def _inverse(rows: list[list[Any]]) -> list[list[Any]]:
+    return [list(row) for row in fmpq_mat(rows).inv().tolist()]
+
+
+def _power_of_two(x: Any) -> Any:
+    return fmpq(2) ** (int(abs(x.p)).bit_length() - int(x.q).bit_length())
+
+
+_INFIX: Table = {
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "div": operator.truediv,
+    "neg": operator.neg,
+    "low": lambda x: x * 0,
+}
+
+FRACTIONS: Table = _INFIX | {
+    "number": lambda q: fmpq(q.numerator, q.denominator),
+    "sin": lambda x: 2 * x / (1 + x * x),
+    "cos": lambda x: (1 - x * x) / (1 + x * x),
+    "sqrt": _root,
+    "pi": lambda: fmpq(355, 113),  # any value will do: pi enters nowhere but as a name
+    "power_of_two": _power_of_two,
+    "inverse": _inverse,
+    "size": lambda _: 0.0,
+}
+
+WIDE_BALLS: Table = (
+    _INFIX | dict(BALLS) | {"power_of_two": lambda x: x * 0 + 1, "size": lambda _: 0.0}
+)
+
+
+@dataclass(frozen=True)
+class Point:
+    """Exact values of parameters and inputs, the constants made of them, and their arithmetic."""
+
+    arithmetic: Table
+    values: Mapping[str, Any]
+
+
+def prove(library: Library) -> None:
+    """Raise ProofError unless every program satisfies its truth at exact random points."""
+    asked = {name: equations(library.known, fact) for name, fact in library.truths.items()}
+    for number in range(POINTS):
+        try:
+            _prove_at(library, asked, point(library, number))
+        except IrrationalError:
+            with ctx.workprec(BITS):
+                _prove_at(library, asked, ball_point(library, number))
+
+
+def point(library: Library, number: int) -> Point:
+    """Return random fractions for all parameters and inputs of a library."""
+    return Point(FRACTIONS, dict(_dice(library, number)))
+
+
+def ball_point(library: Library, number: int) -> Point:
+    """Return the same fractions as narrow balls, all above zero."""
+    values = {name: arb(abs(x)) for name, x in _dice(library, number)}
+    return Point(WIDE_BALLS, values)
+
+
+def _dice(library: Library, number: int) -> Iterator[tuple[str, Any]]:
+    words = library.known.words
+    dice = Random(f"{SEED} {number}")  # noqa: S311 - points of a proof, no secret
+    for quantity in (*words.parameters, *words.states, *words.inputs):
+        for name in quantity.components:
+            top = dice.randint(1, SPAN) * dice.choice((-1, 1))
+            yield name, fmpq(top, dice.randint(1, SPAN // 100))
+
+
+def _prove_at(library: Library, asked: Mapping[str, Equations], at: Point) -> None:
+    constants = constants_at(library.setup, at)
+    for name, question in asked.items():
+        functions = [f for f in library.functions if f.name.removesuffix(JACOBIAN) == name]
+        columns = {c for f in functions for s in (f.sparsity or {}).values() for c in s.columns}
+        true = solution(question, at.values, columns, at.arithmetic)
+        for program in functions:
+            fault = first_fault(program, true, constants, at)
+            if fault:
+                raise ProofError(_sentence(library, program, fault))
+
+
+def constants_at(setup: Program, at: Point) -> dict[str, Any]:
+    """Return the constants that set-up makes at a point."""
+    names = [c for q in setup.outputs for c in q.components]
+    return dict(zip(names, _run(setup, at, {}), strict=True))
+
+
+def _run(program: Program, at: Point, constants: Mapping[str, Any]) -> list[Any]:
+    known = {**at.values, **constants} if program.name != "setup" else at.values
+    given = [known[c] for q in program.inputs for c in q.components]
+    return run(program, at.arithmetic, given)
+
+
+def first_fault(
+    program: Program, true: Mapping[str, Known], constants: Mapping[str, Any], at: Point
+) -> tuple[str, Any] | None:
+    """Return the first output component that is not what the equations say, and by how much."""
+    names = [c for q in program.outputs for c in q.components]
+    results = dict(zip(names, _run(program, at, constants), strict=True))
+    for name, should in _expected(program, true).items():
+        gap = results.get(name, 0) - should
+        if not _vanishes(gap):
+            return name, gap
+    return None
+
+
+def _expected(program: Program, true: Mapping[str, Known]) -> dict[str, Any]:
+    """Return what each output should be, and each entry of a Jacobian, in the pattern or not."""
+    patterns = program.sparsity or {}
+    expected = {
+        c: true[c].value for q in program.outputs if q.name not in patterns for c in q.components
+    }
+    for pattern in patterns.values():
+        within = {(pattern.rows[i], pattern.columns[k]) for i, k in pattern.places()}
+        for row in pattern.rows:
+            slopes = true[row].slopes
+            for column in pattern.columns:
+                if column in slopes or (row, column) in within:
+                    slope, _ = slopes.get(column, (0, 0.0))
+                    expected[f"d({row})/d({column})"] = slope
+    return expected
+
+
+def _vanishes(gap: Any) -> bool:
+    if isinstance(gap, arb):
+        return bool(gap.contains(0)) and bool(gap.rad() < arb(2) ** (-BITS // 2))
+    return bool(gap == 0)
+
+
+def _sentence(library: Library, program: Program, fault: tuple[str, Any]) -> str:
+    name, gap = fault
+    base = program.name.removesuffix(JACOBIAN)
+    steps = ", ".join(f"'{step}'" for step in library.truths[base].steps)
+    return (
+        f"scene '{library.known.scene.name}': function '{program.name}' must satisfy lecture step "
+        f"{steps} exactly, but '{name}' is off by {float(gap):.3g} at a random exact point"
+    )
