@@ -115,5 +115,7 @@ def _equation(left: Expr, right: Expr) -> str:
 def _row(letter: Letter) -> Row:
     """Return a symbol's names: a vector is an array of three, a tensor its named quantities."""
     name, shape = letter.name, letter.symbol.shape
-    built = f'inertia("{name}")' if letter.symbol.operator == "inertia" else _BUILT[shape].format(name)
+    built = (
+        f'inertia("{name}")' if letter.symbol.operator == "inertia" else _BUILT[shape].format(name)
+    )
     return Row(letter, Markup(mathml(letter.symbol)), built, _c(letter), _casadi(letter))

@@ -26,6 +26,7 @@ class Argument:
     direction: str
     quantity: Quantity
     symbol: Markup
+    unit: str
     declared: str
     bounds: str
 
@@ -122,8 +123,9 @@ def _argument(library: Library, q: Quantity, direction: str) -> Argument:
         direction,
         q,
         Markup(symbol),  # noqa: S704 (MathML of a checked name)
+        q.unit.replace("^2", "²"),
         q.name + size,
-        f"{float(q.low or 0):g} … {float(q.high or 0):g}" if bounds else "",
+        f"{float(q.low or 0):g} … {float(q.high or 0):g}".replace("-", "−") if bounds else "",
     )
 
 
@@ -137,5 +139,3 @@ def _accuracy_row(output: str, own: Mapping[tuple[str, str], Measurement]) -> Ac
     found = [own.get((output, precision)) for precision in _PRECISIONS]
     cells = [f"{value:.2g}" for m in found if m for value in (m.median, m.worst)]
     return Accuracy(output, tuple(cells), max(m.samples for m in found if m))
-
-
