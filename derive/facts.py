@@ -11,11 +11,11 @@ from sympy import Expr, MatrixBase
 from derive.particles import entries, expanded, reading
 from derive.rate import rate, rate_of, seen_from_axes, seen_from_N
 from derive.relations import remainders
-from derive.tree import collected, rebuilt, renamed, symbols
+from derive.tree import collected, rebuilt, renamed, size, symbols
 from derive.vectors import Expression
 
 Claim = tuple[Expression, Expression]
-_LONG = 6  # terms beyond which an explained leftover is no longer read with pleasure
+_LONG = 60  # symbols and operators beyond which a leftover is no longer read with pleasure
 ANY = "u_any"  # a vector of which nothing is assumed: what is shown for it holds for every vector
 _PAIR = ("P_ij", "P_ji")  # explained only after i and j were exchanged
 
@@ -112,26 +112,37 @@ class Facts:
         return remainders(differences, self.relations(), self.rates())
 
     def leftover(self, left: Expression, right: Expression) -> Expression:
-        """Return left - right for people: explained as far as it stays short."""
-        short = collected(self._rewritten(left) - self._rewritten(right))
-        full = collected(self.explain(left) - self.explain(right))
-        return full if len(symbols(full)) and _length(full) <= _length(short) + _LONG else short
+        """Return left - right for people, explained as long as that makes it shorter."""
+        sides = self._rewritten(left), self._rewritten(right)
+        if sides[1].operator == "zero":
+            return sides[0]
+        full = self.explain(left), self.explain(right)
+        candidates = (collected(a - b) for a, b in (sides, map(self._rewritten, full), full))
+        shortest = min((c for c in candidates if c.operator != "zero"), key=size, default=left - right)
+        if size(shortest) <= _LONG:
+            return shortest
+        return left - right if size(sides[0] - sides[1]) > _LONG else sides[0] - sides[1]
 
     def _rewritten(self, expression: Expression) -> Expression:
         """Return ``expression`` with the left sides of reasons replaced, once, as they stand."""
         for left, right in self.related:
             if expression == left:
                 return right
+            if _acts_twice(expression) and left == _composed(expression):
+                return self._rewritten(right @ expression.operands[1].operands[1])
         if expression.operator in ("symbol", "inertia"):
             reason = self.explanation(expression)
             return expression if reason is None else reason
         return rebuilt(expression, self._rewritten)
 
 
-def _length(expression: Expression) -> int:
-    if expression.operator in ("add", "negate"):
-        return sum(_length(operand) for operand in expression.operands)
-    return 1
+def _acts_twice(expression: Expression) -> bool:
+    """Return whether a tensor acts on what another tensor gives, as in R^T (R v)."""
+    return expression.operator == "apply" and expression.operands[1].operator == "apply"
+
+
+def _composed(expression: Expression) -> Expression:
+    return expression.operands[0] @ expression.operands[1].operands[0]
 
 
 def sides(side: Expression | tuple[Expression, ...]) -> tuple[Expression, ...]:

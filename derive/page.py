@@ -1,121 +1,137 @@
-"""The page of the lecture: every step with its sentence, its equation and its reasons.
+"""The lecture as a page: every step numbered, with its sentence, its equation and its reasons."""
 
-Each assumption also says what it carries: the first step that falls without it, and what is then
-left over.
-"""
-
-from collections.abc import Iterator
+import re
 from dataclasses import dataclass
 
 from markupsafe import Markup
-from sympy import Expr, MatrixBase
+from sympy import Matrix
 
+from derive import __version__
 from derive.emit import TEMPLATES
-from derive.lecture import CHAPTERS, LECTURE
+from derive.lecture import CHAPTERS, LECTURE, Chapter
 from derive.lecture.letters import TABLE, Letter
 from derive.notation import equation_mathml, mathml, sympy_equation_mathml
-from derive.step import Step, first_fall
-from derive.tree import rebuilt
-from derive.vectors import AXES, Expression, components
+from derive.page_prose import prose
+from derive.step import Step
+from derive.vectors import components
 
-FINAL = (
-    *("mass_centre_motion", "moving_point_form", "general_form", "body_axes_form", "euler"),
-    *("axisymmetric_equations", "gyroscopic_moment", "gyrostat_form", "wheel_equation"),
-    *("kinetic_energy_about_point", "koenig", "power", "parallel_axes", "change_of_axes"),
-    *("quaternion_rate_vector", "euler_321_rates", "angular_velocities_add"),
-)
-IN_COMPONENTS = ("angular_momentum", "general_form", "moving_point_form", "body_axes_form",
-                 "gyrostat_form", "quaternion_rate_vector", "rotation_of_vector")  # fmt: skip
+# Steps from which code is printed: what they rest on is listed at the end of the page.
+ENDS = (
+    "mass_centre_motion", "angular_momentum", "rate_in_axes", "transport_theorem", "general_form",
+    "moving_point_form", "kinetic_energy_about_point", "koenig", "gyrostat_momentum",
+    "gyrostat_form", "wheel_equation", "wheel_energy", "rotation_of_vector",
+    "quaternion_rate_scalar", "quaternion_rate_vector", "angular_velocities_add",
+)  # fmt: skip
+# Steps that are also shown along x, y and z.
+IN_COMPONENTS = (
+    "angular_momentum", "general_form", "moving_point_form", "body_axes_form", "gyrostat_form",
+    "quaternion_rate_vector", "rotation_of_vector",
+)  # fmt: skip
 _MARKS = {"assume": "assumed", "define": "defined", "deduce": "checked"}
 _BUILT = {
-    (): "scalar(\"{0}\")",
-    (3,): "vector(\"{0}\")",
-    (3, 3): "tensor(\"{0}\")",
-}  # fmt: skip
+    ("symbol", ()): 'scalar("{}")',
+    ("symbol", (3,)): 'vector("{}")',
+    ("symbol", (3, 3)): 'tensor("{}")',
+    ("inertia", (3, 3)): 'inertia("{}")',
+}
 
 
 @dataclass(frozen=True)
-class Line:
+class Entry:
     """One step as the page shows it."""
 
-    number: int
+    count: int
     step: Step
-    mark: str
+    says: Markup
     equation: Markup
-    components: Markup
-    falls: str
-    leftover: Markup
+    along: Markup
+    mark: str
+    needed_by: str
 
 
 @dataclass(frozen=True)
-class Row:
-    """One symbol and its names in three languages."""
+class Part:
+    """One chapter as the page shows it."""
 
-    letter: Letter
-    symbol: Markup
-    python: str
-    c: str
-    casadi: str
+    place: str
+    title: str
+    says: Markup
+    entries: tuple[Entry, ...]
 
 
 def lecture_page() -> str:
     """Return the text of ``lecture.html``, complete in one file and without scripts."""
-    numbers = {step.name: number for number, step in enumerate(LECTURE.steps, 1)}
-    chapters = [
-        (chapter, _paragraphs(chapter.says), [_line(s, numbers[s.name]) for s in chapter.steps])
-        for chapter in CHAPTERS
-    ]
+    parts = _parts()
     return TEMPLATES.get_template("lecture.html.jinja").render(
         title=LECTURE.title,
-        chapters=chapters,
-        numbers=numbers,
-        table=[_row(letter) for letter in TABLE],
-        final=[(LECTURE[name], LECTURE.assumptions(name)) for name in FINAL],
-        counts={mark: _count(kind) for kind, mark in _MARKS.items()},
+        version=__version__,
+        parts=parts,
+        kinds={kind: sum(s.kind == kind for s in LECTURE.steps) for kind in _MARKS},
+        assumed=[e for part in parts for e in part.entries if e.step.kind == "assume"],
+        ends=[(LECTURE[name], LECTURE.assumptions(name)) for name in ENDS],
+        numbers={e.step.name: e.count for part in parts for e in part.entries},
+        letters=[_letter_row(letter) for letter in TABLE],
     )
 
 
-def _count(kind: str) -> int:
-    return sum(step.kind == kind for step in LECTURE.steps)
+def _parts() -> list[Part]:
+    parts, count = [], 1
+    for chapter in CHAPTERS:
+        entries = tuple(_entry(count + i, step) for i, step in enumerate(chapter.steps))
+        place = "chapter_" + chapter.title.lower().replace(" ", "_")
+        parts.append(Part(place, chapter.title, _introduction(chapter), entries))
+        count += len(entries)
+    return parts
 
 
-def _paragraphs(text: str) -> list[str]:
-    return [" ".join(paragraph.split()) for paragraph in text.strip().split("\n\n")]
+def _entry(count: int, step: Step) -> Entry:
+    equation = Markup(equation_mathml(step))  # noqa: S704 (MathML of checked names)
+    along = _in_components(step) if step.name in IN_COMPONENTS else Markup("")
+    needed_by = next((s.name for s in LECTURE.steps if step.name in s.using), "")
+    shown = needed_by if step.kind == "assume" else ""
+    return Entry(count, step, prose(step.says), equation, along, _MARKS[step.kind], shown)
 
 
-def _line(step: Step, number: int) -> Line:
-    fall = first_fall(LECTURE, step.name) if step.kind == "assume" else None
-    falls, leftover = (fall[0].name, mathml(fall[1])) if fall else ("", "")
-    shown = "\n".join(_in_components(step)) if step.name in IN_COMPONENTS else ""
-    return Line(
-        number,
-        step,
-        _MARKS[step.kind],
-        Markup(equation_mathml(step)),
-        Markup(shown),
-        falls,
-        Markup(leftover),
-    )
+def _in_components(step: Step) -> Markup:
+    """Return the equations of a step along x, y and z."""
+    lines = [
+        sympy_equation_mathml(left, right, {})
+        for claim in step.claims
+        for left, right in zip(*(Matrix([components(side)]) for side in claim), strict=True)
+    ]
+    return Markup("\n".join(lines))  # noqa: S704 (MathML of checked names)
 
 
-def _in_components(step: Step) -> Iterator[str]:
-    """Yield the equations of a step along x, y and z."""
-    for left, right in step.claims:
-        sides = components(left), components(right)
-        if isinstance(sides[0], MatrixBase):
-            yield from map(_equation, sides[0], sides[1])
-        else:
-            yield _equation(*sides)
+def _introduction(chapter: Chapter) -> Markup:
+    """Return what a chapter is about, without the title it begins with."""
+    text = re.sub(r"\s+", " ", chapter.says).strip()
+    first, colon, rest = text.partition(": ")
+    if not colon or "." in first:
+        return prose(text)
+    return prose(rest[:1].upper() + rest[1:])
 
 
-def _equation(left: Expr, right: Expr) -> str:
-    return sympy_equation_mathml(left, right, {})
+def _letter_row(letter: Letter) -> dict[str, object]:
+    """Return a symbol and its names: what builds it in Python, what carries it in C and CasADi."""
+    return {
+        "mathml": Markup(mathml(letter.symbol)),  # noqa: S704 (MathML of a checked name)
+        "python": _BUILT[letter.symbol.operator, letter.symbol.shape].format(letter.name),
+        "c": _carried(letter, "{first}..{last}", "[{size}]"),
+        "casadi": _carried(letter, "{first}:{end}", ""),
+        "says": prose(letter.says),
+        "unit": letter.si_unit.replace("^2", "²"),
+    }
 
 
-def _row(letter: Letter) -> Row:
-    """Return a symbol's names: a vector is an array of three, a tensor its named quantities."""
-    name, shape = letter.name, letter.symbol.shape
-    built = (
-        f'inertia("{name}")' if letter.symbol.operator == "inertia" else _BUILT[shape].format(name)
-    )
-    return Row(letter, Markup(mathml(letter.symbol)), built, _c(letter), _casadi(letter))
+def _carried(letter: Letter, part: str, whole: str) -> str:
+    """Return the argument of emitted functions that carries a symbol, counted from 0."""
+    if letter.size == 0:
+        return letter.emitted
+    if letter.size < 0:
+        return f"{letter.emitted}[k]"
+    if letter.size == 1:
+        return f"{letter.emitted}[{letter.first}]"
+    end = letter.first + letter.size
+    if letter.first:
+        return f"{letter.emitted}[{part.format(first=letter.first, last=end - 1, end=end)}]"
+    return letter.emitted + whole.format(size=letter.size)

@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
-from derive.vectors import Expression, number, zero
+from derive.vectors import IDENTITY, Expression, number, zero
 
-Term = tuple[Fraction, Expression]
 _ADDITIVE = ("add", "negate")
 _MULTILINEAR = (
     *("scale", "dot", "cross", "apply", "outer", "cross_tensor", "transpose", "trace", "axial"),
     *("component", "quantity", "sum", "others"),
 )
+
+
+@dataclass(frozen=True)
+class Term:
+    """``factor`` times ``ordered``, the same for equal terms, or times ``written``, up to its sign."""
+
+    factor: Fraction
+    ordered: Expression
+    written: Expression
 
 
 def symbols(expression: Expression) -> tuple[str, ...]:
@@ -52,32 +61,45 @@ def terms(expression: Expression) -> list[Term]:
     if expression.operator == "zero":
         return []
     if expression.operator == "number":
-        return [(expression.number, number(1))]
+        return [Term(expression.number, number(1), number(1))]
     if expression.operator == "add":
         return [term for operand in expression.operands for term in terms(operand)]
     if expression.operator == "negate":
-        return [(-factor, term) for factor, term in terms(expression.operands[0])]
+        return [replace(term, factor=-term.factor) for term in terms(expression.operands[0])]
     if expression.operator not in _MULTILINEAR:
-        return [(Fraction(1), expression)]
-    return [
-        _ordered(expression, chosen) for chosen in product(*map(terms, expression.operands))
-    ]
+        return [Term(Fraction(1), expression, expression)]
+    products = product(*map(terms, expression.operands))
+    return [term for chosen in products if (term := _product(expression, chosen)).factor]
 
 
-def _ordered(expression: Expression, chosen: tuple[Term, ...]) -> Term:
-    """Return one term of a product; its factors stand in one order, so that equal terms look equal."""
-    factor = Fraction(1)
-    for each, _ in chosen:
-        factor *= each
-    operands = tuple(term for _, term in chosen)
-    if expression.operator == "scale" and number(1) in operands:
-        return factor, operands[0] if operands[1] == number(1) else operands[1]
+def _product(expression: Expression, chosen: tuple[Term, ...]) -> Term:
+    """Return one term of a product, as it is written and with its factors in one order."""
+    factor, sign = Fraction(1), 1
+    for each in chosen:
+        factor *= each.factor
+        sign *= -1 if each.written.operator == "negate" else 1
+    operands = tuple(each.ordered for each in chosen)
     if expression.operator in ("cross", "dot") and repr(operands[1]) < repr(operands[0]):
         operands = operands[::-1]
-        factor = -factor if expression.operator == "cross" else factor
+        if expression.operator == "cross":
+            factor, sign = -factor, -sign
     if expression.operator == "cross" and operands[0] == operands[1]:
         factor = Fraction(0)
-    return factor, Expression(expression.operator, operands, expression.shape, expression.name)
+    written = _without_one(expression, tuple(_positive(each.written) for each in chosen))
+    return Term(factor, _without_one(expression, operands), -written if sign < 0 else written)
+
+
+def _positive(written: Expression) -> Expression:
+    return written.operands[0] if written.operator == "negate" else written
+
+
+def _without_one(expression: Expression, operands: tuple[Expression, ...]) -> Expression:
+    """Return a product without the factor 1."""
+    if expression.operator == "scale" and number(1) in operands:
+        return operands[0] if operands[1] == number(1) else operands[1]
+    if expression.operator == "apply" and operands[0] == IDENTITY:
+        return operands[1]
+    return Expression(expression.operator, operands, expression.shape, expression.name)
 
 
 def collected(expression: Expression) -> Expression:
@@ -89,10 +111,17 @@ def collected(expression: Expression) -> Expression:
     'zero'
     """
     factors: dict[Expression, Fraction] = {}
-    for factor, term in terms(expression):
-        factors[term] = factors.get(term, Fraction(0)) + factor
-    kept = [(factor, term) for term, factor in factors.items() if factor]
-    return summed([_times(factor, term) for factor, term in kept], expression.shape)
+    written: dict[Expression, Expression] = {}
+    for term in terms(expression):
+        factors[term.ordered] = factors.get(term.ordered, Fraction(0)) + term.factor
+        written.setdefault(term.ordered, term.written)
+    kept = [_times(factor, written[term]) for term, factor in factors.items() if factor]
+    return summed(kept, expression.shape)
+
+
+def size(expression: Expression) -> int:
+    """Return how many symbols and operators ``expression`` is made of."""
+    return 1 + sum(map(size, expression.operands))
 
 
 def summed(parts: list[Expression], shape: tuple[int, ...]) -> Expression:
@@ -106,6 +135,9 @@ def summed(parts: list[Expression], shape: tuple[int, ...]) -> Expression:
 
 
 def _times(factor: Fraction, term: Expression) -> Expression:
+    """Return a multiple of a term; a minus inside the term is taken out."""
+    if term.operator == "negate":
+        factor, term = -factor, term.operands[0]
     if abs(factor) != 1:
         term = number(abs(factor)) * term
     return -term if factor < 0 else term
