@@ -27,6 +27,25 @@ IN_COMPONENTS = (
     "angular_momentum", "general_form", "moving_point_form", "body_axes_form", "gyrostat_form",
     "quaternion_rate_vector", "rotation_of_vector",
 )  # fmt: skip
+# The arguments of emitted functions that carry a symbol, in C and in CasADi where that differs.
+_CARRIED = {
+    "F": ("force[3]", "force"),
+    "M": ("moment[3]", "moment"),
+    "T": ("kinetic_energy", ""),
+    "v_G": ("velocity[3]", "velocity"),
+    "a_G": ("velocity_rate[3]", "velocity_rate"),
+    "a_A": ("point_acceleration[3]", "point_acceleration"),
+    "l": ("angular_momentum[3]", "angular_momentum"),
+    "l_dot": ("rate_in_axes[3]", "rate_in_axes"),
+    "l_N_dot": ("rate_absolute[3]", "rate_absolute"),
+    "omega": ("omega[3]", "omega"),
+    "omega_dot": ("omega_dot[3]", "omega_dot"),
+    "q_w": ("attitude[0]", ""),
+    "q_v": ("attitude[1..3]", "attitude[1:4]"),
+    "s": ("wheel_speeds[k]", ""),
+    "s_dot": ("wheel_accelerations[k]", ""),
+    "u": ("wheel_torques[k]", ""),
+}
 _MARKS = {"assume": "assumed", "define": "defined", "deduce": "checked"}
 _BUILT = {
     ("symbol", ()): 'scalar("{}")',
@@ -113,25 +132,12 @@ def _introduction(chapter: Chapter) -> Markup:
 
 def _letter_row(letter: Letter) -> dict[str, object]:
     """Return a symbol and its names: what builds it in Python, what carries it in C and CasADi."""
+    c, casadi = _CARRIED.get(letter.name, ("", ""))
     return {
         "mathml": Markup(mathml(letter.symbol)),  # noqa: S704 (MathML of a checked name)
         "python": _BUILT[letter.symbol.operator, letter.symbol.shape].format(letter.name),
-        "c": _carried(letter, "{first}..{last}", "[{size}]"),
-        "casadi": _carried(letter, "{first}:{end}", ""),
+        "c": c,
+        "casadi": casadi or c,
         "says": prose(letter.says),
         "unit": letter.si_unit.replace("^2", "²"),
     }
-
-
-def _carried(letter: Letter, part: str, whole: str) -> str:
-    """Return the argument of emitted functions that carries a symbol, counted from 0."""
-    if letter.size == 0:
-        return letter.emitted
-    if letter.size < 0:
-        return f"{letter.emitted}[k]"
-    if letter.size == 1:
-        return f"{letter.emitted}[{letter.first}]"
-    end = letter.first + letter.size
-    if letter.first:
-        return f"{letter.emitted}[{part.format(first=letter.first, last=end - 1, end=end)}]"
-    return letter.emitted + whole.format(size=letter.size)

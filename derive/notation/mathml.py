@@ -90,7 +90,8 @@ def _joined(sign: str) -> Callable[[Layout], str]:
 
 
 def _argument(layout: Layout, inside: str) -> str:
-    bare = len(layout.parts) == 1 and layout.parts[0].kind in ("name", "number")
+    circular = layout.text in ("sin", "cos", "tan")
+    bare = circular and layout.parts[0].kind in ("name", "number")
     return inside if bare else _fenced("(", inside, ")")
 
 
