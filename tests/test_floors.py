@@ -15,7 +15,8 @@ FLOORS = (
         "unit",
         "declaration",
         "shape",
-        "scene*",
+        "scene",
+        "scene_[bfnrst]*",
         "catalogue",
         "program",
         "graph",
@@ -52,6 +53,7 @@ FLOORS = (
         "reference",
         "measure",
         "files",
+        "generation",
         "compiler",
         "call",
         "check",
@@ -65,10 +67,11 @@ FLOORS = (
         "invariants",
         "turning",
     ),
-    ("cli",),
+    ("cli", "__main__"),
 )
 WITHOUT_SYMPY = (
-    *("program", "formula", "unit", "scene*", "graph", "expand", "table", "share", "write"),
+    *("program", "formula", "unit", "scene",
+        "scene_[bfnrst]*", "graph", "expand", "table", "share", "write"),
     *("schedule", "derivative", "forms", "stage", "arithmetic", "c_text", "casadi_text", "emit"),
 )
 PACKAGE = Path(__file__).parent.parent / "derive"

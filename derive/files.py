@@ -1,0 +1,92 @@
+"""The generated files of scenes: made in memory, written whole, or compared with what is there."""
+
+import os
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import unified_diff
+from pathlib import Path
+
+from derive.casadi_text import casadi_file
+from derive.emit import c_files
+from derive.library import Library
+from derive.manifest import manifest
+from derive.program import Measurement
+from derive.scene_page import scene_page
+
+
+class OutputError(OSError):
+    """A folder or file that cannot be written; the sentence names it and the reason."""
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One file that is not what would be generated, and how it differs."""
+
+    name: str
+    diff: str
+
+
+def scene_files(library: Library, figures: Sequence[Measurement]) -> dict[str, str]:
+    """Return the path below the output folder and the text of every file of a scene."""
+    name = library.known.scene.name
+    texts = c_files(library, figures) | {
+        f"{name}_casadi.py": casadi_file(library),
+        f"{name}.json": manifest(library, figures),
+        f"{name}.html": scene_page(library, figures),
+    }
+    return {f"{name}/{file}": text for file, text in texts.items()}
+
+
+def write(folder: Path, texts: Mapping[str, str]) -> None:
+    """Write all ``texts`` below ``folder``, each file replaced as a whole or not at all.
+
+    Raises OutputError, with nothing half-written, if a folder or file cannot be written.
+    """
+    staged: list[tuple[Path, Path]] = []
+    try:
+        for name, text in texts.items():
+            target = folder / name
+            target.parent.mkdir(parents=True, exist_ok=True)
+            staged.append((_temporary(target, text), target))
+        for temporary, target in staged:
+            os.replace(temporary, target)
+    except OSError as error:
+        for temporary, _ in staged:
+            temporary.unlink(missing_ok=True)
+        raise OutputError(
+            f"output folder '{folder}' must be writable, but: {error.strerror or error}"
+        ) from error
+
+
+def _temporary(target: Path, text: str) -> Path:
+    if target.is_dir():
+        raise IsADirectoryError(0, f"'{target.name}' is a folder")
+    descriptor, path = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+    with os.fdopen(descriptor, "wb") as file:
+        file.write(text.encode())
+    os.chmod(path, 0o644)
+    return Path(path)
+
+
+def differences(folder: Path, texts: Mapping[str, str]) -> Iterator[Difference]:
+    """Yield every file below ``folder`` that differs from ``texts``, is missing or left over."""
+    for name, text in texts.items():
+        path = folder / name
+        found = path.read_bytes().decode(errors="replace") if path.is_file() else ""
+        if not path.is_file():
+            yield Difference(name, f"{name}: missing\n")
+        elif found != text:
+            lines = unified_diff(
+                found.splitlines(keepends=True),
+                text.splitlines(keepends=True),
+                f"{name} (found)",
+                f"{name} (generated)",
+                n=1,
+            )
+            yield Difference(name, "".join(lines))
+    for folder_name in sorted({name.split("/")[0] for name in texts if "/" in name}):
+        for path in sorted((folder / folder_name).glob("*")):
+            name = f"{folder_name}/{path.name}"
+            if name not in texts and path.is_file():
+                yield Difference(name, f"{name}: no scene makes this file; delete it\n")

@@ -1,0 +1,81 @@
+"""From scenes to their texts: read, arranged, proved, measured and printed, several at a time."""
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+
+from derive.files import scene_files
+from derive.library import Library, library
+from derive.measure import figures
+from derive.page import lecture_page
+from derive.program import Measurement
+from derive.prove import prove
+from derive.scene import load
+
+LECTURE_PAGE = "lecture.html"
+
+
+@dataclass(frozen=True)
+class CostRow:
+    """What one function costs and how wrong it is: operations, then median and largest errors."""
+
+    scene: str
+    function: str
+    flops: int
+    divisions: int
+    errors: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Made:
+    """The texts of a scene's files, what its reader should be told, and its costs."""
+
+    texts: dict[str, str]
+    warnings: tuple[str, ...]
+    costs: tuple[CostRow, ...]
+
+
+def made(source: str) -> Made:
+    """Return everything that a scene becomes; its programs are proved before they are printed."""
+    scene = load(source)
+    programs = library(scene)
+    prove(programs)
+    measured = figures(programs)
+    return Made(scene_files(programs, measured), scene.warnings, cost_rows(programs, measured))
+
+
+def lecture_made() -> Made:
+    """Return the lecture's page."""
+    return Made({LECTURE_PAGE: lecture_page()}, (), ())
+
+
+def cost_rows(programs: Library, measured: Sequence[Measurement]) -> tuple[CostRow, ...]:
+    """Return one row a function."""
+    name = programs.known.scene.name
+    return tuple(
+        CostRow(name, p.name, p.flops(), p.count().get("div", 0), _errors(p.name, measured))
+        for p in programs.functions
+    )
+
+
+def _errors(function: str, measured: Sequence[Measurement]) -> tuple[str, ...]:
+    found: list[str] = []
+    for precision in ("f32", "f64"):
+        own = [m for m in measured if (m.function, m.precision) == (function, precision)]
+        found += [f"{max(m.median for m in own):.2g}", f"{max(m.worst for m in own):.2g}"]
+    return tuple(found)
+
+
+def all_made(
+    sources: Sequence[str], also: Sequence[Callable[[], Made]]
+) -> Iterator[tuple[int, Made]]:
+    """Yield place and result of every source, then of what is made ``also``, as they are done."""
+    if len(sources) + len(also) == 1:
+        yield 0, made(sources[0]) if sources else also[0]()
+        return
+    with ProcessPoolExecutor() as pool:
+        # What is made also takes longest, so it starts first.
+        last = {pool.submit(task): len(sources) + k for k, task in enumerate(also)}
+        waiting = last | {pool.submit(made, source): k for k, source in enumerate(sources)}
+        for future in as_completed(waiting):
+            yield waiting[future], future.result()

@@ -1,0 +1,111 @@
+"""The command line does what it says, and bad input gets one sentence, exit code 2 and no file."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.cli import main
+from derive.files import OutputError, write
+
+SCENE = "free_body_principal"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("made")
+    assert main(["generate", SCENE, "--out", str(folder)]) == 0
+    return folder
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+def test_a_scene_becomes_its_files_and_no_others(made):
+    names = {f"{SCENE}/{SCENE}{end}" for end in ("_f32.c", "_f32.h", "_f64.c", "_f64.h")}
+    names |= {f"{SCENE}/{SCENE}{end}" for end in ("_casadi.py", ".json", ".html")}
+    assert contents(made).keys() == names
+
+
+def test_what_was_generated_passes_the_check(made):
+    assert main(["generate", SCENE, "--out", str(made), "--check"]) == 0
+
+
+@pytest.mark.parametrize("ending", ["_f32.c", "_f64.h", ".json", "_casadi.py", ".html"])
+def test_an_edit_of_any_file_fails_the_check_with_the_mending_command(made, ending, capsys):
+    file = made / SCENE / f"{SCENE}{ending}"
+    before = file.read_bytes()
+    file.write_bytes(before.replace(b"0", b"1", 1))
+    found = contents(made)
+    try:
+        assert main(["generate", SCENE, "--out", str(made), "--check"]) == 1
+        shown = capsys.readouterr()
+        assert f"{SCENE}{ending}" in shown.out
+        assert f"derive generate {SCENE} --out" in " ".join(shown.err.split())
+        assert contents(made) == found
+    finally:
+        file.write_bytes(before)
+
+
+def test_a_missing_and_a_left_over_file_fail_the_check(made, capsys):
+    file = made / SCENE / f"{SCENE}_f64.h"
+    aside = file.rename(file.with_name("left_over.h"))
+    try:
+        assert main(["generate", SCENE, "--out", str(made), "--check"]) == 1
+        shown = capsys.readouterr().out
+        assert "missing" in shown
+        assert "no scene makes this file" in shown
+    finally:
+        aside.rename(file)
+
+
+def test_an_edit_of_the_scene_fails_the_check(made, tmp_path, capsys):
+    text = (Path(__file__).parents[1] / "derive" / "catalogue" / f"{SCENE}.toml").read_text()
+    other = tmp_path / f"{SCENE}.toml"
+    other.write_text(text.replace("title", "# a remark\ntitle", 1))
+    assert main(["generate", str(other), "--out", str(made), "--check"]) == 1
+    assert "sha256" in capsys.readouterr().out
+
+
+def test_a_bad_scene_gets_one_sentence_and_no_file(tmp_path, capsys):
+    scene = tmp_path / "broken.toml"
+    scene.write_text('title = "x"\nwanted = ["moment"]\n[body]\nkind = "cube"\n')
+    assert main(["generate", str(scene), "--out", str(tmp_path / "out")]) == 2
+    assert capsys.readouterr().err.count("\n") <= 3
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_unknown_scene_and_an_unknown_assumption_are_refused(capsys):
+    assert main(["generate", "free_bodi"]) == 2
+    assert "free_body" in capsys.readouterr().err
+    assert main(["lecture", "--without", "newtom"]) == 2
+    assert "newton" in capsys.readouterr().err
+
+
+def test_a_folder_that_cannot_be_written_is_named_and_nothing_is_left(tmp_path, capsys):
+    in_the_way = tmp_path / "a_file"
+    in_the_way.write_text("")
+    assert main(["generate", SCENE, "--out", str(in_the_way)]) == 2
+    assert "a_file" in " ".join(capsys.readouterr().err.split()).replace(" ", "")
+    assert contents(tmp_path) == {"a_file": b""}
+
+
+def test_files_are_replaced_as_a_whole_or_not_at_all(tmp_path):
+    (tmp_path / "kept").write_text("old")
+    (tmp_path / "blocked").mkdir()
+    with pytest.raises(OutputError, match="blocked"):
+        write(tmp_path, {"kept": "new", "blocked": "x"})
+    assert contents(tmp_path) == {"kept": b"old"}
+
+
+def test_the_catalogue_is_listed(capsys):
+    assert main(["scenes"]) == 0
+    assert SCENE in capsys.readouterr().out
+
+
+def test_help_names_every_command(capsys):
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    shown = capsys.readouterr().out
+    words = ("lecture", "generate", "check", "report", "bench", "scenes")
+    assert all(word in shown for word in words)
