@@ -1,4 +1,4 @@
-"""What a step may use: some reasons explain a symbol, the others relate what is left unexplained."""
+"""What a step may use: some reasons explain a symbol, others relate what is left unexplained."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ANY = "u_any"  # a vector of which nothing is assumed: what is shown for it hold
 _PAIR = ("P_ij", "P_ji")  # explained only after i and j were exchanged
 
 
-class Circular(ValueError):
+class CircularError(ValueError):
     """Two reasons explain a symbol by itself."""
 
 
@@ -34,7 +34,7 @@ class Facts:
 
     @staticmethod
     def of(reasons: Iterable[Sequence[Claim]], names: dict[str, str]) -> Facts:
-        """Sort the claims of ``reasons``: the first to explain a symbol does, a later one relates."""
+        """Sort the claims: the first to explain a symbol does, a later one relates."""
         facts = Facts({}, ())
         for left, right in (claim for claims in reasons for claim in claims):
             claim = (renamed(left, names), renamed(right, names))
@@ -46,7 +46,7 @@ class Facts:
         return facts
 
     def explanation(self, symbol: Expression) -> Expression | None:
-        """Return what the reasons say a symbol is: outright, as a rate, or as they say of any vector."""
+        """Return what the reasons say a symbol is: outright, by a rate, or as of any vector."""
         if symbol.name in self.explained:
             return self.explained[symbol.name]
         below = rate_of(symbol.name)
@@ -66,7 +66,7 @@ class Facts:
             return rebuilt(expression, lambda operand: self.explain(operand, within))
         name = expression.name
         if name in within:
-            raise Circular(f"the reasons explain {name} by itself")
+            raise CircularError(f"the reasons explain {name} by itself")
         if name not in self._full:
             reason = None if name in _PAIR else self.explanation(expression)
             self._full[name] = (
@@ -118,7 +118,8 @@ class Facts:
             return sides[0]
         full = self.explain(left), self.explain(right)
         candidates = (collected(a - b) for a, b in (sides, map(self._rewritten, full), full))
-        shortest = min((c for c in candidates if c.operator != "zero"), key=size, default=left - right)
+        remaining = (each for each in candidates if each.operator != "zero")
+        shortest = min(remaining, key=size, default=left - right)
         if size(shortest) <= _LONG:
             return shortest
         return left - right if size(sides[0] - sides[1]) > _LONG else sides[0] - sides[1]

@@ -1,4 +1,4 @@
-"""A sum over particles is a linear map, and that is why one generic particle proves a step for every body.
+"""A sum over particles is a linear map: one generic particle proves a step for every body.
 
 Two summands that are equal as polynomials in what differs from particle to particle have equal
 sums. So ``reading`` writes a sum in its values on the monomials, symbols such as

@@ -22,7 +22,7 @@ _LINEAR = ("add", "negate", "cross_tensor", "transpose", "trace", "axial", "comp
 _BILINEAR = ("scale", "dot", "cross", "apply", "outer")
 
 
-def seen_from_axes(name: str, shape: tuple[int, ...] = (3,)) -> str:
+def seen_from_axes(name: str, shape: tuple[int, ...] = (3,)) -> str:  # noqa: ARG001
     """Return the name of the rate of ``name`` seen from the moving axes.
 
     >>> seen_from_axes("l"), seen_from_axes("rho_dot"), seen_from_axes("l_N_dot")
@@ -77,7 +77,7 @@ def root(name: str) -> str:
 def rate(expression: Expression, naming: Naming = seen_from_axes) -> Expression:
     """Return the time derivative of ``expression``; a symbol's rate is called ``naming(symbol)``.
 
-    Sums over particles run over the same particles at all times, so a sum's rate is the sum of rates.
+    Sums run over the same particles at all times, so the rate of a sum is the sum of rates.
     """
     operator, operands, shape = expression.operator, expression.operands, expression.shape
     if operator in ("symbol", "inertia"):
@@ -120,5 +120,3 @@ def _simple(expression: Expression) -> Expression:
     if expression.operator == "add" and any(absent):
         return expression.operands[0 if absent[1] else 1]
     return zero(*expression.shape) if any(absent) else expression
-
-

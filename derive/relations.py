@@ -2,8 +2,8 @@
 
 Reasons such as R^T R = 1 or |q| = 1 do not explain one symbol; they are relations. A difference
 follows from them if its remainder is zero. The remainder is taken by a Groebner basis, which proves
-whatever follows, or, where a basis would be huge, by the relations as they stand: that may leave too
-much, never too little, so what is accepted is always proved.
+whatever follows, or, where a basis would be huge, by the relations as they stand: that may leave
+too much, never too little, so what is accepted is always proved.
 """
 
 from __future__ import annotations
@@ -14,13 +14,12 @@ from functools import lru_cache
 from sympy import Expr, Integer, Poly, Symbol, cos, expand, fraction, groebner, sin, together
 from sympy.polys.polytools import reduced
 
-
 _FEW = 15  # symbols up to which a nonlinear Groebner basis takes a fraction of a second
 
 _FEWER = 8  # the same where the rates of the relations join them
 
 
-class Contradiction(ValueError):
+class ContradictionError(ValueError):
     """The relations exclude one another, so that anything would follow from them."""
 
 
@@ -51,7 +50,7 @@ def remainders(
 
 
 def polynomial(difference: Expr) -> Expr:
-    """Return a polynomial that vanishes where ``difference`` does; sines and cosines become symbols."""
+    """Return a polynomial that vanishes where ``difference`` does; sines become symbols."""
     difference = expand(difference)
     turns = difference.atoms(sin, cos)
     difference = difference.xreplace({turn: Symbol(str(turn), real=True) for turn in turns})
@@ -76,12 +75,12 @@ def _basis(relations: tuple[Expr, ...]) -> tuple[Expr, ...]:
         return ()
     symbols = sorted({s for r in relations for s in r.free_symbols}, key=str)
     if not symbols:
-        raise Contradiction(f"the reasons contradict one another: {relations[0]} = 0")
+        raise ContradictionError(f"the reasons contradict one another: {relations[0]} = 0")
     if len(symbols) > _FEW and any(Poly(r, *symbols).total_degree() > 1 for r in relations):
         return relations
     basis = tuple(groebner(relations, *symbols, order="grevlex").exprs)
     if basis == (Integer(1),):
-        raise Contradiction("the reasons contradict one another")
+        raise ContradictionError("the reasons contradict one another")
     return basis
 
 

@@ -1,4 +1,4 @@
-"""A derivation is a list of steps; a step is a claim with its reasons, and can be checked by them alone.
+"""A derivation is a list of steps; a step is a claim with its reasons, checked by them alone.
 
 Every step holds at all times, so a reason may be differentiated. A reason whose left side is a
 symbol explains that symbol; any other reason is a relation between what is left unexplained.
@@ -14,16 +14,16 @@ from typing import Literal
 
 from sympy import Expr
 
-from derive.facts import Circular, Facts, sides
+from derive.facts import CircularError, Facts, sides
 from derive.rate import root
-from derive.relations import Contradiction
+from derive.relations import ContradictionError
 from derive.tree import renamed, symbols
 from derive.vectors import Expression, zero
 
 Sides = Expression | tuple[Expression, ...]
 
 
-class StepFailed(AssertionError):
+class StepError(AssertionError):
     """A step does not follow from its reasons, or breaks a rule of the lecture."""
 
 
@@ -82,7 +82,7 @@ class Derivation:
         return Facts.of((self[reason].claims for reason in step.using), dict(step.instance))
 
     def gap(self, step: Step) -> tuple[Expr, ...]:
-        """Return left - right of a step, entry by entry, after its reasons and only they are used."""
+        """Return left - right of a step, entry by entry, by its reasons and by nothing else."""
         return self.facts(step).gap(step.claims)
 
 
@@ -108,10 +108,10 @@ def verify(derivation: Derivation) -> tuple[Checked, ...]:
 
 
 def require(derivation: Derivation) -> None:
-    """Raise StepFailed at the first step that does not stand."""
+    """Raise StepError at the first step that does not stand."""
     for row in _rows(derivation):
         if not row.holds:
-            raise StepFailed(f"{row.name}: {row.fault}")
+            raise StepError(f"{row.name}: {row.fault}")
 
 
 def first_fall(derivation: Derivation, reason: str) -> tuple[Step, Expression] | None:
@@ -160,13 +160,13 @@ def _fault(derivation: Derivation, step: Step, spoken: set[str], above: set[str]
         return fault
     try:
         gap = derivation.gap(step)
-    except (Circular, Contradiction) as error:
+    except (CircularError, ContradictionError) as error:
         return str(error)
     return f"left - right = {', '.join(map(str, gap))}" if any(gap) else ""
 
 
 def _smuggled(step: Step, spoken: set[str]) -> str:
-    """A definition may only name something new, so that no claim enters the lecture as a definition."""
+    """A definition may only name something new, so that no claim can enter as a definition."""
     known = set(spoken)
     for left, right in step.claims:
         if left.operator not in ("symbol", "inertia"):
@@ -181,7 +181,7 @@ def _smuggled(step: Step, spoken: set[str]) -> str:
 
 
 def _false_instance(derivation: Derivation, step: Step) -> str:
-    """A theorem holds for another body only if that body's quantities are defined by the same sums."""
+    """A theorem holds for another body if that body's quantities are defined by the same sums."""
     names = dict(step.instance)
     definitions = {
         left.name: right

@@ -1,4 +1,4 @@
-"""Expressions taken apart and put together: their names, renaming, and the sum of terms they are."""
+"""Expressions taken apart and put together: their names, and the sum of terms that they are."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MULTILINEAR = (
 
 @dataclass(frozen=True)
 class Term:
-    """``factor`` times ``ordered``, the same for equal terms, or times ``written``, up to its sign."""
+    """``factor`` times ``ordered``, alike for equal terms, or times ``written``, as it was."""
 
     factor: Fraction
     ordered: Expression

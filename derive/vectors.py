@@ -136,7 +136,7 @@ def component(v: Expression, axis: str) -> Expression:
 
 
 def quantity(t: Expression, pair: str) -> Expression:
-    """Return one of a tensor's six quantities: a moment "xx" or a product "xy" = minus the entry."""
+    """Return one of a tensor's six quantities: a moment "xx", or a product "xy" = - entry."""
     return Expression("quantity", (t,), name=pair)
 
 
@@ -167,7 +167,7 @@ def turn_written_out(axis: Expression, angle: Expression) -> Expression:
 
 
 def total(summand: Expression, over: str = "body") -> Expression:
-    """Return the sum of ``summand`` over the members of ``over`` (``particles`` gives it meaning)."""
+    """Return the sum of ``summand`` over the members of ``over``."""
     return Expression("sum", (summand,), summand.shape, over)
 
 

@@ -1,18 +1,21 @@
-"""Attitude: where the body's axes point, by a unit quaternion or by three angles, and how that changes.
+"""Attitude: where the body's axes point, by a quaternion or by three angles, and how that changes.
 
 R takes components along the body's axes to components along N's. Everything follows from the one
 equation R_dot = R [Omega]x, here for axes fixed in the body.
 """
 
+# fmt: off
+# ruff: noqa: I001
+
 from derive.lecture.letters import (
     Omega, R, e_x, e_y, e_z, omega, q_v, q_v_dot, q_w, q_w_dot,
-)  # fmt: skip
+)
 from derive.lecture.rigid_body import HALF
 from derive.step import Step
 from derive.vectors import (
     IDENTITY, Expression, axial, component, cosine, cross, cross_tensor, dot, number, scalar,
     sine, tensor, transpose, turn, vector, zero,
-)  # fmt: skip
+)
 
 any_v = vector("v")
 R_1, R_2, Omega_1, Omega_2 = tensor("R_1"), tensor("R_2"), vector("Omega_1"), vector("Omega_2")
@@ -32,8 +35,8 @@ def columns(t: Expression) -> tuple[Expression, Expression, Expression]:
 QUATERNION = (
     Step(
         "quaternion_of_axes",
-        "Write R with four numbers, a scalar q_w and a vector q_v, the same along N's axes and along "
-        "the body's.",
+        "Write R with four numbers, a scalar q_w and a vector q_v, the same along N's axes and "
+        "along the body's.",
         "assume", R,
         IDENTITY + (2 * q_w) * cross_tensor(q_v) + 2 * (cross_tensor(q_v) @ cross_tensor(q_v)),
     ),
@@ -81,7 +84,7 @@ QUATERNION = (
         "deduce", q_v_dot, HALF * (q_w * omega + cross(q_v, omega)),
         ("angular_velocity_of_quaternion", "unit_quaternion"),
     ),
-)  # fmt: skip
+)
 
 COMPOSED = (
     Step(
@@ -112,8 +115,8 @@ COMPOSED = (
     ),
     Step(
         "turn_of_vector",
-        "A turn by an angle about a unit vector e keeps what lies along e, and takes the rest partly "
-        "into e x v.",
+        "A turn by an angle about a unit vector e keeps what lies along e, and takes the rest "
+        "partly into e x v.",
         "deduce", turn(e, angle) @ any_v,
         cosine(angle) * any_v + sine(angle) * cross(e, any_v)
         + ((number(1) - cosine(angle)) * dot(e, any_v)) * e,
@@ -127,7 +130,7 @@ COMPOSED = (
         "deduce", Omega_2, angle_dot * e,
         ("further_axes", "simple_turn", "fixed_axis", "axis_is_unit"),
     ),
-)  # fmt: skip
+)
 
 EULER_ANGLES = (
     Step(
@@ -145,19 +148,20 @@ EULER_ANGLES = (
     ),
     Step(
         "no_gimbal_lock",
-        "The pitch is not 90 degrees up or down: its cosine is not zero and has an inverse. There, and "
-        "only there, the angles are singular.",
+        "The pitch is not 90 degrees up or down: its cosine is not zero and has an inverse. "
+        "There, and only there, the angles are singular.",
         "assume", cosine(theta) * sec, number(1),
     ),
     Step(
         "euler_321_rates",
-        "Solve for the rates. Near 90 degrees of pitch the inverse of the cosine grows without bound.",
+        "Solve for the rates. Near 90 degrees of pitch the inverse of the cosine grows without "
+        "bound.",
         "deduce", (psi_dot, theta_dot, phi_dot),
         (sec * (sine(phi) * o_y + cosine(phi) * o_z),
          cosine(phi) * o_y - sine(phi) * o_z,
          o_x + (sine(theta) * sec) * (sine(phi) * o_y + cosine(phi) * o_z)),
         ("angular_velocity_321", "no_gimbal_lock"),
     ),
-)  # fmt: skip
+)
 
 STEPS = QUATERNION + COMPOSED + EULER_ANGLES

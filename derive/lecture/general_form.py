@@ -5,15 +5,18 @@ tensor may change; when it does not, when the axes are the body's own, and when 
 the equation becomes simpler step by step, down to Euler's three.
 """
 
+# fmt: off
+# ruff: noqa: I001
+
 from derive.lecture.letters import (
-    A, C, I, I_dot, M, Omega, Omega_dot, a_A, e, e_z, l_dot, m, omega, omega_dot, rho, rho_dot, rho_G, s,
-    s_dot, w,
-)  # fmt: skip
+    A, C, I, I_dot, M, Omega, Omega_dot, a_A, e, e_z, l_dot, m, omega, omega_dot, rho, rho_dot,
+    rho_G, s, s_dot, w,
+)
 from derive.step import Step
 from derive.vectors import (
-    IDENTITY, Expression, component, cross, cross_tensor, dot, number, outer, quantity, scalar, vector,
-    zero,
-)  # fmt: skip
+    IDENTITY, Expression, component, cross, cross_tensor, dot, number, outer, quantity, scalar,
+    vector, zero,
+)
 
 pairs = ("xx", "yy", "zz", "xy", "xz", "yz")
 Ixx, Iyy, Izz, Ixy, Ixz, Iyz = (quantity(I, pair) for pair in pairs)
@@ -38,7 +41,8 @@ def mixed(first: Expression, second: Expression) -> Expression:
 GENERAL = (
     Step(
         "particle_in_axes",
-        "Seen from xyz a particle moves at (omega - Omega) x rho, for the axes carry part of its motion.",
+        "Seen from xyz a particle moves at (omega - Omega) x rho, for the axes carry part of its "
+        "motion.",
         "deduce", rho_dot, cross(relative, rho),
         ("velocity_seen_from_axes", "velocity_of_particle"),
     ),
@@ -73,7 +77,7 @@ GENERAL = (
         "gyroscopic moment.",
         "deduce", cross(omega, (scalar("c") * IDENTITY) @ omega), zero(3),
     ),
-)  # fmt: skip
+)
 
 CONSTANT_TENSOR = (
     Step("relative_turning", "Let w be how the body turns in the axes.", "define", w, relative),
@@ -84,8 +88,8 @@ CONSTANT_TENSOR = (
     ),
     Step(
         "principal_directions",
-        "Let them be principal directions of the body. Every tensor has three that are perpendicular; "
-        "principal.py computes them.",
+        "Let them be principal directions of the body. Every tensor has three that are "
+        "perpendicular; principal.py computes them.",
         "assume", I, I_1 * outer(e_1, e_1) + I_2 * outer(e_2, e_2) + I_3 * outer(e_3, e_3),
     ),
     Step(
@@ -95,8 +99,8 @@ CONSTANT_TENSOR = (
     ),
     Step(
         "inertia_rate_is_three_products",
-        "Along the principal directions the rate of the tensor is three products, each of a difference "
-        "of two moments and one component of w.",
+        "Along the principal directions the rate of the tensor is three products, each of a "
+        "difference of two moments and one component of w.",
         "deduce", I_dot,
         (product_12 * mixed(e_1, e_2)) + (product_23 * mixed(e_2, e_3))
         + (product_31 * mixed(e_3, e_1)),
@@ -115,8 +119,8 @@ CONSTANT_TENSOR = (
          I_dot, zero(3, 3)),
     Step(
         "constant_tensor_needs",
-        "Then each product vanishes: where w has a component along a principal direction, the other "
-        "two moments are equal.",
+        "Then each product vanishes: where w has a component along a principal direction, the "
+        "other two moments are equal.",
         "deduce", (product_12, product_23, product_31), (zero(), zero(), zero()),
         ("mixed_rates", "tensor_is_constant"),
     ),
@@ -129,7 +133,7 @@ CONSTANT_TENSOR = (
         "deduce", I_dot, zero(3, 3),
         ("inertia_rate_is_three_products", "products_vanish"),
     ),
-)  # fmt: skip
+)
 
 BODY_AXES = (
     Step("body_axes", "Fix the axes in the body.", "assume", Omega, omega),
@@ -159,7 +163,7 @@ BODY_AXES = (
          Izz * d_z - (Ixx - Iyy) * (o_x * o_y)),
         ("body_axes_form", "principal_axes"),
     ),
-)  # fmt: skip
+)
 
 AXISYMMETRIC = (
     Step(
@@ -197,7 +201,8 @@ AXISYMMETRIC = (
     ),
     Step(
         "steady_precession",
-        "Precession is steady: Omega and s do not change, and the axis keeps its place in the axes.",
+        "Precession is steady: Omega and s do not change, and the axis keeps its place in the "
+        "axes.",
         "assume", (Omega_dot, s_dot, vector("e_dot")), (zero(3), zero(), zero(3)),
     ),
     Step(
@@ -215,6 +220,6 @@ AXISYMMETRIC = (
         "deduce", M, (C * s) * cross(Omega, e),
         ("moment_of_steady_precession", "precession_across_axis"),
     ),
-)  # fmt: skip
+)
 
 STEPS = GENERAL + CONSTANT_TENSOR + BODY_AXES + AXISYMMETRIC

@@ -4,14 +4,19 @@ It is the same sum over particles, split into the carrier and the wheels. One ge
 enough, since the sum over the wheels is linear too. The axes are fixed in the carrier.
 """
 
+# fmt: off
+# ruff: noqa: I001
+
 from derive.lecture.letters import (
-    C, F_i, I, I_dot, M, a, d, dm, h, h_dot, l, omega, omega_dot, r, r_A, rho, rho_N_dot, s, s_dot, u,
-)  # fmt: skip
+    C, F_i, I, I_dot, M, a, d, dm, h, h_dot, l, omega, omega_dot, r, r_A, rho, rho_N_dot, s,
+    s_dot, u,
+)
 from derive.lecture.rigid_body import HALF, inertia_of
 from derive.step import Step
 from derive.vectors import (
-    IDENTITY, Expression, cross, dot, inertia, number, outer, reciprocal, scalar, total, vector, zero,
-)  # fmt: skip
+    IDENTITY, Expression, cross, dot, inertia, number, outer, reciprocal, scalar, total, vector,
+    zero,
+)
 
 sigma, sigma_dot, sigma_N_dot = vector("sigma_i"), vector("sigma_i_dot"), vector("sigma_i_N_dot")
 r_w, d_dot, d_N_dot, a_dot = vector("r_w"), vector("d_dot"), vector("d_N_dot"), vector("a_dot")
@@ -53,11 +58,12 @@ PARTS = (
     ),
     Step(
         "gyrostat_parts",
-        "The particles of a gyrostat are those of its carrier and those of its wheels, and no others.",
+        "The particles of a gyrostat are those of its carrier and those of its wheels, and no "
+        "others.",
         "assume", (l, I, K),
         (l_c + total(l_w, "wheels"), I_c + total(I_w, "wheels"), K_c + total(K_w, "wheels")),
     ),
-)  # fmt: skip
+)
 
 WHEEL = (
     Step(
@@ -122,8 +128,8 @@ WHEEL = (
         "momentum_of_wheel",
         "A wheel gives what it would give if it were locked, and h_w.",
         "deduce", l_w, I_w @ omega + h_w,
-        ("wheel_momentum", "wheel_sums", "wheel_centre_moves_with_carrier", "velocity_in_wheel", "wheel_is_balanced",
-         "wheel_axis_is_principal"),
+        ("wheel_momentum", "wheel_sums", "wheel_centre_moves_with_carrier", "velocity_in_wheel",
+         "wheel_is_balanced", "wheel_axis_is_principal"),
     ),
     Step(
         "wheel_energy",
@@ -144,7 +150,7 @@ WHEEL = (
         ("wheel_sums", "wheel_on_carrier", "wheel_spins", "wheel_is_balanced", "constant_mass",
          "wheel_tensor", "wheel_is_axisymmetric"),
     ),
-)  # fmt: skip
+)
 
 WHOLE = (
     Step(
@@ -192,8 +198,8 @@ WHOLE = (
         "gyrostat_form",
         "The moment on a gyrostat, in axes fixed in its carrier.",
         "deduce", M, I @ omega_dot + h_dot + cross(omega, I @ omega + h),
-        ("moment_is_rate_of_angular_momentum", "transport_theorem", "body_axes", "gyrostat_momentum",
-         "gyrostat_tensor_is_constant"),
+        ("moment_is_rate_of_angular_momentum", "transport_theorem", "body_axes",
+         "gyrostat_momentum", "gyrostat_tensor_is_constant"),
     ),
     Step(
         "relative_momentum_rate",
@@ -201,7 +207,7 @@ WHOLE = (
         "deduce", h_dot, total((C * s_dot) * a, "wheels"),
         ("relative_momentum", "wheel_momentum", "wheel_on_carrier", "axial_moment_is_constant"),
     ),
-)  # fmt: skip
+)
 
 MOTOR = (
     Step(
@@ -258,6 +264,6 @@ MOTOR = (
          "spin_momentum_of_wheel", "wheel_on_carrier", "wheel_axis_is_unit",
          "axial_moment_is_constant"),
     ),
-)  # fmt: skip
+)
 
 STEPS = PARTS + WHEEL + WHOLE + MOTOR

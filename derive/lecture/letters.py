@@ -36,8 +36,8 @@ p_ij = scalar("p_ij")
 r_A, v_A, a_A = vector("r_A"), vector("v_A"), vector("a_A")
 r_G, v_G, a_G, rho_G = vector("r_G"), vector("v_G"), vector("a_G"), vector("rho_G")
 m, F, M, T = scalar("m"), vector("F"), vector("M"), scalar("T")
-l, l_dot, l_N_dot = vector("l"), vector("l_dot"), vector("l_N_dot")
-I, I_dot = inertia("I"), inertia("I_dot")
+l, l_dot, l_N_dot = vector("l"), vector("l_dot"), vector("l_N_dot")  # noqa: E741
+I, I_dot = inertia("I"), inertia("I_dot")  # noqa: E741
 
 # Turning.
 b, Q, Q_dot = vector("b_i"), tensor("Q"), tensor("Q_dot")
@@ -64,7 +64,9 @@ TABLE = (
     Letter(rho_G, "position of the centre of mass G from A", "m"),
     Letter(v_G, "velocity of G seen from N", "m/s", "velocity[3]", "velocity"),
     Letter(a_G, "acceleration of G seen from N", "m/s^2"),
-    Letter(a_A, "acceleration of A seen from N", "m/s^2", "point_acceleration[3]", "point_acceleration"),
+    Letter(
+        a_A, "acceleration of A seen from N", "m/s^2", "point_acceleration[3]", "point_acceleration"
+    ),
     Letter(F, "sum of the external forces", "N", "force[3]", "force"),
     Letter(M, "moment of the external forces about A", "N m", "moment[3]", "moment"),
     Letter(l, "angular momentum about A", "kg m^2/s", "angular_momentum[3]", "angular_momentum"),
@@ -74,16 +76,26 @@ TABLE = (
     Letter(I_dot, "rate of I seen from the axes xyz", "kg m^2/s"),
     Letter(T, "kinetic energy", "J", "kinetic_energy", "kinetic_energy"),
     Letter(omega, "angular velocity of the body in N", "rad/s", "omega[3]", "omega"),
-    Letter(omega_dot, "rate of omega seen from the axes xyz", "rad/s^2", "omega_dot[3]", "omega_dot"),
+    Letter(
+        omega_dot, "rate of omega seen from the axes xyz", "rad/s^2", "omega_dot[3]", "omega_dot"
+    ),
     Letter(Omega, "angular velocity of the axes xyz in N", "rad/s"),
     Letter(Omega_dot, "rate of Omega seen from the axes xyz", "rad/s^2"),
     Letter(R, "turns components along xyz into components along N", "1"),
     Letter(q_w, "scalar part of the unit quaternion, body to N", "1", "attitude[0]", "attitude[0]"),
-    Letter(q_v, "vector part of the unit quaternion, body to N", "1", "attitude[1..3]", "attitude[1:4]"),
+    Letter(
+        q_v, "vector part of the unit quaternion, body to N", "1", "attitude[1..3]", "attitude[1:4]"
+    ),
     Letter(A, "transverse moment of inertia of an axisymmetric body", "kg m^2"),
     Letter(C, "axial moment of inertia of an axisymmetric body or wheel", "kg m^2"),
     Letter(a, "unit vector along a wheel's axis", "1"),
-    Letter(s, "spin speed relative to the axes or to the carrier", "rad/s", "wheel_speeds[n]", "wheel_speeds"),
+    Letter(
+        s,
+        "spin speed relative to the axes or to the carrier",
+        "rad/s",
+        "wheel_speeds[n]",
+        "wheel_speeds",
+    ),
     Letter(u, "motor torque on a wheel about its axis", "N m", "wheel_torques[n]", "wheel_torques"),
     Letter(h, "angular momentum of the wheels relative to the carrier", "kg m^2/s"),
 )

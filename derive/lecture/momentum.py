@@ -1,12 +1,15 @@
-"""Angular momentum: its rate is the moment, about a fixed point, about G, and about any moving point A.
+"""Angular momentum: its rate is the moment, about a fixed point, about G, about any moving point.
 
 Nothing here asks the body to be rigid. The point A may move as it likes; the price is one extra
 term, and we see exactly when it vanishes.
 """
 
+# fmt: off
+# ruff: noqa: I001
+
 from derive.lecture.letters import (
     F_i, M, a_A, a_i, dm, l, l_N_dot, m, r, r_A, r_G, rho, rho_G, rho_N_ddot, rho_N_dot, v, v_A,
-)  # fmt: skip
+)
 from derive.particles import others
 from derive.step import Step
 from derive.vectors import cross, reciprocal, scalar, total, vector, zero
@@ -37,7 +40,7 @@ ABOUT_O = (
         ("moment_about_O", "external_force", "internal_moments_vanish",
          "angular_momentum_rate_about_O"),
     ),
-)  # fmt: skip
+)
 
 ABOUT_A = (
     Step(
@@ -74,7 +77,8 @@ ABOUT_A = (
     ),
     Step(
         "internal_moments_about_A_vanish",
-        "The internal forces have no moment about A either, since they have none about O and no sum.",
+        "The internal forces have no moment about A either, since they have none about O and no "
+        "sum.",
         "deduce", total(cross(rho, others(vector("P_ij")))), zero(3),
         ("position_from_A", "internal_moments_vanish", "internal_forces_cancel"),
     ),
@@ -86,7 +90,7 @@ ABOUT_A = (
          "angular_momentum_rate_about_A", "position_from_A", "mass_centre_from_A", "mass_centre",
          "mass"),
     ),
-)  # fmt: skip
+)
 
 CASES = (
     Step("A_is_fixed", "First case: A stays where it is.", "assume", v_A, zero(3)),
@@ -110,7 +114,8 @@ CASES = (
     ),
     Step(
         "law_about_such_a_point",
-        "Then arm and acceleration are parallel, as at the contact point of a rolling uniform disc.",
+        "Then arm and acceleration are parallel, as at the contact point of a rolling uniform "
+        "disc.",
         "deduce", M, l_N_dot,
         ("moving_point", "A_accelerates_along_the_line_to_G"),
     ),
@@ -126,6 +131,6 @@ CASES = (
         "deduce", M, l_N_dot,
         ("moving_point", "reference_point"),
     ),
-)  # fmt: skip
+)
 
 STEPS = ABOUT_O + ABOUT_A + CASES

@@ -4,11 +4,14 @@ The product rule is computed on R u, nothing about it is assumed. Everything tha
 the unit vectors i, j, k follows from R^T R = 1.
 """
 
+# fmt: off
+# ruff: noqa: I001
+
 from derive.facts import ANY
 from derive.lecture.letters import (
     Omega, Omega_dot, R, R_dot, e_x, e_y, e_z, l, l_dot, l_N_dot, rho, rho_dot, rho_N_ddot,
     rho_N_dot,
-)  # fmt: skip
+)
 from derive.rate import rate
 from derive.step import Step
 from derive.vectors import axial, cross, cross_tensor, tensor, transpose, vector, zero
@@ -53,7 +56,8 @@ STEPS = (
     ),
     Step(
         "unit_vectors_turn",
-        "For the unit vectors i, j, k, the columns of R, this says that each moves at Omega x itself.",
+        "For the unit vectors i, j, k, the columns of R, this says that each moves at Omega x "
+        "itself.",
         "deduce",
         (R_dot @ e_x, R_dot @ e_y, R_dot @ e_z),
         (R @ cross(Omega, e_x), R @ cross(Omega, e_y), R @ cross(Omega, e_z)),
@@ -61,8 +65,8 @@ STEPS = (
     ),
     Step(
         "rate_seen_from_N",
-        "This is what the rate of a vector u seen from N means: write u along N's axes, which is R u, "
-        "differentiate there, and write the result along xyz again.",
+        "This is what the rate of a vector u seen from N means: write u along N's axes, which is "
+        "R u, differentiate there, and write the result along xyz again.",
         "assume", vector(f"{ANY}_N_dot"), transpose(R) @ rate(R @ any_vector),
     ),
     Step(
@@ -85,12 +89,12 @@ STEPS = (
     ),
     Step(
         "acceleration_seen_from_axes",
-        "Apply it twice: the acceleration gains the terms of the axes' own acceleration, of Coriolis, "
-        "and of the centripetal acceleration.",
+        "Apply it twice: the acceleration gains the terms of the axes' own acceleration, of "
+        "Coriolis, and of the centripetal acceleration.",
         "deduce",
         rho_N_ddot,
         vector("rho_i_ddot") + cross(Omega_dot, rho) + 2 * cross(Omega, rho_dot)
         + cross(Omega, cross(Omega, rho)),
         ("transport_of_any_vector",),
     ),
-)  # fmt: skip
+)

@@ -5,9 +5,12 @@ particles, and over all pairs for the internal forces, and see which part of the
 conclusion needs.
 """
 
+# fmt: off
+# ruff: noqa: I001
+
 from derive.lecture.letters import (
     F, F_i, P_ij, P_ji, a_G, a_i, dm, f_i, m, p_ij, r, r_G, r_j, v, v_G,
-)  # fmt: skip
+)
 from derive.particles import others
 from derive.step import Step
 from derive.vectors import cross, reciprocal, scalar, total, zero
@@ -25,7 +28,8 @@ STEPS = (
     ),
     Step(
         "external_force",
-        "So the external force is what remains of mass times acceleration without the internal forces.",
+        "So the external force is what remains of mass times acceleration without the internal "
+        "forces.",
         "deduce", F_i, dm * a_i - others(P_ij),
         ("force_on_particle", "newton"),
     ),
@@ -50,8 +54,8 @@ STEPS = (
     ),
     Step(
         "strong_third_law",
-        "The force between two particles acts along the line that joins them. Opposite forces alone "
-        "do not say this.",
+        "The force between two particles acts along the line that joins them. Opposite forces "
+        "alone do not say this.",
         "assume", P_ij, p_ij * (r - r_j),
     ),
     Step(
@@ -60,7 +64,7 @@ STEPS = (
         "deduce", total(cross(r, others(P_ij))), zero(3),
         ("internal_moments", "strong_third_law"),
     ),
-    Step("mass", "The mass of the body is the sum of the particles' masses.", "define", m, total(dm)),
+    Step("mass", "The mass of the body is the sum of the particles'.", "define", m, total(dm)),
     Step(
         "constant_mass",
         "A particle keeps its mass.",
@@ -96,4 +100,4 @@ STEPS = (
         "deduce", F, m * a_G,
         ("total_force", "external_force", "internal_forces_cancel", "mass_centre_acceleration"),
     ),
-)  # fmt: skip
+)

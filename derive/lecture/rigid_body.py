@@ -1,19 +1,22 @@
 """A rigid body: rigidity gives l = I omega, and six sums over the particles say all of I.
 
 Rigidity enters in one place only, as coordinates in the body that do not change. What follows is
-the inertia tensor: how it moves with the point, how it turns with the axes, and the energy it holds.
+the inertia tensor: how it moves with the point, turns with the axes, and the energy it holds.
 """
+
+# fmt: off
+# ruff: noqa: I001
 
 from fractions import Fraction
 
 from derive.lecture.letters import (
     F, I, M, Q, Q_dot, R, T, b, dm, l, m, omega, rho, rho_G, rho_N_dot, v, v_A, v_G,
-)  # fmt: skip
+)
 from derive.step import Step
 from derive.vectors import (
     IDENTITY, Expression, axial, component, cross, cross_tensor, dot, inertia, outer, quantity,
     scalar, tensor, total, trace, transpose, vector, zero,
-)  # fmt: skip
+)
 
 HALF = Fraction(1, 2)
 S, J, K = vector("S"), tensor("J"), scalar("K")
@@ -31,8 +34,8 @@ def inertia_of(position: Expression) -> Expression:
 RIGIDITY = (
     Step(
         "body_triad",
-        "Fix three perpendicular unit vectors in the body and make them the columns of Q. A particle "
-        "has the coordinates b in this triad.",
+        "Fix three perpendicular unit vectors in the body and make them the columns of Q. A "
+        "particle has the coordinates b in this triad.",
         "assume", rho, Q @ b,
     ),
     Step(
@@ -74,7 +77,7 @@ RIGIDITY = (
         "deduce", rho_N_dot, cross(omega, rho),
         ("velocity_in_body", "angular_velocity_turns_triad"),
     ),
-)  # fmt: skip
+)
 
 TENSOR = (
     Step(
@@ -90,8 +93,8 @@ TENSOR = (
     ),
     Step(
         "six_quantities",
-        "In components: three moments of inertia, and three products of inertia, which are plus the "
-        "sums of x y dm; the tensor carries them with a minus.",
+        "In components: three moments of inertia, and three products of inertia, which are plus "
+        "the sums of x y dm; the tensor carries them with a minus.",
         "deduce",
         tuple(quantity(I, pair) for pair in ("xx", "yy", "zz", "xy", "xz", "yz")),
         (total(dm * (y * y + z * z)), total(dm * (z * z + x * x)), total(dm * (x * x + y * y)),
@@ -153,7 +156,7 @@ TENSOR = (
         ("inertia_in_other_axes", "position_in_other_axes", "inertia_tensor",
          "axes_are_orthonormal"),
     ),
-)  # fmt: skip
+)
 
 ENERGY = (
     Step(
@@ -211,8 +214,8 @@ ENERGY = (
     ),
     Step(
         "koenig",
-        "And this is the energy of a free rigid body: that of its mass moving with G and that of its "
-        "turning about G.",
+        "And this is the energy of a free rigid body: that of its mass moving with G and that of "
+        "its turning about G.",
         "deduce", T, HALF * (m * dot(v_G, v_G)) + HALF * dot(omega, I @ omega),
         ("energy_about_mass_centre", "energy_of_turning"),
     ),
@@ -225,12 +228,13 @@ ENERGY = (
     ),
     Step(
         "power_of_free_body",
-        "For a free body the force works on the velocity of G and the moment about G on the turning.",
+        "For a free body the force works on the velocity of G and the moment about G on the "
+        "turning.",
         "deduce", scalar("T_dot"), dot(F, v_G) + dot(M, omega),
         ("kinetic_energy", "constant_mass", "velocity_through_A", "velocity_of_particle",
          "velocity_of_G", "law_about_mass_centre", "angular_momentum_rate_about_A",
          "mass_centre_motion", "mass_centre_acceleration", "A_is_G", "first_moment"),
     ),
-)  # fmt: skip
+)
 
 STEPS = RIGIDITY + TENSOR + ENERGY

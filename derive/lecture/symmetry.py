@@ -4,11 +4,14 @@ A symmetric body looks the same after the mirror or the turn: the sum over the m
 the sum over the particles. Comparing the two sums term by term is all that happens here.
 """
 
+# fmt: off
+# ruff: noqa: I001
+
 from derive.lecture.letters import I, dm, e_x, e_z, n, rho
 from derive.step import Step
 from derive.vectors import (
     IDENTITY, Expression, component, cross, dot, number, outer, quantity, scalar, total, zero,
-)  # fmt: skip
+)
 
 cos_turn, sin_turn, t = scalar("c_n"), scalar("s_n"), scalar("t_n")
 xx, yy, zz, xy, xz, yz = (quantity(I, pair) for pair in ("xx", "yy", "zz", "xy", "xz", "yz"))
@@ -33,13 +36,14 @@ def second_moments(place: Expression) -> Expression:
 MIRRORS = (
     Step(
         "mirror_xy",
-        "The xy plane is a mirror: the sum over the mirrored particles is the sum over the particles.",
+        "The xy plane is a mirror: the sum over the mirrored particles is the sum over the "
+        "particles.",
         "assume", second_moments(mirrored(e_z)), second_moments(rho),
     ),
     Step(
         "mirror_plane",
-        "In the mirror z changes its sign, and so do the two products that contain it: they vanish, "
-        "and the normal of the plane is a principal axis.",
+        "In the mirror z changes its sign, and so do the two products that contain it: they "
+        "vanish, and the normal of the plane is a principal axis.",
         "deduce", (xz, yz), (zero(), zero()),
         ("six_quantities", "mirror_xy"),
     ),
@@ -54,7 +58,7 @@ MIRRORS = (
         "deduce", (xy, xz, yz), (zero(), zero(), zero()),
         ("six_quantities", "mirror_xy", "mirror_yz"),
     ),
-)  # fmt: skip
+)
 
 ROTATION = (
     Step(
@@ -69,8 +73,8 @@ ROTATION = (
     ),
     Step(
         "turn_is_proper",
-        "The turn is neither nothing nor half a turn: its sine is not zero and has an inverse t_n. Every "
-        "n-fold axis with n = 3 or more has such a turn.",
+        "The turn is neither nothing nor half a turn: its sine is not zero and has an inverse "
+        "t_n. Every n-fold axis with n = 3 or more has such a turn.",
         "assume", sin_turn * t, number(1),
     ),
     Step(
@@ -92,6 +96,6 @@ ROTATION = (
         "deduce", I @ n, xx * n,
         ("axisymmetric_tensor", "transverse"),
     ),
-)  # fmt: skip
+)
 
 STEPS = MIRRORS + ROTATION
