@@ -52,6 +52,8 @@ CONTRACTION_ON = """
 #pragma STDC FP_CONTRACT ON
 #elif defined(__GNUC__)
 #pragma GCC pop_options
+#pragma GCC push_options
+#pragma GCC optimize("fp-contract=fast", "no-tree-slp-vectorize")
 #endif
 #endif"""
 
