@@ -216,6 +216,24 @@ def _same_over(function: Any, values: Mapping[str, Any], output: str, over: str)
     return all(same_bits(apart[name], joint[name]) for name in apart)
 
 
+def refusal(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
+    """Yield whether set-up refuses parameters that are no body's, and no others."""
+    setup = emitted.library.setup
+    if not setup.positive:
+        return
+    good = [emitted.constants(s)["status"] == [0.0] for s in each]
+    lost = [_with(s, dict.fromkeys(s.values, float("nan"))) for s in each]
+    turned = [_with(s, {name: -x for name, x in s.values.items()}) for s in each]
+    bad = [emitted.constants(s)["status"] == [1.0] for s in (*lost, *turned)]
+    says = f"{sum(good)} of {len(good)} bodies taken, {sum(bad)} of {len(bad)} others refused"
+    outcome = JUDGED[all(good) and all(bad)]
+    yield _verdict(emitted, setup, "refuses what is no body", outcome, says)
+
+
+def _with(sample: Sample, values: dict[str, float]) -> Sample:
+    return Sample(sample.number, sample.kind, values)
+
+
 def dense(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether the whole matrices hold the nonzeros in their places, and zeros elsewhere."""
     for program in emitted.library.functions:

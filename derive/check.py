@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from derive.agreement import accuracy, aliasing, casadi_bits, dense, replay
+from derive.agreement import accuracy, aliasing, casadi_bits, dense, refusal, replay
 from derive.compiler import Compiler, CompilerError, compiler
 from derive.emitted import Emitted, Files, casadi_module, files, is_double, loaded
 from derive.invariants import power_balance, turned_axes
@@ -17,7 +17,7 @@ from derive.library import Library, library
 from derive.prove import ProofError, prove
 from derive.sample import Sample, samples
 from derive.scene import load
-from derive.verdict import Verdict
+from derive.verdict import JUDGED, Verdict
 
 ORDINARY, CORNERS, FEW = 300, 6, 8
 
@@ -39,6 +39,10 @@ def check_library(
 ) -> Iterator[Verdict]:
     """Yield the verdicts on one scene's files, at so many ordinary samples and the corners."""
     yield proof(made)
+    described = interface(made, found)
+    yield described
+    if described.outcome == "FAILS":
+        return
     emitted = loaded(made, found, workshop, with_)
     try:
         for one in emitted:
@@ -61,6 +65,23 @@ def proof(made: Library) -> Verdict:
     return Verdict(name, "all", "exact", "satisfies the lecture", "holds", says)
 
 
+def interface(made: Library, found: Files) -> Verdict:
+    """Return whether the JSON describes the functions that the scene asks for."""
+    name, says = made.known.scene.name, ""
+    described = {f["name"]: f["arguments"] for f in found.manifest["functions"]}
+    programs = [*([made.setup] if made.constants else []), *made.functions]
+    for program in programs:
+        every = (*program.inputs, *program.outputs)
+        meant = {q.name: list(q.components) for q in every if q.name != "constants"}
+        given = {a["name"]: a["components"] for a in described.get(program.name, ())}
+        given.pop("constants", None)
+        if meant != given:
+            says = f"{program.name}: the JSON and the scene disagree; run `derive generate {name}`"
+    outcome = JUDGED[not says]
+    says = says or f"{len(described)} functions"
+    return Verdict(name, "all", "", "describes the scene's functions", outcome, says)
+
+
 def _on_files(one: Emitted, check_: str, says: str) -> Verdict:
     scene = one.library.known.scene.name
     return Verdict(scene, "all", one.precision.name, check_, "holds", says)
@@ -74,6 +95,7 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
     yield from replay(one, each)
     yield from dense(one, few)
     yield from aliasing(one, few)
+    yield from refusal(one, few)
     if is_double(one):
         yield from casadi_bits(one, casadi_module(one.library, found, workshop), each)
         plain = [s for s in each if s.kind == "ordinary"][: FEW * FEW]

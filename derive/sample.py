@@ -8,6 +8,7 @@ short numbers would be exact in double and flatter it. The same numbers on any m
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import sqrt
 from random import Random
 
 from derive.arithmetic import rounded
@@ -120,7 +121,7 @@ def uniform(dice: Random, q: Quantity) -> float:
 
 def _unit(values: Sequence[float]) -> list[float]:
     """Return a direction of unit length, by operations that every machine rounds alike."""
-    size = sum((x * x for x in values), 0.0) ** 0.5
+    size = sqrt(sum((x * x for x in values), 0.0))
     return [x / size for x in values]
 
 

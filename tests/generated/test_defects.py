@@ -1,0 +1,47 @@
+"""Every seeded defect is caught by the checks that claim it, and the scenes as they are pass."""
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from derive.check import check_library
+from derive.compiler import Compiler, compiler
+from derive.library import Library
+from derive.verdict import Verdict
+from tests.defects import DEFECTS, Defect, files, printed, scene_library
+
+SAMPLES = 12
+
+
+@pytest.fixture(scope="module")
+def workshop(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("defects")
+
+
+@cache
+def original(name: str) -> Library:
+    return scene_library(name)
+
+
+def verdicts(made: Library, texts: dict[str, str], place: Path, with_: Compiler) -> list[Verdict]:
+    return list(check_library(made, files(texts), place, with_, SAMPLES))
+
+
+@pytest.mark.parametrize("name", sorted({d.scene for d in DEFECTS}))
+def test_the_scene_as_it_is_passes_every_check(name: str, workshop: Path) -> None:
+    rows = verdicts(original(name), printed(original(name)), workshop, compiler())
+    assert [row for row in rows if row.outcome == "FAILS"] == []
+
+
+@pytest.mark.parametrize("defect", DEFECTS, ids=lambda d: d.name)
+def test_a_seeded_defect_is_caught(defect: Defect, workshop: Path) -> None:
+    made = original(defect.scene)
+    rows = verdicts(made, defect.mutant(made), workshop, compiler())
+    failed = {row.check for row in rows if row.outcome == "FAILS"}
+    assert set(defect.killed_by) <= failed
+
+
+def test_there_are_at_least_twelve_defects_each_with_its_story() -> None:
+    assert len({d.name for d in DEFECTS}) == len(DEFECTS) >= 12
+    assert all(d.story and d.killed_by for d in DEFECTS)

@@ -1,0 +1,117 @@
+"""Errors are counted in u of the largest term, and every figure keeps its bounds."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from flint import arb, arb_mat, ctx
+
+from derive.agreement import LARGEST_BOUND, MEDIAN_BOUND
+from derive.arithmetic import extended, paired
+from derive.c_text import F32, F64, PRECISIONS, Precision
+from derive.library import Library, library
+from derive.measure import Expected, component_names, error, figures, upwards
+from derive.program import Measurement, run
+from derive.prove import WIDE_BALLS
+from derive.sample import samples
+from derive.scene import catalogue, load
+
+
+@cache
+def scene_library(name: str) -> Library:
+    return library(load(name))
+
+
+@cache
+def measured(name: str) -> tuple[Measurement, ...]:
+    return figures(scene_library(name))
+
+
+@pytest.mark.parametrize("name", catalogue())
+def test_half_of_the_errors_are_within_two_u_and_all_within_sixteen(name: str) -> None:
+    assert all(m.median <= MEDIAN_BOUND and m.worst <= LARGEST_BOUND for m in measured(name))
+
+
+@pytest.mark.parametrize("name", catalogue())
+def test_every_output_of_every_function_is_measured_in_both_precisions(name: str) -> None:
+    made = scene_library(name)
+    wanted = {
+        (f.name, q.name, p.name) for f in made.functions for q in f.outputs for p in PRECISIONS
+    }
+    assert {(m.function, m.output, m.precision) for m in measured(name)} == wanted
+
+
+def test_figures_are_the_same_every_time() -> None:
+    assert figures(scene_library("heavy_top")) == measured("heavy_top")
+
+
+@pytest.mark.parametrize("precision", PRECISIONS, ids=lambda p: p.name)
+def test_one_rounding_is_half_an_ulp_or_one_u(precision: Precision) -> None:
+    with ctx.workprec(200):
+        third = Expected(arb(1) / 3, 1 / 3, 1.0)
+    wrong = error(float(precision.dtype(1 / 3)), third, precision)
+    assert 0 < wrong <= 1
+    assert error(float("nan"), third, precision) == float("inf")
+
+
+def test_no_term_counts_as_smaller_than_the_smallest_normal_number() -> None:
+    tiny = float(np.finfo(np.float32).smallest_subnormal)
+    assert error(0.0, Expected(arb(tiny / 2), tiny / 2, 1.0), F32) == 1.0
+    assert error(0.0, Expected(arb(tiny / 2), tiny / 2, 8.0), F32) == 0.125
+
+
+def test_figures_are_printed_rounded_up() -> None:
+    assert [upwards(x) for x in (0.0, 0.701, 1.0, 9.91, 12.3)] == [0.0, 0.71, 1.0, 10.0, 13.0]
+
+
+# Set-up: within 1 ulp up to condition 1e12 in double, 1e6 in float.
+CONDITIONS = [(F64, 1e-3), (F64, 1e-9), (F64, 1e-12), (F32, 1e-3), (F32, 1e-6)]
+
+
+@pytest.mark.parametrize(("precision", "small"), CONDITIONS, ids=lambda v: getattr(v, "name", v))
+@pytest.mark.parametrize("name", ["free_body", "rigid_body"])
+def test_constants_are_within_an_ulp(name: str, precision: Precision, small: float) -> None:
+
+    made = scene_library(name)
+    worst = 0.0
+    for number, sample in enumerate(samples(made.known, precision, 12, 0).each):
+        values = dict(sample.values) | slender(small * (1 + number / 16), precision)
+        worst = max(worst, largest_ulps(made, values, precision))
+    assert worst <= 1.0
+
+
+def slender(small: float, precision: Precision) -> dict[str, float]:
+    """Return the parameters of a slender body, turned so that its tensor is full."""
+    turn = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
+    tensor = turn @ np.diag([1.0, 1.0 + small / 2, small]) @ turn.T
+    signs = {"xx": 1, "yy": 1, "zz": 1, "xy": -1, "xz": -1, "yz": -1}
+    places = {"x": 0, "y": 1, "z": 2}
+    return {
+        f"I_{a}{b}": float(precision.dtype(signs[a + b] * tensor[places[a], places[b]]))
+        for a, b in signs
+    }
+
+
+def largest_ulps(made: Library, values: dict[str, float], precision: Precision) -> float:
+
+    names = [c for q in made.setup.inputs for c in q.components]
+    given = np.array([[values[n]] for n in names], precision.dtype)
+    found = [float(r[0][0]) for r in run(made.setup, extended(precision.dtype), paired(given))]
+    with ctx.workprec(400):
+        true = run(made.setup, WIDE_BALLS, [arb(values[n]) for n in names])
+        constants = dict(zip(component_names(made.setup), true, strict=True))
+        assert_inverse(constants, values)
+        return max(ulps(x, y, precision) for x, y in zip(found, true, strict=True))
+
+
+def ulps(found: float, true: arb, precision: Precision) -> float:
+    size = abs(float(np.spacing(precision.dtype(abs(float(true.mid()))))))
+    return abs(float((arb(found) - true).mid() / arb(size)))
+
+
+def assert_inverse(constants: dict[str, arb], values: dict[str, float]) -> None:
+    """Assert that the constants J are the inverse tensor, as another library inverts it."""
+    xx, yy, zz, xy, xz, yz = (arb(values[f"I_{p}"]) for p in ("xx", "yy", "zz", "xy", "xz", "yz"))
+    inverse = arb_mat([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]).inv()
+    for i, k in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)):
+        assert constants[f"J_{'xyz'[i]}{'xyz'[k]}"].overlaps(inverse[i, k])
