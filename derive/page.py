@@ -19,7 +19,7 @@ from derive.vectors import components
 ENDS = (
     "mass_centre_motion", "angular_momentum", "rate_in_axes", "transport_theorem", "general_form",
     "moving_point_form", "kinetic_energy_about_point", "koenig", "gyrostat_momentum",
-    "gyrostat_form", "wheel_equation", "wheel_energy", "rotation_of_vector",
+    "gyrostat_form", "wheel_equation", "gyrostat_energy", "rotation_of_vector",
     "quaternion_rate_scalar", "quaternion_rate_vector", "angular_velocities_add",
 )  # fmt: skip
 # Steps that are also shown along x, y and z.

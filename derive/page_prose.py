@@ -19,7 +19,8 @@ def prose(text: str) -> Markup:
     >>> prose("R^T R = 1 & so on")
     Markup('R<sup>T</sup> R = 1 &amp; so on')
     """
-    shown = _CROSS.sub(" × ", escape(text, quote=False).replace("]x", "]×"))
+    shown = escape(text, quote=False).replace("]x", "]×").replace(" - ", " − ")
+    shown = _CROSS.sub(" × ", shown)
     shown = re.sub(r"\^([T2])\b", r"<sup>\1</sup>", shown)
     return Markup(_WORD.sub(_symbol, shown))  # noqa: S704 (escaped above)
 

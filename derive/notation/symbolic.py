@@ -81,7 +81,8 @@ def _product(expression: Expr, names: Names) -> Layout:
 
 def _factor_key(factor: Expr, names: Names) -> tuple[bool, str, str]:
     base, exponent = factor.as_base_exp()
-    return base.func in _FUNCTIONS, _first(factor), plain(_power(base, abs(exponent), names))
+    size = abs(exponent) if exponent.is_Rational else exponent
+    return base.func in _FUNCTIONS, _first(factor), plain(_power(base, size, names))
 
 
 def _power(base: Expr, exponent: Expr, names: Names) -> Layout:
