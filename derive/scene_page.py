@@ -13,6 +13,7 @@ from derive.notation import name_mathml
 from derive.page_code import listing
 from derive.page_equation import Passage, letter, passages, taken_names
 from derive.page_pattern import pattern
+from derive.page_prose import prose
 from derive.page_words import given
 from derive.program import Measurement, Program, Quantity
 
@@ -61,6 +62,7 @@ def scene_page(library: Library, figures: Sequence[Measurement]) -> str:
     return TEMPLATES.get_template("scene.html.jinja").render(
         first_line=first_line(library).replace("--", "- -"),
         scene=scene,
+        prose=prose,
         given=given(scene),
         assumptions=[step for step in LECTURE.steps if step.name in rests_on],
         constants=library.constants,
