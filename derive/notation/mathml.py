@@ -85,6 +85,17 @@ def _total(layout: Layout) -> str:
     return f"<mrow>{sign}{_open(layout.parts[0])}</mrow>"
 
 
+def _product(layout: Layout) -> str:
+    """Return factors side by side, with a thin space before the name of a function."""
+    first, *rest = layout.parts
+    text = row(first)
+    for factor in rest:
+        base = factor.parts[0] if factor.kind == "power" else factor
+        space = '<mspace width="0.17em"/>' if base.kind == "call" else ""
+        text += f"<mo>&#8290;</mo>{space}{row(factor)}"
+    return f"<mrow>{text}</mrow>"
+
+
 def _joined(sign: str) -> Callable[[Layout], str]:
     return lambda layout: f"<mrow>{f'<mo>{sign}</mo>'.join(map(row, layout.parts))}</mrow>"
 
@@ -158,7 +169,7 @@ _FORMS: dict[str, Callable[[Layout], str]] = {
     "number": lambda x: f"<mn>{x.number}</mn>",
     "negative": lambda x: f"<mrow><mo>−</mo>{_open(x.parts[0])}</mrow>",
     "sum": _sum,
-    "product": _joined("&#8290;"),
+    "product": _product,
     "infix": lambda x: _joined(_SIGNS[x.text])(x),
     "equal": _joined("="),
     "fraction": lambda x: f"<mfrac>{row(x.parts[0])}{row(x.parts[1])}</mfrac>",
