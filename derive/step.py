@@ -78,8 +78,17 @@ class Derivation:
         return replace(self, steps=tuple(fewer))
 
     def facts(self, step: Step) -> Facts:
-        """Return what a step may use, and no more."""
-        return Facts.of((self[reason].claims for reason in step.using), dict(step.instance))
+        """Return what a step may use, and no more; a false instance may use nothing."""
+        if not step.instance:
+            return Facts.of((self[reason].claims for reason in step.using), {})
+        theorems = [self[reason] for reason in step.using if self[reason].kind != "define"]
+        sound = not _false_instance(self, step)
+        return Facts.of((each.claims for each in theorems if sound), dict(step.instance))
+
+    def behind(self, *names: str) -> frozenset[str]:
+        """Return the names of the steps ``names`` and of all that they rest on."""
+        reasons = {reason for name in names for reason in self[name].using}
+        return frozenset(names) | (self.behind(*sorted(reasons)) if reasons else frozenset())
 
     def gap(self, step: Step) -> tuple[Expr, ...]:
         """Return left - right of a step, entry by entry, by its reasons and by nothing else."""
@@ -183,21 +192,25 @@ def _smuggled(step: Step, spoken: set[str]) -> str:
 def _false_instance(derivation: Derivation, step: Step) -> str:
     """A theorem holds for another body if that body's quantities are defined by the same sums."""
     names = dict(step.instance)
-    definitions = {
-        left.name: right
-        for other in derivation.steps
-        if other.kind == "define"
-        for left, right in other.claims
-    }
+    reasons = [derivation[reason] for reason in step.using]
+    theorems = [each for each in reasons if each.kind != "define"]
     for old, new in step.instance:
         if root(new) != names.get(root(old)):
             return f"{new} is not to {root(new)} what {old} is to {root(old)}"
-        if old in definitions and renamed(definitions[old], names) != definitions.get(new):
-            return f"{new} is not defined as {old} is"
-    spoken = {name for reason in step.using for name in _names(derivation[reason])}
-    if kept := sorted(spoken - set(names)):
+    if kept := sorted({name for each in theorems for name in _names(each)} - set(names)):
         return f"does not say what {kept[0]} is for the other body"
+    general = derivation.behind(*(each.name for each in theorems))
+    defined = _definitions(reasons)
+    for old, right in _definitions([s for s in derivation.steps if s.name in general]).items():
+        new = names.get(old, old)
+        if renamed(right, names) != (right if new == old else defined.get(new)):
+            return f"{new} is not defined as {old} is"
     return ""
+
+
+def _definitions(steps: list[Step]) -> dict[str, Expression]:
+    claims = (claim for step in steps if step.kind == "define" for claim in step.claims)
+    return {left.name: right for left, right in claims}
 
 
 def _names(step: Step) -> set[str]:

@@ -26,7 +26,6 @@ m_w, r_Gw, sigma_G = scalar("m_w"), vector("r_Gw"), vector("sigma_G")
 r_w_N_ddot = vector("r_w_N_ddot")
 l_s, l_s_N_dot, M_w = vector("l_s"), vector("l_s_N_dot"), vector("M_w")
 h_w, T_w, K, K_c, K_w = vector("h_w"), scalar("T_w"), scalar("K"), scalar("K_c"), scalar("K_w")
-velocity = d_N_dot + sigma_N_dot
 D, A_w = inertia("D"), scalar("A_w")
 
 
@@ -43,11 +42,17 @@ PARTS = (
         "define", sigma, r - r_w,
     ),
     Step(
+        "place_in_wheel",
+        "So its place from A is the centre's and its own.",
+        "deduce", rho, d + sigma,
+        ("position_from_A", "wheel_centre", "position_in_wheel"),
+    ),
+    Step(
         "wheel_sums",
         "Each wheel gives its share to the angular momentum, the inertia tensor and the energy K.",
         "define", (l_w, I_w, K_w),
-        (over_wheel(cross(d + sigma, dm * velocity)), over_wheel(inertia_of(d + sigma)),
-         HALF * over_wheel(dm * dot(velocity, velocity))),
+        (over_wheel(cross(rho, dm * rho_N_dot)), over_wheel(inertia_of(rho)),
+         HALF * over_wheel(dm * dot(rho_N_dot, rho_N_dot))),
     ),
     Step(
         "carrier_sums",
@@ -128,8 +133,8 @@ WHEEL = (
         "momentum_of_wheel",
         "A wheel gives what it would give if it were locked, and h_w.",
         "deduce", l_w, I_w @ omega + h_w,
-        ("wheel_momentum", "wheel_sums", "wheel_centre_moves_with_carrier", "velocity_in_wheel",
-         "wheel_is_balanced", "wheel_axis_is_principal"),
+        ("wheel_momentum", "wheel_sums", "place_in_wheel", "wheel_centre_moves_with_carrier",
+         "velocity_in_wheel", "wheel_is_balanced", "wheel_axis_is_principal"),
     ),
     Step(
         "wheel_energy",
@@ -140,15 +145,16 @@ WHEEL = (
         "energy_of_wheel",
         "A wheel gives what it would give if it were locked, and T_w.",
         "deduce", K_w, HALF * dot(omega, I_w @ omega) + T_w,
-        ("wheel_energy", "wheel_sums", "wheel_centre_moves_with_carrier", "velocity_in_wheel",
-         "wheel_is_balanced", "wheel_axis_is_principal", "wheel_axis_is_unit"),
+        ("wheel_energy", "wheel_sums", "place_in_wheel", "wheel_centre_moves_with_carrier",
+         "velocity_in_wheel", "wheel_is_balanced", "wheel_axis_is_principal",
+         "wheel_axis_is_unit"),
     ),
     Step(
         "wheel_tensor_is_constant",
         "Though its particles move, the spinning of an axisymmetric wheel leaves its tensor alone.",
         "deduce", I_w_dot, zero(3, 3),
-        ("wheel_sums", "wheel_on_carrier", "wheel_spins", "wheel_is_balanced", "constant_mass",
-         "wheel_tensor", "wheel_is_axisymmetric"),
+        ("wheel_sums", "place_in_wheel", "wheel_on_carrier", "wheel_spins", "wheel_is_balanced",
+         "constant_mass", "wheel_tensor", "wheel_is_axisymmetric"),
     ),
 )
 
@@ -226,7 +232,7 @@ MOTOR = (
         "wheel_obeys_the_same_law",
         "The law about a moving point was shown for any cloud of particles, so for the wheel's.",
         "deduce", M_w, l_s_N_dot + cross(sigma_G, m_w * r_w_N_ddot),
-        ("moving_point",),
+        ("moving_point", "position_in_wheel", "moment_on_wheel", "mass_centre_of_wheel"),
         (("body", "wheel"), ("r_A", "r_w"), ("a_A", "r_w_N_ddot"), ("r_G", "r_Gw"),
          ("rho_G", "sigma_G"), ("m", "m_w"), ("rho_i", "sigma_i"),
          ("rho_i_N_dot", "sigma_i_N_dot"), ("l", "l_s"), ("l_N_dot", "l_s_N_dot"), ("M", "M_w")),

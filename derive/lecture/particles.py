@@ -64,7 +64,7 @@ STEPS = (
         "deduce", total(cross(r, others(P_ij))), zero(3),
         ("internal_moments", "strong_third_law"),
     ),
-    Step("mass", "The mass of the body is the sum of the particles'.", "define", m, total(dm)),
+    Step("mass", "The mass of the body is that of all its particles.", "define", m, total(dm)),
     Step(
         "constant_mass",
         "A particle keeps its mass.",
