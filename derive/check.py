@@ -101,15 +101,11 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
         plain = [s for s in each if s.kind == "ordinary"][: FEW * FEW]
         yield from power_balance(one, plain)
         yield from turned_axes(one, plain)
-    for kind in drawn.skipped:
-        yield Verdict(
-            one.library.known.scene.name,
-            "all",
-            one.precision.name,
-            f"corner '{kind}'",
-            "skipped",
-            "the scene cannot take it",
-        )
+    if drawn.skipped:
+        kinds = ", ".join(drawn.skipped)
+        name = one.library.known.scene.name
+        says = f"{len(drawn.skipped)} kinds that the scene cannot take: {kinds}"
+        yield Verdict(name, "all", one.precision.name, "hard corners", "skipped", says)
 
 
 def spread(each: Sequence[Sample]) -> tuple[Sample, ...]:

@@ -102,7 +102,7 @@ def _powers(known: Specialised, values: Values) -> list[float]:
     omega = [values[c] for c in known.words["omega"].components]
     powers = [m * w for m, w in zip(moment, omega, strict=True)]
     powers += [values[w.torque.name] * values[w.speed.name] for w in known.scene.wheels]
-    if "attitude" in known.words:
+    if "force" in known.words:
         force, velocity = (
             [values[c] for c in known.words[n].components] for n in ("force", "velocity")
         )

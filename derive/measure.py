@@ -110,7 +110,8 @@ def replayed(
     }
     with np.errstate(all="ignore"):
         constants = _replay(library.setup, pairs, known)
-        known |= dict(zip(component_names(library.setup), constants, strict=True))
+        each_one = [np.broadcast_to(c, len(each)).astype(precision.dtype) for c in constants]
+        known |= dict(zip(component_names(library.setup), each_one, strict=True))
         return {
             p.name: _replay(p, pairs if p.arithmetic == "pairs" else table, known)
             for p in library.functions

@@ -66,11 +66,11 @@ FRACTIONS: Table = _INFIX | {
     "pi": lambda: fmpq(355, 113),  # any value will do: pi enters nowhere but as a name
     "power_of_two": _power_of_two,
     "inverse": _inverse,
-    "size": lambda _: 0.0,
+    "size": lambda _: 1.0,
 }
 
 WIDE_BALLS: Table = (
-    _INFIX | dict(BALLS) | {"power_of_two": lambda x: x * 0 + 1, "size": lambda _: 0.0}
+    _INFIX | dict(BALLS) | {"power_of_two": lambda x: x * 0 + 1, "size": lambda _: 1.0}
 )
 
 
