@@ -110,7 +110,9 @@ def replayed(
     }
     with np.errstate(all="ignore"):
         constants = _replay(library.setup, pairs, known)
-        each_one = [np.broadcast_to(c, len(each)).astype(precision.dtype) for c in constants]
+        each_one: list[NDArray[Any]] = [
+            np.broadcast_to(c, len(each)).astype(precision.dtype) for c in constants
+        ]
         known |= dict(zip(component_names(library.setup), each_one, strict=True))
         return {
             p.name: _replay(p, pairs if p.arithmetic == "pairs" else table, known)
