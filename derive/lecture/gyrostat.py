@@ -26,6 +26,12 @@ m_w, r_Gw, sigma_G = scalar("m_w"), vector("r_Gw"), vector("sigma_G")
 r_w_N_ddot = vector("r_w_N_ddot")
 l_s, l_s_N_dot, M_w = vector("l_s"), vector("l_s_N_dot"), vector("M_w")
 h_w, T_w, K, K_c, K_w = vector("h_w"), scalar("T_w"), scalar("K"), scalar("K_c"), scalar("K_w")
+spin_momentum = (C * s) * a
+spin_energy = (C * s) * dot(a, omega) + HALF * (C * (s * s))
+SPINNING = (
+    "wheel_sums", "place_in_wheel", "wheel_centre_moves_with_carrier", "velocity_in_wheel",
+    "wheel_is_balanced", "wheel_axis_is_principal",
+)
 D, A_w = inertia("D"), scalar("A_w")
 
 
@@ -125,29 +131,33 @@ WHEEL = (
         ("axial_moment", "wheel_tensor", "wheel_on_carrier", "wheel_spins", "constant_mass"),
     ),
     Step(
-        "wheel_momentum",
-        "Call h_w the momentum that a wheel has by its spinning.",
-        "define", h_w, (C * s) * a,
+        "wheel_share",
+        "Call h_w and T_w what a wheel gives beyond what it would give if it were locked.",
+        "define", (h_w, T_w), (l_w - I_w @ omega, K_w - HALF * dot(omega, I_w @ omega)),
     ),
     Step(
-        "momentum_of_wheel",
-        "A wheel gives what it would give if it were locked, and h_w.",
-        "deduce", l_w, I_w @ omega + h_w,
-        ("wheel_momentum", "wheel_sums", "place_in_wheel", "wheel_centre_moves_with_carrier",
-         "velocity_in_wheel", "wheel_is_balanced", "wheel_axis_is_principal"),
+        "wheel_momentum",
+        "By spinning it gives C s along its axis to the momentum.",
+        "deduce", h_w, spin_momentum,
+        ("wheel_share", *SPINNING),
     ),
     Step(
         "wheel_energy",
-        "Call T_w the energy that a wheel has by its spinning.",
-        "define", T_w, (C * s) * dot(a, omega) + HALF * (C * (s * s)),
+        "And this to the energy.",
+        "deduce", T_w, spin_energy,
+        ("wheel_share", *SPINNING, "wheel_axis_is_unit"),
+    ),
+    Step(
+        "momentum_of_wheel",
+        "So this is the momentum of a wheel.",
+        "deduce", l_w, I_w @ omega + spin_momentum,
+        ("wheel_share", "wheel_momentum"),
     ),
     Step(
         "energy_of_wheel",
-        "A wheel gives what it would give if it were locked, and T_w.",
-        "deduce", K_w, HALF * dot(omega, I_w @ omega) + T_w,
-        ("wheel_energy", "wheel_sums", "place_in_wheel", "wheel_centre_moves_with_carrier",
-         "velocity_in_wheel", "wheel_is_balanced", "wheel_axis_is_principal",
-         "wheel_axis_is_unit"),
+        "And this is its energy.",
+        "deduce", K_w, HALF * dot(omega, I_w @ omega) + spin_energy,
+        ("wheel_share", "wheel_energy"),
     ),
     Step(
         "wheel_tensor_is_constant",
@@ -174,7 +184,7 @@ WHOLE = (
     Step(
         "relative_momentum",
         "h is what all the wheels add by spinning.",
-        "define", h, total(h_w, "wheels"),
+        "define", h, total(spin_momentum, "wheels"),
     ),
     Step(
         "gyrostat_momentum",
@@ -191,7 +201,7 @@ WHOLE = (
     Step(
         "gyrostat_energy",
         "The energy of the whole relative to A, wheels locked, and what each wheel adds.",
-        "deduce", K, HALF * dot(omega, I @ omega) + total(T_w, "wheels"),
+        "deduce", K, HALF * dot(omega, I @ omega) + total(spin_energy, "wheels"),
         ("gyrostat_parts", "energy_of_carrier", "energy_of_wheel"),
     ),
     Step(
@@ -211,7 +221,7 @@ WHOLE = (
         "relative_momentum_rate",
         "In the carrier h changes only as the wheels spin up or down.",
         "deduce", h_dot, total((C * s_dot) * a, "wheels"),
-        ("relative_momentum", "wheel_momentum", "wheel_on_carrier", "axial_moment_is_constant"),
+        ("relative_momentum", "wheel_on_carrier", "axial_moment_is_constant"),
     ),
 )
 

@@ -9,13 +9,11 @@ from derive.vectors import Expression, inertia, scalar, tensor, unit, vector
 
 @dataclass(frozen=True)
 class Letter:
-    """One row of the table of symbols; what carries it in emitted code, if anything does."""
+    """One row of the table of symbols."""
 
     symbol: Expression
     says: str
     si_unit: str
-    in_c: str = ""
-    in_casadi: str = ""
 
     @property
     def name(self) -> str:
@@ -62,40 +60,28 @@ TABLE = (
     Letter(P_ij, "force on particle i from particle j", "N"),
     Letter(m, "mass of the body", "kg"),
     Letter(rho_G, "position of the centre of mass G from A", "m"),
-    Letter(v_G, "velocity of G seen from N", "m/s", "velocity[3]", "velocity"),
+    Letter(v_G, "velocity of G seen from N", "m/s"),
     Letter(a_G, "acceleration of G seen from N", "m/s^2"),
-    Letter(
-        a_A, "acceleration of A seen from N", "m/s^2", "point_acceleration[3]", "point_acceleration"
-    ),
-    Letter(F, "sum of the external forces", "N", "force[3]", "force"),
-    Letter(M, "moment of the external forces about A", "N m", "moment[3]", "moment"),
-    Letter(l, "angular momentum about A", "kg m^2/s", "angular_momentum[3]", "angular_momentum"),
-    Letter(l_N_dot, "rate of l seen from N", "N m", "rate_absolute[3]", "rate_absolute"),
-    Letter(l_dot, "rate of l seen from the axes xyz", "N m", "rate_in_axes[3]", "rate_in_axes"),
+    Letter(a_A, "acceleration of A seen from N", "m/s^2"),
+    Letter(F, "sum of the external forces", "N"),
+    Letter(M, "moment of the external forces about A", "N m"),
+    Letter(l, "angular momentum about A", "kg m^2/s"),
+    Letter(l_N_dot, "rate of l seen from N", "N m"),
+    Letter(l_dot, "rate of l seen from the axes xyz", "N m"),
     Letter(I, "inertia tensor about A along xyz", "kg m^2"),
     Letter(I_dot, "rate of I seen from the axes xyz", "kg m^2/s"),
-    Letter(T, "kinetic energy", "J", "kinetic_energy", "kinetic_energy"),
-    Letter(omega, "angular velocity of the body in N", "rad/s", "omega[3]", "omega"),
-    Letter(
-        omega_dot, "rate of omega seen from the axes xyz", "rad/s^2", "omega_dot[3]", "omega_dot"
-    ),
+    Letter(T, "kinetic energy", "J"),
+    Letter(omega, "angular velocity of the body in N", "rad/s"),
+    Letter(omega_dot, "rate of omega seen from the axes xyz", "rad/s^2"),
     Letter(Omega, "angular velocity of the axes xyz in N", "rad/s"),
     Letter(Omega_dot, "rate of Omega seen from the axes xyz", "rad/s^2"),
     Letter(R, "turns components along xyz into components along N", "1"),
-    Letter(q_w, "scalar part of the unit quaternion, body to N", "1", "attitude[0]", "attitude[0]"),
-    Letter(
-        q_v, "vector part of the unit quaternion, body to N", "1", "attitude[1..3]", "attitude[1:4]"
-    ),
+    Letter(q_w, "scalar part of the unit quaternion, body to N", "1"),
+    Letter(q_v, "vector part of the unit quaternion, body to N", "1"),
     Letter(A, "transverse moment of inertia of an axisymmetric body", "kg m^2"),
     Letter(C, "axial moment of inertia of an axisymmetric body or wheel", "kg m^2"),
     Letter(a, "unit vector along a wheel's axis", "1"),
-    Letter(
-        s,
-        "spin speed relative to the axes or to the carrier",
-        "rad/s",
-        "wheel_speeds[n]",
-        "wheel_speeds",
-    ),
-    Letter(u, "motor torque on a wheel about its axis", "N m", "wheel_torques[n]", "wheel_torques"),
+    Letter(s, "spin speed relative to the axes or to the carrier", "rad/s"),
+    Letter(u, "motor torque on a wheel about its axis", "N m"),
     Letter(h, "angular momentum of the wheels relative to the carrier", "kg m^2/s"),
 )

@@ -1,0 +1,115 @@
+"""Principal axes against fifty digits, on ordinary tensors and on the hard ones."""
+
+from math import isclose
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mpmath import eigsy, matrix, mp, mpf
+
+from derive.principal import PrincipalAxes, principal_axes
+
+Rows = list[list[float]]
+U = 2.0**-53
+MOMENTS = 16 * U  # a few roundings of each rotation, five or six sweeps of three
+DIRECTIONS = 64 * U  # the same, divided by the gap over the size of the part that was turned
+
+
+def tensor_of(xx: float, yy: float, zz: float, xy: float, xz: float, yz: float) -> Rows:
+    """Return rows; the products enter with minus."""
+    return [[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]
+
+
+def moments_of(tensor: Rows) -> list[mpf]:
+    """Return the moments in fifty digits, ascending, beyond what any float rounding reaches."""
+    with mp.workdps(50):
+        return sorted(eigsy(matrix(tensor), eigvals_only=True))
+
+
+def residual(tensor: Rows, axes: PrincipalAxes) -> float:
+    """Return the largest |I n - moment n|, in fifty digits."""
+    with mp.workdps(50):
+        return float(
+            max(
+                abs(sum(mpf(row[k]) * n[k] for k in range(3)) - mpf(moment) * n[i])
+                for moment, n in zip(axes.moments, axes.directions, strict=True)
+                for i, row in enumerate(tensor)
+            )
+        )
+
+
+def check(tensor: Rows, scale: float) -> None:
+    """Moments and directions are right to a few units of rounding of ``scale``."""
+    axes = principal_axes(tensor)
+    size = max(abs(entry) for row in tensor for entry in row)
+    for found, right in zip(axes.moments, moments_of(tensor), strict=True):
+        assert abs(mpf(found) - right) <= MOMENTS * size
+    assert residual(tensor, axes) <= MOMENTS * scale + 2 * U * size
+    for i, n in enumerate(axes.directions):
+        for k, other in enumerate(axes.directions):
+            dot = sum(a * b for a, b in zip(n, other, strict=True))
+            assert isclose(dot, float(i == k), abs_tol=DIRECTIONS)
+
+
+masses = st.lists(
+    st.tuples(*[st.floats(-2, 2) for _ in range(3)], st.floats(0.1, 3)), min_size=4, max_size=7
+)
+
+
+@settings(max_examples=60, deadline=None)
+@given(masses)
+def test_the_axes_of_any_cloud_are_found(cloud: list[tuple[float, float, float, float]]) -> None:
+    sums = [
+        sum(m * (y * y + z * z) for x, y, z, m in cloud),
+        sum(m * (z * z + x * x) for x, y, z, m in cloud),
+        sum(m * (x * x + y * y) for x, y, z, m in cloud),
+        sum(m * x * y for x, y, z, m in cloud),
+        sum(m * x * z for x, y, z, m in cloud),
+        sum(m * y * z for x, y, z, m in cloud),
+    ]
+    check(tensor_of(*sums), max(abs(each) for each in sums))
+
+
+@pytest.mark.parametrize("small", [1e-4, 1e-8, 1e-11])
+def test_nearly_equal_moments_keep_accurate_directions(small: float) -> None:
+    xx, yy, zz = 1 + small, 1 - 2 * small, 1.0
+    tensor = tensor_of(xx, yy, zz, 0.3 * small, -0.7 * small, 0.2 * small)
+    axes = principal_axes(tensor)
+    rest = [[tensor[i][k] - (i == k) for k in range(3)] for i in range(3)]
+    with mp.workdps(50):
+        _, exact = eigsy(matrix(rest))
+        for n in axes.directions:
+            best = max(abs(sum(exact[i, k] * n[i] for i in range(3))) for k in range(3))
+            assert 1 - best < DIRECTIONS
+    check(tensor, small)
+
+
+@pytest.mark.parametrize("ratio", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_the_moment_of_a_thin_rod_about_itself_keeps_its_relative_accuracy(ratio: float) -> None:
+    axes = principal_axes(tensor_of(1.0, 1.0 + ratio / 3, ratio, 0.1, ratio / 7, ratio / 9))
+    right = moments_of(tensor_of(1.0, 1.0 + ratio / 3, ratio, 0.1, ratio / 7, ratio / 9))
+    for found, exact in zip(axes.moments, right, strict=True):
+        assert abs(mpf(found) / exact - 1) <= MOMENTS
+
+
+def test_a_sphere_has_any_axes_and_one_moment() -> None:
+    axes = principal_axes(tensor_of(0.4, 0.4, 0.4, 0.0, 0.0, 0.0))
+    assert axes.moments == (0.4, 0.4, 0.4)
+    assert axes.directions == ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def test_the_triad_is_right_handed() -> None:
+    x, y, z = principal_axes(tensor_of(3.0, 1.0, 2.0, 0.1, 0.2, 0.3)).directions
+    assert x[0] * (y[1] * z[2] - y[2] * z[1]) - x[1] * (y[0] * z[2] - y[2] * z[0]) + x[2] * (
+        y[0] * z[1] - y[1] * z[0]
+    ) == pytest.approx(1.0)
+
+
+def test_a_tensor_that_is_not_symmetric_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"inertia tensor: must be symmetric, but 1.0 faces 2.0"):
+        principal_axes([[1, 1, 0], [2, 1, 0], [0, 0, 1]])
+
+
+def test_a_tensor_that_is_not_finite_is_refused() -> None:
+    with pytest.raises(ValueError, match="inertia tensor: must be finite"):
+        principal_axes([[float("inf"), 0, 0], [0, 1, 0], [0, 0, 1]])
