@@ -16,7 +16,7 @@ from rich.table import Table
 
 from derive import __version__
 from derive.check import check as checks
-from derive.compiler import CompilerError
+from derive.check.compiler import CompilerError
 from derive.files import OutputError, differences, write
 from derive.generation import Made, all_made, lecture_made
 from derive.lecture import LECTURE

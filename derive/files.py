@@ -11,8 +11,8 @@ from derive.casadi_text import casadi_file
 from derive.emit import c_files
 from derive.library import Library
 from derive.manifest import manifest
+from derive.page.scene import scene_page
 from derive.program import Measurement
-from derive.scene_page import scene_page
 
 
 class OutputError(OSError):

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from derive.casadi_text import casadi_file
+from derive.check.emitted import Files
 from derive.emit import c_files
-from derive.emitted import Files
 from derive.library import Library, library
 from derive.manifest import manifest
 from derive.program import Op, Program

@@ -165,7 +165,9 @@ void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *consta
  * Error: median 1.3, largest 4.5 ulp of the largest term (sampled: 129 points, worst at
  *            kinetic_energy, point 79).
  * Cost: 8 add, 3 sub, 18 mul.
- * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
+ * Rests on: A_is_fixed, axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
+ *            rate_seen_from_N, rigid, wheel_axis_is_unit, wheel_is_axisymmetric,
+ *            wheel_is_balanced, wheel_on_carrier, wheel_spins.
  */
 void gyrostat_kinetic_energy_f64(const gyrostat_constants_f64 *constants, const double omega[3],
     const double wheel_speeds[3], double *kinetic_energy);

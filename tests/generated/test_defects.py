@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from derive.check import check_library
-from derive.compiler import Compiler, compiler
+from derive.check.compiler import Compiler, find_compiler
 from derive.library import Library
-from derive.verdict import Verdict
+from derive.check.verdict import Verdict
 from tests.defects import DEFECTS, Defect, files, printed, scene_library
 
 SAMPLES = 12
@@ -30,14 +30,14 @@ def verdicts(made: Library, texts: dict[str, str], place: Path, with_: Compiler)
 
 @pytest.mark.parametrize("name", sorted({d.scene for d in DEFECTS}))
 def test_the_scene_as_it_is_passes_every_check(name: str, workshop: Path) -> None:
-    rows = verdicts(original(name), printed(original(name)), workshop, compiler())
+    rows = verdicts(original(name), printed(original(name)), workshop, find_compiler())
     assert [row for row in rows if row.outcome == "FAILS"] == []
 
 
 @pytest.mark.parametrize("defect", DEFECTS, ids=lambda d: d.name)
 def test_a_seeded_defect_is_caught(defect: Defect, workshop: Path) -> None:
     made = original(defect.scene)
-    rows = verdicts(made, defect.mutant(made), workshop, compiler())
+    rows = verdicts(made, defect.mutant(made), workshop, find_compiler())
     failed = {row.check for row in rows if row.outcome == "FAILS"}
     assert set(defect.killed_by) <= failed
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from flint import arb, arb_mat, ctx
 
-from derive.agreement import LARGEST_BOUND, MEDIAN_BOUND
+from derive.check.agreement import LARGEST_BOUND, MEDIAN_BOUND
 from derive.arithmetic import extended, paired
 from derive.c_text import F32, F64, PRECISIONS, Precision
 from derive.library import Library, library

@@ -12,12 +12,12 @@ import pytest
 from derive.lecture import LECTURE
 from derive.library import Library, library
 from derive.page import ENDS, IN_COMPONENTS, lecture_page
-from derive.page_code import listing
-from derive.page_equation import passages
-from derive.page_prose import prose
+from derive.page.code import listing
+from derive.page.equation import passages
+from derive.page.prose import prose
+from derive.page.scene import scene_page
 from derive.program import Measurement
 from derive.scene import catalogue, load, parse_scene
-from derive.scene_page import scene_page
 
 XHTML = "{http://www.w3.org/1999/xhtml}"
 TAKEN = """
@@ -156,7 +156,7 @@ import hashlib
 from derive.library import library
 from derive.page import lecture_page
 from derive.scene import load
-from derive.scene_page import scene_page
+from derive.page.scene import scene_page
 made = library(load("unsymmetrical_rotor_in_carrier_axes"))
 text = lecture_page() + scene_page(made, ()) + scene_page(library(load("free_body")), ())
 print(hashlib.sha256(text.encode()).hexdigest())

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.compiler import compiler
+from derive.check.compiler import find_compiler
 from derive.library import library
 from derive.scene import load
 
@@ -69,7 +69,7 @@ def test_the_c_compiles_as_written_and_prints_the_acceleration(folder: Path) -> 
     (folder / "main.c").write_text(blocks("c")[0], encoding="utf-8")
     compile_, call = map(shlex.split, blocks("sh")[1].splitlines())
     assert compile_[0] == "cc"
-    run([*compiler().command, *compile_[1:]], folder)
+    run([*find_compiler().command, *compile_[1:]], folder)
     printed = run(call, folder).split()
     assert [float(p) for p in printed] == pytest.approx(omega_dot(), abs=1e-6)
 

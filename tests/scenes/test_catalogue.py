@@ -7,7 +7,7 @@ import pytest
 from derive.formula import ZERO, symbol
 from derive.grammar import parse
 from derive.scene import CATALOGUE, Scene, SceneError, Turn, catalogue, load
-from derive.scene_names import distinct
+from derive.scene.names import distinct
 from derive.vocabulary import vocabulary
 
 NAMES = (

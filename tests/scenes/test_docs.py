@@ -5,8 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from derive import scene_body, scene_file, scene_symbols, shape, unit
-from derive.scene import SceneError, catalogue, parse_scene
+from derive import unit
+from derive.scene import SceneError, catalogue, parse_scene, shape
+from derive.scene import body as scene_body
+from derive.scene import file as scene_file
+from derive.scene import symbols as scene_symbols
 
 PAGE = (Path(__file__).parents[2] / "docs" / "scenes.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"^```toml\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)

@@ -7,7 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from derive.scene import CATALOGUE, SceneError, parse_scene
-from derive.scene_numbers import Matrix, definite, triangle
+from derive.scene.numbers import Matrix, definite, triangle
 
 WHOLE = st.integers(-9, 9)
 PARTICLES = st.lists(st.tuples(st.integers(1, 9), WHOLE, WHOLE, WHOLE), min_size=1, max_size=6)

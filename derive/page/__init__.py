@@ -11,7 +11,7 @@ from derive.emit import TEMPLATES
 from derive.lecture import CHAPTERS, LECTURE, Chapter
 from derive.lecture.letters import TABLE, Letter
 from derive.notation import equation_mathml, mathml, sympy_equation_mathml
-from derive.page_prose import prose
+from derive.page.prose import prose
 from derive.step import Step
 from derive.vectors import components
 

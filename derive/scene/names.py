@@ -9,8 +9,8 @@ import keyword
 import re
 from typing import TYPE_CHECKING
 
-from derive.declaration import SceneError
 from derive.formula import FUNCTIONS
+from derive.scene.declaration import SceneError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -6,9 +6,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, cast
 
-from derive.declaration import Axis, Coordinate, Input, Parameter, SceneError, Speed, Turn, Wheel
-from derive.scene_names import identifier
-from derive.scene_table import (
+from derive.scene.declaration import (
+    Axis,
+    Coordinate,
+    Input,
+    Parameter,
+    SceneError,
+    Speed,
+    Turn,
+    Wheel,
+)
+from derive.scene.names import identifier
+from derive.scene.table import (
     Scope,
     Table,
     interval,

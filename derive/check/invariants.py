@@ -8,13 +8,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import frexp
 
-from derive.emitted import Emitted
+from derive.check.emitted import Emitted
+from derive.check.turning import Turning, turnings
+from derive.check.verdict import JUDGED, Outcome, Verdict
 from derive.formula import FLOATS, Formula, evaluate
 from derive.program import Quantity
 from derive.sample import Sample, Values, varying
 from derive.specialise import Specialised
-from derive.turning import Turning, turnings
-from derive.verdict import JUDGED, Outcome, Verdict
 
 ROUNDING = 256 * 2.0**-53  # of the largest energy or power in the balance
 TURNED = 1e-12  # of the largest value met: entering a turned tensor rounds it

@@ -14,12 +14,12 @@ import casadi
 import numpy as np
 
 from derive.arithmetic import Table, working
-from derive.emitted import Emitted, inputs
+from derive.check.emitted import Emitted, inputs
+from derive.check.verdict import JUDGED, Outcome, Verdict
 from derive.library import Library
 from derive.measure import Errors, errors, measurement, references, replayed
 from derive.program import Program
 from derive.sample import Sample
-from derive.verdict import JUDGED, Outcome, Verdict
 
 MEDIAN_BOUND, LARGEST_BOUND = 2.0, 16.0
 FACTOR = 3.0  # more samples than the printed figure's may find an error this much larger

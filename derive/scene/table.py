@@ -11,9 +11,9 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from derive.declaration import SceneError, Triple
 from derive.formula import Formula, FormulaError, number, symbols
 from derive.grammar import LARGEST_DECIMAL_EXPONENT, parse
+from derive.scene.declaration import SceneError, Triple
 from derive.unit import Dimension, UnitError, dimension, dimension_of, spelled
 
 if TYPE_CHECKING:

@@ -1,7 +1,7 @@
 """The scene file: its tables read into declarations, each by one function.
 
 Every value is checked where it is read (type, unit, range, symbols); what must hold between the
-tables is in ``derive.scene_rules``.
+tables is in ``derive.scene.rules``.
 """
 
 from __future__ import annotations
@@ -9,11 +9,11 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Literal, cast
 
-from derive.declaration import Axes, Given, Input, Point, Scene, SceneError, Wheel
-from derive.scene_body import read_body
-from derive.scene_names import distinct
-from derive.scene_numbers import positive
-from derive.scene_symbols import (
+from derive.scene.body import read_body
+from derive.scene.declaration import Axes, Given, Input, Point, Scene, SceneError, Wheel
+from derive.scene.names import distinct
+from derive.scene.numbers import positive
+from derive.scene.symbols import (
     Symbols,
     accelerations,
     anything,
@@ -23,7 +23,7 @@ from derive.scene_symbols import (
     read_symbols,
     turns,
 )
-from derive.scene_table import (
+from derive.scene.table import (
     Scope,
     Table,
     formula,

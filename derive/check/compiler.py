@@ -37,7 +37,7 @@ class Compiler:
         return "python -m ziglang cc" if "ziglang" in self.command else " ".join(self.command)
 
 
-def compiler() -> Compiler:
+def find_compiler() -> Compiler:
     """Return the first of $CC, gcc, cc, clang and the ziglang wheel.
 
     Raises CompilerError with one sentence that says how to get one.

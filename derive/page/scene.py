@@ -10,11 +10,11 @@ from derive.emit import TEMPLATES, first_line
 from derive.lecture import LECTURE
 from derive.library import JACOBIAN, Library
 from derive.notation import name_mathml
-from derive.page_code import listing
-from derive.page_equation import Passage, letter, passages, taken_names
-from derive.page_pattern import pattern
-from derive.page_prose import prose
-from derive.page_words import given
+from derive.page.code import listing
+from derive.page.equation import Passage, letter, passages, taken_names
+from derive.page.pattern import pattern
+from derive.page.prose import prose
+from derive.page.words import given
 from derive.program import Measurement, Program, Quantity
 
 _PRECISIONS = ("f32", "f64")

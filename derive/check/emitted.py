@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from derive.c_text import F64, PRECISIONS, Precision
-from derive.call import Function, functions
-from derive.compiler import Compiler, compiled
+from derive.check.call import Function, functions
+from derive.check.compiler import Compiler, compiled
 from derive.files import scene_files
 from derive.library import Library
 from derive.measure import figures

@@ -11,13 +11,13 @@ from fractions import Fraction
 from itertools import islice, product
 from typing import TYPE_CHECKING
 
-from derive.declaration import SceneError
 from derive.formula import FLOATS, ONE, Formula, evaluate, symbols
+from derive.scene.declaration import SceneError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from derive.declaration import Body, Coordinate, Parameter, Sextuple, Wheel
+    from derive.scene.declaration import Body, Coordinate, Parameter, Sextuple, Wheel
 
 MOST_ENDS = 256
 """Enough for every combination of the ends of eight ranges."""

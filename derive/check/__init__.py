@@ -9,15 +9,15 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from derive.agreement import accuracy, aliasing, casadi_bits, dense, refusal, replay
-from derive.compiler import Compiler, CompilerError, compiler
-from derive.emitted import Emitted, Files, casadi_module, files, is_double, loaded
-from derive.invariants import power_balance, turned_axes
+from derive.check.agreement import accuracy, aliasing, casadi_bits, dense, refusal, replay
+from derive.check.compiler import Compiler, CompilerError, find_compiler
+from derive.check.emitted import Emitted, Files, casadi_module, files, is_double, loaded
+from derive.check.invariants import power_balance, turned_axes
+from derive.check.verdict import JUDGED, Verdict
 from derive.library import Library, library
 from derive.prove import ProofError, prove
 from derive.sample import Sample, samples
 from derive.scene import load
-from derive.verdict import JUDGED, Verdict
 
 ORDINARY, CORNERS, FEW = 300, 6, 8
 
@@ -27,7 +27,7 @@ def check(sources: Sequence[str], folder: Path) -> Iterator[Verdict]:
 
     Raises CompilerError if there is no C compiler.
     """
-    with_ = compiler()
+    with_ = find_compiler()
     for source in sources:
         made = library(load(source))
         with TemporaryDirectory(prefix="derive-") as workshop:

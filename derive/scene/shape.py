@@ -15,7 +15,7 @@ from derive.formula import ZERO, Formula, number
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from derive.declaration import Axis, Sextuple, Triple
+    from derive.scene.declaration import Axis, Sextuple, Triple
 
 Terms = tuple[tuple[Fraction, str], ...]
 

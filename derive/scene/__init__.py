@@ -11,7 +11,7 @@ from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 
-from derive.declaration import (
+from derive.scene.declaration import (
     Axes,
     Body,
     Coordinate,
@@ -25,10 +25,10 @@ from derive.declaration import (
     Turn,
     Wheel,
 )
-from derive.scene_file import read_scene
-from derive.scene_names import identifier
-from derive.scene_rules import check, warnings
-from derive.scene_table import nearest, shown, table
+from derive.scene.file import read_scene
+from derive.scene.names import identifier
+from derive.scene.rules import check, warnings
+from derive.scene.table import nearest, shown, table
 
 __all__ = [
     "Axes",
@@ -48,7 +48,7 @@ __all__ = [
     "parse_scene",
 ]
 
-CATALOGUE = Path(__file__).parent / "catalogue"
+CATALOGUE = Path(__file__).parent.parent / "catalogue"
 LONGEST_FILE = 200_000
 
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from derive.declaration import SceneError
 from derive.formula import ZERO, symbols
-from derive.scene_numbers import (
+from derive.scene.declaration import SceneError
+from derive.scene.numbers import (
     check_axis,
     check_carrier,
     check_inertia,
@@ -23,8 +23,8 @@ from derive.scene_numbers import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from derive.declaration import Scene, Turn
     from derive.formula import Formula
+    from derive.scene.declaration import Scene, Turn
 
 FORWARD = ("acceleration", "state_rate")
 ROTATIONAL = ("angular_velocity", "angular_acceleration")
