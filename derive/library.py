@@ -4,8 +4,11 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from sympy import Symbol
+
 from derive.arrange import arrange
-from derive.forms import Block, best_values, best_with_jacobian
+from derive.draft import Arrangement
+from derive.forms import Block, best_values, best_with_jacobian, cost
 from derive.graph import Graph, Value
 from derive.lecture import LECTURE
 from derive.lower import lower
@@ -98,9 +101,18 @@ def _leaves(graph: Graph, known: Specialised) -> dict[str, Value]:
     return leaves | {c: graph.variable(c) for c in varying}
 
 
-def _wanted(graph: Graph, known: Specialised, fact: Truth, leaves: Mapping[str, Value]) -> Wanted:
+def _wanted(
+    graph: Graph, known: Specialised, fact: Truth, leaves: Mapping[str, Value]
+) -> Wanted:
     by_symbol = {known.words.symbols[c]: value for c, value in leaves.items()}
-    values, positive = lower(graph, arrange(known, fact), by_symbol)
+    ways = [_lowered(graph, fact, way, by_symbol) for way in arrange(known, fact)]
+    return min(ways, key=lambda way: cost(graph, _best(graph, way))) if len(ways) > 1 else ways[0]
+
+
+def _lowered(
+    graph: Graph, fact: Truth, way: Arrangement, by_symbol: Mapping[Symbol, Value]
+) -> Wanted:
+    values, positive = lower(graph, way, by_symbol)
     outputs, place = [], 0
     for quantity in fact.outputs:
         outputs.append(tuple(values[place : place + len(quantity.components)]))
@@ -108,9 +120,12 @@ def _wanted(graph: Graph, known: Specialised, fact: Truth, leaves: Mapping[str, 
     return Wanted(fact, tuple(outputs), tuple(positive))
 
 
+def _best(graph: Graph, wanted: Wanted) -> list[Value]:
+    return best_values(graph, [Block(output, ()) for output in wanted.outputs])
+
+
 def _values_only(graph: Graph, constants: Constants, known: Specialised, wanted: Wanted) -> Program:
-    values = best_values(graph, [Block(output, ()) for output in wanted.outputs])
-    return _program(graph, constants, known, wanted.fact, values)
+    return _program(graph, constants, known, wanted.fact, _best(graph, wanted))
 
 
 def _with_jacobian(

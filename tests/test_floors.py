@@ -13,7 +13,8 @@ FLOORS = (
     ("expand", "derivative", "table", "share", "write"),
     ("step", "notation", "principal", "vocabulary", "valuation", "wording"),
     ("lecture", "schedule", "motion"),
-    ("specialise", "truth", "draft", "inverse", "attitude", "arrange", "lower", "forms", "stage"),
+    ("specialise", "truth", "draft", "staging", "inverse", "attitude", "along_body", "arrange"),
+    ("lower", "forms", "stage"),
     ("library",),
     ("c_text", "comment", "signature", "example", "emit", "casadi_text", "manifest", "page"),
     ("blocks", "equations", "reference", "body_sample", "sample", "prove", "measure"),
@@ -78,7 +79,7 @@ def test_sympy_stays_out_of_the_modules_that_must_not_know_it(path: Path) -> Non
 
 def test_an_import_that_goes_up_is_found() -> None:
     assert faults("program", "from derive.cli import main") == [
-        "derive.program (floor 0) imports derive.cli (floor 10)"
+        "derive.program (floor 0) imports derive.cli (floor 11)"
     ]
     assert faults("program", "def f():\n    from derive import emit") != []
 
