@@ -112,15 +112,33 @@ def _turned(moments: Triple, turn: Sequence[float]) -> tuple[float, ...]:
 
 def admissible(known: Specialised, values: Mapping[str, float]) -> bool:
     """Tell whether a scene's parameters describe a body, wheels included."""
-    numbers = dict(values) | {n: float(x) for n, x in known.words.numbers.items()}
-    xx, yy, zz, xy, xz, yz = (_number(f, numbers) for f in known.scene.body.inertia)
-    tensor = [[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]
-    half = (xx + yy + zz) / 2
+    tensor = _tensor(known, values)
+    half = (tensor[0][0] + tensor[1][1] + tensor[2][2]) / 2
     second = [[half * (i == k) - tensor[i][k] for k in range(3)] for i in range(3)]
+    return solvable(known, values) and _positive(second)
+
+
+def solvable(known: Specialised, values: Mapping[str, float]) -> bool:
+    """Tell whether the tensor, less the wheels' axial moments, is positive definite.
+
+    That is all that the equations need; a body keeps the triangle inequality besides.
+    """
+    numbers = _numbers(known, values)
+    tensor = _tensor(known, values)
     for wheel in known.scene.wheels:
         axis, axial = [_number(f, numbers) for f in wheel.axis], _number(wheel.axial, numbers)
         tensor = [[tensor[i][k] - axial * axis[i] * axis[k] for k in range(3)] for i in range(3)]
-    return _positive(tensor) and _positive(second)
+    return _positive(tensor)
+
+
+def _numbers(known: Specialised, values: Mapping[str, float]) -> dict[str, float]:
+    return dict(values) | {n: float(x) for n, x in known.words.numbers.items()}
+
+
+def _tensor(known: Specialised, values: Mapping[str, float]) -> list[list[Fraction]]:
+    numbers = _numbers(known, values)
+    xx, yy, zz, xy, xz, yz = (_number(f, numbers) for f in known.scene.body.inertia)
+    return [[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]
 
 
 def _number(formula: Formula, numbers: Mapping[str, float]) -> Fraction:

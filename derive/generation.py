@@ -41,7 +41,8 @@ def made(source: str) -> Made:
     programs = library(scene)
     prove(programs)
     measured = figures(programs)
-    return Made(scene_files(programs, measured), scene.warnings, cost_rows(programs, measured))
+    warnings = tuple(f"scene '{scene.name}': {warning}" for warning in scene.warnings)
+    return Made(scene_files(programs, measured), warnings, cost_rows(programs, measured))
 
 
 def lecture_made() -> Made:

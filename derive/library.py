@@ -13,7 +13,7 @@ from derive.graph import Graph, Value
 from derive.lecture import LECTURE
 from derive.lower import lower
 from derive.program import Program, Quantity, Sparsity
-from derive.scene import Scene
+from derive.scene import Scene, SceneError
 from derive.specialise import Specialised, specialise
 from derive.stage import (
     Constant,
@@ -147,6 +147,11 @@ def _with_jacobian(
     row_names = [c for q in wanted.fact.outputs for c in q.components]
     column_names = [c for q in columns for c in q.components]
     pattern, nonzeros = compressed(rows, row_names, column_names)
+    if not nonzeros:
+        raise SceneError(
+            f"scene '{known.scene.name}': wanted '{wanted.fact.name}{JACOBIAN}' must have entries, "
+            "but nothing that varies changes it"
+        )
     program = _program(graph, constants, known, wanted.fact, [*values, *nonzeros])
     return replace(
         program,

@@ -109,3 +109,29 @@ def test_help_names_every_command(capsys):
     shown = capsys.readouterr().out
     words = ("lecture", "generate", "check", "report", "bench", "scenes")
     assert all(word in shown for word in words)
+
+
+def scene(tmp_path, name: str, wanted: str, body: str) -> str:
+    file = tmp_path / f"{name}.toml"
+    file.write_text(f'title = "{name}"\nwanted = [{wanted}]\n{body}')
+    return str(file)
+
+
+def test_a_broken_triangle_inequality_warns_and_does_not_stop(tmp_path, capsys):
+    body = '[body]\nkind = "principal"\nmoments = ["1", "1", "3"]\n'
+    source = scene(tmp_path, "flat", '"acceleration"', body)
+    assert main(["generate", source, "--out", str(tmp_path / "out")]) == 0
+    assert "scene 'flat': body inertia breaks the triangle inequality" in capsys.readouterr().err
+    assert (tmp_path / "out" / "flat" / "flat_f64.c").is_file()
+
+
+def test_a_jacobian_of_what_does_not_vary_is_refused(tmp_path, capsys):
+    still = '[coordinates.b]\nunit = "rad"\nrange = [0, 1]\nmeaning = "tilt"\n'
+    still += 'motion = "prescribed"\nrate = 0\nacceleration = 0\n'
+    still += '[speeds]\np = { unit = "rad/s", range = [1, 2], meaning = "spin", rate = 0 }\n'
+    still += '[axes]\nturned = ["y b"]\n'
+    still += '[body]\nshape = "disc"\nmass = 2\nradius = 0.5\naxis = "z"\nspin = "p"\n'
+    source = scene(tmp_path, "still", '"moment_jacobian"', still)
+    assert main(["generate", source, "--out", str(tmp_path / "out")]) == 2
+    assert "'moment_jacobian' must have entries" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
