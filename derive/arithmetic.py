@@ -153,7 +153,7 @@ def pair_sqrt(a: Pair, factor: Any, root: Callable[[Any], Any]) -> Pair:
 
 
 def _minus(a: Pair) -> Pair:
-    return -a[0], -a[1]
+    return -a[0], a[1] * 0 - a[1]  # a zero stays a positive zero, as CasADi has it
 
 
 def extended(dtype: type) -> Table:

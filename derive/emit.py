@@ -128,7 +128,8 @@ def _header(
 
 def _source(library: Library, names: Names, precision: Precision) -> str:
     has_setup = bool(library.constants)
-    pairs = pair_functions(p for p in (library.setup, *library.functions) if works_in_pairs(p))
+    programs = [library.setup] if has_setup else []
+    pairs = pair_functions(p for p in (*programs, *library.functions) if works_in_pairs(p))
     return TEMPLATES.get_template("source.c.jinja").render(
         first_line=f"/* {first_line(library)}",
         header=names.file(precision, "h"),

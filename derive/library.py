@@ -19,6 +19,7 @@ from derive.stage import (
     Constant,
     Constants,
     compressed,
+    exact_number,
     hot,
     in_pairs,
     setup,
@@ -69,9 +70,8 @@ def library(scene: Scene) -> Library:
         else _values_only(graph, constants, known, wanted[name])
         for name in scene.wanted
     )
-    positive = list(
-        dict.fromkeys(p for w in wanted.values() for p in w.positive if graph.fixed[p[1]])
-    )
+    asked = dict.fromkeys(p for w in wanted.values() for p in w.positive if graph.fixed[p[1]])
+    positive = [p for p in asked if exact_number(graph, p) is None]
     made = setup(graph, constants, known.words.parameters, positive)
     meanings = {name: _meaning(graph, value) for value, name in constants.names.items()}
     if scene.form == "accurate" and made.outputs:
@@ -101,9 +101,7 @@ def _leaves(graph: Graph, known: Specialised) -> dict[str, Value]:
     return leaves | {c: graph.variable(c) for c in varying}
 
 
-def _wanted(
-    graph: Graph, known: Specialised, fact: Truth, leaves: Mapping[str, Value]
-) -> Wanted:
+def _wanted(graph: Graph, known: Specialised, fact: Truth, leaves: Mapping[str, Value]) -> Wanted:
     by_symbol = {known.words.symbols[c]: value for c, value in leaves.items()}
     ways = [_lowered(graph, fact, way, by_symbol) for way in arrange(known, fact)]
     return min(ways, key=lambda way: cost(graph, _best(graph, way))) if len(ways) > 1 else ways[0]

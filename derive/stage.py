@@ -7,7 +7,9 @@ in twice the working precision and rounds each constant once.
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from math import prod
 
+from derive.arithmetic import EXACT
 from derive.graph import ONE, Graph, Value
 from derive.program import Op, Operand, Program, Quantity, Sparsity
 from derive.schedule import schedule
@@ -23,8 +25,9 @@ class Constants:
 
     def operand(self, value: Value) -> Operand:
         """Return the number or the name that stands for a parameter-only value."""
-        if value[1] == ONE:
-            return value[0]
+        number = exact_number(self.graph, value)
+        if number is not None:
+            return number
         if value not in self.names:
             self.names[value] = self._fresh(value)
         return self.names[value]
@@ -41,6 +44,28 @@ class Constants:
         if spelled and spelled not in taken:
             return spelled
         return next(name for n in range(1, len(taken) + 2) if (name := f"k{n}") not in taken)
+
+
+def exact_number(graph: Graph, value: Value) -> Fraction | None:
+    """Return what a value without parameters is, None if it has some or is irrational."""
+    coefficient, node = value
+    kind, *rest = graph.nodes[node]
+    if kind == "one":
+        return coefficient
+    parts = {n: exact_number(graph, (Fraction(1), n)) for n in graph.below(node)}
+    known = {n: part for n, part in parts.items() if part is not None}
+    if kind == "input" or len(known) < len(parts):
+        return None
+    made: Fraction | None = None
+    if kind in ("let", "cut"):
+        made = rest[0][0] * known[rest[0][1]]
+    elif kind == "sum":
+        made = sum((c * known[n] for c, n in rest[0]), Fraction(0))
+    elif kind == "product":
+        made = prod((known[n] ** p for n, p in rest[0]), start=Fraction(1))
+    elif rest[0] == "power_of_two":
+        made = EXACT["power_of_two"](rest[1][0][0] * known[rest[1][0][1]])
+    return None if made is None else coefficient * made
 
 
 @dataclass(frozen=True)

@@ -219,7 +219,7 @@ def _same_over(function: Any, values: Mapping[str, Any], output: str, over: str)
 def refusal(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether set-up refuses parameters that are no body's, and no others."""
     setup = emitted.library.setup
-    if not setup.positive:
+    if not setup.positive or not emitted.library.constants:
         return
     good = [emitted.constants(s)["status"] == [0.0] for s in each]
     lost = [_with(s, dict.fromkeys(s.values, float("nan"))) for s in each]

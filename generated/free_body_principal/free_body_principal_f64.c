@@ -26,7 +26,7 @@ typedef struct {
 
 static free_body_principal_pair_f64 free_body_principal_neg_f64(free_body_principal_pair_f64 a)
 {
-    return (free_body_principal_pair_f64){-a.high, -a.low};
+    return (free_body_principal_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */

@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in ulps of the largest term of the
- * sum that an output is. Body of these files: sha256 20c3fa2891774d1d.
+ * sum that an output is. Body of these files: sha256 bbc428dbf46b4bd8.
  */
 #ifndef FREE_BODY_PRINCIPAL_F64_H
 #define FREE_BODY_PRINCIPAL_F64_H

@@ -28,7 +28,7 @@ typedef struct {
 
 static gyrostat_pair_f32 gyrostat_neg_f32(gyrostat_pair_f32 a)
 {
-    return (gyrostat_pair_f32){-a.high, -a.low};
+    return (gyrostat_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */

@@ -28,7 +28,7 @@ typedef struct {
 
 static gyrostat_pair_f64 gyrostat_neg_f64(gyrostat_pair_f64 a)
 {
-    return (gyrostat_pair_f64){-a.high, -a.low};
+    return (gyrostat_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */

@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in ulps of the largest term of the
- * sum that an output is. Body of these files: sha256 1695b6c838d07d9f.
+ * sum that an output is. Body of these files: sha256 62ce185748b3ca4b.
  */
 #ifndef GYROSTAT_F64_H
 #define GYROSTAT_F64_H

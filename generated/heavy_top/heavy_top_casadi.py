@@ -25,7 +25,7 @@ def _built(build):
 
 
 def _neg(a):
-    return -a[0], -a[1]
+    return -a[0], 0.0 - a[1]
 
 
 def _low(a):

@@ -28,7 +28,7 @@ typedef struct {
 
 static heavy_top_pair_f32 heavy_top_neg_f32(heavy_top_pair_f32 a)
 {
-    return (heavy_top_pair_f32){-a.high, -a.low};
+    return (heavy_top_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */

@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in ulps of the largest term of the
- * sum that an output is. Body of these files: sha256 72a54cb5ac4e423f.
+ * sum that an output is. Body of these files: sha256 8dff2581874c44c4.
  */
 #ifndef HEAVY_TOP_F32_H
 #define HEAVY_TOP_F32_H

@@ -28,7 +28,7 @@ typedef struct {
 
 static heavy_top_pair_f64 heavy_top_neg_f64(heavy_top_pair_f64 a)
 {
-    return (heavy_top_pair_f64){-a.high, -a.low};
+    return (heavy_top_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */

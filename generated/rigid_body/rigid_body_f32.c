@@ -26,7 +26,7 @@ typedef struct {
 
 static rigid_body_pair_f32 rigid_body_neg_f32(rigid_body_pair_f32 a)
 {
-    return (rigid_body_pair_f32){-a.high, -a.low};
+    return (rigid_body_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */

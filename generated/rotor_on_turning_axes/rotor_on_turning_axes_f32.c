@@ -26,7 +26,7 @@ typedef struct {
 
 static rotor_on_turning_axes_pair_f32 rotor_on_turning_axes_neg_f32(rotor_on_turning_axes_pair_f32 a)
 {
-    return (rotor_on_turning_axes_pair_f32){-a.high, -a.low};
+    return (rotor_on_turning_axes_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */

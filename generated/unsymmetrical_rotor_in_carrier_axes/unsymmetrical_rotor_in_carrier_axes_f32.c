@@ -28,7 +28,7 @@ typedef struct {
 
 static unsymmetrical_rotor_in_carrier_axes_pair_f32 unsymmetrical_rotor_in_carrier_axes_neg_f32(unsymmetrical_rotor_in_carrier_axes_pair_f32 a)
 {
-    return (unsymmetrical_rotor_in_carrier_axes_pair_f32){-a.high, -a.low};
+    return (unsymmetrical_rotor_in_carrier_axes_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */

@@ -28,7 +28,7 @@ typedef struct {
 
 static unsymmetrical_rotor_in_carrier_axes_pair_f64 unsymmetrical_rotor_in_carrier_axes_neg_f64(unsymmetrical_rotor_in_carrier_axes_pair_f64 a)
 {
-    return (unsymmetrical_rotor_in_carrier_axes_pair_f64){-a.high, -a.low};
+    return (unsymmetrical_rotor_in_carrier_axes_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */

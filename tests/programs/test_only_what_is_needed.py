@@ -69,3 +69,18 @@ spin = "p"
     assert [q.name for q in program.inputs] == ["constants", "W", "p"]
     assert [c.name for c in made.constants] == ["C"]
     assert program.flops() == 2
+
+
+def test_a_body_of_numbers_needs_no_set_up():
+    text = """
+title = "A body of numbers"
+wanted = ["acceleration", "kinetic_energy"]
+[body]
+kind = "general"
+moments = ["1", "1.5", "1.75"]
+products = ["0.125", "0", "0.1"]
+"""
+    made = library(parse_scene(text, "numbers"))
+    assert made.constants == ()
+    assert made["acceleration"].flops() <= 40
+    assert [q.name for q in made["acceleration"].inputs] == ["omega", "moment"]
