@@ -17,7 +17,7 @@ from rich.table import Table
 from derive import __version__
 from derive.check import check as checks
 from derive.check.compiler import CompilerError
-from derive.files import OutputError, differences, write
+from derive.files import OutputError, differences, require_writable, write
 from derive.generation import Made, all_made, lecture_made
 from derive.lecture import LECTURE
 from derive.notation import expression_text
@@ -26,6 +26,7 @@ from derive.scene import SceneError, catalogue, load
 from derive.step import first_fall, verify
 
 OUT = Path("generated")
+STOPPED = 130  # what a shell expects after an interrupt
 WIDE = 150  # columns of a table that goes to a file or a pipe
 console = Console(width=None if sys.stdout.isatty() else WIDE)
 errors = Console(stderr=True, width=None if sys.stderr.isatty() else WIDE)
@@ -40,6 +41,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (SceneError, OutputError, ProofError, CompilerError) as error:
         errors.print(f"derive: {error}", style="red", highlight=False, markup=False)
         return 2
+    except KeyboardInterrupt:
+        errors.print("derive: stopped; nothing was half-written")
+        return STOPPED
 
 
 def parser() -> argparse.ArgumentParser:
@@ -158,6 +162,7 @@ def report(options: argparse.Namespace) -> int:
 
 def _made(scenes: Sequence[str], also: Sequence[Callable[[], Made]]) -> list[Made]:
     sources = [str(source) for source in scenes or catalogue()]
+    _distinct(sources)
     found: dict[int, Made] = {}
     with progress() as shown:
         task = shown.add_task("deriving, proving and measuring")
@@ -169,6 +174,19 @@ def _made(scenes: Sequence[str], also: Sequence[Callable[[], Made]]) -> list[Mad
     for warning in (w for result in results for w in result.warnings):
         errors.print(f"derive: warning: {warning}", style="yellow", highlight=False, markup=False)
     return results
+
+
+def _distinct(sources: Sequence[str]) -> None:
+    """Refuse two scenes of one name: their files would lie over each other."""
+    named: dict[str, str] = {}
+    for source in sources:
+        name = Path(source).stem
+        if name in named:
+            raise SceneError(
+                f"scenes must have names of their own, but '{named[name]}' and '{source}' "
+                f"are both '{name}'"
+            )
+        named[name] = source
 
 
 def _print_costs(results: Sequence[Made]) -> None:
@@ -253,4 +271,6 @@ def bench(options: argparse.Namespace) -> int:
     """Compare cost and error with the best hand-written forms and with peers, in one run."""
     from derive.bench import show  # the peers are an extra: nothing else needs them
 
+    if options.out is not None:
+        require_writable(options.out)
     return show.bench(OUT, options.out, console, progress())

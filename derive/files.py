@@ -59,6 +59,16 @@ def write(folder: Path, texts: Mapping[str, str]) -> None:
         ) from error
 
 
+def require_writable(file: Path) -> None:
+    """Raise OutputError unless ``file`` can be written; leave it as it is."""
+    try:
+        _temporary(file, "").unlink()
+    except OSError as error:
+        raise OutputError(
+            f"output file '{file}' must be writable, but: {error.strerror or error}"
+        ) from error
+
+
 def _temporary(target: Path, text: str) -> Path:
     if target.is_dir():
         raise IsADirectoryError(0, f"'{target.name}' is a folder")

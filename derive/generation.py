@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
+from math import isfinite
 
 from derive.files import scene_files
 from derive.library import Library, library
@@ -10,7 +11,7 @@ from derive.measure import figures
 from derive.page import lecture_page
 from derive.program import Measurement
 from derive.prove import prove
-from derive.scene import load
+from derive.scene import SceneError, load
 
 LECTURE_PAGE = "lecture.html"
 
@@ -41,8 +42,19 @@ def made(source: str) -> Made:
     programs = library(scene)
     prove(programs)
     measured = figures(programs)
+    _finite(scene.name, measured)
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in scene.warnings)
     return Made(scene_files(programs, measured), warnings, cost_rows(programs, measured))
+
+
+def _finite(scene: str, measured: Sequence[Measurement]) -> None:
+    """Refuse a scene whose declared ranges overflow one of the float types."""
+    for m in measured:
+        if not isfinite(m.worst):
+            raise SceneError(
+                f"scene '{scene}': ranges must keep '{m.function}' within {m.precision}, "
+                f"but the error of {m.output} is {m.worst}"
+            )
 
 
 def lecture_made() -> Made:

@@ -117,6 +117,27 @@ def scene(tmp_path, name: str, wanted: str, body: str) -> str:
     return str(file)
 
 
+def test_two_scenes_of_one_name_are_refused(tmp_path, capsys):
+    body = '[body]\nkind = "spherical"\nmoment = "1"\n'
+    source = scene(tmp_path, SCENE, '"acceleration"', body)
+    assert main(["generate", SCENE, source, "--out", str(tmp_path / "out")]) == 2
+    assert f"are both '{SCENE}'" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_body_beyond_the_float_range_is_refused(tmp_path, capsys):
+    body = '[body]\nkind = "spherical"\nmoment = "1e300"\n'
+    source = scene(tmp_path, "huge", '"acceleration", "kinetic_energy"', body)
+    assert main(["generate", source, "--out", str(tmp_path / "out")]) == 2
+    assert "within f32" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_bench_names_a_file_that_it_cannot_write(tmp_path, capsys):
+    assert main(["bench", "--out", str(tmp_path / "missing" / "file.json")]) == 2
+    assert "must be writable" in capsys.readouterr().err
+
+
 def test_a_broken_triangle_inequality_warns_and_does_not_stop(tmp_path, capsys):
     body = '[body]\nkind = "principal"\nmoments = ["1", "1", "3"]\n'
     source = scene(tmp_path, "flat", '"acceleration"', body)
