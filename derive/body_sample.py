@@ -16,7 +16,6 @@ from derive.formula import FLOATS, Formula, evaluate
 from derive.specialise import Specialised
 
 Triple = tuple[float, float, float]
-MOMENTS = ("xx", "yy", "zz")
 OWN_AXES = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 TURN = (0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6)  # a rotation, exact in decimals
 

@@ -76,7 +76,7 @@ def _error(program: Program, figures: Sequence[Measurement]) -> str:
     worst = max(own, key=lambda m: m.worst)
     median = max(m.median for m in own)
     return (
-        f"median {median:.2g}, largest {worst.worst:.2g} ulp of the largest term "
+        f"median {median:.2g}, largest {worst.worst:.2g} u of the largest term "
         f"(sampled: {worst.samples} points, worst at {worst.output}, point {worst.sample})."
     )
 

@@ -71,7 +71,6 @@ class Program:
     outputs: tuple[Quantity, ...]
     ops: tuple[Op, ...]
     results: tuple[Operand, ...]
-    postcondition: str = ""
     steps: tuple[str, ...] = ()
     assumptions: tuple[str, ...] = ()
     sparsity: Mapping[str, Sparsity] | None = None

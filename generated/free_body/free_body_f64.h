@@ -10,8 +10,8 @@
  *     free_body_acceleration_f64(&constants, omega, moment, omega_dot);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in ulps of the largest term of the
- * sum that an output is. Body of these files: sha256 bb229149eb89d230.
+ * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 bb229149eb89d230.
  */
 #ifndef FREE_BODY_F64_H
 #define FREE_BODY_F64_H
@@ -80,8 +80,8 @@ int free_body_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doub
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
  * Returned:  omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.76, largest 4.8 ulp of the largest term (sampled: 126 points, worst at
- *            omega_dot, point 20).
+ * Error: median 0.76, largest 4.8 u of the largest term (sampled: 126 points, worst at omega_dot,
+ *            point 20).
  * Cost: 12 add, 5 sub, 23 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -96,7 +96,7 @@ void free_body_acceleration_f64(const free_body_constants_f64 *constants, const 
  * Returned:  omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  *            jacobian[18]  nonzeros of the Jacobian, in compressed-column order
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.72, largest 5 ulp of the largest term (sampled: 126 points, worst at omega_dot,
+ * Error: median 0.72, largest 5 u of the largest term (sampled: 126 points, worst at omega_dot,
  *            point 6).
  * Cost: 21 add, 12 sub, 48 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -115,7 +115,7 @@ void free_body_acceleration_jacobian_dense_f64(const free_body_constants_f64 *co
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
  * Returned:  moment[3]  N m  along B  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.68, largest 4.1 ulp of the largest term (sampled: 126 points, worst at moment,
+ * Error: median 0.68, largest 4.1 u of the largest term (sampled: 126 points, worst at moment,
  *            point 24).
  * Cost: 6 add, 11 sub, 23 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -129,7 +129,7 @@ void free_body_moment_f64(const free_body_constants_f64 *constants, const double
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
- * Error: median 0.48, largest 2.9 ulp of the largest term (sampled: 126 points, worst at
+ * Error: median 0.48, largest 2.9 u of the largest term (sampled: 126 points, worst at
  *            angular_momentum, point 124).
  * Cost: 6 sub, 9 mul.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
@@ -145,7 +145,7 @@ void free_body_angular_momentum_f64(const free_body_constants_f64 *constants, co
  *            rate_absolute[3]  N m  along B  rate of angular momentum seen from the inertial frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
- * Error: median 0.73, largest 7 ulp of the largest term (sampled: 126 points, worst at
+ * Error: median 0.73, largest 7 u of the largest term (sampled: 126 points, worst at
  *            rate_absolute, point 92).
  * Cost: 7 add, 10 sub, 23 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
@@ -159,7 +159,7 @@ void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constant
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.72, largest 4.1 ulp of the largest term (sampled: 126 points, worst at
+ * Error: median 0.72, largest 4.1 u of the largest term (sampled: 126 points, worst at
  *            kinetic_energy, point 59).
  * Cost: 1 add, 4 sub, 9 mul.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.

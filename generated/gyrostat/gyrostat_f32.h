@@ -10,8 +10,8 @@
  *     gyrostat_state_rate_f32(&constants, 0.0F, 0.0F, omega, wheel_speeds, moment, wheel_torques, coordinate_rates, omega_dot, wheel_accelerations);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in ulps of the largest term of the
- * sum that an output is. Body of these files: sha256 2d0144a087985695.
+ * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
+ * float, times the largest term of the sum that an output is. Body of these files: sha256 2d0144a087985695.
  */
 #ifndef GYROSTAT_F32_H
 #define GYROSTAT_F32_H
@@ -106,8 +106,8 @@ int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_x
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: M = I omega_dot + h_dot + omega x (I omega + h)   [lecture step gyrostat_form]
  * Postcondition: u = C (a . omega_dot + s_dot)   [lecture step wheel_equation]
- * Error: median 0.94, largest 8.2 ulp of the largest term (sampled: 129 points, worst at
- *            omega_dot, point 74).
+ * Error: median 0.94, largest 8.2 u of the largest term (sampled: 129 points, worst at omega_dot,
+ *            point 74).
  * Cost: 12 add, 17 sub, 34 mul, 1 div, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
  *            composed_turns, constant_mass, further_axes_are_right_handed, gyrostat_parts, newton,
@@ -135,7 +135,7 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: M = I omega_dot + h_dot + omega x (I omega + h)   [lecture step gyrostat_form]
  * Postcondition: u = C (a . omega_dot + s_dot)   [lecture step wheel_equation]
- * Error: median 0.94, largest 9.4 ulp of the largest term (sampled: 129 points, worst at jacobian,
+ * Error: median 0.94, largest 9.4 u of the largest term (sampled: 129 points, worst at jacobian,
  *            point 41).
  * Cost: 24 add, 46 sub, 98 mul, 1 div, 20 neg, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
@@ -162,7 +162,7 @@ void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *consta
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
  * Postcondition: T_w = C s a . omega + 1/2 C s^2   [lecture step wheel_energy]
- * Error: median 1.1, largest 5.5 ulp of the largest term (sampled: 129 points, worst at
+ * Error: median 1.1, largest 5.5 u of the largest term (sampled: 129 points, worst at
  *            kinetic_energy, point 58).
  * Cost: 8 add, 3 sub, 18 mul.
  * Rests on: A_is_fixed, axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
@@ -178,7 +178,7 @@ void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const 
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
  * Postcondition: l = I omega + h   [lecture step gyrostat_momentum]
- * Error: median 0.54, largest 3.3 ulp of the largest term (sampled: 129 points, worst at
+ * Error: median 0.54, largest 3.3 u of the largest term (sampled: 129 points, worst at
  *            angular_momentum, point 57).
  * Cost: 3 add, 6 sub, 12 mul.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,

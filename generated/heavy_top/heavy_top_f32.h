@@ -10,8 +10,8 @@
  *     heavy_top_state_rate_f32(&constants, 1.54999995F, omega, coordinate_rates, omega_dot);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in ulps of the largest term of the
- * sum that an output is. Body of these files: sha256 8dff2581874c44c4.
+ * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
+ * float, times the largest term of the sum that an output is. Body of these files: sha256 8dff2581874c44c4.
  */
 #ifndef HEAVY_TOP_F32_H
 #define HEAVY_TOP_F32_H
@@ -52,7 +52,7 @@ int heavy_top_setup_f32(float A, float C, float m, float g, float l,
  *            omega_dot[3]  rad/s^2  along xyz  rate of the components of omega along the axes
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.35, largest 3 ulp of the largest term (sampled: 123 points, worst at omega_dot,
+ * Error: median 0.35, largest 3 u of the largest term (sampled: 123 points, worst at omega_dot,
  *            point 87).
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -71,7 +71,7 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
  *            jacobian[13]  nonzeros of the Jacobian, in compressed-column order
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.47, largest 5.4 ulp of the largest term (sampled: 123 points, worst at jacobian,
+ * Error: median 0.47, largest 5.4 u of the largest term (sampled: 123 points, worst at jacobian,
  *            point 71).
  * Cost: 1 add, 5 sub, 17 mul, 1 div, 4 neg, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -90,7 +90,7 @@ void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *cons
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.63, largest 4.2 ulp of the largest term (sampled: 123 points, worst at
+ * Error: median 0.63, largest 4.2 u of the largest term (sampled: 123 points, worst at
  *            kinetic_energy, point 62).
  * Cost: 2 add, 5 mul.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
@@ -103,7 +103,7 @@ void heavy_top_kinetic_energy_f32(const heavy_top_constants_f32 *constants, cons
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
- * Error: median 0.33, largest 1 ulp of the largest term (sampled: 123 points, worst at
+ * Error: median 0.33, largest 1 u of the largest term (sampled: 123 points, worst at
  *            angular_momentum, point 104).
  * Cost: 3 mul.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.

@@ -9,8 +9,8 @@
  *     unsymmetrical_rotor_in_carrier_axes_moment_f32(&constants, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, moment);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in ulps of the largest term of the
- * sum that an output is. Body of these files: sha256 a835b62f45855e41.
+ * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
+ * float, times the largest term of the sum that an output is. Body of these files: sha256 a835b62f45855e41.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
@@ -48,7 +48,7 @@ void unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float
  *            W_dot  rad/s^2  -1 .. 1
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.65, largest 4.8 ulp of the largest term (sampled: 123 points, worst at moment,
+ * Error: median 0.65, largest 4.8 u of the largest term (sampled: 123 points, worst at moment,
  *            point 90).
  * Cost: 3 add, 2 sub, 15 mul, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -67,7 +67,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f32(const unsymmetrical_rotor_in
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
  *            jacobian[11]  nonzeros of the Jacobian, in compressed-column order
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.62, largest 5.2 ulp of the largest term (sampled: 123 points, worst at jacobian,
+ * Error: median 0.62, largest 5.2 u of the largest term (sampled: 123 points, worst at jacobian,
  *            point 56).
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -89,7 +89,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f32(const unsymme
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
  * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
- * Error: median 0.44, largest 2.7 ulp of the largest term (sampled: 123 points, worst at
+ * Error: median 0.44, largest 2.7 u of the largest term (sampled: 123 points, worst at
  *            angular_momentum, point 33).
  * Cost: 1 sub, 6 mul, 1 sin, 1 cos.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
@@ -108,7 +108,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f32(const unsymmetrica
  *            rate_absolute[3]  N m  along xyz  rate of angular momentum seen from the inertial frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
- * Error: median 0.67, largest 4.4 ulp of the largest term (sampled: 123 points, worst at
+ * Error: median 0.67, largest 4.4 u of the largest term (sampled: 123 points, worst at
  *            rate_absolute, point 11).
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
@@ -124,7 +124,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f32(const unsymme
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.51, largest 2.2 ulp of the largest term (sampled: 123 points, worst at
+ * Error: median 0.51, largest 2.2 u of the largest term (sampled: 123 points, worst at
  *            kinetic_energy, point 30).
  * Cost: 1 add, 1 sub, 7 mul, 1 cos.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
