@@ -29,8 +29,22 @@ def _exact_power_of_two(x: Fraction) -> Fraction:
     return Fraction(2) ** (abs(x).numerator.bit_length() - abs(x).denominator.bit_length())
 
 
-# sin, cos and sqrt of exact numbers have no row: a proof must bring its own (see ``prove``).
-EXACT: Table = _PYTHON | {"number": Fraction, "power_of_two": _exact_power_of_two}
+# Roots, sines and their like have no row here: a proof must bring its own (see ``prove``).
+EXACT: Table = _PYTHON | {
+    "number": Fraction,
+    "power_of_two": _exact_power_of_two,
+    "abs": abs,
+    "floor": lambda x: Fraction(x.numerator // x.denominator),
+    "less": operator.lt,
+    "at_most": operator.le,
+    "both": operator.and_,
+    "either": operator.or_,
+    "select": lambda condition, yes, no: yes if condition else no,
+}
+
+# Operators whose result is a truth and not a number, and those that ask the platform's libm.
+TRUTHS = frozenset(("less", "at_most", "both", "either"))
+LIBM = frozenset(("sin", "cos", "exp", "log", "atan2"))
 
 MANTISSA: dict[type, int] = {np.float64: 53, np.float32: 24}
 
@@ -55,21 +69,30 @@ def rounded(q: Fraction, dtype: type) -> Any:
     return min(ties, key=lambda x: int(np.float32(x).view(np.uint32)) & 1)
 
 
-def _correctly(function: str, dtype: type) -> Callable[[Any], Any]:
-    """Return sin, cos or sqrt correctly rounded, the same on every machine."""
+def _correctly(function: str, dtype: type) -> Callable[..., Any]:
+    """Return a function of libm correctly rounded, the same on every machine."""
 
-    def one(x: Any) -> Any:
+    def one(*given: Any) -> Any:
         with flint.ctx.workprec(200):
-            ball = getattr(flint.arb(float(x)), function)()
+            first, *rest = (flint.arb(float(x)) for x in given)
+            ball = getattr(flint.arb, function)(first, *rest)
             if not ball.is_finite():
-                return dtype(np.nan)
+                return dtype(_at_the_edge(function, *given))
             man, exp = ball.mid().man_exp()
         return rounded(Fraction(int(man)) * Fraction(2) ** int(exp), dtype)
 
-    def each(x: Any) -> Any:
-        return np.array([one(value) for value in np.ravel(x)], dtype).reshape(np.shape(x))
+    def each(*given: Any) -> Any:
+        several = np.broadcast_arrays(*given)
+        flat = zip(*(np.ravel(x) for x in several), strict=True)
+        return np.array([one(*values) for values in flat], dtype).reshape(several[0].shape)
 
     return each
+
+
+def _at_the_edge(function: str, *given: Any) -> float:
+    """Return what numpy gives where no finite ball is the answer: zeros, infinities, NaN."""
+    with np.errstate(all="ignore"):
+        return float(getattr(np, {"atan2": "arctan2"}.get(function, function))(*given))
 
 
 def working(dtype: type) -> Table:
@@ -77,12 +100,22 @@ def working(dtype: type) -> Table:
     return _PYTHON | {
         "number": lambda q: rounded(q, dtype),
         "sqrt": np.sqrt,
-        "sin": _correctly("sin", dtype),
-        "cos": _correctly("cos", dtype),
+        **{name: _correctly(name, dtype) for name in sorted(LIBM)},
+        "abs": np.abs,
+        "floor": np.floor,
+        **_CHOICES,
         "pi": lambda: rounded(PI, dtype),
         "power_of_two": lambda x: power_of_two(x, dtype),
     }
 
+
+_CHOICES: Table = {
+    "less": np.less,
+    "at_most": np.less_equal,
+    "both": np.logical_and,
+    "either": np.logical_or,
+    "select": np.where,
+}
 
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
 
@@ -149,11 +182,15 @@ def pair_sqrt(a: Pair, factor: Any, root: Callable[[Any], Any]) -> Pair:
     """Return the square root of a within a few u^2 relative (Karp and Markstein)."""
     s = root(a[0])
     r = pair_add(a, _minus(two_product(s, s, factor)))
-    return fast_two_sum(s, r[0] / (s + s))
+    return fast_two_sum(s, np.where(s > 0, r[0] / (s + s), s * 0))
 
 
 def _minus(a: Pair) -> Pair:
     return -a[0], a[1] * 0 - a[1]  # a zero stays a positive zero, as CasADi has it
+
+
+def _pair_select(condition: Any, yes: Pair, no: Pair) -> Pair:
+    return np.where(condition, yes[0], no[0]), np.where(condition, yes[1], no[1])
 
 
 def extended(dtype: type) -> Table:
@@ -180,6 +217,12 @@ def extended(dtype: type) -> Table:
         "sin": lambda a: angle(a, "sin", "cos", 1),
         "cos": lambda a: angle(a, "cos", "sin", -1),
         "power_of_two": lambda a: (power_of_two(a[0], dtype), a[0] * 0),
+        "abs": lambda a: _pair_select(a[0] < 0, _minus(a), a),
+        "less": lambda a, b: (a[0] < b[0]) | ((a[0] == b[0]) & (a[1] < b[1])),
+        "at_most": lambda a, b: (a[0] < b[0]) | ((a[0] == b[0]) & (a[1] <= b[1])),
+        "both": np.logical_and,
+        "either": np.logical_or,
+        "select": _pair_select,
         "pi": lambda: number(PI),
     }
 

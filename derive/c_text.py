@@ -1,13 +1,13 @@
 """A program as C99 text: one line an operation, everything computed before anything is stored."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 
-from derive.arithmetic import rounded
-from derive.program import Op, Operand, Program, Quantity
+from derive.arithmetic import TRUTHS, rounded
+from derive.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
 
 
 @dataclass(frozen=True)
@@ -28,15 +28,33 @@ class Precision:
         return 2.0**-self.bits
 
 
-F64 = Precision(
-    "f64", "double", np.float64, "", 17, 53, {"sin": "sin", "cos": "cos", "sqrt": "sqrt"}
-)
+# The functions of <math.h> by operator; in float each takes an f at its end.
+MATH = {
+    "sin": "sin",
+    "cos": "cos",
+    "sqrt": "sqrt",
+    "atan2": "atan2",
+    "exp": "exp",
+    "log": "log",
+    "abs": "fabs",
+    "floor": "floor",
+}
+F64 = Precision("f64", "double", np.float64, "", 17, 53, MATH)
 F32 = Precision(
-    "f32", "float", np.float32, "F", 9, 24, {"sin": "sinf", "cos": "cosf", "sqrt": "sqrtf"}
+    "f32", "float", np.float32, "F", 9, 24, {name: f"{symbol}f" for name, symbol in MATH.items()}
 )
 PRECISIONS = (F32, F64)
 
-_INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
+INFIX = {
+    "add": "+",
+    "sub": "-",
+    "mul": "*",
+    "div": "/",
+    "less": "<",
+    "at_most": "<=",
+    "both": "&",
+    "either": "|",
+}
 
 
 def literal(q: Fraction, precision: Precision) -> str:
@@ -74,22 +92,63 @@ def body(program: Program, precision: Precision) -> list[str]:
             return literal(operand, precision)
         return place.get(operand, operand)
 
-    lines = [
-        f"const {precision.scalar} {op.result} = {_operation(op, text, precision)};"
-        for op in program.ops
+    def one(op: Op) -> str:
+        kind = "int" if op.operator in TRUTHS else precision.scalar
+        return f"const {kind} {op.result} = {_operation(op, text, precision)};"
+
+    return [*written(program.ops, one, text, precision.scalar), *_stores(program, text, precision)]
+
+
+def written(
+    lines: Sequence[Line], one: Callable[[Op], str], text: Callable[[Operand], str], kind: str
+) -> list[str]:
+    """Return the C lines of operations and loops; ``one`` writes an operation."""
+    found: list[str] = []
+    for line in lines:
+        found += _loop(line, one, text, kind) if isinstance(line, Repeat) else [one(line)]
+    return found
+
+
+def _loop(
+    loop: Repeat, one: Callable[[Op], str], text: Callable[[Operand], str], kind: str
+) -> list[str]:
+    begin = [
+        f"{kind} {c} = {text(s)};" for c, s in zip(loop.carried, loop.start, strict=True)
     ]
-    return lines + _stores(program, text, precision)
+    kept = {c: f"{c}_then" for c in loop.carried if c in loop.then}
+    after = [f"const {kind} {name} = {c};" for c, name in kept.items()]
+    after += [
+        f"{c} = {kept.get(t, text(t)) if isinstance(t, str) else text(t)};"
+        for c, t in zip(loop.carried, loop.then, strict=True)
+        if c != t
+    ]
+    end = [] if loop.done is None else [f"if ({text(loop.done)}) {{", "    break;", "}"]
+    inner = [*map(one, loop.ops), *after, *end]
+    name = f"pass_{loop.carried[0]}"
+    head = f"for (int {name} = 0; {name} < {loop.passes}; ++{name}) {{"
+    return [*begin, head, *(f"    {line}" for line in inner), "}"]
 
 
 def _operation(op: Op, text: Callable[[Operand], str], precision: Precision) -> str:
     operands = [text(operand) for operand in op.operands]
-    if op.operator in _INFIX:
-        return f"{operands[0]} {_INFIX[op.operator]} {operands[1]}"
+    if op.operator in INFIX:
+        return f"{operands[0]} {INFIX[op.operator]} {operands[1]}"
     if op.operator == "neg":
         return f"-{operands[0]}"
+    if op.operator == "select":
+        return f"{operands[0]} ? {operands[1]} : {operands[2]}"
     if op.operator == "pi":
         return literal(Fraction(np.pi), precision)
-    return f"{precision.functions[op.operator]}({operands[0]})"
+    if op.operator == "power_of_two":
+        return _power_of_two(operands[0], precision)
+    return f"{precision.functions[op.operator]}({', '.join(operands)})"
+
+
+def _power_of_two(x: str, precision: Precision) -> str:
+    """Return the expression of a power of two near x, by float operations only (Rump)."""
+    top = literal(Fraction(2 ** (precision.bits - 1) + 1), precision)
+    less = literal(1 - Fraction(1, 2**precision.bits), precision)
+    return f"{top} * {x} - {less} * ({top} * {x})"
 
 
 def _stores(program: Program, text: Callable[[Operand], str], precision: Precision) -> list[str]:
@@ -120,11 +179,17 @@ def pair_body(program: Program, scene: str, precision: Precision) -> list[str]:
             return f"({pair}){{{place[operand]}, {literal(Fraction(0), precision)}}}"
         return operand
 
-    lines = [
-        f"const {pair} {op.result} = {scene}_{op.operator}_{precision.name}"
-        f"({', '.join(text(operand) for operand in op.operands)});"
-        for op in program.ops
-    ]
+    def one(op: Op) -> str:
+        kind = "int" if op.operator in TRUTHS else pair
+        operands = [text(operand) for operand in op.operands]
+        if op.operator == "select":
+            return f"const {kind} {op.result} = {operands[0]} ? {operands[1]} : {operands[2]};"
+        if op.operator in ("both", "either"):
+            return f"const {kind} {op.result} = {operands[0]} {INFIX[op.operator]} {operands[1]};"
+        symbol = f"{scene}_{op.operator}_{precision.name}"
+        return f"const {kind} {op.result} = {symbol}({', '.join(operands)});"
+
+    lines = written(program.ops, one, text, pair)
 
     def stored(operand: Operand) -> str:
         if isinstance(operand, str) and operand not in place:
@@ -171,11 +236,14 @@ RESTS_ON: dict[str, tuple[str, ...]] = {
     "cos": (),
     "power_of_two": (),
     "pi": (),
+    "abs": ("neg",),
+    "less": (),
+    "at_most": (),
 }
 
 
 def pair_functions(programs: Iterable[Program]) -> list[str]:
     """Return the pair operations that programs in pairs need, each after those it rests on."""
-    used = {op.operator for program in programs for op in program.ops}
-    wanted = used | {name for kind in used for name in RESTS_ON[kind]}
+    used = {op.operator for program in programs for op, _ in every_op(program.ops)}
+    wanted = used | {name for kind in used for name in RESTS_ON.get(kind, ())}
     return [name for name in RESTS_ON if name in wanted]

@@ -1,16 +1,17 @@
 """The scene's functions as CasADi: Python that builds them, operation by operation as the C."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 from derive.arithmetic import rounded
 from derive.c_text import F64
 from derive.emit import TEMPLATES, first_line
 from derive.library import Library
-from derive.program import Op, Operand, Program, Quantity
+from derive.program import Line, Op, Operand, Program, Quantity, Repeat
 
 Text = Callable[[Operand], str]
-_INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
+_INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/", "less": "<", "at_most": "<="}
+_CALLS = {"abs": "fabs", "select": "if_else", "both": "logic_and", "either": "logic_or"}
 
 
 def casadi_file(library: Library) -> str:
@@ -41,11 +42,41 @@ def _pairs(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
             return repr(float(rounded(operand, F64.dtype)))
         return place.get(operand, f"{operand}[0]")
 
-    lines = [
-        f"{op.result} = _{op.operator}({', '.join(text(operand) for operand in op.operands)})"
-        for op in program.ops
-    ]
-    return lines, stored
+    def one(op: Op) -> str:
+        operands = ", ".join(text(operand) for operand in op.operands)
+        if op.operator in ("both", "either"):
+            return f"{op.result} = ca.{_CALLS[op.operator]}({operands})"
+        return f"{op.result} = _{op.operator}({operands})"
+
+    return _written(program.ops, one, text, "_select"), stored
+
+
+def _written(
+    lines: Sequence[Line], one: Callable[[Op], str], text: Text, select: str
+) -> list[str]:
+    """Return the Python lines of operations and loops; a loop is unrolled where it is built."""
+    found: list[str] = []
+    for line in lines:
+        found += _loop(line, one, text, select) if isinstance(line, Repeat) else [one(line)]
+    return found
+
+
+def _loop(loop: Repeat, one: Callable[[Op], str], text: Text, select: str) -> list[str]:
+    carried = ", ".join(loop.carried)
+    done = f"done_{loop.carried[0]}"
+    begin = [f"{carried} = {', '.join(map(text, loop.start))}"]
+    then = ", ".join(map(text, loop.then))
+    if loop.done is not None:
+        begin.append(f"{done} = ca.SX(0)")
+        then = ", ".join(
+            f"{select}({done}, {c}, {text(t)})"
+            for c, t in zip(loop.carried, loop.then, strict=True)
+        )
+    end = [f"{carried} = {then}"]
+    if loop.done is not None:
+        end.append(f"{done} = ca.logic_or({done}, {text(loop.done)})")
+    inner = [*map(one, loop.ops), *end]
+    return [*begin, f"for _ in range({loop.passes}):", *(f"    {line}" for line in inner)]
 
 
 def _setup(program: Program, scene: str) -> dict[str, object]:
@@ -72,7 +103,10 @@ def _plain(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
             return repr(float(rounded(operand, F64.dtype)))
         return place.get(operand, operand)
 
-    return [f"{op.result} = {_operation(op, text)}" for op in program.ops], text
+    def one(op: Op) -> str:
+        return f"{op.result} = {_operation(op, text)}"
+
+    return _written(program.ops, one, text, "ca.if_else"), text
 
 
 def _function(program: Program, scene: str) -> dict[str, object]:
@@ -95,7 +129,10 @@ def _operation(op: Op, text: Text) -> str:
         return f"{operands[0]} {_INFIX[op.operator]} {operands[1]}"
     if op.operator == "neg":
         return f"-{operands[0]}"
-    return f"ca.{op.operator}({', '.join(operands)})"
+    if op.operator == "power_of_two":
+        top = f"4503599627370497.0 * {operands[0]}"
+        return f"{top} - 0.9999999999999999 * ({top})"
+    return f"ca.{_CALLS.get(op.operator, op.operator)}({', '.join(operands)})"
 
 
 def _outputs(program: Program, text: Text) -> list[dict[str, object]]:

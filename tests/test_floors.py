@@ -9,12 +9,13 @@ import pytest
 
 FLOORS = (
     ("vectors", "formula", "grammar", "unit", "scene", "catalogue", "program", "graph"),
-    ("particles", "arithmetic", "tree", "rate", "facts", "relations"),
+    ("particles", "arithmetic", "trace", "rotations", "tree", "rate", "facts", "relations"),
     ("expand", "derivative", "table", "share", "write"),
     ("step", "notation", "principal", "vocabulary", "valuation", "wording"),
     ("lecture", "schedule", "motion"),
     ("specialise", "truth", "draft", "staging", "inverse", "attitude", "along_body", "arrange"),
     ("lower", "forms", "stage"),
+    ("flows",),
     ("library",),
     ("c_text", "comment", "signature", "example", "emit", "casadi_text", "manifest", "page"),
     ("blocks", "equations", "reference", "body_sample", "sample", "prove", "measure"),
@@ -22,7 +23,7 @@ FLOORS = (
     ("cli", "__main__"),
 )
 WITHOUT_SYMPY = (
-    *("program", "formula", "unit", "scene",
+    *("program", "formula", "unit", "scene", "trace", "flows", "rotations",
         "scene_[bfnrst]*", "graph", "expand", "table", "share", "write"),
     *("schedule", "derivative", "forms", "stage", "arithmetic", "c_text", "casadi_text", "emit"),
 )
@@ -79,7 +80,7 @@ def test_sympy_stays_out_of_the_modules_that_must_not_know_it(path: Path) -> Non
 
 def test_an_import_that_goes_up_is_found() -> None:
     assert faults("program", "from derive.cli import main") == [
-        "derive.program (floor 0) imports derive.cli (floor 11)"
+        "derive.program (floor 0) imports derive.cli (floor 12)"
     ]
     assert faults("program", "def f():\n    from derive import emit") != []
 

@@ -1,0 +1,1 @@
+"""Motion in time: formulas that move a state from one instant to another."""

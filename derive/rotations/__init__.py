@@ -1,0 +1,1 @@
+"""Formulas for attitudes: quaternions, rotation vectors, Rodrigues parameters, Euler angles."""
