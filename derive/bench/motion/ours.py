@@ -1,0 +1,91 @@
+"""Our steppers for a case: the scene of its kind emitted, compiled with the driver, and called."""
+
+import json
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import as_file, files
+from pathlib import Path
+from typing import Any
+
+from derive.bench.motion.case import Case
+from derive.bench.motion.glue import glue, movers
+from derive.bench.motion.runner import Mover, built, methods_header
+from derive.emit import c_files
+from derive.library import library
+from derive.manifest import manifest
+from derive.scene import load
+
+SCENES = ("principal", "general", "axisymmetric", "spherical", "moment", "wheel", "weight")
+AXES = ("x", "y", "z")
+
+
+@dataclass(frozen=True)
+class Emission:
+    """The C of a scene and its manifest."""
+
+    scene: str
+    texts: Mapping[str, str]
+    manifest: Mapping[str, Any]
+
+
+def scenes_for(case: Case) -> list[str]:
+    """Return the scenes that describe a case: the most special one first.
+
+    >>> from derive.bench.motion.case import cases
+    >>> scenes_for(cases()["sphere"]), scenes_for(cases()["full_tensor"])
+    (['spherical', 'axisymmetric', 'principal'], ['general'])
+    """
+    for name, vector in (("moment", case.moment), ("wheel", case.wheel), ("weight", case.weight)):
+        if any(vector):
+            return [name]
+    if not case.principal:
+        return ["general"]
+    found = ["principal"]
+    if case.inertia[0] == case.inertia[1]:
+        found.insert(0, "axisymmetric")
+        if case.inertia[1] == case.inertia[2]:
+            found.insert(0, "spherical")
+    return found
+
+
+def parameters(emission: Emission, case: Case) -> list[float]:
+    """Return the values of a scene's parameters in a case, in the order of the manifest."""
+    values = _values(case)
+    return [values[q["name"]] for q in emission.manifest["parameters"]]
+
+
+def _values(case: Case) -> dict[str, float]:
+    xx, yy, zz, xy, xz, yz = (float(x) for x in case.inertia)
+    found = {"I_xx": xx, "I_yy": yy, "I_zz": zz, "I_xy": -xy, "I_xz": -xz, "I_yz": -yz}
+    found |= {"A": xx, "C": zz}
+    for letter, vector in (("M", case.moment), ("h", case.wheel), ("c", case.weight)):
+        found |= {f"{letter}_{axis}": float(x) for axis, x in zip(AXES, vector, strict=True)}
+    return found
+
+
+@cache
+def emission(scene: str) -> Emission:
+    """Return the C and the manifest of one of ``SCENES``, made in memory."""
+    with as_file(files("derive.bench.motion") / "scenes" / f"{scene}.toml") as path:
+        programs = library(load(str(path)))
+    return Emission(scene, c_files(programs, ()), json.loads(manifest(programs, ())))
+
+
+def emissions(scenes: Sequence[str]) -> dict[str, Emission]:
+    """Return several scenes' C and manifests, two at a time."""
+    with ProcessPoolExecutor(2) as pool:
+        return dict(zip(scenes, pool.map(emission, scenes), strict=True))
+
+
+def ours(made: Emission, precision: str, folder: Path) -> Mover:
+    """Return a scene's steppers built with the driver."""
+    count = len(made.manifest["parameters"])
+    names = made.manifest["files"][precision]
+    texts = {name: made.texts[name] for name in (names["source"], names["header"])}
+    texts |= {
+        "methods.h": methods_header(precision, count),
+        "methods.c": glue(made.manifest, precision),
+    }
+    return built(texts, movers(made.manifest), count, folder)
