@@ -10,7 +10,7 @@ paper, no angles are added and no quarter turn is taken away afterwards, for tha
 from collections.abc import Sequence
 from fractions import Fraction
 
-from derive.rotations.lengths import either_way
+from derive.rotations.lengths import FAR, either_way, largest, squares
 from derive.rotations.quaternion import product
 from derive.trace import (
     Number,
@@ -44,7 +44,7 @@ def _turn(axis: str, angle: Number) -> list[Number]:
 
 
 def from_quaternion(sequence: str, q: Sequence[Number]) -> list[Number]:
-    """Return the three angles (3) in rad of a unit quaternion. Within 6 u of the largest.
+    """Return the three angles (3) in rad of a unit quaternion. Within 5 u of the largest.
 
     First and third from -pi to pi; the second from -pi/2 to pi/2, or from 0 to pi if the first
     axis is also the third. Where the first and the third turn about one line (gimbal lock) the
@@ -60,17 +60,24 @@ def from_quaternion(sequence: str, q: Sequence[Number]) -> list[Number]:
     if sign_of(i, j) < 0:
         near, far = [w - at_j, at_i + at_k], [w + at_j, at_i - at_k]
         sine = w * at_j - at_i * at_k
-    length = sqrt(_square(near) * _square(far))
+    length = sqrt(squares(near) * squares(far))
     first, third = _first_and_third(near, far)
     return [first, atan2(sine + sine, length), third]
 
 
 def _proper(i: int, j: int, q: Sequence[Number]) -> list[Number]:
+    """Return the angles of a proper sequence; the second is small where ``far`` is.
+
+    Both points are brought up, so that no square and no product of their components vanishes.
+    """
     last = q[1 + 3 - i - j]
-    near = [q[0], q[1 + i]]
+    near = [FAR * q[0], FAR * q[1 + i]]
     far = [q[1 + j], last if sign_of(i, j) > 0 else -last]
+    size = largest(far)
+    scale = power_of_two(select(less(0, size), size, 1))
+    far = [c / scale for c in far]
     first, third = _first_and_third(near, far)
-    return [first, 2 * atan2(_small_length(far), sqrt(_square(near))), third]
+    return [first, 2 * atan2(FAR * scale * sqrt(squares(far)), sqrt(squares(near))), third]
 
 
 def _first_and_third(near: Sequence[Number], far: Sequence[Number]) -> tuple[Number, Number]:
@@ -83,15 +90,3 @@ def _first_and_third(near: Sequence[Number], far: Sequence[Number]) -> tuple[Num
     (a, b), (c, d) = either_way(no_near, far, near), either_way(no_far, near, far)
     ac, bd, bc, ad = a * c, b * d, b * c, a * d
     return atan2(bc + ad, ac - bd), atan2(bc - ad, ac + bd)
-
-
-def _square(point: Sequence[Number]) -> Number:
-    return point[0] * point[0] + point[1] * point[1]
-
-
-def _small_length(point: Sequence[Number]) -> Number:
-    """Return the length of a point that may be so small that its squares vanish."""
-    a, b = map(absolute, point)
-    size = select(less(a, b), b, a)
-    scale = power_of_two(select(less(0, size), size, 1))
-    return scale * sqrt(_square([c / scale for c in point]))

@@ -28,13 +28,17 @@ SEQUENCES = tuple(
 
 @dataclass(frozen=True)
 class AttitudeFunction:
-    """One formula: ``formula`` takes each input as a list of numbers, and returns the output."""
+    """One formula: ``formula`` takes a tape, and each input as numbers, and returns the output.
+
+    within : the promise, in u: no component is further off than this times the largest one
+    """
 
     name: str
     says: str
     inputs: tuple[Quantity, ...]
     outputs: tuple[Quantity, ...]
     formula: Formula
+    within: int
 
 
 def attitude_program(name: str) -> Program:
@@ -108,6 +112,7 @@ def _euler(sequence: str) -> tuple[AttitudeFunction, AttitudeFunction]:
             (ATTITUDE,),
             (angles,),
             partial(_with_sequence, euler.from_quaternion, sequence),
+            within=5,
         ),
         AttitudeFunction(
             f"quaternion_from_euler_{sequence}",
@@ -115,6 +120,7 @@ def _euler(sequence: str) -> tuple[AttitudeFunction, AttitudeFunction]:
             (angles,),
             (ATTITUDE,),
             partial(_with_sequence, euler.to_quaternion, sequence),
+            within=4,
         ),
     )
 
@@ -129,6 +135,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         ),
         (_quaternion("attitude", "N from B", "left times right"),),
         partial(_plain, quaternion.product),
+        within=4,
     ),
     AttitudeFunction(
         "quaternion_exp",
@@ -136,6 +143,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         (TURN,),
         (ATTITUDE,),
         quaternion.exponential,
+        within=5,
     ),
     AttitudeFunction(
         "quaternion_log",
@@ -143,6 +151,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         (ANY_LENGTH,),
         (TURN,),
         partial(_plain, quaternion.logarithm),
+        within=5,
     ),
     AttitudeFunction(
         "quaternion_normalise",
@@ -150,6 +159,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         (ANY_LENGTH,),
         (ATTITUDE,),
         partial(_plain, quaternion.normalise),
+        within=3,
     ),
     AttitudeFunction(
         "quaternion_rotate",
@@ -157,6 +167,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         (ATTITUDE, VECTOR_B),
         (VECTOR_N,),
         partial(_plain, quaternion.rotate),
+        within=7,
     ),
     AttitudeFunction(
         "quaternion_rotate_back",
@@ -164,6 +175,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         (ATTITUDE, VECTOR_N),
         (VECTOR_B,),
         partial(_plain, quaternion.rotate_back),
+        within=7,
     ),
     AttitudeFunction(
         "quaternion_to_matrix",
@@ -171,6 +183,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         (ATTITUDE,),
         (MATRIX,),
         partial(_plain, matrix.from_quaternion),
+        within=6,
     ),
     AttitudeFunction(
         "quaternion_from_matrix",
@@ -178,6 +191,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         (MATRIX,),
         (ATTITUDE,),
         partial(_plain, matrix.to_quaternion),
+        within=6,
     ),
     AttitudeFunction(
         "quaternion_to_mrp",
@@ -185,6 +199,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         (ATTITUDE,),
         (MRP,),
         partial(_plain, rodrigues.from_quaternion),
+        within=4,
     ),
     AttitudeFunction(
         "quaternion_from_mrp",
@@ -192,6 +207,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         (MRP,),
         (ATTITUDE,),
         partial(_plain, rodrigues.to_quaternion),
+        within=4,
     ),
     *(function for sequence in SEQUENCES for function in _euler(sequence)),
 )

@@ -10,19 +10,22 @@ from derive.trace import Number, less, select, sqrt
 
 
 def from_quaternion(q: Sequence[Number]) -> list[Number]:
-    """Return the matrix (9, column by column) of a unit quaternion. Within 5 u of 1.
+    """Return the matrix (9, column by column) of a unit quaternion. 26 flops.
 
-    Squares are taken from 1, not from each other: an entry's error is one of rounding only.
+    Within 6 u of the rotation that ``q`` stands for if |q| is 1 up to rounding, which has its
+    share in it; within 3 u of |q|^2 times it. The diagonal by 1 - 2 (y^2 + z^2) of 24 flops errs
+    nearly twice as much.
     """
     w, x, y, z = q
     x2, y2, z2 = x + x, y + y, z + z
-    xx, yy, zz = x * x2, y * y2, z * z2
     xy, xz, yz = x * y2, x * z2, y * z2
     wx, wy, wz = w * x2, w * y2, w * z2
+    ww, xx, yy, zz = w * w, x * x, y * y, z * z
+    sum_wx, left_wx, sum_yz, left_yz = ww + xx, ww - xx, yy + zz, yy - zz
     return [
-        *(1 - (yy + zz), xy + wz, xz - wy),
-        *(xy - wz, 1 - (xx + zz), yz + wx),
-        *(xz + wy, yz - wx, 1 - (xx + yy)),
+        *(sum_wx - sum_yz, xy + wz, xz - wy),
+        *(xy - wz, left_wx + left_yz, yz + wx),
+        *(xz + wy, yz - wx, left_wx - left_yz),
     ]
 
 

@@ -11,7 +11,7 @@ from derive.trace import Number, absolute, less, power_of_two, select
 
 
 def from_quaternion(q: Sequence[Number]) -> list[Number]:
-    """Return the parameters (3) of a unit quaternion, |mrp| <= 1 up to rounding. Within 3 u."""
+    """Return the parameters (3) of a unit quaternion, |mrp| <= 1 up to rounding. Within 4 u."""
     w, *u = q
     under = 1 + absolute(w)
     under = select(less(w, 0), -under, under)
