@@ -1,0 +1,36 @@
+"""Sums that keep what rounding takes away, and carry it to the next call.
+
+A state that moves by small increments loses half a unit in the last place at every step. Kept
+beside the state, that loss is added to the next increment, and the error of a long run no longer
+grows with the number of steps.
+"""
+
+from collections.abc import Sequence
+
+from derive.trace import Number
+
+Vector = Sequence[Number]
+
+
+def compensated_add(state: Number, increment: Number, remainder: Number) -> tuple[Number, Number]:
+    """Return the state after an increment, and what rounding kept from it.
+
+    ``remainder`` is what the call before gave, zero at first; state + remainder is the better
+    value. Exact while the increment is not larger than the state; where it is, the loss is a
+    rounding of the increment. Source: Kahan, CACM 8 (1965) 40.
+    """
+    if increment.exact == 0:
+        return state, remainder
+    wanted = increment + remainder
+    after = state + wanted
+    return after, wanted - (after - state)
+
+
+def compensated_sums(
+    attitude: Vector, omega: Vector, turn: Vector, change: Vector, remainder: Vector
+) -> tuple[list[Number], list[Number], list[Number]]:
+    """Return attitude and omega after their increments, and the remainder of the seven sums."""
+    state, increments = [*attitude, *omega], [*turn, *change]
+    sums = [compensated_add(*each) for each in zip(state, increments, remainder, strict=True)]
+    after = [x for x, _ in sums]
+    return after[:4], after[4:], [r for _, r in sums]
