@@ -5,6 +5,7 @@ a value v is called: ``v`` at order 0, ``v_k`` its term of order k, ``v_terms`` 
 Terms carry their power of the step: term k is the k-th derivative times h^k / k!.
 """
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -14,10 +15,10 @@ from derive.program import FLOPS, Op, Operand, Program, Quantity
 
 # What is known by these names at order k: k, 1/k and h/(k + 1).
 ORDER, INVERSE, SHARE = "order_k", "one_over_k", "step_over_k_plus_1"
-# And in ``close``: u^(1/order); a little less of it; how small and how large the tail counts; the
-# smallest normal number.
-REACH, MARGIN, SHORTEST, LONGEST, TINY = "reach", "margin", "least_tail", "most_tail", "tiny"
-SAFETY, LARGEST = Fraction(9, 10), 4  # the next step is within a factor of LARGEST of this one
+# And in ``close``: u^(1/order), how much smaller a last term is than the one before where it is as
+# small as u; the number that makes the last term 1 that one aims at; the smallest normal number.
+REACH, OVER_AIM, TINY = "reach", "over_aim", "tiny"
+SAFETY = Fraction(9, 10)  # of a step whose last term is u
 
 Pairs = tuple[tuple[str, str], ...]
 
@@ -94,6 +95,18 @@ class Series:
         """Return the number of + - * / in a step."""
         return sum(times for operator, times in self._uses() if operator in FLOPS)
 
+    def operands(self) -> set[str]:
+        """Return the names that the operations refer to."""
+        every = [o for op in (*self.start, *self.each, *self.close) for o in op.operands]
+        every += [o for rates in self.rates.values() for o in rates]
+        return {o for o in every if isinstance(o, str)}
+
+    def run(self, arithmetic: Mapping[str, Callable[..., Any]], known: dict[str, Any]) -> list[Any]:
+        """Return the results in an arithmetic, from the inputs by name."""
+        bits = round(-math.log2(float(arithmetic["unit_roundoff"]())))
+        given = [known[c] for q in self.inputs for c in q.components]
+        return run_series(self, arithmetic, given, bits)
+
     def _uses(self) -> Iterator[tuple[str, int]]:
         orders = range(1, self.order)
         yield from ((op.operator, 1) for op in (*self.start, *self.close))
@@ -115,14 +128,8 @@ class Series:
 def precision_values(order: int, bits: int) -> dict[str, Fraction]:
     """Return the numbers in ``close`` that rest on the precision."""
     reach = Fraction(2.0 ** (-bits / order)).limit_denominator(1000)
-    margin = SAFETY * reach
-    return {
-        REACH: reach,
-        MARGIN: margin,
-        SHORTEST: (margin / LARGEST) ** order,
-        LONGEST: (margin * LARGEST) ** order,
-        TINY: Fraction(1, 2**126 if bits == 24 else 2**1022),
-    }
+    tiny = Fraction(1, 2**126 if bits == 24 else 2**1022)
+    return {REACH: reach, OVER_AIM: 1 / (SAFETY * reach) ** order, TINY: tiny}
 
 
 def run_series(

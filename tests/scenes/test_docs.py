@@ -10,6 +10,7 @@ from derive.scene import SceneError, catalogue, parse_scene, shape
 from derive.scene import body as scene_body
 from derive.scene import file as scene_file
 from derive.scene import symbols as scene_symbols
+from derive.scene import wanted as scene_wanted
 
 PAGE = (Path(__file__).parents[2] / "docs" / "scenes.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"^```toml\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
@@ -38,7 +39,7 @@ def test_the_page_has_its_examples_and_is_one_page() -> None:
 
 def test_every_word_that_a_scene_may_use_stands_on_the_page() -> None:
     words = [
-        *scene_file.FUNCTIONS,
+        *scene_wanted.EQUATIONS,
         *(*scene_file.TABLES, "wheels", *scene_file.LATER),
         *(*scene_file.KNOWN, *scene_file.POINTS),
         *scene_body.KINDS,
