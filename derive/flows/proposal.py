@@ -1,14 +1,15 @@
 """How long the next Taylor step may be, from the last two terms of this one.
 
 Jorba and Zou, Experimental Mathematics 14 (2005), section 3.2: terms fall like (h / radius)^k, so
-the step for which the last is the unit roundoff u follows from a root of order ``order``. The root
-is made of square roots: the same bits everywhere, and no call of pow.
+the step for which the last is as small as one wants follows from a root of order ``order``. The
+root is made of square roots: the same bits everywhere, and no call of pow. It is of a number that
+is near 1 where steps change little, so a rough root will do.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 
-from derive.flows.series import LONGEST, MARGIN, REACH, SHORTEST, TINY
+from derive.flows.series import OVER_AIM, REACH, TINY
 from derive.program import Op, Quantity
 
 Do = Callable[..., str]
@@ -24,6 +25,7 @@ PROPOSED = Quantity(
     "length at which a step's last terms are within rounding; for an error of e "
     "instead of u, (e/u)^(1/order) times it",
 )
+LARGEST = 4  # the next step is within a factor of this one
 BITS = 9  # of 1/order, of which the root is made
 
 
@@ -56,9 +58,10 @@ def proposal(order: int, groups: Sequence[Sequence[str]]) -> tuple[list[Op], str
         worst = _larger(do, f"{x}_worst", worst, ratio) if worst else ratio
     if not worst:
         return [], "time_step"
-    tail = _larger(do, "tail_from_below", worst, SHORTEST)
-    bounded = do("tail", "select", do("tail_is_large", "less", LONGEST, tail), LONGEST, tail)
-    factor = do("step_factor", "div", MARGIN, _root(do, order, bounded))
+    bound = Fraction(LARGEST) ** order
+    tail = _larger(do, "tail_from_below", do("tail_over_aim", "mul", worst, OVER_AIM), 1 / bound)
+    bounded = do("tail", "select", do("tail_is_large", "less", bound, tail), bound, tail)
+    factor = do("step_factor", "div", Fraction(1), _root(do, order, bounded))
     return ops, do("step_next", "mul", "time_step", factor)
 
 
