@@ -15,10 +15,13 @@ from derive.program import FLOPS, Op, Operand, Program, Quantity
 
 # What is known by these names at order k: k, 1/k and h/(k + 1).
 ORDER, INVERSE, SHARE = "order_k", "one_over_k", "step_over_k_plus_1"
-# And in ``close``: u^(1/order), how much smaller a last term is than the one before where it is as
-# small as u; the number that makes the last term 1 that one aims at; the smallest normal number.
+# And in ``close``: by how much terms fall where the last is u: u^(1/order); the number that makes
+# the last term 1 that one aims at; the smallest normal number.
 REACH, OVER_AIM, TINY = "reach", "over_aim", "tiny"
 SAFETY = Fraction(9, 10)  # of a step whose last term is u
+# Terms fall by this at least: over a longer step the radius of convergence changes too much to be
+# known beforehand. It matters in float only, where order 16 would lose three digits.
+SLOWEST = Fraction(1, 4)
 
 Pairs = tuple[tuple[str, str], ...]
 
@@ -127,7 +130,7 @@ class Series:
 
 def precision_values(order: int, bits: int) -> dict[str, Fraction]:
     """Return the numbers in ``close`` that rest on the precision."""
-    reach = Fraction(2.0 ** (-bits / order)).limit_denominator(1000)
+    reach = min(Fraction(2.0 ** (-bits / order)).limit_denominator(1000), SLOWEST)
     tiny = Fraction(1, 2**126 if bits == 24 else 2**1022)
     return {REACH: reach, OVER_AIM: 1 / (SAFETY * reach) ** order, TINY: tiny}
 

@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import flint
+import numpy as np
 import pytest
 
+from derive.arithmetic import working
 from derive.flows.series import Series, run_series
 from derive.flows.taylor import taylor_step
 from derive.program import Op, Program
@@ -90,6 +92,35 @@ def test_a_reference_case_is_met_to_a_few_times_what_rounded_inputs_allow(name: 
         ended(case, driven(step, state, float(case["T"]))), kappas, strict=True
     ):
         assert error < 4 * kappa
+
+
+def in_float(name: str, order: int) -> tuple[float, float]:
+    """Return the errors, in u of float, of a case moved as proposed; no step is redone."""
+    case, table = CASES[name], working(np.float32)
+    step = taylor_step(case_rate(case), BODY, (), order)
+    now = [np.float32(float.fromhex(x)) for part in ("q0_hex", "omega0_hex") for x in case[part]]
+    passed, time = 0.0, float(case["T"])
+    h = np.float32(time / 128)
+    while passed < time:
+        h = min(h, np.float32(time - passed))
+        *now, proposed = run_series(step, table, [*now, h], 24)
+        passed, h = passed + float(h), np.float32(proposed)
+    omega, angle = ended(case, list(map(float, now)))
+    return omega / 2**29, angle / 2**29
+
+
+@pytest.mark.parametrize("order", [12, 20])
+def test_float_is_met_too_at_an_order_that_is_higher_than_it_needs(order: int) -> None:
+    errors = in_float("const_body_torque", order)
+    for error, kappa in zip(errors, KAPPA["const_body_torque"], strict=True):
+        assert error < 4 * kappa
+
+
+def test_float_is_missed_if_terms_may_fall_as_slowly_as_they_like(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("derive.flows.series.SLOWEST", Fraction(1))
+    assert in_float("const_body_torque", 20)[1] > 100 * KAPPA["const_body_torque"][1]
 
 
 @pytest.mark.parametrize("tolerance", [U, 1e-11])
