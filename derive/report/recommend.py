@@ -54,8 +54,7 @@ def keeping(points: Iterable[Point], error: float) -> list[Point]:
         series.setdefault((p.method, p.scene, p.precision), []).append(p)
     found = []
     for own in series.values():
-        finest_first = sorted(own, key=lambda p: p.radians)
-        for p in finest_first:
+        for p in sorted(own, key=lambda p: p.value):  # the finest step or tolerance first
             if not p.wrong.state <= error:
                 break
             found.append(p)

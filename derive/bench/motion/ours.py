@@ -1,8 +1,7 @@
 """Our steppers for a case: the scene of its kind emitted, compiled with the driver, and called."""
 
 import json
-from collections.abc import Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import as_file, files
@@ -23,10 +22,11 @@ AXES = ("x", "y", "z")
 
 @dataclass(frozen=True)
 class Emission:
-    """The C of a scene and its manifest."""
+    """The C of a scene and its manifest, as JSON and read."""
 
     scene: str
     texts: Mapping[str, str]
+    json: str
     manifest: Mapping[str, Any]
 
 
@@ -70,13 +70,8 @@ def emission(scene: str) -> Emission:
     """Return the C and the manifest of one of ``SCENES``, made in memory."""
     with as_file(files("derive.bench.motion") / "scenes" / f"{scene}.toml") as path:
         programs = library(load(str(path)))
-    return Emission(scene, c_files(programs, ()), json.loads(manifest(programs, ())))
-
-
-def emissions(scenes: Sequence[str]) -> dict[str, Emission]:
-    """Return several scenes' C and manifests, two at a time."""
-    with ProcessPoolExecutor(2) as pool:
-        return dict(zip(scenes, pool.map(emission, scenes), strict=True))
+    described = manifest(programs, ())
+    return Emission(scene, c_files(programs, ()), described, json.loads(described))
 
 
 def ours(made: Emission, precision: str, folder: Path) -> Mover:

@@ -106,6 +106,7 @@ def mujoco_rk4(case: Case, step: float) -> Run:
         raise NotImplementedError("a wheel of constant momentum is no part of its models")
     if any(case.weight):
         raise NotImplementedError("only the free body was modelled")
+    mujoco.set_mju_user_warning(lambda _: None)  # else it leaves a file of warnings behind
     model = mujoco.MjModel.from_xml_string(_mujoco_xml(case, step))
     data = mujoco.MjData(model)
     steps = round(float(case.time) / step)
