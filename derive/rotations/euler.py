@@ -33,7 +33,7 @@ def sign_of(i: int, j: int) -> int:
 
 
 def to_quaternion(sequence: str, angles: Sequence[Number]) -> list[Number]:
-    """Return the unit quaternion (4) of three angles in rad, of any size. Within 4 u."""
+    """Return the unit quaternion (4) of three angles in rad, of any size. Within 5 u."""
     turns = [_turn(axis, angle) for axis, angle in zip(sequence, angles, strict=True)]
     return product(product(turns[0], turns[1]), turns[2])
 
@@ -44,7 +44,7 @@ def _turn(axis: str, angle: Number) -> list[Number]:
 
 
 def from_quaternion(sequence: str, q: Sequence[Number]) -> list[Number]:
-    """Return the three angles (3) in rad of a unit quaternion. Within 5 u of the largest.
+    """Return the three angles (3) in rad of a unit quaternion. Within 6 u of the largest.
 
     First and third from -pi to pi; the second from -pi/2 to pi/2, or from 0 to pi if the first
     axis is also the third. Where the first and the third turn about one line (gimbal lock) the

@@ -112,7 +112,7 @@ def _euler(sequence: str) -> tuple[AttitudeFunction, AttitudeFunction]:
             (ATTITUDE,),
             (angles,),
             partial(_with_sequence, euler.from_quaternion, sequence),
-            within=5,
+            within=6,
         ),
         AttitudeFunction(
             f"quaternion_from_euler_{sequence}",
@@ -120,7 +120,7 @@ def _euler(sequence: str) -> tuple[AttitudeFunction, AttitudeFunction]:
             (angles,),
             (ATTITUDE,),
             partial(_with_sequence, euler.to_quaternion, sequence),
-            within=4,
+            within=5,
         ),
     )
 
@@ -143,7 +143,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         (TURN,),
         (ATTITUDE,),
         quaternion.exponential,
-        within=5,
+        within=6,
     ),
     AttitudeFunction(
         "quaternion_log",
@@ -159,7 +159,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         (ANY_LENGTH,),
         (ATTITUDE,),
         partial(_plain, quaternion.normalise),
-        within=3,
+        within=4,
     ),
     AttitudeFunction(
         "quaternion_rotate",
@@ -167,7 +167,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         (ATTITUDE, VECTOR_B),
         (VECTOR_N,),
         partial(_plain, quaternion.rotate),
-        within=7,
+        within=8,
     ),
     AttitudeFunction(
         "quaternion_rotate_back",
@@ -175,7 +175,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         (ATTITUDE, VECTOR_N),
         (VECTOR_B,),
         partial(_plain, quaternion.rotate_back),
-        within=7,
+        within=8,
     ),
     AttitudeFunction(
         "quaternion_to_matrix",
@@ -183,7 +183,7 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         (ATTITUDE,),
         (MATRIX,),
         partial(_plain, matrix.from_quaternion),
-        within=6,
+        within=7,
     ),
     AttitudeFunction(
         "quaternion_from_matrix",

@@ -29,11 +29,12 @@ def either_way(condition: Number, yes: Sequence[Number], no: Sequence[Number]) -
 
 
 def size_of(values: Sequence[Number]) -> Number:
-    """Return the power of two at or next to the largest magnitude; 1 if all ``values`` are zero."""
+    """Return a power of two over which ``values`` are near 1, or near 2^60 if they are large.
+
+    1 if all are zero, so that it can be divided by.
+    """
     m = largest(values)
-    large = less(1, m)
-    borne = select(large, m * (1 / FAR), select(less(0, m), m, 1))
-    return power_of_two(borne) * select(large, FAR, 1)
+    return power_of_two(select(less(1, m), m * (1 / FAR), select(less(0, m), m, 1)))
 
 
 def squares(values: Sequence[Number]) -> Number:

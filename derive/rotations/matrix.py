@@ -12,7 +12,7 @@ from derive.trace import Number, less, select, sqrt
 def from_quaternion(q: Sequence[Number]) -> list[Number]:
     """Return the matrix (9, column by column) of a unit quaternion. 26 flops.
 
-    Within 6 u of the rotation that ``q`` stands for if |q| is 1 up to rounding, which has its
+    Within 7 u of the rotation that ``q`` stands for if |q| is 1 up to rounding, which has its
     share in it; within 3 u of |q|^2 times it. The diagonal by 1 - 2 (y^2 + z^2) of 24 flops errs
     nearly twice as much.
     """

@@ -65,6 +65,10 @@ def matrix(q: Sequence[flint.arb]) -> list[Vector]:
     return [[columns[k][i] for k in range(3)] for i in range(3)]
 
 
+def by_column(q: Sequence[flint.arb]) -> Vector:
+    return [entry for column in zip(*matrix(q), strict=True) for entry in column]
+
+
 def rotate(q: Sequence[flint.arb], v: Sequence[flint.arb]) -> Vector:
     return [sum((a * b for a, b in zip(row, v, strict=True)), flint.arb(0)) for row in matrix(q)]
 
