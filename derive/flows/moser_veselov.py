@@ -9,18 +9,19 @@ rounding remainder from call to call. Moments are measured in the largest, so th
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
+from derive.flows.closed_steps import change_of_revolution, plan_revolution, plan_sphere
 from derive.flows.compensated import compensated_sums
 from derive.flows.frame import Frame, own_frame, principal_frame
 from derive.flows.inertia import Inertia
 from derive.flows.moments import in_order
 from derive.flows.preprocessing import D, S, coefficients, summed
-from derive.flows.revolution import change_of_revolution, plan_revolution, plan_sphere
 from derive.flows.turns import quaternion_change
 from derive.trace import Number, Tape, absolute, at_most, named, number, repeat, sqrt
 
 AXES = "xyz"
 CYCLIC = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
-PASSES = 60
+PASSES = 40
+FAR = 64  # a change that 64 does not feel is followed by one below rounding
 Plan = list[tuple[str, Number, str]]
 Vector = Sequence[Number]
 
@@ -53,7 +54,8 @@ def plan_dmv(tape: Tape, body: Inertia, omega: Vector, time_step: Number) -> Pla
             (f"gain_{axis}", gain, "change of omega by two components of c, rad/s"),
             (f"couple_{axis}", gain * half * Fraction(1, 2), "(It_j - It_k) / It_i"),
         ]
-    return plan
+    couple = plan[2][1] * plan[5][1] * Fraction(1, 2)
+    return [*plan, ("couple", couple, "half the product of couple_x and couple_y")]
 
 
 def _axes(body: Inertia) -> Frame:
@@ -115,10 +117,8 @@ def _change(
     tape: Tape, plan: Mapping[str, Number], omega: Vector
 ) -> tuple[Number, list[Number], list[Number]]:
     """Return a step's attitude change, as one less its scalar and its vector, and omega's."""
-    half, gain, couple = (
-        [plan[f"{name}_{axis}"] for axis in AXES] for name in ("half", "gain", "couple")
-    )
-    c = _solved(tape, [h * w for h, w in zip(half, omega, strict=True)], couple)
+    half, gain = ([plan[f"{name}_{axis}"] for axis in AXES] for name in ("half", "gain"))
+    c = _solved(tape, plan, [h * w for h, w in zip(half, omega, strict=True)])
     size = c[0] * c[0] + c[1] * c[1] + c[2] * c[2]
     root = sqrt(1 + size)
     inverse = 1 / root
@@ -128,15 +128,31 @@ def _change(
     return less, [x * inverse for x in c], change
 
 
-def _solved(tape: Tape, W: Vector, couple: Vector) -> list[Number]:
-    """Return c, by passes that use each component as soon as it is known."""
+def _solved(tape: Tape, plan: Mapping[str, Number], W: Vector) -> list[Number]:
+    """Return c: for a known third component the others and al are explicit, so one is sought.
+
+    With D = 1/2 - e1 e2 c3^2/2 and P = W1 + e1 W2 c3, Q = W2 + e2 W1 c3, k = 1 + c3^2, the first
+    two equations and al = 1 + |c|^2 give c1 = A P, c2 = A Q, al = 2 A D with
+    A = k/(D + sqrt(D^2 - k (P^2 + Q^2))); the third is left for Newton's rule, its slope at c = W.
+    """
+    first, second, third = (plan[f"couple_{axis}"] for axis in AXES)
+    across, along, twice = first * W[1], second * W[0], W[2] + W[2]
+    slope = twice * W[2] + third * (across * W[1] + along * W[0])
+    factor = 1 / (1 - slope)
+
+    def others(c3: Number) -> tuple[Number, Number, Number]:
+        square = c3 * c3
+        D, k = Fraction(1, 2) - plan["couple"] * square, 1 + square
+        P, Q = W[0] + across * c3, W[1] + along * c3
+        A = k / (D + sqrt(D * D - k * (P * P + Q * Q)))
+        return A * P, A * Q, A * D
 
     def one_pass(c: list[Number]) -> tuple[list[Number], Number]:
-        al = 1 + (c[0] * c[0] + c[1] * c[1] + c[2] * c[2])
-        new = list(c)
-        for i, j, k in CYCLIC:
-            new[i] = al * W[i] + couple[i] * (new[j] * new[k])
-        change = absolute(new[0] - c[0]) + absolute(new[1] - c[1]) + absolute(new[2] - c[2])
-        return new, at_most(al + change, al)
+        c1, c2, half_al = others(c[0])
+        step = (half_al * twice + third * (c1 * c2) - c[0]) * factor
+        return [c[0] + step], at_most(FAR + absolute(step), FAR)
 
-    return repeat(tape, PASSES, W, one_pass)
+    start = W[2] + third * (W[0] * W[1])
+    c3 = repeat(tape, PASSES, [start], one_pass)[0]
+    c1, c2, _ = others(c3)
+    return [c1, c2, c3]

@@ -116,7 +116,7 @@ def _over(a: Number, b: Number) -> Number:
 def _of_omega(axes: Frame, change: Vector) -> list[Number]:
     """Return the change of omega along x, y, z from that of mu along a, b, c."""
     inverse = [
-        named(f"inverse_{axis}", _over(axes.moments[1], m), f"moment about b over that about {axis}")
+        named(f"inverse_{axis}", _over(axes.moments[1], m), f"moment b over that about {axis}")
         for axis, m in zip("abc", axes.moments, strict=True)
     ]
     return axes.back([c * i for c, i in zip(change, inverse, strict=True)])
