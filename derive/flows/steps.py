@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from derive.flows.matrices import Matrix, beside, compressed
-from derive.flows.runge_kutta import Row, stages, step
+from derive.flows.runge_kutta import Row, Stages, Step, stages, step
 from derive.flows.sensitivity import Back, by_errors, step_slopes
 from derive.flows.signs import with_signs_moved
-from derive.flows.system import System, next_of
+from derive.flows.system import System, next_of, slopes_of
 from derive.program import Operand, Program, Quantity
 from derive.trace import Tape, needed
 
@@ -35,7 +35,7 @@ def step_rk4(system: System) -> Program:
 
 def step_rk4_jacobian(system: System) -> Program:
     """Return the step with its derivatives by the state and by the inputs."""
-    tape, after, back = _with_slopes(system)
+    tape, after, back = _with_slopes(system, step_slopes)
     slopes = Slopes(
         beside(back.state, back.rest),
         _next(system.names),
@@ -48,7 +48,7 @@ def step_rk4_jacobian(system: System) -> Program:
 
 def step_rk4_sensitivity(system: System) -> Program:
     """Return the step with its derivatives by what ``system.slopes`` has beside the states."""
-    tape, after, back = _with_slopes(system)
+    tape, after, back = _with_slopes(system, step_slopes)
     slopes = Slopes(
         back.rest,
         _next(system.names),
@@ -64,11 +64,8 @@ def step_rk4_tangent(system: System) -> Program:
 
     An error delta (3, rad, body axes) stands for the attitude q exp(delta / 2), before and after.
     """
-    tape = Tape("t")
-    at = stages(tape, system)
-    made = step(system, at)
-    back = by_errors(system, at, made)
-    rows = _with_errors(system, system.names)
+    tape, after, back = _with_slopes(system, by_errors)
+    rows = _with_errors(system)
     slopes = Slopes(
         beside(back.state, back.rest),
         _next(rows),
@@ -77,26 +74,28 @@ def step_rk4_tangent(system: System) -> Program:
         "in compressed-column order",
     )
     says = f"{RK4}, with its Jacobian over the tangent space of the attitude."
-    return _program("step_rk4_tangent", says, (tape, system, made.after), slopes)
+    return _program("step_rk4_tangent", says, (tape, system, after), slopes)
 
 
-def _with_slopes(system: System) -> tuple[Tape, Row, Back]:
+def _with_slopes(
+    system: System, slopes: Callable[[System, Stages, Step], Back]
+) -> tuple[Tape, Row, Back]:
+    slopes_of(system)  # a step without derivatives would be traced without them
     tape = Tape("t")
     at = stages(tape, system)
     made = step(system, at)
-    return tape, made.after, step_slopes(system, at, made)
+    return tape, made.after, slopes(system, at, made)
 
 
 def _next(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(f"{name}_next" for name in names)
 
 
-def _with_errors(system: System, names: Sequence[str]) -> tuple[str, ...]:
-    attitude = system.place("attitude")
-    if attitude is None:
-        raise ValueError("a tangent space needs an attitude quaternion among the states")
+def _with_errors(system: System) -> tuple[str, ...]:
+    """Return the names of the states, three errors for the attitude."""
+    attitude = system.place("attitude") or slice(0)
     errors = tuple(f"attitude_error_{axis}" for axis in "xyz")
-    return (*names[: attitude.start], *errors, *names[attitude.stop :])
+    return (*system.names[: attitude.start], *errors, *system.names[attitude.stop :])
 
 
 def _program(
