@@ -63,7 +63,8 @@ class Built:
 def case_run(case: Case, shop: Workshop) -> Found:
     """Run every method on a case, in both precisions where it has both."""
     points: list[Point] = []
-    missing: list[NotRun] = []
+    made = [shop.emissions[scene] for scene in scenes_for(case) if scene in shop.emissions]
+    missing = [NotRun(m, "", why) for one in made for m, why in one.without.items()]
     for precision in PRECISIONS:
         programs = [
             *(_ours(case, scene, precision, shop) for scene in scenes_for(case)),

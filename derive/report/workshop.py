@@ -1,7 +1,7 @@
 """Programs for all cases, made before anything is timed: scenes compiled, peers' passes counted."""
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from derive.bench.build import BuildError
@@ -19,7 +19,7 @@ WORKERS = 2
 
 def workshop(scenes: Sequence[str], limits: Limits, folder: Path) -> Workshop:
     """Return everything that cases of these scenes are run with."""
-    with ProcessPoolExecutor(WORKERS) as pool:
+    with ThreadPoolExecutor(WORKERS) as pool:
         peers = [pool.submit(per_pass, peer, limits, folder) for peer in PEERS]
         ready = list(pool.map(_programs, scenes, [folder] * len(scenes)))
         counts = {key: count for found in peers for key, count in found.result().items()}

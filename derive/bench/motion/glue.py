@@ -14,6 +14,7 @@ Manifest = Mapping[str, Any]
 Function = Mapping[str, Any]
 NEXT, ADAPTIVE = "_next", "_adaptive"
 DERIVATIVES = ("_jacobian", "_tangent", "_sensitivity", "_dense")
+CARRIED = "carried"
 STEPS, PROPOSED = ("time_step", "time"), "step_proposed"
 
 FILE = """\
@@ -128,7 +129,7 @@ def glue(manifest: Manifest, precision: str) -> str:
         if PROPOSED in _names(function, "out"):
             rows.append(f"    {{prepare, start_{name}, go_{name}_adaptive, states}},")
     arrays = _arrays(moving)
-    zeros = [name for name in arrays if name == "remainder"]
+    zeros = [name for name in arrays if name == CARRIED]
     return FILE.format(
         header=manifest["files"][precision]["header"],
         constants=_constants(manifest, precision),
@@ -164,10 +165,10 @@ def _call(function: Function, precision: str, *, aside: bool) -> str:
         if argument["type"] == "struct":
             passed.append("&constants")
         elif argument["direction"] == "out":
-            own = name if aside or base not in inputs else base
+            own = _variable(name if aside or base not in inputs else base)
             passed.append(own if argument["type"] == "array" else f"&{own}")
         else:
-            passed.append("time_step" if name in STEPS else name)
+            passed.append("time_step" if name in STEPS else _variable(name))
     return f"{function['symbols'][precision]}({', '.join(passed)});"
 
 
@@ -184,8 +185,13 @@ def _arrays(functions: Sequence[Function]) -> dict[str, int]:
     for function in functions:
         for argument in function["arguments"]:
             if argument["type"] == "array":
-                found.setdefault(argument["name"], len(argument["components"]))
+                found.setdefault(_variable(argument["name"]), len(argument["components"]))
     return found
+
+
+def _variable(name: str) -> str:
+    """Return what a variable of the glue is called; math.h has a function called remainder."""
+    return CARRIED if name == "remainder" else name
 
 
 def _constants(manifest: Manifest, precision: str) -> str:

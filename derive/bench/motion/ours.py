@@ -1,11 +1,13 @@
 """Our steppers for a case: the scene of its kind emitted, compiled with the driver, and called."""
 
 import json
-from collections.abc import Mapping
+import tomllib
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import as_file, files
+from importlib.resources import files
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from derive.bench.motion.case import Case
@@ -22,12 +24,13 @@ AXES = ("x", "y", "z")
 
 @dataclass(frozen=True)
 class Emission:
-    """The C of a scene and its manifest, as JSON and read."""
+    """The C of a scene, its manifest as JSON and read, and what could not be made."""
 
     scene: str
     texts: Mapping[str, str]
     json: str
     manifest: Mapping[str, Any]
+    without: Mapping[str, str]
 
 
 def scenes_for(case: Case) -> list[str]:
@@ -67,11 +70,38 @@ def _values(case: Case) -> dict[str, float]:
 
 @cache
 def emission(scene: str) -> Emission:
-    """Return the C and the manifest of one of ``SCENES``, made in memory."""
-    with as_file(files("derive.bench.motion") / "scenes" / f"{scene}.toml") as path:
+    """Return the C and the manifest of one of ``SCENES``, made in memory.
+
+    A function that cannot be made is left out, and ``without`` says why.
+    """
+    text = (files("derive.bench.motion") / "scenes" / f"{scene}.toml").read_text(encoding="utf-8")
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / f"{scene}.toml"
+        path.write_text(text, encoding="utf-8")
+        without = _unmade(path)
+        path.write_text(_only(text, without), encoding="utf-8")
         programs = library(load(str(path)))
     described = manifest(programs, ())
-    return Emission(scene, c_files(programs, ()), described, json.loads(described))
+    return Emission(scene, c_files(programs, ()), described, json.loads(described), without)
+
+
+def _unmade(path: Path) -> dict[str, str]:
+    """Return why a wanted function cannot be made, by its name; nothing if all can."""
+    text, found = path.read_text(encoding="utf-8"), {}
+    names = tomllib.loads(text)["wanted"]
+    for name in names:
+        path.write_text(_only(text, set(names) - {name}), encoding="utf-8")
+        try:
+            library(load(str(path)))
+        except Exception as reason:
+            found[name] = f"not emitted: {type(reason).__name__} {reason}"
+    return found
+
+
+def _only(text: str, without: Collection[str]) -> str:
+    for name in without:
+        text = text.replace(f'    "{name}",\n', "")
+    return text
 
 
 def ours(made: Emission, precision: str, folder: Path) -> Mover:

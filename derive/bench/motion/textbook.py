@@ -8,6 +8,7 @@ from derive.bench.motion.case import Case
 from derive.bench.motion.runner import Mover, built, methods_header
 
 RK4, DOP853 = "RK4 + normalise, C", "DOP853, C"
+PUBLISHED = "DMV order 10 as published, C"
 PARAMETERS = 15
 
 
@@ -20,6 +21,13 @@ def textbook(case: Case, precision: str, folder: Path) -> Mover:
         "dop853.h": stages(),
     }
     return built(texts, (RK4, DOP853), PARAMETERS, folder, [f"-D{kind}" for kind in kinds(case)])
+
+
+def published(precision: str, folder: Path) -> Mover:
+    """Return the Moser-Veselov step as it was published, for free bodies along principal axes."""
+    source = (files("derive.bench.motion") / "published.c").read_text(encoding="utf-8")
+    texts = {"methods.h": methods_header(precision, PARAMETERS), "published.c": source}
+    return built(texts, (PUBLISHED,), PARAMETERS, folder)
 
 
 def kinds(case: Case) -> list[str]:
