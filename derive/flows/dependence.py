@@ -21,7 +21,7 @@ def attitude_turns_freely(system: System) -> bool:
         return False
     names = system.names
     below = closure(system, set(names[omega]))
-    return below.isdisjoint(names[attitude]) and _turns(system, attitude)
+    return below.isdisjoint(names[attitude]) and attitude_turns(system)
 
 
 def closure(system: System, wanted: set[str]) -> set[str]:
@@ -45,8 +45,11 @@ def _rests_on(rate: Program) -> list[set[str]]:
     return [below(result) for result in rate.results]
 
 
-def _turns(system: System, attitude: slice) -> bool:
-    """Tell whether the attitude's rate is q (0, omega) / 2."""
+def attitude_turns(system: System) -> bool:
+    """Tell whether the rate of the attitude q is q (0, omega) / 2, omega among the states."""
+    attitude = system.place("attitude")
+    if attitude is None:
+        return False
     results = system.rate.results[attitude]
     program = replace(system.rate, ops=needed(system.rate.ops, results), results=results)
     return all(_agrees(program, trial) for trial in range(1, TRIALS + 1))

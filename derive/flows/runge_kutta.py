@@ -85,7 +85,12 @@ def step(system: System, stages: Stages) -> Step:
     if stages.turn is not None:
         q = stages.start[attitude]
         after[attitude] = added(q, product(q, stages.turn.increment))
-    length_squared = norm_squared(after[attitude])
-    scale = 1 / sqrt(length_squared)
-    after[attitude] = [x * scale for x in after[attitude]]
+    after[attitude], length_squared = unit(after[attitude])
     return Step(after, length_squared)
+
+
+def unit(q: Row) -> tuple[Row, Number]:
+    """Return a quaternion (4) near the sphere made of length one, and its squared length before."""
+    squared = norm_squared(q)
+    scale = 1 / sqrt(squared)
+    return [x * scale for x in q], squared

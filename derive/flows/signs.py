@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from derive.program import Op, Operand, Program
-from derive.trace import Number, Tape, needed, number, operation
+from derive.trace import Number, Tape, needed, number
 
 PASSES_THROUGH = ("add", "sub", "mul", "div", "neg")
 
@@ -52,7 +52,8 @@ def with_signs_moved(program: Program) -> Program:
 
 def _moved(tape: Tape, op: Op, given: Sequence[Signed]) -> Signed:
     if op.operator not in PASSES_THROUGH:
-        return Signed(1, operation(op.operator, *map(_plain, given)))
+        operands = tuple(_plain(each).operand for each in given)
+        return Signed(1, Number(tape, tape.record(op.operator, operands)))
     if op.operator == "neg":
         return Signed(-given[0].sign, given[0].value)
     a, b = given

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from derive.flows.lie import lie_step
 from derive.flows.matrices import Matrix, beside, compressed
 from derive.flows.runge_kutta import Row, Stages, Step, stages, step
 from derive.flows.sensitivity import Back, by_errors, step_slopes
@@ -31,6 +32,13 @@ def step_rk4(system: System) -> Program:
     tape = Tape("t")
     after = step(system, stages(tape, system)).after
     return _program("step_rk4", f"{RK4}.", (tape, system, after), None)
+
+
+def step_lie(system: System) -> Program:
+    """Return one commutator-free Lie-group step (order 4); the state must have a quaternion."""
+    tape = Tape("t")
+    says = "One commutator-free Lie-group step: the attitude turns by exponentials (order 4)."
+    return _program("step_lie", says, (tape, system, lie_step(tape, system)), None)
 
 
 def step_rk4_jacobian(system: System) -> Program:

@@ -59,6 +59,9 @@ SIXTY_DIGITS: Mapping[str, Any] = {
     "less": operator.lt,
     "at_most": operator.le,
     "select": lambda condition, yes, no: yes if condition else no,
+    "both": lambda a, b: a and b,
+    "either": lambda a, b: a or b,
+    "splitter": lambda: mpf(2) ** 100 + 1,
     "power_of_two": lambda x: mpf(2) ** int(CONTEXT.floor(CONTEXT.log(x, 2))),
 }
 Values = Mapping[str, Any]
