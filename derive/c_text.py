@@ -153,10 +153,14 @@ def machine_number(operator: str, precision: Precision) -> Fraction:
 
 
 def _power_of_two(x: str, precision: Precision) -> str:
-    """Return the expression of a power of two near x, by float operations only (Rump)."""
-    top = literal(Fraction(2 ** (precision.bits - 1) + 1), precision)
-    less = literal(1 - Fraction(1, 2**precision.bits), precision)
-    return f"{top} * {x} - {less} * ({top} * {x})"
+    """Return the expression of a power of two near x, by float operations only (Rump).
+
+    Every product is one with a power of two, so that fused operations give the same.
+    """
+    top = literal(Fraction(2 ** (precision.bits - 1)), precision)
+    u = literal(Fraction(1, 2**precision.bits), precision)
+    q = f"({top} * {x} + {x})"
+    return f"{q} - ({q} - {u} * {q})"
 
 
 def _stores(program: Program, text: Callable[[Operand], str], precision: Precision) -> list[str]:

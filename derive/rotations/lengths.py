@@ -8,7 +8,7 @@ by one unit in its last place turns a vector visibly.
 from collections.abc import Sequence
 from fractions import Fraction
 
-from derive.trace import Number, Tape, absolute, less, power_of_two, select, sqrt
+from derive.trace import Number, Tape, absolute, less, power_of_two, select, splitter, sqrt
 
 FAR = Fraction(2**60)
 """Larger numbers are brought down by this before their power of two is asked for: the way to a
@@ -47,37 +47,29 @@ def squares(values: Sequence[Number]) -> Number:
 
 
 def length_and_rest(tape: Tape, v: Sequence[Number], vanishing: Number) -> tuple[Number, Number]:
-    """Return the rounded length h of ``v``, and l with h + l right to about u^2.
+    """Return the rounded length h of ``v``, and l with h + l right to u times the root of u.
 
-    ``v`` is scaled already. Where ``vanishing`` is true h is 1 and l means nothing.
-    The exact squares leave h^2 by r, and l = r / (2 h).
-    Source: Dekker, Numer. Math. 18 (1971) 224, products; Knuth, TAOCP 2, 4.2.2, sums.
+    ``v`` is scaled already. Where ``vanishing`` is true h is 1 and l means nothing. With every
+    number split into a short one and a rest, the squares of the short ones are exact and so is
+    their sum with what its rounding leaves; the sum over h^2 is r, and l = r / (2 h).
+    Every product that must be exact is one of short numbers: fused operations give the same.
+    Source: Dekker, Numer. Math. 18 (1971) 224, halves; Knuth, TAOCP 2, 4.2.2, sums.
     """
-    factor = _splitter(tape)
-    (xx, x_low), (yy, y_low), (zz, z_low) = (_exact_square(c, factor) for c in v)
-    partial, first = _exact_sum(xx, yy)
-    total, second = _exact_sum(partial, zz)
-    h = select(vanishing, 1, sqrt(total))
-    hh, h_low = _exact_square(h, factor)
-    lows = (x_low + y_low) + (z_low + (first + second))
-    return h, ((total - hh) - h_low + lows) / (h + h)
+    shift = splitter(tape) - 1
+    (x, x_low), (y, y_low), (z, z_low) = (_halves(c, shift) for c in v)
+    partial, first = _exact_sum(x * x, y * y)
+    total, second = _exact_sum(partial, z * z)
+    beside = (v[0] + x) * x_low + (v[1] + y) * y_low + ((v[2] + z) * z_low + (first + second))
+    h = select(vanishing, 1, sqrt(total + beside))
+    high, low = _halves(h, shift)
+    return h, ((total - high * high) + (beside - (h + high) * low)) / (h + h)
 
 
-def _splitter(tape: Tape) -> Number:
-    """Return Veltkamp's factor 2^12 + 1 or 2^27 + 1, as the precision of the program needs.
-
-    A compiler sees constants only: in float 1 + 2^-30 is 1.
-    """
-    more = Number(tape, tape.record("add", (Fraction(1), Fraction(1, 2**30))))
-    return select(less(1, more), 2**27 + 1, 2**12 + 1)
-
-
-def _exact_square(a: Number, factor: Number) -> tuple[Number, Number]:
-    """Return p and e with p + e = a^2 exactly and p the rounded square."""
-    p, c = a * a, factor * a
-    high = c - (c - a)
-    low = a - high
-    return p, ((high * high - p) + (high + high) * low) + low * low
+def _halves(a: Number, shift: Number) -> tuple[Number, Number]:
+    """Return ``a`` as a number of half the digits and the rest; ``shift`` is a power of two."""
+    c = shift * a
+    high = (c + a) - c
+    return high, a - high
 
 
 def _exact_sum(a: Number, b: Number) -> tuple[Number, Number]:

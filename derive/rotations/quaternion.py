@@ -51,9 +51,9 @@ def product(a: Sequence[Number], b: Sequence[Number]) -> list[Number]:
 def exponential(tape: Tape, v: Sequence[Number]) -> list[Number]:
     """Return the unit quaternion (4) of a rotation vector ``v`` (3) in rad: exp(v / 2).
 
-    Scalar and vector part each within 6 u, for |v| from zero and denormal up to 2^26 (double) or
-    2^12 (float): |v| is carried with what its rounding left. Beyond, |v| is rounded once and
-    the quaternion is still of unit length.
+    Within 6 u for |v| from zero and denormal up to 2^26 (double) or 2^12 (float), and up to pi
+    the vector part within 6 u of itself: |v| is carried with what its rounding left. Beyond,
+    |v| is rounded once and the quaternion is still of unit length. 67 flops, a sine, a cosine.
     """
     m = largest(v)
     tiny = less(m, TINY)
