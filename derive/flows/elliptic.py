@@ -82,8 +82,9 @@ def _first(
 
 @dataclass(frozen=True)
 class Angle:
-    """``rate`` u - 2 arg ``direction``; the direction has any length and a real part above 0."""
+    """``rate`` u - 2 arg ``direction``, the direction of any length and right of the axis."""
 
+    weight: Number
     rate: Number
     direction: Complex
 
@@ -97,7 +98,7 @@ def angle(means: Ladder, at: Values, weight: Number, pole: Number) -> Angle:
         2 T(u) = kappa u - atan(kappa sn cn / (a dn)) + T'(2 u).
     """
     product, sn2, cn2, dn = at.first
-    rate, tangents = number(0), list[Number]()
+    rate, tangents, first = number(0), list[Number](), weight
     for a, b in zip(means.a[1:], means.b[1:], strict=True):
         rate = rate + weight
         ratio = b / a
@@ -109,7 +110,7 @@ def angle(means: Ladder, at: Values, weight: Number, pole: Number) -> Angle:
         other = a * b / pole
         sum_ = pole + other
         weight, pole = weight * (pole - other) / (2 * sum_), sum_ * HALF
-    return Angle(rate, _halved(_direction(tangents)))
+    return Angle(first, rate, _halved(_direction(tangents)))
 
 
 def _direction(tangents: Sequence[Number]) -> Complex:

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from derive.flows.elliptic import HALF, Complex, Ladder, Values, angle, functions, ladder
+from derive.flows.elliptic import HALF, Angle, Complex, Ladder, Values, angle, functions, ladder
 from derive.flows.orbit import Orbit, orbit, role_of_a
 from derive.flows.principal_axes import Three
-from derive.trace import Number, absolute, cos, less, named, select, sin, sqrt
+from derive.trace import Number, absolute, cos, less, select, sin, sqrt
 
 OVER = Fraction(40)
 """The phase on the separatrix after which nothing but a pure spin is left: sech 40 = 2^-57."""
@@ -24,22 +24,22 @@ def tumble(moments: Three, omega: Three, time: Number) -> tuple[list[Number], li
     moments : in order, over any scale        omega : rad/s, not all of it zero
     """
     one, three = role_of_a(moments)
-    moment = named("moment_2", moments[1], "principal moment 2, over a power of two")
-    inverse = named("inverse_moment_2", 1 / moments[1], "1 / moment_2")
-    m = one.moment * omega[0], moment * omega[1], three.moment * omega[2]
-    path = orbit(one, three, m)
+    path = orbit(one, three, omega)
     moving, resting = _until_over(path, time)
     means = ladder(path.complement)
     phase = means.mean * path.rate * moving
     at = functions(means, sin(phase), cos(phase))
     after = _added(path, at)
-    rate, direction = _angle(path, means, at, after)
-    half = HALF * (moving * rate + resting * (path.hand * path.length * inverse))
+    third = _third_kind(path, means, at)
+    rate, direction = (
+        _mean_rate(path, third),
+        _product(third.direction, _added_angle(path, at, after)),
+    )
+    half = path.hand * HALF * (moving * rate + resting * path.length)
     scalar, *vector = _turn(path, after, _product(direction, (cos(half), sin(half))))
     a, b, c = (path.hand * v for v in vector)
-    end = path.back(after)
-    spin = [one.inverse * end[0], inverse * end[1], three.inverse * end[2]]
-    return [scalar, *path.back((a, b, c))], spin
+    m_1, omega_2, m_3 = path.back(after)
+    return [scalar, *path.back((a, b, c))], [one.inverse * m_1, omega_2, three.inverse * m_3]
 
 
 def _until_over(path: Orbit, time: Number) -> tuple[Number, Number]:
@@ -49,10 +49,6 @@ def _until_over(path: Orbit, time: Number) -> tuple[Number, Number]:
     return select(path.separatrix, moving, time), select(path.separatrix, time - moving, 0)
 
 
-def _divisor(high: Number) -> Number:
-    return select(less(0, high), high, 1)
-
-
 def _added(path: Orbit, at: Values) -> Three:
     """Return the momentum after the motion, along a, b, c.
 
@@ -60,10 +56,9 @@ def _added(path: Orbit, at: Values) -> Three:
     """
     a, b, c = path.m
     s, n, d = at.sn, at.cn, at.dn
-    high = _divisor(path.high)
-    t = s * (a / high)
+    t = s * (a / path.divisor)
     scale = 1 / (n * n + t * t)
-    tilt = path.c.part * path.a.inverse_root / high
+    tilt = path.c.part * path.a.inverse_root / path.divisor
     return (
         (a * d - tilt * (b * c) * (s * n)) * scale,
         (b * n * d + path.a.inverse_root * c * t) * scale,
@@ -71,26 +66,50 @@ def _added(path: Orbit, at: Values) -> Three:
     )
 
 
-def _angle(path: Orbit, means: Ladder, at: Values, after: Three) -> tuple[Number, Complex]:
+def _third_kind(path: Orbit, means: Ladder, at: Values) -> Angle:
     """Return psi, the turn about a in the frames that the shortest turns from m to a make.
 
-    psi' = (2 T + |m| m_a / I_a) / (|m| + m_a). Returns its mean rate, and a complex number at half
-    of what is left. From phase 0 psi is of the third kind on the first rung of the ladder, with its
-    pole where m_a = -|m|. From another phase comes -2 atan(y / x), by the addition theorem:
-        x = 1 + d1 + d2 + d3 + A/|m| (d1 d2 + d2 d3 + d3 d1 + d1 d2 d3)
-        y = k^2 r m_b m_b' sn / (|m| (|m| + A)),
-    where d1, d2, d3 are dn at the start, of the motion and at the end: no term of x is below 0.
+    psi' = (2 T + |m| m_a / I_a) / (|m| + m_a). From phase 0 it is of the third kind on the first
+    rung of the ladder, with its pole where m_a = -|m|.
     """
-    g, high, root = path.length, path.high, path.a.root
-    below, over = g + high * path.complement, g + high
-    first, lower = means.a[1], (1 - path.complement) * HALF
-    weight = lower * path.across * (path.across * path.a.inverse_root) / (over * below)
-    third = angle(means, at, weight, sqrt(first * below / over))
-    start, motion, end = path.m[0] / _divisor(high), at.dn, after[0] / _divisor(high)
-    x = (1 + motion) * (1 + start * (after[0] / g)) + (start + end) * (1 + high / g * motion)
-    y = 4 * first * lower * root * path.m[1] * after[1] * at.sn / (g * over)
-    spin = high * path.a.inverse + path.across * path.across * path.c.inverse / over
-    return path.hand * spin - path.rate * third.rate, _product(third.direction, (x, -y))
+    below, over = path.length + path.high * path.complement, path.length + path.high
+    first = means.a[1]
+    weight = path.modulus_squared * path.across * path.middle / (4 * first * over * below)
+    return angle(means, at, weight, sqrt(first * below / over))
+
+
+def _mean_rate(path: Orbit, third: Angle) -> Number:
+    """Return the mean of psi', from omega_a or omega_b and what little is to be added.
+
+    It lies between psi' at sn = 0, from where ``third`` takes it, and psi' at cn = 0.
+    """
+    a, b, c = path.m
+    b, g, over = absolute(b), path.length, path.length + path.high
+    lowest = path.high * path.complement
+    square = path.c.part * (b * b) / (path.divisor + a) * path.a.inverse
+    fast = square + path.across * path.across / over * path.c.inverse
+    slow = (
+        (a * a * path.a.inverse + c * c * path.c.inverse - b * (a * a + c * c) / (g + b))
+        + lowest * (g * path.a.inverse - b)
+    ) / (g + lowest)
+    back = path.hand * path.rate
+    tumbles = less(path.complement, HALF)
+    rest = select(tumbles, slow + back * (2 * third.weight - third.rate), fast - back * third.rate)
+    return select(tumbles, b, path.spin) + rest
+
+
+def _added_angle(path: Orbit, at: Values, after: Three) -> Complex:
+    """Return a complex number at half of psi less that from phase 0, by the addition theorem.
+
+    x = 1 + d1 + d2 + d3 + A/|m| (d1 d2 + d2 d3 + d3 d1 + d1 d2 d3) and
+    y = k^2 r m_b m_b' sn / (|m| (|m| + A)) with d1, d2, d3 for dn at the start, of the motion and
+    at the end; the angle is -atan(y / x).
+    """
+    g, high = path.length, path.high
+    start, end = path.m[0] / path.divisor, after[0] / path.divisor
+    x = (1 + at.dn) * (1 + start * (after[0] / g)) + (start + end) * (1 + high / g * at.dn)
+    y = path.modulus_squared * path.a.root * path.m[1] * after[1] * at.sn / (g * (g + high))
+    return x, -y
 
 
 def _product(p: Complex, q: Complex) -> Complex:
