@@ -95,7 +95,7 @@ def _components(quantities: tuple[Quantity, ...]) -> list[str]:
     return [c for q in quantities for c in q.components]
 
 
-def _plain(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
+def plain_lines(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
     """Return the lines of a program in the working precision, and how to read a result."""
 
     text = _read(place)
@@ -120,7 +120,7 @@ def _function(program: Program, scene: str) -> dict[str, object]:
     if isinstance(program.loops, Series):
         lines, text = series_casadi(program.loops, _operation), _read(place)
     else:
-        lines, text = (_pairs if program.arithmetic == "pairs" else _plain)(program, place)
+        lines, text = (_pairs if program.arithmetic == "pairs" else plain_lines)(program, place)
     return {
         "builder": program.name,
         "name": f"{scene}_{program.name}",

@@ -19,14 +19,19 @@ from derive.library import Library
 from derive.measure import Errors, measurement, replayed
 from derive.program import Measurement, Program, Quantity, component_names, run
 from derive.reference import BALLS, BITS
-from derive.sample import Sample, samples, source, uniform
+from derive.sample import Sample, Values, samples, source, uniform
 
 ORDINARY, CORNERS = 24, 2
 PLAN = "plan"
 UNMEASURED = ("remainder_next", "step_proposed")
 """What rounding left, and a length that is proposed: neither has a true value."""
-SLOWER = 1e-3
-"""A body that spins a thousand times as fast is moved by steps as much shorter."""
+REACH = 0.3
+"""Turn in rad, by omega and by its rate, that a sampled step covers at most."""
+LONG = 1000.0
+"""So many such steps make the longest time that a flow is sampled at."""
+NOTHING = 1e-60
+"""A part this much smaller than the rest of a plan is what rounding left, and has no true value."""
+OMEGA_DOT = ("omega_dot_x", "omega_dot_y", "omega_dot_z")
 
 
 def _middle(x: Any) -> Any:
@@ -34,6 +39,8 @@ def _middle(x: Any) -> Any:
 
 
 def _power_of_two(x: Any) -> Any:
+    if not x.is_finite() or x.contains(0):
+        return x  # on a way that is not taken
     mantissa, exponent = x.mid().man_exp()
     return arb(2) ** (int(exponent) + int(abs(mantissa)).bit_length())
 
@@ -81,16 +88,41 @@ def with_motion(
     given = {q.name: q for f in library.motions for q in f.inputs}
     fresh = [q for q in given.values() if not known & set(q.components) and q.name != PLAN]
     dice = source(library.known, precision, "motion")
-
-    def value(q: Quantity, kind: str) -> float:
-        slower = SLOWER if kind == "large spin" and q.unit == "s" else 1.0
-        return dice.held(slower * uniform(dice.dice, q))
-
-    drawn = tuple(
-        replace(s, values=s.values | {c: value(q, s.kind) for q in fresh for c in q.components})
-        for s in each
+    own = [(c, q) for q in fresh for c in q.components]
+    drawn = [
+        replace(s, values=s.values | {c: uniform(dice.dice, q) for c, q in own}) for s in each
+    ]
+    rates = _omega_rates(library, drawn, precision)
+    kept = tuple(
+        replace(s, values={c: dice.held(x) for c, x in _in_reach(s.values, fast).items()})
+        for s, fast in zip(drawn, rates, strict=True)
     )
-    return tuple(_planned(library, drawn, precision)) if PLAN in given else drawn
+    return tuple(_planned(library, kept, precision)) if PLAN in given else kept
+
+
+def _omega_rates(library: Library, each: Sequence[Sample], precision: Precision) -> list[float]:
+    """Return how fast omega changes at each sample, 0 where no function tells."""
+    every = (*library.rates, *library.functions)
+    telling = [f for f in every if any(q.name == "omega_dot" for q in f.outputs)][:1]
+    if not telling:
+        return [0.0] * len(each)
+    table = working(precision.dtype)
+    (f,) = telling
+    columns = replayed(replace(library, functions=(f,), motions=()), each, precision, table)
+    named = zip(component_names(f), columns[f.name], strict=True)
+    own = [np.abs(np.broadcast_to(c, len(each))) for name, c in named if name in OMEGA_DOT]
+    return [float(x) for x in np.max(np.nan_to_num(own), axis=0)]
+
+
+def _in_reach(values: Values, fast: float) -> Values:
+    """Return the values with times in which the body turns by no more than a step can take."""
+    if "omega_x" not in values:
+        return values
+    omega = max(abs(values[f"omega_{axis}"]) for axis in "xyz")
+    longest = REACH / max(omega, math.sqrt(fast), 1e-300)
+    step = min(values.get("time_step", 0.0), longest)
+    time = max(-LONG * longest, min(values.get("time", 0.0), LONG * longest))
+    return values | {c: x for c, x in (("time_step", step), ("time", time)) if c in values}
 
 
 def _planned(library: Library, each: Sequence[Sample], precision: Precision) -> Iterator[Sample]:
@@ -158,10 +190,13 @@ def _errors(
     """Return the errors of one output's components, in u of the largest; a plan's one by one."""
     true = [arb(x).mid() for x in should]
     if not all(x.is_finite() for x in true):
-        return (0.0,) * len(found)  # nothing is said where the formula itself has no value
+        both = not all(map(math.isfinite, found))  # nothing is said where there is no value
+        return (0.0 if both else math.inf,) * len(found)
     smallest = float(np.finfo(precision.dtype).smallest_normal)
     sizes = [max(abs(float(x)), smallest) for x in true]
-    scales = sizes if q.name == PLAN else [max(sizes)] * len(sizes)
+    largest = max(sizes)
+    own = [size if size > largest * NOTHING else largest for size in sizes]
+    scales = own if q.name == PLAN else [largest] * len(sizes)
     return tuple(
         _error(x, y, scale) / precision.unit_roundoff
         for x, y, scale in zip(found, true, scales, strict=True)

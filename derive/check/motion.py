@@ -7,7 +7,7 @@ Orders are measured in balls of 500 bits, so they are free of rounding; what rou
 from collections.abc import Iterator, Sequence
 
 from derive.check.verdict import JUDGED, Verdict
-from derive.convergence import BITS, EXACT, LEVELS, exactness, order
+from derive.convergence import BITS, EXACT, LEVELS, course, exactness, order
 from derive.library import Library
 from derive.sample import Sample
 from derive.scene.wanted import STEPS
@@ -33,7 +33,7 @@ def _exact(library: Library, each: Sequence[Sample]) -> Verdict:
 
 
 def _order(library: Library, name: str, each: Sequence[Sample]) -> Verdict:
-    found = [order(library, name, s.values) for s in each]
+    found = [order(library, name, course(library, name, s.values)) for s in each]
     measured = ", ".join(f"{one.measured:.2f}" for one in found)
     says = f"claimed {found[0].claimed}, measured {measured}"
     outcome = JUDGED[all(one.holds for one in found)]

@@ -23,6 +23,8 @@ SAFETY = Fraction(9, 10)  # of a step whose last term is u
 # known beforehand. It matters in float only, where order 16 would lose three digits.
 SLOWEST = Fraction(1, 4)
 
+MOST_BITS = 53  # of a precision that a step is proposed for
+
 Pairs = tuple[tuple[str, str], ...]
 
 
@@ -106,7 +108,7 @@ class Series:
 
     def run(self, arithmetic: Mapping[str, Callable[..., Any]], known: dict[str, Any]) -> list[Any]:
         """Return the results in an arithmetic, from the inputs by name."""
-        bits = round(-math.log2(float(arithmetic["unit_roundoff"]())))
+        bits = min(MOST_BITS, round(-math.log2(float(arithmetic["unit_roundoff"]()))))
         given = [known[c] for q in self.inputs for c in q.components]
         return run_series(self, arithmetic, given, bits)
 
