@@ -1,7 +1,7 @@
 """A case moved by everything there is: our steppers, textbook C, and packages."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,14 +13,15 @@ from derive.bench.motion.peers import PEERS, Peer, timed
 from derive.bench.motion.runner import Job, Motion, Mover, counted, moved
 from derive.bench.motion.textbook import DOP853, textbook
 from derive.bench.motion.textbook import parameters as textbook_parameters
-from derive.bench.motion.wrong import wrong
+from derive.bench.motion.wrong import ROUNDOFF, wrong
 from derive.report.point import Limits, NotRun, Point
 from derive.report.settings import gained, steps, tolerances
 
 PRECISIONS = ("f64", "f32")
 COUNTED_STEPS = 24
-PROBE = 2000  # steps of the first run, which tells how long a step takes
 MOTION = "flow_"
+PATIENCE = 4  # times the longest motion of ours that a package may take
+ORDINARY = 1e3  # a kappa above which a good stepper may still be better than kappa u
 ANY = 0.0  # the setting of a pass that costs the same at every setting
 
 
@@ -117,13 +118,14 @@ def _program(built: Built, shop: Workshop) -> tuple[list[Point], list[NotRun]]:
 def _method(built: Built, method: str, limits: Limits) -> Iterator[Point]:
     """Yield a method's points, coarse to fine, until nothing is gained or it takes too long."""
     found: list[Point] = []
+    floor = least(built.case, built.precision)
     for job in _jobs(built, method, limits):
         (motion,) = moved(built.mover, built.case, built.given, [job])
         if motion is None:
             return
         found.append(_point(built, job, motion))
         yield found[-1]
-        if not gained(found) or motion.seconds * limits.ratio > limits.longest:
+        if not gained(found, floor) or motion.seconds * limits.ratio > limits.longest:
             return
 
 
@@ -137,6 +139,16 @@ def _jobs(built: Built, method: str, limits: Limits) -> Iterator[Job]:
     else:
         counts = steps(built.case, limits)
         yield from (Job(method, time / n, n, rounds=rounds) for n in counts)
+
+
+def attainable(case: Case, precision: str) -> float | None:
+    """Return kappa u: what the rounding of the inputs makes of the end, None if unknown."""
+    return None if case.kappa is None else case.kappa * ROUNDOFF[precision]
+
+
+def least(case: Case, precision: str) -> float:
+    """Return an error below which finer steps are of no interest."""
+    return min(case.kappa or 0.0, ORDINARY) * ROUNDOFF[precision]
 
 
 def adaptive(method: str) -> bool:
@@ -195,15 +207,14 @@ def _few(p: Point) -> int:
 
 def _peer(case: Case, peer: Peer, shop: Workshop) -> Iterator[Point]:
     found: list[Point] = []
-    run: Callable[[], tuple[list[float], int]]
+    slow = shop.limits.longest * PATIENCE
     turned, time = case.rate * float(case.time), float(case.time)
     if peer.setting == "step":
         values = [time / n for n in steps(case, shop.limits)]
     else:
         values = tolerances("f64", shop.limits.ratio**6.6)
     for value in values:
-        run = peer.prepare(case, value)
-        done = timed(run)
+        done = timed(peer.prepare(case, value))
         each = shop.per_pass.get((peer.name, value), shop.per_pass.get((peer.name, ANY)))
         instructions = None if each is None else each * done.passes
         found.append(
@@ -211,7 +222,7 @@ def _peer(case: Case, peer: Peer, shop: Workshop) -> Iterator[Point]:
                   turned / max(done.passes, 1), instructions, done.seconds,
                   wrong(case, done.state))
         )  # fmt: skip
-        if not gained(found) or done.seconds > shop.limits.longest * 8:
+        if not gained(found, least(case, "f64")) or done.seconds > slow:
             break
     yield from found
 

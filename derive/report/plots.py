@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from derive.report.look import Look, look, rank
+from derive.report.look import COMPENSATED, Look, look, rank
 from derive.report.point import Point
 
 INK, SOFT, GRID, GOLD = "#1a1c20", "#5b626d", "#e6e8ec", "#b8860b"
@@ -113,7 +113,19 @@ def grouped(points: Iterable[Point]) -> list[list[Point]]:
     found: dict[tuple[str, str], list[Point]] = {}
     for p in sorted(points, key=lambda p: (rank(p), p.scene)):
         found.setdefault((p.method, p.scene), []).append(p)
-    return list(found.values())
+    return [own for (method, scene), own in found.items() if _worth(method, scene, found)]
+
+
+def _worth(method: str, scene: str, found: Mapping[tuple[str, str], list[Point]]) -> bool:
+    """Tell whether a compensated stepper ends clearly better than the plain one; others: yes."""
+    plain = found.get((method.removesuffix(COMPENSATED), scene))
+    if plain is None or not method.endswith(COMPENSATED):
+        return True
+    return _least(found[method, scene]) < _least(plain) / 2
+
+
+def _least(points: Sequence[Point]) -> float:
+    return min((p.wrong.state for p in points if math.isfinite(p.wrong.state)), default=math.inf)
 
 
 def _curve(points: Sequence[Point], panel: Panel) -> Series:
@@ -143,8 +155,10 @@ def _draw(ax: Any, panel: Panel, points: Sequence[Point], floor: float | None) -
 
 def _say_floor(ax: Any, floor: float) -> None:
     says = "κu: what the rounding of the inputs allows"
+    behind = {"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.8}
     ax.annotate(says, xy=(0.015, floor), xycoords=("axes fraction", "data"), xytext=(0, 2.5),
-                textcoords="offset points", color=GOLD, fontsize=7.5)  # fmt: skip
+                textcoords="offset points", color=GOLD, fontsize=7.5, zorder=5,
+                bbox=behind)  # fmt: skip
 
 
 def _name(ax: Any, curves: Sequence[Series]) -> None:
@@ -164,18 +178,24 @@ def _name(ax: Any, curves: Sequence[Series]) -> None:
 
 
 def spread(places: Sequence[float], gap: float) -> list[float]:
-    """Return places in order moved apart to at least ``gap``, as little as that takes.
+    """Return places in order moved apart to at least ``gap`` inside 0 .. 1, as little as it takes.
 
-    >>> spread([0.0, 0.0, 1.0], 0.25)
-    [-0.125, 0.125, 1.0]
+    >>> spread([0.0, 0.5, 0.5, 1.0], 0.25)
+    [0.0, 0.375, 0.625, 1.0]
     """
     groups: list[tuple[float, int]] = []  # centre, members
     for place in places:
-        groups.append((place, 1))
+        groups.append(_inside((place, 1), gap))
         while len(groups) > 1 and _close(groups[-2], groups[-1], gap):
             (a, m), (b, n) = groups[-2:]
-            groups[-2:] = [((a * m + b * n) / (m + n), m + n)]
+            groups[-2:] = [_inside(((a * m + b * n) / (m + n), m + n), gap)]
     return [centre + gap * (k - (n - 1) / 2) for centre, n in groups for k in range(n)]
+
+
+def _inside(group: tuple[float, int], gap: float) -> tuple[float, int]:
+    centre, members = group
+    half = gap * (members - 1) / 2
+    return max(half, min(centre, 1 - half)), members
 
 
 def _close(a: tuple[float, int], b: tuple[float, int], gap: float) -> bool:

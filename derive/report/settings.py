@@ -10,10 +10,11 @@ from derive.bench.motion.case import Case
 from derive.report.point import Limits, Point
 
 COARSEST = 4.0  # rad
-TOLERANCES = {"f64": (1e-14, 1e-3), "f32": (1e-7, 1e-2)}
+TOLERANCES = {"f64": (1e-15, 1e-3), "f32": (1e-7, 1e-2)}
 USELESS = 0.1  # an error above which nothing is said of rounding
 GAIN = 0.7  # a finer step that leaves more of the error than this gains nothing
 PATIENCE = 3
+BELOW = 0.1  # of the attainable error: what is smaller is luck
 
 
 def steps(case: Case, limits: Limits) -> Iterator[int]:
@@ -54,9 +55,11 @@ def tolerances(precision: str, ratio: float) -> list[float]:
     return [float(f"{high / ratio**n:.2e}") for n in range(count)]
 
 
-def gained(found: list[Point]) -> bool:
+def gained(found: list[Point], attainable: float) -> bool:
     """Tell whether finer steps may still help, from the points so far, coarse to fine."""
     errors = [_finite(p.wrong.state) for p in found]
+    if len(errors) > 1 and max(errors[-2:]) < BELOW * attainable:
+        return False
     if len(errors) <= PATIENCE:
         return True
     before, after = min(errors[:-PATIENCE]), min(errors[-PATIENCE:])
