@@ -79,7 +79,7 @@ def true_unit(q: Row) -> list[Any]:
     return [mpmath.mpf(x) / size for x in q]
 
 
-def _truelogarithm(q: Row) -> list[Any]:
+def true_logarithm(q: Row) -> list[Any]:
     import mpmath
 
     vector = [mpmath.mpf(x) for x in q[1:]]
@@ -87,7 +87,7 @@ def _truelogarithm(q: Row) -> list[Any]:
     return [2 * mpmath.atan2(size, mpmath.mpf(q[0])) / size * x for x in vector]
 
 
-def _truefrom_matrix(m: Row) -> list[Any]:
+def true_from_matrix(m: Row) -> list[Any]:
     """Return the unit quaternion of the nearest rotation.
 
     Source: Bar-Itzhack, J. Guidance 23 (2000) 1085, equation 2: the largest eigenvector.
