@@ -18,7 +18,7 @@ FLOORS = (
     ("flows",),
     ("motions", "library"),
     (
-        *("c_text", "series_text", "definition", "comment", "signature", "example"),
+        *("c_text", "series_text", "compact_text", "definition", "comment", "signature", "example"),
         *("emit", "casadi_text", "manifest", "page"),
     ),
     (
