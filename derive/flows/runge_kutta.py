@@ -1,4 +1,10 @@
-"""One classic Runge-Kutta step of a scene's state, its attitude brought back to length one."""
+"""One classic Runge-Kutta step of a scene's state, its attitude brought back to length one.
+
+A principal body with a quaternion (217 operations), length of the quaternion less 1, error of the
+attitude in rad after 100 s, h = 0.01 s (0.1 s) in double: normalised 2e-16, 1.2e-9 (2e-16, 1.2e-5);
+left alone (215) 4e-12, 1.2e-9 (3e-7, 1.2e-5); with 10/s (1 - |q|^2) q in the kinematics (284) 2e-8,
+1.2e-9 (4e-4, 2e-4), and with five times that it is unstable at 0.1 s. So one normalisation it is.
+"""
 
 from __future__ import annotations
 

@@ -31,9 +31,12 @@ def signed(value: Number) -> Signed:
     return Signed(1, value)
 
 
-def with_signs_moved(program: Program) -> Program:
-    """Return ``program`` with fewer operations of sign, and without what no result rests on."""
-    tape = Tape("t")
+def with_signs_moved(program: Program, prefix: str) -> Program:
+    """Return ``program`` with fewer operations of sign, and without what no result rests on.
+
+    prefix : what operations are called, before a number
+    """
+    tape = Tape(prefix)
     known: dict[str, Signed] = {}
 
     def value(operand: Operand) -> Signed:

@@ -10,7 +10,7 @@ from derive.flows.matrices import Matrix, beside, compressed
 from derive.flows.runge_kutta import Row, Stages, Step, stages, step
 from derive.flows.sensitivity import Back, by_errors, step_slopes
 from derive.flows.signs import with_signs_moved
-from derive.flows.system import System, next_of, slopes_of
+from derive.flows.system import System, next_of, slopes_of, tape_for
 from derive.program import Operand, Program, Quantity
 from derive.trace import Tape, needed
 
@@ -29,14 +29,14 @@ class Slopes:
 
 def step_rk4(system: System) -> Program:
     """Return one classic Runge-Kutta step (order 4): the state after ``time_step``."""
-    tape = Tape("t")
+    tape = tape_for(system)
     after = step(system, stages(tape, system)).after
     return _program("step_rk4", f"{RK4}.", (tape, system, after), None)
 
 
 def step_lie(system: System) -> Program:
     """Return one commutator-free Lie-group step (order 4); the state must have a quaternion."""
-    tape = Tape("t")
+    tape = tape_for(system)
     says = "One commutator-free Lie-group step: the attitude turns by exponentials (order 4)."
     return _program("step_lie", says, (tape, system, lie_step(tape, system)), None)
 
@@ -89,7 +89,7 @@ def _with_slopes(
     system: System, slopes: Callable[[System, Stages, Step], Back]
 ) -> tuple[Tape, Row, Back]:
     slopes_of(system)  # a step without derivatives would be traced without them
-    tape = Tape("t")
+    tape = tape_for(system)
     at = stages(tape, system)
     made = step(system, at)
     return tape, made.after, slopes(system, at, made)
@@ -131,7 +131,7 @@ def _program(
         assumptions=system.rate.assumptions,
         sparsity=sparsity,
     )
-    return with_signs_moved(program)
+    return with_signs_moved(program, tape.prefix)
 
 
 def _inputs(system: System) -> tuple[Quantity, ...]:

@@ -13,7 +13,8 @@ from fractions import Fraction
 from functools import cache
 
 from derive.flows.matrices import Matrix, zeros
-from derive.program import Op, Operand, Program, Quantity, Sparsity
+from derive.program import Op, Operand, Program, Quantity, Sparsity, every_op, operands_of
+from derive.stage import free_prefix
 from derive.trace import Number, Tape, called, number
 
 TIME_STEP = Quantity(
@@ -71,6 +72,16 @@ def next_of(q: Quantity) -> Quantity:
     """
     parts = tuple(f"{c}_next" for c in q.components)
     return replace(q, name=f"{q.name}_next", components=parts, meaning=f"{q.meaning}, next")
+
+
+def tape_for(system: System) -> Tape:
+    """Return a tape whose names are none of the scene's."""
+    programs = (system.rate, *([system.slopes] if system.slopes is not None else []))
+    taken = {c for q in (*system.states, system.step) for c in q.components}
+    for program in programs:
+        made = {op.result for op, _ in every_op(program.ops)}
+        taken |= operands_of(program.ops, program.results) - made
+    return Tape(free_prefix("t", taken))
 
 
 def rates_at(tape: Tape, system: System, state: Sequence[Number], factor: Number) -> list[Number]:

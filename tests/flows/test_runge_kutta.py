@@ -1,4 +1,4 @@
-"""The classic step is of order four, and its attitude stays on the sphere."""
+"""The classic step is of order four on every state, with torque and without."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -6,14 +6,12 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from derive.arithmetic import working
 from derive.flows.steps import step_rk4
 from derive.flows.system import System
-from derive.program import Op, Program, run
+from derive.program import Op, Program
 from tests.flows.systems import (
     EVERY,
     Values,
-    at,
     flowed,
     mpf,
     start,
@@ -67,29 +65,3 @@ def test_a_step_with_a_wrong_weight_is_found() -> None:
         ),
     )
     assert order(wrong, given, start("principal")) < 2
-
-
-def lengths(program: Program, given: System, dtype: type, count: int) -> float:
-    """Return how far from one the attitude's length is after ``count`` steps of one program."""
-    values = {c: dtype(float(v)) for c, v in start("principal").items()}
-    values |= {"time_step": dtype(0.01)}
-    for _ in range(count):
-        given_now = [values[c] for q in program.inputs for c in q.components]
-        values |= dict(zip(given.names, run(program, working(dtype), given_now), strict=False))
-    q = [float(values[c]) for c in given.names if c.startswith("attitude")]
-    return abs(float(np.sqrt(np.sum(np.square(q)))) - 1)
-
-
-def test_the_attitude_stays_on_the_sphere() -> None:
-    given = without_slopes(system("principal"))
-    # one rounding of a component and of the scale: 2 u of the length, however many steps
-    assert lengths(step_rk4(given), given, np.float32, 2000) <= 2 * 2.0**-24
-
-
-def test_an_attitude_that_was_not_of_length_one_is_after_a_step() -> None:
-    given = without_slopes(system("rigid_body"))
-    values = dict(start("rigid_body"))
-    values |= {c: values[c] * mpf("1.01") for c in given.names if c.startswith("attitude")}
-    after = dict(zip(given.names, at(step_rk4(given), values), strict=True))
-    squared = sum(v**2 for c, v in after.items() if c.startswith("attitude"))
-    assert abs(squared - 1) < mpf(10) ** -55

@@ -248,11 +248,32 @@ def test_moving_signs_changes_no_bit() -> None:
         c: Fraction(2 * k * k - 7, 3 * k + 1)
         for k, c in enumerate(c for q in rate.inputs for c in q.components)
     }
-    turned = with_signs_moved(rate)
+    turned = with_signs_moved(rate, "t")
     floats = [np.float32(float(v)) for v in names.values()]
     assert run(turned, working(np.float32), floats) == run(rate, working(np.float32), floats)
     exactly = list(names.values())
     assert run(turned, EXACT, exactly) == run(rate, EXACT, exactly)
+
+
+def test_operations_are_never_called_as_a_constant_is() -> None:
+    given = without_slopes(system("principal"))
+    awkward = replace(given, rate=_renamed(given.rate, {"one_over_I_xx": "t7"}))
+    values = dict(start("principal")) | {"t7": start("principal")["one_over_I_xx"]}
+    assert at(step_rk4(awkward), values) == at(step_rk4(given), values)
+
+
+def _renamed(rate: Program, names: Mapping[str, str]) -> Program:
+    """Return a rate with new names of constants, and with others for its operations."""
+    made = {op.result: f"r{op.result}" for op in rate.ops} | dict(names)
+    ops = tuple(
+        Op(made[op.result], op.operator, tuple(made.get(o, o) for o in op.operands))
+        for op in rate.ops
+    )
+    inputs = tuple(
+        replace(q, components=tuple(names.get(c, c) for c in q.components)) for q in rate.inputs
+    )
+    results = tuple(made.get(r, r) for r in rate.results)
+    return replace(rate, ops=ops, results=results, inputs=inputs)
 
 
 def test_what_differs_by_its_sign_only_is_computed_once() -> None:
@@ -260,7 +281,7 @@ def test_what_differs_by_its_sign_only_is_computed_once() -> None:
     x, y = tape.input("x"), tape.input("y")
     results = tuple(n.operand for n in (x * y, (-x) * y, x - y, y - x, -x - y, x + y))
     inputs = tuple(Quantity(n, (n,), (), "", "", None, None, "") for n in "xy")
-    turned = with_signs_moved(Program("f", "", inputs, (), tuple(tape.ops), results))
+    turned = with_signs_moved(Program("f", "", inputs, (), tuple(tape.ops), results), "t")
     assert turned.count() == {"add": 1, "mul": 1, "neg": 3, "sub": 1}
     values = [Fraction(3, 7), Fraction(-5, 2)]
     x_, y_ = values
