@@ -1,16 +1,22 @@
 """The preprocessed discrete Moser-Veselov step: torque-free rotation to order ten, for long runs.
 
-A step solves c = al W + e c c for c = tan(angle/2) times its axis, al = 1 + |c|^2 (Hairer and
-Vilmart, J. Phys. A 39 (2006) 13225, eq. 13 and 19); |I omega| and the energy do not drift. What
-rests on the invariants of one motion is worked out once, by ``plan_dmv``; the sums carry their
-rounding remainder from call to call. Moments are measured in the largest, so their scale is gone.
+A step solves c_i = al W_i + e_i c_j c_k for c = tan(angle/2) times its axis, al = 1 + |c|^2, and
+moves omega by the products c_j c_k/al (Hairer and Vilmart, J. Phys. A 39 (2006) 13225, eq. 13 and
+19). |I omega| and the energy do not drift. What rests on the invariants of one motion is worked
+out once, by ``plan_dmv``; the sums carry their rounding remainder from call to call.
 """
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from derive.flows.closed_steps import change_of_revolution, plan_revolution, plan_sphere
-from derive.flows.compensated import compensated_sums
+from derive.flows.compensated import (
+    closely_added,
+    compensated_add,
+    compensated_sums,
+    splitter,
+    two_product,
+)
 from derive.flows.frame import Frame, own_frame, principal_frame
 from derive.flows.inertia import Inertia
 from derive.flows.moments import in_order
@@ -21,7 +27,7 @@ from derive.trace import Number, Tape, absolute, at_most, named, number, repeat,
 AXES = "xyz"
 CYCLIC = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 PASSES = 40
-FAR = 64  # a change that 64 does not feel is followed by one below rounding
+QUARTER = Fraction(1, 4)
 Plan = list[tuple[str, Number, str]]
 Vector = Sequence[Number]
 
@@ -43,18 +49,21 @@ def plan_dmv(tape: Tape, body: Inertia, omega: Vector, time_step: Number) -> Pla
     s, d, moments = _modified(axes.moments, turned)
     ratios = [s + d * moment for moment in moments]
     plan: Plan = []
+    factor = splitter(time_step / time_step)
     for (i, j, k), axis in zip(CYCLIC, AXES, strict=True):
         asymmetry = named(
             f"asymmetry_{axis}", (moments[j] - moments[k]) / moments[i], "(I_j - I_k) / I_i"
         )
         half = time_step * Fraction(1, 2) * ratios[i]
         gain = s * asymmetry / (ratios[j] * ratios[k]) / (time_step * Fraction(1, 4))
+        double, error = two_product(gain, half, factor)
         plan += [
             (f"half_{axis}", half, "half a time step, times I / It of the modified body, s"),
             (f"gain_{axis}", gain, "change of omega by two components of c, rad/s"),
-            (f"couple_{axis}", gain * half * Fraction(1, 2), "(It_j - It_k) / It_i"),
+            (f"excess_{axis}", -error / half, "what gain lacks of twice couple over half, rad/s"),
+            (f"couple_{axis}", double * Fraction(1, 2), "(It_j - It_k) / It_i"),
         ]
-    couple = plan[2][1] * plan[5][1] * Fraction(1, 2)
+    couple = plan[3][1] * plan[7][1] * Fraction(1, 2)
     return [*plan, ("couple", couple, "half the product of couple_x and couple_y")]
 
 
@@ -100,59 +109,76 @@ def step_dmv(
     Source: Hairer and Vilmart (2006), eq. 13, with the sums of Kahan (1965).
     """
     if body.kind == "spherical":
-        less, turn = plan["less"], [plan[f"turn_{axis}"] for axis in AXES]
-        change = [number(0)] * 3
-    elif body.kind == "axisymmetric":
-        less, turn, change = change_of_revolution(body, plan, omega)
-    else:
-        axes = _axes(body)
-        less, turn, change = _change(tape, plan, axes.along(omega))
-        turn, change = axes.back(turn), axes.back(change)
-    return compensated_sums(
-        attitude, omega, quaternion_change(attitude, less, turn), change, remainder
-    )
+        turn = [plan[f"turn_{axis}"] for axis in AXES]
+        change = quaternion_change(attitude, plan["less"], turn)
+        return compensated_sums(attitude, omega, change, [number(0)] * 3, remainder)
+    if body.kind == "axisymmetric":
+        less, turn, faster = change_of_revolution(body, plan, omega)
+        change = quaternion_change(attitude, less, turn)
+        return compensated_sums(attitude, omega, change, faster, remainder)
+    axes = _axes(body)
+    c, al = _solved(tape, plan, axes.along(omega))
+    less, turn = _turn(c)
+    change = quaternion_change(attitude, less, axes.back(turn))
+    products = [c[j] * c[k] / al for _, j, k in CYCLIC]
+    faster, low = (axes.back(_scaled(plan, name, products)) for name in ("gain", "excess"))
+    sums = [compensated_add(*x) for x in zip(attitude, change, remainder[:4], strict=True)]
+    sums += [closely_added(*x) for x in zip(omega, faster, low, remainder[4:], strict=True)]
+    after = [x for x, _ in sums]
+    return after[:4], after[4:], [r for _, r in sums]
 
 
-def _change(
-    tape: Tape, plan: Mapping[str, Number], omega: Vector
-) -> tuple[Number, list[Number], list[Number]]:
-    """Return a step's attitude change, as one less its scalar and its vector, and omega's."""
-    half, gain = ([plan[f"{name}_{axis}"] for axis in AXES] for name in ("half", "gain"))
-    c = _solved(tape, plan, [h * w for h, w in zip(half, omega, strict=True)])
+def _scaled(plan: Mapping[str, Number], name: str, vector: Vector) -> list[Number]:
+    return [plan[f"{name}_{axis}"] * x for axis, x in zip(AXES, vector, strict=True)]
+
+
+def _turn(c: Vector) -> tuple[Number, list[Number]]:
+    """Return the turn (1, c)/sqrt(1 + |c|^2): one less its scalar, without cancellation."""
     size = c[0] * c[0] + c[1] * c[1] + c[2] * c[2]
     root = sqrt(1 + size)
     inverse = 1 / root
-    less = size * inverse / (1 + root)  # 1 - 1/root without cancellation
-    square = inverse * inverse
-    change = [gain[i] * (c[j] * c[k]) * square for i, j, k in CYCLIC]
-    return less, [x * inverse for x in c], change
+    return size * inverse / (1 + root), [x * inverse for x in c]
 
 
-def _solved(tape: Tape, plan: Mapping[str, Number], W: Vector) -> list[Number]:
-    """Return c: for a known third component the others and al are explicit, so one is sought.
+def _solved(tape: Tape, plan: Mapping[str, Number], omega: Vector) -> tuple[list[Number], Number]:
+    """Return c and al: for a known third component the rest is explicit, so one is sought.
 
-    With D = 1/2 - e1 e2 c3^2/2 and P = W1 + e1 W2 c3, Q = W2 + e2 W1 c3, k = 1 + c3^2, the first
+    With D = 1/2 - e1 e2 c3^2/2, P = W1 + e1 W2 c3, Q = W2 + e2 W1 c3 and k = 1 + c3^2, the first
     two equations and al = 1 + |c|^2 give c1 = A P, c2 = A Q, al = 2 A D with
-    A = k/(D + sqrt(D^2 - k (P^2 + Q^2))); the third is left for Newton's rule, its slope at c = W.
+    A = k/(D + sqrt(D^2 - k (P^2 + Q^2))). The third is left for Newton's rule, its slope taken at
+    c = W. A change d leaves an error of |W|^3 d: it ends when that is below rounding.
     """
-    first, second, third = (plan[f"couple_{axis}"] for axis in AXES)
-    across, along, twice = first * W[1], second * W[0], W[2] + W[2]
-    slope = twice * W[2] + third * (across * W[1] + along * W[0])
-    factor = 1 / (1 - slope)
-
-    def others(c3: Number) -> tuple[Number, Number, Number]:
-        square = c3 * c3
-        D, k = Fraction(1, 2) - plan["couple"] * square, 1 + square
-        P, Q = W[0] + across * c3, W[1] + along * c3
-        A = k / (D + sqrt(D * D - k * (P * P + Q * Q)))
-        return A * P, A * Q, A * D
+    W, (e1, e2, e3) = _scaled(plan, "half", omega), (plan[f"couple_{axis}"] for axis in AXES)
+    e1W2, e2W1, twice = e1 * W[1], e2 * W[0], W[2] + W[2]
+    factor = 1 / (1 - (twice * W[2] + e3 * (e1W2 * W[1] + e2W1 * W[0])))
+    size = W[0] * W[0] + W[1] * W[1] + W[2] * W[2]
+    shrinks = size * sqrt(size)
 
     def one_pass(c: list[Number]) -> tuple[list[Number], Number]:
-        c1, c2, half_al = others(c[0])
-        step = (half_al * twice + third * (c1 * c2) - c[0]) * factor
-        return [c[0] + step], at_most(FAR + absolute(step), FAR)
+        square = c[2] * c[2]
+        D, k = Fraction(1, 2) - plan["couple"] * square, 1 + square
+        P, Q = W[0] + e1W2 * c[2], W[1] + e2W1 * c[2]
+        A = k / (D + sqrt(D * D - k * (P * P + Q * Q)))
+        c1, c2 = A * P, A * Q
+        step = (A * D * twice + e3 * (c1 * c2) - c[2]) * factor
+        more = A * step
+        then = [c1 + e1W2 * more, c2 + e2W1 * more, c[2] + step]
+        return then, at_most(QUARTER + absolute(step) * shrinks, QUARTER)
 
-    start = W[2] + third * (W[0] * W[1])
-    c3 = repeat(tape, PASSES, [start], one_pass)[0]
-    c1, c2, _ = others(c3)
-    return [c1, c2, c3]
+    start = W[2] + (size * W[2] + e3 * ((W[0] + e1W2 * W[2]) * (W[1] + e2W1 * W[2])))
+    c = repeat(tape, PASSES, [W[0], W[1], start], one_pass)
+    return _as_it_stands((e1, e2, e3), W, c)
+
+
+def _as_it_stands(e: Vector, W: Vector, c: Vector) -> tuple[list[Number], Number]:
+    """Return c and al after the equations as they stand: what is left of them must not be biased.
+
+    Invariants drift with the part of the residual that does not change its sign. Rounding of the
+    sums here does; that of D, which hardly changes while the body spins, would not.
+    """
+    al = 1 + (c[0] * c[0] + c[1] * c[1] + c[2] * c[2])
+    aW = [al * x for x in W]
+    c3 = aW[2] + e[2] * (c[0] * c[1])
+    c2 = aW[1] + e[1] * (c3 * (aW[0] + e[0] * (c[1] * c3)))
+    c1 = aW[0] + e[0] * (c2 * c3)
+    return [c1, c2, aW[2] + e[2] * (c1 * c2)], al
