@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from derive.flows.lie import lie_step
 from derive.flows.matrices import Matrix, beside, compressed
@@ -15,6 +15,8 @@ from derive.program import Operand, Program, Quantity
 from derive.trace import Tape, needed
 
 RK4 = "One classic Runge-Kutta step (order 4)"
+LIE = "One commutator-free Lie-group step: the attitude turns by exponentials (order 4)"
+JACOBIAN = "nonzeros of the Jacobian, in compressed-column order"
 
 
 @dataclass(frozen=True)
@@ -37,8 +39,18 @@ def step_rk4(system: System) -> Program:
 def step_lie(system: System) -> Program:
     """Return one commutator-free Lie-group step (order 4); the state must have a quaternion."""
     tape = tape_for(system)
-    says = "One commutator-free Lie-group step: the attitude turns by exponentials (order 4)."
-    return _program("step_lie", says, (tape, system, lie_step(tape, system)), None)
+    after = lie_step(tape, replace(system, slopes=None)).values
+    return _program("step_lie", f"{LIE}.", (tape, system, after), None)
+
+
+def step_lie_jacobian(system: System) -> Program:
+    """Return the Lie-group step with its derivatives by the state and by the inputs."""
+    slopes_of(system)  # a step without derivatives would be traced without them
+    tape = tape_for(system)
+    made = lie_step(tape, system)
+    slopes = Slopes(made.slopes, _next(system.names), system.columns, JACOBIAN)
+    says = f"{LIE}, with its Jacobian."
+    return _program("step_lie_jacobian", says, (tape, system, made.values), slopes)
 
 
 def step_rk4_jacobian(system: System) -> Program:
@@ -48,7 +60,7 @@ def step_rk4_jacobian(system: System) -> Program:
         beside(back.state, back.rest),
         _next(system.names),
         system.columns,
-        "nonzeros of the Jacobian, in compressed-column order",
+        JACOBIAN,
     )
     says = f"{RK4}, with its Jacobian."
     return _program("step_rk4_jacobian", says, (tape, system, after), slopes)
