@@ -8,11 +8,18 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
+from derive.flows.compact import compact
 from derive.flows.exact import flow_exact
 from derive.flows.inertia import Inertia
 from derive.flows.moser_veselov import plan_dmv, step_dmv
-from derive.flows.splitting import step_split
-from derive.flows.steps import step_rk4, step_rk4_jacobian
+from derive.flows.splitting import step_split, step_split_compensated
+from derive.flows.steps import (
+    step_lie,
+    step_rk4,
+    step_rk4_jacobian,
+    step_rk4_sensitivity,
+    step_rk4_tangent,
+)
 from derive.flows.system import System, next_of
 from derive.flows.taylor import taylor_step
 from derive.graph import Graph, Value
@@ -26,6 +33,7 @@ from derive.stage import Traced, exact_number, used_inputs
 from derive.trace import Number, Tape, called, needed, number
 from derive.vocabulary import Vocabulary
 
+COMPENSATION = "_compensated"
 RATES = ("step_rk4", "step_lie", *TAYLOR)
 """Steps that are made from the rate of the state."""
 SLOPES = {
@@ -122,6 +130,9 @@ def _taylor(moving: Moving, order: int) -> Program:
 _STEP_PROGRAMS: Mapping[str, Callable[[System], Program]] = {
     "step_rk4": step_rk4,
     "step_rk4_jacobian": step_rk4_jacobian,
+    "step_rk4_tangent": step_rk4_tangent,
+    "step_rk4_sensitivity": step_rk4_sensitivity,
+    "step_lie": step_lie,
 }
 
 
@@ -130,8 +141,13 @@ def _runge_kutta(moving: Moving, name: str) -> Program:
     slopes = rates[SLOPES[name.rpartition("_")[2]]] if name in STEP_DERIVATIVES else None
     system = System(moving.known.words.states, rates["state_rate"], slopes, step)
     program = _STEP_PROGRAMS[name](system)
-    inputs = used_inputs(program.inputs, program.ops, program.results)
-    return replace(program, inputs=inputs, assumptions=rates["state_rate"].assumptions)
+    program = replace(
+        program,
+        inputs=used_inputs(program.inputs, program.ops, program.results),
+        assumptions=rates["state_rate"].assumptions,
+    )
+    small = moving.known.scene.emission == "compact" and step_of(name) == "step_rk4"
+    return compact(system, program) if small else program
 
 
 def _time(scene: Scene, name: str) -> Quantity:
@@ -226,16 +242,20 @@ def _dmv_step(moving: Moving, plan: Quantity, names: Sequence[str]) -> Program:
 def _split(moving: Moving, name: str) -> Program:
     tape, step = moving.function(), _time(moving.known.scene, "time_step")
     attitude, omega = _rotation(moving.known.words)
-    order = SPLITTINGS[step_of(name)]
+    order, body, rest = SPLITTINGS[step_of(name)], moving.inertia(), remainder((attitude, omega))
     (h,) = _inputs(tape, step)
-    given = _inputs(tape, attitude), _inputs(tape, omega)
-    q, w = step_split(tape, moving.inertia(), order, *given, _moment(moving, tape), h)
-    says = f"One step of the rotation by splitting it into turns about two axes (order {order})."
-    made = Recorded(
-        (attitude, omega, *_outside(moving), step),
-        (next_of(attitude), next_of(omega)),
-        tuple(map(number, (*q, *w))),
-    )
+    given = _inputs(tape, attitude), _inputs(tape, omega), _moment(moving, tape), h
+    inputs = (attitude, omega, *_outside(moving), step)
+    outputs = [next_of(attitude), next_of(omega)]
+    says = "One step of the rotation by splitting it into turns about two axes"
+    if name.endswith(COMPENSATION):
+        moved = step_split_compensated(tape, body, order, *given, _inputs(tape, rest))
+        inputs, outputs = (*inputs, rest), [*outputs, next_of(rest)]
+        says += f" (order {order}), carrying what rounding leaves."
+    else:
+        moved = step_split(tape, body, order, *given)
+        says += f" (order {order})."
+    made = Recorded(inputs, tuple(outputs), tuple(number(n) for part in moved for n in part))
     return _program(name, says, tape, made)
 
 

@@ -31,6 +31,7 @@ FLOORS = (
         "measure",
         "motion_error",
         "convergence",
+        "differences",
     ),
     ("files", "generation", "check", "bench", "report"),
     ("cli", "__main__"),
