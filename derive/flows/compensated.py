@@ -27,19 +27,6 @@ def compensated_add(state: Number, increment: Number, remainder: Number) -> tupl
     return after, wanted - (after - state)
 
 
-def closely_added(
-    state: Number, increment: Number, low: Number, remainder: Number
-) -> tuple[Number, Number]:
-    """Return the same for an increment with a low part, of which nothing is dropped on the way.
-
-    A low part below half a rounding of the increment would otherwise be rounded away every time.
-    """
-    wanted = increment + remainder
-    short = remainder - (wanted - increment)
-    after = state + wanted
-    return after, (wanted - (after - state)) + (short + low)
-
-
 def compensated_sums(
     attitude: Vector, omega: Vector, turn: Vector, change: Vector, remainder: Vector
 ) -> tuple[list[Number], list[Number], list[Number]]:

@@ -10,13 +10,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from derive.flows.closed_steps import change_of_revolution, plan_revolution, plan_sphere
-from derive.flows.compensated import (
-    closely_added,
-    compensated_add,
-    compensated_sums,
-    splitter,
-    two_product,
-)
+from derive.flows.compensated import compensated_sums, splitter, two_product
 from derive.flows.frame import Frame, own_frame, principal_frame
 from derive.flows.inertia import Inertia
 from derive.flows.moments import in_order
@@ -60,10 +54,10 @@ def plan_dmv(tape: Tape, body: Inertia, omega: Vector, time_step: Number) -> Pla
         plan += [
             (f"half_{axis}", half, "half a time step, times I / It of the modified body, s"),
             (f"gain_{axis}", gain, "change of omega by two components of c, rad/s"),
-            (f"excess_{axis}", -error / half, "what gain lacks of twice couple over half, rad/s"),
-            (f"couple_{axis}", double * Fraction(1, 2), "(It_j - It_k) / It_i"),
+            (f"couple_{axis}", double * Fraction(1, 2), "(It_j - It_k) / It_i: gain half / 2"),
+            (f"couple_low_{axis}", error * Fraction(1, 2), "what rounding kept from that"),
         ]
-    couple = plan[3][1] * plan[7][1] * Fraction(1, 2)
+    couple = plan[2][1] * plan[6][1] * Fraction(1, 2)
     return [*plan, ("couple", couple, "half the product of couple_x and couple_y")]
 
 
@@ -117,15 +111,12 @@ def step_dmv(
         change = quaternion_change(attitude, less, turn)
         return compensated_sums(attitude, omega, change, faster, remainder)
     axes = _axes(body)
-    c, al = _solved(tape, plan, axes.along(omega))
+    c, al = _solved(tape, plan, axes.along(omega), axes.along(remainder[4:]))
     less, turn = _turn(c)
     change = quaternion_change(attitude, less, axes.back(turn))
     products = [c[j] * c[k] / al for _, j, k in CYCLIC]
-    faster, low = (axes.back(_scaled(plan, name, products)) for name in ("gain", "excess"))
-    sums = [compensated_add(*x) for x in zip(attitude, change, remainder[:4], strict=True)]
-    sums += [closely_added(*x) for x in zip(omega, faster, low, remainder[4:], strict=True)]
-    after = [x for x, _ in sums]
-    return after[:4], after[4:], [r for _, r in sums]
+    faster = axes.back(_scaled(plan, "gain", products))
+    return compensated_sums(attitude, omega, change, faster, remainder)
 
 
 def _scaled(plan: Mapping[str, Number], name: str, vector: Vector) -> list[Number]:
@@ -140,7 +131,9 @@ def _turn(c: Vector) -> tuple[Number, list[Number]]:
     return size * inverse / (1 + root), [x * inverse for x in c]
 
 
-def _solved(tape: Tape, plan: Mapping[str, Number], omega: Vector) -> tuple[list[Number], Number]:
+def _solved(
+    tape: Tape, plan: Mapping[str, Number], omega: Vector, remainder: Vector
+) -> tuple[list[Number], Number]:
     """Return c and al: for a known third component the rest is explicit, so one is sought.
 
     With D = 1/2 - e1 e2 c3^2/2, P = W1 + e1 W2 c3, Q = W2 + e2 W1 c3 and k = 1 + c3^2, the first
@@ -167,18 +160,26 @@ def _solved(tape: Tape, plan: Mapping[str, Number], omega: Vector) -> tuple[list
 
     start = W[2] + (size * W[2] + e3 * ((W[0] + e1W2 * W[2]) * (W[1] + e2W1 * W[2])))
     c = repeat(tape, PASSES, [W[0], W[1], start], one_pass)
-    return _as_it_stands((e1, e2, e3), W, c)
+    return _as_it_stands(plan, W, c, _scaled(plan, "half", remainder))
 
 
-def _as_it_stands(e: Vector, W: Vector, c: Vector) -> tuple[list[Number], Number]:
-    """Return c and al after the equations as they stand: what is left of them must not be biased.
+def _as_it_stands(
+    plan: Mapping[str, Number], W: Vector, c: Vector, low: Vector
+) -> tuple[list[Number], Number]:
+    """Return c and al after the equations as they stand; ``low`` is what W lacks of its remainder.
 
-    Invariants drift with the part of the residual that does not change its sign. Rounding of the
-    sums here does; that of D, which hardly changes while the body spins, would not.
+    What is left of an equation moves the invariants, and they drift if its mean is not zero. The
+    rounding of these sums has none; that of D would, and so would what omega has not yet taken up.
     """
     al = 1 + (c[0] * c[0] + c[1] * c[1] + c[2] * c[2])
     aW = [al * x for x in W]
-    c3 = aW[2] + e[2] * (c[0] * c[1])
-    c2 = aW[1] + e[1] * (c3 * (aW[0] + e[0] * (c[1] * c3)))
-    c1 = aW[0] + e[0] * (c2 * c3)
-    return [c1, c2, aW[2] + e[2] * (c1 * c2)], al
+
+    def component(i: int, product: Number) -> Number:
+        e, short = plan[f"couple_{AXES[i]}"], plan[f"couple_low_{AXES[i]}"]
+        return aW[i] + (e * product + (low[i] + short * product))
+
+    e1, e3 = plan["couple_x"], plan["couple_z"]
+    c3 = aW[2] + e3 * (c[0] * c[1])
+    c2 = component(1, c3 * (aW[0] + e1 * (c[1] * c3)))
+    c1 = component(0, c2 * c3)
+    return [c1, c2, component(2, c1 * c2)], al
