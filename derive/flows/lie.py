@@ -10,13 +10,12 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from derive.flows.attitude_stages import norm_squared
 from derive.flows.dependence import attitude_turns
 from derive.flows.matrices import beside, identity, plus, product, zeros
 from derive.flows.runge_kutta import THIRD
 from derive.flows.system import System, rates_at, slopes_at
-from derive.flows.varying import Varying, added, on_the_sphere, turned, weighed
-from derive.trace import Number, Tape, sqrt
+from derive.flows.varying import Varying, added, finished, turned, weighed
+from derive.trace import Number, Tape
 
 FIRST = (Fraction(1, 4), Fraction(1, 6), Fraction(1, 6), Fraction(-1, 12))
 """Weights of the stages in the first of the two last exponentials; the second has them reversed."""
@@ -40,10 +39,8 @@ def lie_step(tape: Tape, system: System) -> Varying:
         rates.append(_rates(tape, system, states[-1], half))
     after = added(start, weighed([THIRD, 2 * THIRD, 2 * THIRD, THIRD], rates))
     turns = [weighed([h], [state[omega]]) for state in states]
-    q = start[attitude]
-    for weights in (FIRST, FIRST[::-1]):
-        q = turned(tape, q, weighed(weights, turns))
-    return after.replaced(attitude, on_the_sphere(q, 1 / sqrt(norm_squared(q.values))))
+    last = [weighed(weights, turns) for weights in (FIRST, FIRST[::-1])]
+    return after.replaced(attitude, finished(tape, start[attitude], last))
 
 
 def _start(tape: Tape, system: System) -> Varying:

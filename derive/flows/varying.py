@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from derive.flows.attitude_stages import right_matrix, tangent_matrix
-from derive.flows.matrices import Matrix, minus, plus, product, times
-from derive.rotations.quaternion import exponential
+from derive.flows.attitude_stages import between, norm_squared, right_matrix, tangent_matrix
+from derive.flows.matrices import Matrix, minus, plus, product, times, zeros
+from derive.rotations.quaternion import conjugate, exponential
 from derive.rotations.quaternion import product as hamilton
-from derive.trace import Number, Tape, less, number, select
+from derive.trace import Number, Tape, less, number, select, sqrt
 
 Row = list[Number]
 TINY = Fraction(1, 2**40)
@@ -94,9 +94,19 @@ def right_jacobian(v: Row, turn: Row) -> Matrix:
     ]
 
 
-def on_the_sphere(q: Varying, scale: Number) -> Varying:
-    """Return ``scale`` q, which is of length one, without slopes that would change its length."""
-    values = [x * scale for x in q.values]
-    slopes = times(scale, q.slopes)
-    along = product([values], slopes)
-    return Varying(values, minus(slopes, product([[x] for x in values], along)))
+def finished(tape: Tape, q: Varying, vectors: Sequence[Varying]) -> Varying:
+    """Return q exp(v1 / 2) exp(v2 / 2) ... made of length one."""
+    whole, bent = [number(1), *[number(0)] * 3], zeros(3, len(q.slopes[0]))
+    for vector in vectors:
+        turn = exponential(tape, vector.values)
+        own = product(right_jacobian(vector.values, turn), vector.slopes)
+        bent = plus(product(between(conjugate(turn), turn), bent), own)
+        whole = hamilton(whole, turn)
+    after = hamilton(q.values, whole)
+    scale = 1 / sqrt(norm_squared(after))
+    after = [x * scale for x in after]
+    slopes = times(scale, product(right_matrix(whole), q.slopes))
+    along = product([after], slopes)
+    slopes = minus(slopes, product([[x] for x in after], along))
+    turned_by = product(tangent_matrix(after), times(Fraction(1, 2), bent))
+    return Varying(after, plus(slopes, turned_by))
