@@ -30,6 +30,13 @@ def test_a_reference_case_ends_within_its_condition(case: Case, dtype: type) -> 
         assert share_of(case, dtype, flow("general")) <= 1
 
 
+def test_a_motion_costs_four_functions_of_libm_and_less_than_900_operations() -> None:
+    count = flow("general").function.count()
+    assert count["sin"] == count["cos"] == 2
+    assert not {"atan2", "exp", "log"} & set(count)
+    assert sum(count.values()) < 900
+
+
 @pytest.mark.parametrize("dtype", PRECISIONS)
 def test_a_body_of_revolution_and_a_sphere_need_sines_and_cosines_only(dtype: type) -> None:
     by_name = {case.name: case for case in cases()}
