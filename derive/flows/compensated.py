@@ -7,7 +7,6 @@ grows with the number of steps.
 
 from collections.abc import Sequence
 
-from derive import trace
 from derive.trace import Number
 
 Vector = Sequence[Number]
@@ -35,13 +34,6 @@ def compensated_sums(
     sums = [compensated_add(*each) for each in zip(state, increments, remainder, strict=True)]
     after = [x for x, _ in sums]
     return after[:4], after[4:], [r for _, r in sums]
-
-
-def splitter(value: Number) -> Number:
-    """Return the factor that cuts a float in two halves, on the tape of a value."""
-    if value.tape is None:
-        raise ValueError(f"{value.operand} is exact, and needs no halves")
-    return trace.splitter(value.tape)
 
 
 def two_product(a: Number, b: Number, factor: Number) -> tuple[Number, Number]:

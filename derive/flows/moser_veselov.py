@@ -9,14 +9,19 @@ out once, by ``plan_dmv``; the sums carry their rounding remainder from call to 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from derive.flows.closed_steps import change_of_revolution, plan_revolution, plan_sphere
-from derive.flows.compensated import compensated_sums, splitter, two_product
+from derive.flows.closed_steps import (
+    change_of_revolution,
+    less_than_one,
+    plan_revolution,
+    plan_sphere,
+)
+from derive.flows.compensated import compensated_sums, two_product
 from derive.flows.frame import Frame, own_frame, principal_frame
 from derive.flows.inertia import Inertia
 from derive.flows.moments import in_order
 from derive.flows.preprocessing import D, S, coefficients, summed
 from derive.flows.turns import quaternion_change
-from derive.trace import Number, Tape, absolute, at_most, named, number, repeat, sqrt
+from derive.trace import Number, Tape, absolute, at_most, named, number, repeat, splitter, sqrt
 
 AXES = "xyz"
 CYCLIC = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
@@ -26,7 +31,7 @@ Plan = list[tuple[str, Number, str]]
 Vector = Sequence[Number]
 
 
-def plan_dmv(tape: Tape, body: Inertia, omega: Vector, time_step: Number) -> Plan:  # noqa: ARG001
+def plan_dmv(tape: Tape, body: Inertia, omega: Vector, time_step: Number) -> Plan:
     """Return what every step of one torque-free motion has in common: name, value, meaning.
 
     omega : (3,) rad/s along body axes, at any instant of the motion      time_step : s
@@ -43,7 +48,7 @@ def plan_dmv(tape: Tape, body: Inertia, omega: Vector, time_step: Number) -> Pla
     s, d, moments = _modified(axes.moments, turned)
     ratios = [s + d * moment for moment in moments]
     plan: Plan = []
-    factor = splitter(time_step / time_step)
+    factor = splitter(tape)
     for (i, j, k), axis in zip(CYCLIC, AXES, strict=True):
         asymmetry = named(
             f"asymmetry_{axis}", (moments[j] - moments[k]) / moments[i], "(I_j - I_k) / I_i"
@@ -107,8 +112,8 @@ def step_dmv(
         change = quaternion_change(attitude, plan["less"], turn)
         return compensated_sums(attitude, omega, change, [number(0)] * 3, remainder)
     if body.kind == "axisymmetric":
-        less, turn, faster = change_of_revolution(body, plan, omega)
-        change = quaternion_change(attitude, less, turn)
+        turn, faster = change_of_revolution(body, plan, omega)
+        change = quaternion_change(attitude, less_than_one(plan["forward"], turn), turn)
         return compensated_sums(attitude, omega, change, faster, remainder)
     axes = _axes(body)
     c, al = _solved(tape, plan, axes.along(omega), axes.along(remainder[4:]))
