@@ -3,12 +3,13 @@
 from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations
+from typing import Literal
 
 import numpy as np
 import pytest
 
 from derive.flows.inertia import Inertia
-from derive.trace import number
+from derive.trace import Number, number
 from tests.flows.free import Case, cases, flow, recorded, share, share_of
 
 PRECISIONS = (np.float64, np.float32)
@@ -47,6 +48,23 @@ def test_a_body_of_revolution_and_a_sphere_need_sines_and_cosines_only(dtype: ty
         assert len(special.function.ops) < size / 5
     assert share_of(by_name["sphere"], dtype, flow("axisymmetric")) <= 1
     assert share_of(by_name["asym_ii_generic"], dtype, flow("axisymmetric")) > 1
+
+
+@pytest.mark.parametrize("axis", ["x", "y", "z"])
+def test_a_body_of_revolution_has_its_axis_along_any_of_three(axis: Literal["x", "y", "z"]) -> None:
+    place = "xyz".index(axis)
+
+    def body(t: list[Number]) -> Inertia:
+        along, across = t[place], t[place - 1]
+        x, y, z = (along if i == place else across for i in range(3))
+        return Inertia((x, y, z, number(0), number(0), number(0)), "axisymmetric", axis)
+
+    tensors = np.array([[2.0, 2.0, 2.0, 0, 0, 0]])
+    tensors[0, place] = 3
+    state = np.array([[0.5, -0.5, 0.5, 0.5, 0.3, -1.0, 0.7, 12.5]])
+    found = recorded(body).ends(np.float64, tensors, state)
+    whole = flow("principal").ends(np.float64, tensors, state)
+    assert np.max(np.abs(found - whole)) < 100 * 2.0**-53  # two motions through 15 rad
 
 
 @pytest.mark.parametrize(
