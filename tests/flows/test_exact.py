@@ -55,7 +55,7 @@ def test_a_body_of_revolution_has_its_axis_along_any_of_three(axis: Literal["x",
     place = "xyz".index(axis)
 
     def body(t: list[Number]) -> Inertia:
-        along, across = t[place], t[place - 1]
+        along, across = t[place], t[(place + 1) % 3]
         x, y, z = (along if i == place else across for i in range(3))
         return Inertia((x, y, z, number(0), number(0), number(0)), "axisymmetric", axis)
 
