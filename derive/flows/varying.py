@@ -94,19 +94,27 @@ def right_jacobian(v: Row, turn: Row) -> Matrix:
     ]
 
 
-def finished(tape: Tape, q: Varying, vectors: Sequence[Varying]) -> Varying:
-    """Return q exp(v1 / 2) exp(v2 / 2) ... made of length one."""
-    whole, bent = [number(1), *[number(0)] * 3], zeros(3, len(q.slopes[0]))
+def whole_turn(tape: Tape, vectors: Sequence[Varying]) -> Varying:
+    """Return exp(v1 / 2) exp(v2 / 2) ... , its slopes as the turn (3, rad) that they are.
+
+    These are along body axes after the turn, as an error of attitude is.
+    """
+    whole = [number(1), *[number(0)] * 3]
+    bent = zeros(3, len(vectors[0].slopes[0]))
     for vector in vectors:
         turn = exponential(tape, vector.values)
         own = product(right_jacobian(vector.values, turn), vector.slopes)
         bent = plus(product(between(conjugate(turn), turn), bent), own)
         whole = hamilton(whole, turn)
-    after = hamilton(q.values, whole)
+    return Varying(whole, bent)
+
+
+def finished(q: Varying, turn: Varying) -> Varying:
+    """Return an attitude after a whole ``turn``, of length one."""
+    after = hamilton(q.values, turn.values)
     scale = 1 / sqrt(norm_squared(after))
     after = [x * scale for x in after]
-    slopes = times(scale, product(right_matrix(whole), q.slopes))
-    along = product([after], slopes)
-    slopes = minus(slopes, product([[x] for x in after], along))
-    turned_by = product(tangent_matrix(after), times(Fraction(1, 2), bent))
-    return Varying(after, plus(slopes, turned_by))
+    slopes = times(scale, product(right_matrix(turn.values), q.slopes))
+    slopes = minus(slopes, product([[x] for x in after], product([after], slopes)))
+    bent = product(tangent_matrix(after), times(Fraction(1, 2), turn.slopes))
+    return Varying(after, plus(slopes, bent))
