@@ -1,13 +1,14 @@
 """A run of the report: programs are made, then cases are moved one by one, then the rest."""
 
 from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TypeVar
 
 from derive.bench.motion.case import Case, cases
-from derive.bench.motion.ours import SCENES
+from derive.bench.motion.ours import SCENES, emission
 from derive.bench.motion.step_jacobian import SCENE, entries
 from derive.report.case_run import Workshop, case_run
 from derive.report.functions import functions
@@ -23,7 +24,7 @@ from derive.report.workshop import workshop
 from derive.scene import SceneError
 
 LIMITS = {"small": SMALL, "full": FULL}
-LONG_RUN = 1_000_000
+LONG_RUN, WORKERS = 1_000_000, 3
 CASES = "cases"
 PARTS = ("hard", "orders", "tools", "gyroscopic", "functions")
 Tell = Callable[[str], None]
@@ -56,25 +57,31 @@ def made(ask: Ask) -> Report:
 
 
 def _made(ask: Ask, every: dict[str, Case], folder: Path) -> Report:
-    ask.tell("emitting and compiling steppers, counting the steps of peers")
-    shop = workshop(SCENES, LIMITS[ask.kind], folder)
+    ask.tell("emitting and compiling steppers; counting what peers, tools and functions take")
+    with ThreadPoolExecutor(WORKERS) as pool:  # nothing here is timed
+        ready = pool.submit(workshop, SCENES, LIMITS[ask.kind], folder)
+        counted = pool.submit(_part, ask, "functions", lambda: functions(ask.generated, folder))
+        tools = pool.submit(_part, ask, "tools", lambda: entries(emission(SCENE), folder / "tools"))
+        shop = ready.result()
+        turning = _part(ask, "gyroscopic", lambda: gyroscopic(folder))
     found = []
     for case in every.values():
         if _wanted(ask, case.name, CASES):
             ask.tell(f"case {case.name}")
             found.append(case_run(case, shop))
+    ask.tell("hard cases and orders")
     hard = _part(ask, "hard", lambda: _hard(every, shop))
-    tools = _part(ask, "tools", lambda: entries(shop.emissions.get(SCENE), folder / "tools"))
-    turning = _part(ask, "gyroscopic", lambda: gyroscopic(folder))
-    evidence = Evidence({f.case.name: f for f in found}, hard, tools, turning, folder)
+    evidence = Evidence(
+        {f.case.name: f for f in found}, hard, tools.result(), turning, folder
+    )
     return Report(
         ask.kind,
         tuple(found),
         hard,
         _part(ask, "orders", lambda: orders(every, shop)),
-        tools,
+        tools.result(),
         turning,
-        _part(ask, "functions", lambda: functions(ask.generated, folder)),
+        counted.result(),
         tuple(targets(evidence)),
     )
 
@@ -88,10 +95,7 @@ def _hard(every: dict[str, Case], shop: Workshop) -> Iterable[Hard]:
 
 
 def _part(ask: Ask, name: str, make: Callable[[], Iterable[T]]) -> tuple[T, ...]:
-    if not _wanted(ask, name):
-        return ()
-    ask.tell(name)
-    return tuple(make())
+    return tuple(make()) if _wanted(ask, name) else ()
 
 
 def _wanted(ask: Ask, *names: str) -> bool:
