@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from derive.flows.carried import remainder
 from derive.flows.matrices import Matrix, compressed
+from derive.flows.order import with_values_read_soon
 from derive.flows.signs import with_signs_moved
 from derive.flows.system import System, next_of
 from derive.program import Operand, Program, Quantity, Sparsity
@@ -78,7 +79,7 @@ def program_of(name: str, says: str, made: Traced) -> Program:
         assumptions=system.rate.assumptions,
         sparsity=made.sparsity,
     )
-    return with_signs_moved(program, made.tape.prefix)
+    return with_values_read_soon(with_signs_moved(program, made.tape.prefix))
 
 
 def next_names(names: Sequence[str]) -> tuple[str, ...]:
