@@ -9,7 +9,6 @@ import numpy as np
 from derive.arithmetic import PI, TRUTHS, rounded, splitter
 from derive.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
 
-
 UNSIGNED_CHAR = 255
 
 

@@ -6,23 +6,18 @@ rates, and become programs. What rests on parameters only is on the tape of set-
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 
+from derive.flows import steps
+from derive.flows.carried import remainder
 from derive.flows.compact import compact
 from derive.flows.exact import flow_exact
 from derive.flows.inertia import Inertia
 from derive.flows.moser_veselov import plan_dmv, step_dmv
 from derive.flows.splitting import step_split, step_split_compensated
-from derive.flows.steps import (
-    step_lie,
-    step_rk4,
-    step_rk4_jacobian,
-    step_rk4_sensitivity,
-    step_rk4_tangent,
-)
 from derive.flows.system import System, next_of
 from derive.flows.taylor import taylor_step
 from derive.graph import Graph, Value
+from derive.lecture import LECTURE
 from derive.lower import value_of
 from derive.program import Operand, Program, Quantity, renamed
 from derive.rotations.functions import attitude_program
@@ -33,7 +28,19 @@ from derive.stage import Traced, exact_number, used_inputs
 from derive.trace import Number, Tape, called, needed, number
 from derive.vocabulary import Vocabulary
 
+LOOPED = ("step_rk4", "step_rk4_jacobian", "step_rk4_sensitivity")
+"""Steps that may be printed as loops over their stages."""
 COMPENSATION = "_compensated"
+FREE_ROTATION = tuple(
+    sorted(
+        {
+            assumption
+            for step in ("general_form", "quaternion_rate_scalar", "quaternion_rate_vector")
+            for assumption in LECTURE.assumptions(step)
+        }
+    )
+)
+"""What the closed forms and splittings of a free rotation rest on."""
 RATES = ("step_rk4", "step_lie", *TAYLOR)
 """Steps that are made from the rate of the state."""
 SLOPES = {
@@ -128,11 +135,15 @@ def _taylor(moving: Moving, order: int) -> Program:
 
 
 _STEP_PROGRAMS: Mapping[str, Callable[[System], Program]] = {
-    "step_rk4": step_rk4,
-    "step_rk4_jacobian": step_rk4_jacobian,
-    "step_rk4_tangent": step_rk4_tangent,
-    "step_rk4_sensitivity": step_rk4_sensitivity,
-    "step_lie": step_lie,
+    "step_rk4": steps.step_rk4,
+    "step_rk4_compensated": steps.step_rk4_compensated,
+    "step_rk4_jacobian": steps.step_rk4_jacobian,
+    "step_rk4_tangent": steps.step_rk4_tangent,
+    "step_rk4_sensitivity": steps.step_rk4_sensitivity,
+    "step_lie": steps.step_lie,
+    "step_lie_compensated": steps.step_lie_compensated,
+    "step_lie_jacobian": steps.step_lie_jacobian,
+    "step_lie_tangent": steps.step_lie_tangent,
 }
 
 
@@ -146,7 +157,7 @@ def _runge_kutta(moving: Moving, name: str) -> Program:
         inputs=used_inputs(program.inputs, program.ops, program.results),
         assumptions=rates["state_rate"].assumptions,
     )
-    small = moving.known.scene.emission == "compact" and step_of(name) == "step_rk4"
+    small = moving.known.scene.emission == "compact" and name in LOOPED
     return compact(system, program) if small else program
 
 
@@ -174,7 +185,7 @@ def _program(name: str, says: str, tape: Tape, made: Recorded) -> Program:
     )
     ops = needed(tape.ops, results)
     inputs = used_inputs(made.inputs, ops, results)
-    return Program(name, says, inputs, made.outputs, ops, results, steps=(), assumptions=())
+    return Program(name, says, inputs, made.outputs, ops, results, assumptions=FREE_ROTATION)
 
 
 def _inputs(tape: Tape, q: Quantity) -> list[Number]:
@@ -212,13 +223,6 @@ def _dmv(moving: Moving) -> tuple[Program, ...]:
     made = Recorded((omega, step), (plan,), tuple(number(n) for _, n, _ in entries))
     planned = _program("plan_dmv", says, tape, made)
     return planned, _dmv_step(moving, plan, [name for name, _, _ in entries])
-
-
-def remainder(states: Sequence[Quantity]) -> Quantity:
-    """Return the quantity that carries what rounding left of earlier steps: zeros at the start."""
-    parts = tuple(f"remainder_{c}" for q in states for c in q.components)
-    says = "what rounding left of earlier steps, zeros at the start"
-    return Quantity("remainder", parts, (len(parts),), "", "", Fraction(0), Fraction(0), says)
 
 
 def _dmv_step(moving: Moving, plan: Quantity, names: Sequence[str]) -> Program:
