@@ -40,7 +40,7 @@ def _order(reads: Mapping[str, Sequence[str]], kept: Sequence[str]) -> list[str]
             readers[operand].append(name)
     readings = Counter(kept) + Counter(o for operands in reads.values() for o in operands)
     waiting = {name: len(operands) for name, operands in reads.items()}
-    ready = [name for name in reversed(reads) if not waiting[name]]
+    ready = [name for name in reversed(list(reads)) if not waiting[name]]
     made: dict[str, int] = {}
 
     def merit(name: str) -> tuple[int, int]:

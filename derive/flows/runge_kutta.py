@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from derive.flows.attitude_stages import Turning, norm_squared, turning
-from derive.flows.dependence import attitude_turns_freely
+from derive.flows.dependence import free_omega
 from derive.flows.matrices import Matrix
 from derive.flows.system import System, rates_at, slopes_at
 from derive.rotations.quaternion import product
@@ -59,9 +59,9 @@ def stages(tape: Tape, system: System) -> Stages:
         moved = [g * part for g in found.rates[-1]] if part else []
         state = [y + g for y, g in zip(start, moved, strict=True)] if part else start
         _add(tape, system, found, state, half)
-    if not attitude_turns_freely(system):
+    omega = free_omega(system)
+    if omega is None:
         return found
-    omega = system.place("omega")
     return replace(found, turn=turning([state[omega] for state in found.states], h))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from derive.arithmetic import EXACT, working
-from derive.flows.dependence import attitude_turns_freely
+from derive.flows.dependence import free_omega
 from derive.flows.signs import with_signs_moved
 from derive.flows.steps import (
     step_lie,
@@ -207,14 +207,14 @@ def test_known_zeros_are_not_stored() -> None:
 
 
 def test_an_attitude_turns_freely_if_its_angular_velocity_never_knows_it() -> None:
-    found = {name: attitude_turns_freely(given) for name, (given, _) in CASES.items()}
-    assert [name for name, free in found.items() if free] == ["principal", "rigid_body"]
+    found = {name: free_omega(given) for name, (given, _) in CASES.items()}
+    assert [name for name, place in found.items() if place] == ["principal", "rigid_body"]
 
 
 def test_an_attitude_with_other_kinematics_is_not_taken_for_one_that_turns_freely() -> None:
     given = system("principal")
     swapped = (given.rate.results[1], given.rate.results[0], *given.rate.results[2:])
-    assert not attitude_turns_freely(replace(given, rate=replace(given.rate, results=swapped)))
+    assert not free_omega(replace(given, rate=replace(given.rate, results=swapped)))
 
 
 def test_a_mutant_of_the_jacobian_is_found() -> None:
