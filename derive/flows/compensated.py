@@ -26,6 +26,19 @@ def compensated_add(state: Number, increment: Number, remainder: Number) -> tupl
     return after, wanted - (after - state)
 
 
+def closely_added(
+    state: Number, increment: Number, low: Number, remainder: Number
+) -> tuple[Number, Number]:
+    """Return the same for an increment with a low part, of which nothing is dropped on the way.
+
+    A low part below half a rounding of the increment would otherwise be rounded away every time.
+    """
+    wanted = increment + remainder
+    short = remainder - (wanted - increment)
+    after = state + wanted
+    return after, (wanted - (after - state)) + (short + low)
+
+
 def compensated_sums(
     attitude: Vector, omega: Vector, turn: Vector, change: Vector, remainder: Vector
 ) -> tuple[list[Number], list[Number], list[Number]]:
@@ -34,6 +47,13 @@ def compensated_sums(
     sums = [compensated_add(*each) for each in zip(state, increments, remainder, strict=True)]
     after = [x for x, _ in sums]
     return after[:4], after[4:], [r for _, r in sums]
+
+
+def two_sum(a: Number, b: Number) -> tuple[Number, Number]:
+    """Return s and e with s + e = a + b exactly and s the rounded sum (Knuth)."""
+    s = a + b
+    t = s - a
+    return s, (a - (s - t)) + (b - t)
 
 
 def two_product(a: Number, b: Number, factor: Number) -> tuple[Number, Number]:
