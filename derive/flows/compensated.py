@@ -3,6 +3,10 @@
 A state that moves by small increments loses half a unit in the last place at every step. Kept
 beside the state, that loss is added to the next increment, and the error of a long run no longer
 grows with the number of steps.
+
+A Runge-Kutta step gives its increment. A step that multiplies by a turn has one too: write the
+turn as (1 - less, v), with ``less`` worked out without cancellation, and ``quaternion_change``
+gives what the attitude gains. A momentum that is turned gains the sum of its shears (``turns``).
 """
 
 from collections.abc import Sequence

@@ -9,7 +9,7 @@ from fractions import Fraction
 from derive.trace import Number, Tape, absolute, at_most, repeat, sqrt
 
 AXES = "xyz"
-PASSES = 40
+PASSES = 16  # three or four suffice; at one radian a step, ten
 QUARTER = Fraction(1, 4)
 Vector = Sequence[Number]
 

@@ -209,7 +209,8 @@ def _named(letter: str, count: int) -> list[str]:
     return [f"{letter}{i}" for i in range(count)]
 
 
-_LIBRARIES: dict[int, ctypes.CDLL] = {}
+# By the identity of a stepper, which is kept so that no other can have it.
+_LIBRARIES: dict[int, tuple[Stepper, ctypes.CDLL]] = {}
 
 
 def _library(stepper: Stepper) -> ctypes.CDLL:
@@ -217,8 +218,8 @@ def _library(stepper: Stepper) -> ctypes.CDLL:
     if id(stepper) not in _LIBRARIES:
         text = "#include <math.h>\n" + "".join(_loop(stepper, p) for p in c_text.PRECISIONS)
         made = compiled({"many.c": text}, "many.c", Path(mkdtemp()), find_compiler())
-        _LIBRARIES[id(stepper)] = ctypes.CDLL(str(made))
-    return _LIBRARIES[id(stepper)]
+        _LIBRARIES[id(stepper)] = stepper, ctypes.CDLL(str(made))
+    return _LIBRARIES[id(stepper)][1]
 
 
 def _loop(stepper: Stepper, precision: c_text.Precision) -> str:
