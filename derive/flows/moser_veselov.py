@@ -47,7 +47,8 @@ Vector = Sequence[Number]
 def plan_dmv(tape: Tape, body: Inertia, omega: Vector, time_step: Number) -> Plan:
     """Return what every step of one torque-free motion has in common: name, value, meaning.
 
-    omega : (3,) rad/s along body axes, at any instant of the motion      time_step : s
+    omega : (3,) rad/s along body axes, at any instant of the motion      time_step : s, in which
+    the body turns by less than about a radian: beyond, the equations of a step have no solution
     A body of revolution and a sphere have a closed form, exact at any step.
     Source: Hairer and Vilmart (2006), eq. 19, expanded anew (see ``preprocessing``).
     """
