@@ -12,14 +12,16 @@ from derive.emit import TEMPLATES
 from derive.report.case_run import PRECISIONS, Found, attainable
 from derive.report.look import look
 from derive.report.plots import panels, svg
-from derive.report.recommend import ERRORS, Overall, advice, overall, sentence
-from derive.report.record import PACKAGES, RULES, TOOLS, Report, best, data
+from derive.report.recommend import ERRORS, Overall, advice, one_each, overall, sentence
+from derive.report.record import PACKAGES, RULES, TOOLS, Report, best, data, kinds
 
 SAYS = {"f64": "double", "f32": "float"}
 STATE = ("error at the end",)
 SEPARATE = ("omega, relative", "attitude, rad", "energy, relative", "momentum, relative")
 CHOICE = 3  # steppers that are named for an error
 ALIKE = 1.005  # costs that differ by less are the same
+PLAIN = 100.0  # larger ratios are written without decimals
+SMALLEST, LARGEST = 1e-2, 1e4  # numbers outside are written with an exponent
 
 
 @dataclass(frozen=True)
@@ -74,11 +76,10 @@ def _section(found: Found) -> Section:
 def _overall(report: Report) -> list[dict[str, Any]]:
     """Return, for every kind of motion, precision and error, the steppers to choose from."""
     rows = []
-    for kind, torqued in (("without torque", False), ("with torque", True)):
-        own = [f.points for f in report.found if f.case.torqued == torqued]
-        for precision in PRECISIONS if own else ():
+    for kind, own in kinds(report.found).items():
+        for precision in PRECISIONS:
             for error in ERRORS[precision]:
-                choice = overall(kind, own, precision, error)[:CHOICE]
+                choice = one_each(overall(kind, own, precision, error))[:CHOICE]
                 rows.append({"kind": kind, "precision": SAYS[precision], "error": figure(error),
                              "choice": [_choice(c) for c in choice]})  # fmt: skip
     return rows
@@ -86,11 +87,11 @@ def _overall(report: Report) -> list[dict[str, Any]]:
 
 def _choice(row: Overall) -> str:
     step = "" if math.isnan(row.radians) else f" with steps of {row.radians:.2g} rad"
-    every = row.reached == row.asked
-    where = "in every case" if every else f"in {row.reached} of {row.asked} cases"
-    times = f"at most {row.worst:.3g} times the cheapest"
-    cost = "the cheapest there" if row.worst < ALIKE else times
-    return f"{look(row.method).label}{step}: {where}, {cost}"
+    step += "" if math.isnan(row.tolerance) else f" to {figure(row.tolerance)}"
+    where = "every case" if row.reached == row.asked else f"{row.reached} of {row.asked} cases"
+    times = f"at most {_number(row.worst) if row.worst > PLAIN else format(row.worst, '.2g')} times"
+    cost = "" if row.worst < ALIKE else f", {times} the cheapest"
+    return f"{look(row.method).label}{step}: {where}{cost}"
 
 
 def _condition(found: Found) -> dict[str, Any]:
@@ -120,14 +121,17 @@ def _units(error: float | None, floor: float | None) -> str:
 def figure(x: float | None) -> str:
     """Return a number as people write it.
 
-    >>> figure(1e-12), figure(0.25), figure(None), figure(3.2e-9)
-    ('1e-12', '0.25', '', '3.2e-09')
+    >>> figure(1e-12), figure(0.25), figure(None), figure(3.2e-9), figure(660.2)
+    ('1e-12', '0.25', '', '3.2e-9', '660')
     """
     if x is None:
         return ""
     if math.isnan(x):
         return "NaN"
-    return f"{x:.2g}"
+    if x == 0 or SMALLEST <= abs(x) < LARGEST:
+        return f"{x:.2g}" if abs(x) < LARGEST / 100 else f"{x:.0f}"
+    digits, exponent = f"{x:.1e}".split("e")
+    return f"{digits.removesuffix('.0')}e{int(exponent)}"
 
 
 def _figures(values: Mapping[str, Sequence[float]], precision: str) -> str:

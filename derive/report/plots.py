@@ -37,6 +37,7 @@ class Panel:
     """One pair of axes: which cost, which error, and what is said at its sides.
 
     judged : whether the attainable error is one of this kind
+    marked : whether points have markers; many small panels do without
     """
 
     cost: Callable[[Point], float | None]
@@ -44,6 +45,7 @@ class Panel:
     across: str
     up: str
     judged: bool
+    marked: bool
 
 
 INSTRUCTIONS = ("instructions (Ir)", lambda p: p.instructions)
@@ -58,11 +60,12 @@ ERRORS: Mapping[str, Callable[[Point], float]] = {
 INVARIANTS = ("energy, relative", "momentum, relative")
 
 
-def panels(errors: Iterable[str]) -> list[list[Panel]]:
+def panels(errors: Sequence[str]) -> list[list[Panel]]:
     """Return rows of two panels, against instructions and against time, a row an error."""
+    marked = len(errors) == 1
     return [
         [
-            Panel(cost, ERRORS[name], label, name, name not in INVARIANTS)
+            Panel(cost, ERRORS[name], label, name, name not in INVARIANTS, marked)
             for label, cost in (INSTRUCTIONS, MICROSECONDS)
         ]
         for name in errors
@@ -81,7 +84,8 @@ def figure(rows: Sequence[Sequence[Panel]], points: Sequence[Point], floor: floa
         axes = drawn.subplots(len(rows), 2, squeeze=False, sharey="row")
         for row, line in zip(rows, axes, strict=True):
             for panel, ax in zip(row, line, strict=True):
-                _draw(ax, panel, points, floor)
+                _draw(ax, panel, floor if panel.judged else None)
+                _curves(ax, panel, points)
             line[0].set_ylabel(row[0].up)
             if floor and row[0].judged:
                 _say_floor(line[0], floor)
@@ -156,7 +160,7 @@ def _curve(points: Sequence[Point], panel: Panel) -> Series:
     return look(points[0].method), [c for c, _ in kept], [e for _, e in kept]
 
 
-def _draw(ax: Any, panel: Panel, points: Sequence[Point], floor: float | None) -> None:
+def _draw(ax: Any, panel: Panel, floor: float | None) -> None:
     from matplotlib.ticker import FuncFormatter
 
     ax.set_xscale("log")
@@ -168,15 +172,18 @@ def _draw(ax: Any, panel: Panel, points: Sequence[Point], floor: float | None) -
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
     ax.tick_params(length=2.5, labelsize=8)
-    if floor and panel.judged:
+    if floor:
         ax.axhline(floor, color=GOLD, linewidth=1.2, zorder=1)
+    ax.set_xlabel(panel.across)
+
+
+def _curves(ax: Any, panel: Panel, points: Sequence[Point]) -> None:
     for own in grouped(points):
         shown, x, y = _curve(own, panel)
-        thin = shown.line == ":"
-        ax.plot(x, y, color=shown.colour, marker=shown.marker, linestyle=shown.line,
-                linewidth=0.8 if thin else 1.3, markersize=9 if shown.marker == "*" else 4,
-                alpha=0.95)  # fmt: skip
-    ax.set_xlabel(panel.across)
+        single = len(x) == 1
+        ax.plot(x, y, color=shown.colour, marker=shown.marker if panel.marked or single else "",
+                linestyle=shown.line, linewidth=0.8 if shown.line == ":" else 1.3,
+                markersize=9 if shown.marker == "*" else 4)  # fmt: skip
 
 
 def power(x: float, _: int = 0) -> str:
