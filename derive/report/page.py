@@ -109,7 +109,7 @@ def _condition(found: Found) -> dict[str, Any]:
             "dmv": _units(errors.get("step_dmv"), floor),
             "taylor": _units(errors.get("step_taylor"), floor),
             "best": known.get(winner),
-            "method": winner,
+            "method": look(winner).label,
         }
     return {"case": found.case, **rows}
 

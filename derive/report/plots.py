@@ -87,9 +87,8 @@ def figure(rows: Sequence[Sequence[Panel]], points: Sequence[Point], floor: floa
                 _draw(ax, panel, floor if panel.judged else None)
                 _curves(ax, panel, points)
             line[0].set_ylabel(row[0].up)
-            if floor and row[0].judged:
-                _say_floor(line[0], floor)
-            _name(line[1], [_curve(own, row[1]) for own in grouped(points)])
+            curves = [_curve(own, row[1]) for own in grouped(points)]
+            _name(line[1], [*curves, *_attainable(line[1], row[1], floor)])
         return drawn
 
 
@@ -198,17 +197,17 @@ def power(x: float, _: int = 0) -> str:
     return f"10{'⁻' if exponent < 0 else ''}{raised}"
 
 
-def _say_floor(ax: Any, floor: float) -> None:
-    says = "κu: what the rounding of the inputs allows"
-    behind = {"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.8}
-    ax.annotate(says, xy=(0.015, floor), xycoords=("axes fraction", "data"), xytext=(0, 2.5),
-                textcoords="offset points", color=GOLD, fontsize=7.5, zorder=5,
-                bbox=behind)  # fmt: skip
+def _attainable(ax: Any, panel: Panel, floor: float | None) -> list[Series]:
+    """Return the golden line as something to be named at the right edge of the axes."""
+    if floor is None or not panel.judged:
+        return []
+    return [(Look("κu, attainable", GOLD, "", "-"), [ax.get_xlim()[1]], [floor])]
 
 
 def _name(ax: Any, curves: Sequence[Series]) -> None:
     """Write each curve's name to the right of the axes, near its end and clear of the others."""
     low, high = (math.log(v) for v in ax.get_ylim())
+    ax.set_xlim(ax.get_xlim())
     ends = [(shown, (math.log(y[-1]) - low) / (high - low), x[-1], y[-1])
             for shown, x, y in curves if y]  # fmt: skip
     ends.sort(key=lambda e: e[1])
