@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +19,7 @@ from derive.report.record import PACKAGES, RULES, TOOLS, Report, best, data, kin
 SAYS = {"f64": "double", "f32": "float"}
 STATE = ("error at the end",)
 SEPARATE = ("omega, relative", "attitude, rad", "energy, relative", "momentum, relative")
+WORKERS = 2
 CHOICE = 3  # steppers that are named for an error
 ALIKE = 1.005  # costs that differ by less are the same
 PLAIN = 100.0  # larger ratios are written without decimals
@@ -40,7 +42,7 @@ def page(report: Report) -> str:
     return TEMPLATES.get_template("report.html.jinja").render(
         version=__version__,
         report=report,
-        sections=[_section(f) for f in report.found],
+        sections=_sections(report.found),
         overall=_overall(report),
         conditions=[_condition(f) for f in report.found],
         machine=figures["machine"],
@@ -52,6 +54,14 @@ def page(report: Report) -> str:
         figures=_figures,
         number=_number,
     )
+
+
+def _sections(found: Sequence[Found]) -> list[Section]:
+    """Return the sections of all cases; drawing takes longest, so two are drawn at a time."""
+    if len(found) == 1:
+        return [_section(found[0])]
+    with ProcessPoolExecutor(WORKERS) as pool:
+        return list(pool.map(_section, found))
 
 
 def _section(found: Found) -> Section:
@@ -115,7 +125,7 @@ def _condition(found: Found) -> dict[str, Any]:
 
 
 def _units(error: float | None, floor: float | None) -> str:
-    return "" if error is None or not floor else f"{error / floor:.2g}"
+    return "" if error is None or not floor else figure(error / floor)
 
 
 def figure(x: float | None) -> str:

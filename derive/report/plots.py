@@ -5,13 +5,13 @@ Text stays text; there is no date, no path, no random name: the same points give
 
 import io
 import math
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from derive.report.look import COMPENSATED, Look, look, rank
 from derive.report.point import Point
+from derive.report.slim import slim
 
 INK, SOFT, GRID, GOLD = "#1a1c20", "#5b626d", "#e6e8ec", "#b8860b"
 WIDTH, HEIGHT = 8.4, 3.5  # inch
@@ -101,36 +101,6 @@ def svg(rows: Sequence[Sequence[Panel]], points: Sequence[Point], floor: float |
         nothing = {"Date": None, "Creator": None, "Format": None, "Type": None}
         figure(rows, points, floor).savefig(out, format="svg", metadata=nothing)
     return slim(out.getvalue())
-
-
-def slim(text: str) -> str:
-    """Return an svg element without prologue, metadata, needless names, digits and styles.
-
-    Names that only count would stand twice on a page of several plots; those that are referred to
-    are made of what they name.
-    """
-    text = text[text.index("<svg") :]
-    text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", text, flags=re.DOTALL)
-    text = re.sub(r"<defs>\s*<style.*?</style>\s*</defs>", "", text, flags=re.DOTALL)
-    text = re.sub(r' id="[a-z0-9.]+_\d+"', "", text)
-    text = re.sub(r" font-family: [^;]*;| transform=\"rotate\(-0 [^)]*\)\"", "", text)
-    text = re.sub(r"(\d+\.\d)\d+", r"\1", text)
-    text = re.sub(r"\s*\n\s*", "\n", text)
-    text = MARKS.sub(_styled_once, text)
-    return re.sub(r"<g>\n((?:<(?:use|path|text)[^\n]*\n)?)</g>\n", r"\1", text).strip()
-
-
-MARKS = re.compile(r'<g( clip-path="[^"]*")?>\n((?:<use [^>]*/>\n)+)</g>')
-STYLED = re.compile(r' style="[^"]*"')
-
-
-def _styled_once(found: re.Match[str]) -> str:
-    """Return markers of one style with the style at their group."""
-    clip, uses = found.group(1) or "", found.group(2)
-    styles = set(STYLED.findall(uses))
-    if len(styles) != 1:
-        return found.group()
-    return f"<g{clip}{styles.pop()}>\n{STYLED.sub('', uses)}</g>"
 
 
 def grouped(points: Iterable[Point]) -> list[list[Point]]:
