@@ -253,7 +253,7 @@ def _split(moving: Moving, name: str) -> Program:
     outputs = [next_of(attitude), next_of(omega)]
     says = "One step of the rotation by splitting it into turns about two axes"
     if name.endswith(COMPENSATION):
-        moved = step_split_compensated(tape, body, order, *given, _inputs(tape, rest))
+        moved: tuple[list[Number], ...] = step_split_compensated(tape, body, order, *given, _inputs(tape, rest))
         inputs, outputs = (*inputs, rest), [*outputs, next_of(rest)]
         says += f" (order {order}), carrying what rounding leaves."
     else:
