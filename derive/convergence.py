@@ -14,7 +14,7 @@ from flint import arb, ctx
 
 from derive.equations import Equations, equations
 from derive.library import Library
-from derive.motion_error import MOTION_BALLS
+from derive.motion_error import LONG_FLOATS
 from derive.program import Program, component_names, run
 from derive.reference import BALLS, solution
 from derive.scene.wanted import SPLITTINGS, TAYLOR, step_of
@@ -25,7 +25,7 @@ LEVELS = 18
 CLAIMED = {"step_rk4": 4, "step_lie": 4, "step_dmv": 10} | SPLITTINGS | TAYLOR
 TURN = {"step_rk4": 0.02, "step_lie": 0.02, "step_dmv": 0.3, "step_split2": 0.02}
 """Turn in rad in the longer of two steps: small for a low order, large where a loop ends at u."""
-EXACT = 1e-40
+EXACT = 1e-30
 """A relative error that only a motion known in closed form has."""
 
 ROUNDED = 1e-17
@@ -179,7 +179,7 @@ def stepped(library: Library, name: str, values: Mapping[str, Any], h: Any) -> d
 
 def _results(program: Program, known: Mapping[str, Any]) -> dict[str, Any]:
     given = [known[c] for q in program.inputs for c in q.components]
-    return dict(zip(component_names(program), run(program, MOTION_BALLS, given), strict=True))
+    return dict(zip(component_names(program), run(program, LONG_FLOATS, given), strict=True))
 
 
 def _distance(found: Sequence[Any], should: Sequence[Any]) -> float:

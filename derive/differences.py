@@ -12,7 +12,7 @@ from flint import arb, ctx
 
 from derive.convergence import BITS, unit_attitude
 from derive.library import Library
-from derive.motion_error import MOTION_BALLS
+from derive.motion_error import LONG_FLOATS
 from derive.program import Program, component_names, run
 
 SHIFT = arb(2) ** -130  # exact
@@ -55,7 +55,7 @@ def _results(library: Library, program: Program, values: Values) -> dict[str, An
     known = dict(values)
     for each in (library.setup, program):
         given = [known[c] for q in each.inputs for c in q.components]
-        known |= dict(zip(component_names(each), run(each, MOTION_BALLS, given), strict=True))
+        known |= dict(zip(component_names(each), run(each, LONG_FLOATS, given), strict=True))
     return known
 
 

@@ -11,7 +11,7 @@ from derive.measure import figures
 from derive.motion_error import moving_figures
 from derive.page import lecture_page
 from derive.program import Measurement
-from derive.prove import prove
+from derive.prove import ProofError, prove
 from derive.scene import SceneError, load
 
 LECTURE_PAGE = "lecture.html"
@@ -41,8 +41,14 @@ def made(source: str) -> Made:
     """Return everything that a scene becomes; its programs are proved before they are printed."""
     scene = load(source)
     programs = library(scene)
-    prove(programs)
-    measured = figures(programs) + moving_figures(programs)
+    try:
+        prove(programs)
+        measured = figures(programs) + moving_figures(programs)
+    except ProofError:
+        raise
+    except ArithmeticError as error:
+        rule = "formulas must have a value on all of the declared ranges"
+        raise SceneError(f"scene '{scene.name}': {rule}, but {error}") from None
     _finite(scene.name, measured)
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in scene.warnings)
     return Made(scene_files(programs, measured), warnings, cost_rows(programs, measured))

@@ -93,6 +93,9 @@ def library(scene: Scene) -> Library:
     taken = {name: _parameter(graph, value) for value, name in constants.names.items()}
     traced_part, renaming = traced(moving, taken)
     moves = tuple(with_names(program, renaming) for program in moves)
+    read = {name for program in moves for name in read_by(program)}
+    kept = {operand: name for operand, name in traced_part.names.items() if name in read}
+    traced_part = replace(traced_part, names=kept)
     required = dict.fromkeys(p for w in wanted.values() for p in w.positive if graph.fixed[p[1]])
     positive = [p for p in required if exact_number(graph, p) is None]
     made = setup(graph, constants, known.words.parameters, positive, traced_part)

@@ -34,19 +34,24 @@ NOTHING = 1e-60
 OMEGA_DOT = ("omega_dot_x", "omega_dot_y", "omega_dot_z")
 
 
-def _middle(x: Any) -> Any:
-    return x.mid() if isinstance(x, arb) else x
-
-
 def _power_of_two(x: Any) -> Any:
-    if not x.is_finite() or x.contains(0):
+    if not x.is_finite() or x == 0:
         return x  # on a way that is not taken
     mantissa, exponent = x.mid().man_exp()
     return arb(2) ** (int(exponent) + int(abs(mantissa)).bit_length())
 
 
-MOTION_BALLS: Mapping[str, Callable[..., Any]] = {
-    **BALLS,
+def _rounded(operation: Callable[..., Any]) -> Callable[..., Any]:
+    """Return an operation on numbers of many digits, rounded like those of floats."""
+    return lambda *given: operation(*given).mid()
+
+
+_LONG: Mapping[str, Callable[..., Any]] = {
+    "number": BALLS["number"],
+    "sin": BALLS["sin"],
+    "cos": BALLS["cos"],
+    "sqrt": BALLS["sqrt"],
+    "pi": BALLS["pi"],
     "add": lambda a, b: a + b,
     "sub": lambda a, b: a - b,
     "mul": lambda a, b: a * b,
@@ -57,17 +62,20 @@ MOTION_BALLS: Mapping[str, Callable[..., Any]] = {
     "exp": lambda x: x.exp(),
     "log": lambda x: x.log(),
     "atan2": lambda y, x: arb.atan2(y, x),
-    "floor": lambda x: x.mid().floor(),
+    "floor": lambda x: x.floor(),
     "power_of_two": _power_of_two,
     "unit_roundoff": lambda: arb(2) ** (-ctx.prec // 2),
     "splitter": lambda: arb(1),
-    "less": lambda a, b: bool(_middle(a) < _middle(b)),
-    "at_most": lambda a, b: bool(_middle(a) <= _middle(b)),
+}
+LONG_FLOATS: Mapping[str, Callable[..., Any]] = {
+    **{name: _rounded(operation) for name, operation in _LONG.items()},
+    "less": lambda a, b: bool(a < b),
+    "at_most": lambda a, b: bool(a <= b),
     "both": lambda a, b: a and b,
     "either": lambda a, b: a or b,
     "select": lambda condition, yes, no: yes if condition else no,
 }
-"""Balls of whatever precision is set; choices are made by their middles."""
+"""Floats of whatever precision is set: balls would lose a choice that is made next to zero."""
 
 
 def moving_figures(library: Library) -> tuple[Measurement, ...]:
@@ -173,9 +181,9 @@ def exact(library: Library, program: Program, sample: Sample) -> list[Any]:
     with ctx.workprec(BITS):
         values = {name: arb(x) for name, x in sample.values.items()}
         setup = library.setup
-        constants = run(setup, MOTION_BALLS, [values[c] for c in _inputs(setup)])
+        constants = run(setup, LONG_FLOATS, [values[c] for c in _inputs(setup)])
         values |= dict(zip(component_names(setup), constants, strict=True))
-        return run(program, MOTION_BALLS, [values[c] for c in _inputs(program)])
+        return run(program, LONG_FLOATS, [values[c] for c in _inputs(program)])
 
 
 def _inputs(program: Program) -> list[str]:

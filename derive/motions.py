@@ -21,7 +21,7 @@ from derive.lecture import LECTURE
 from derive.lower import value_of
 from derive.program import Operand, Program, Quantity, renamed
 from derive.rotations.functions import attitude_program
-from derive.scene import Scene
+from derive.scene import Scene, SceneError
 from derive.scene.wanted import ATTITUDES, SPLITTINGS, STEP_DERIVATIVES, TAYLOR, moves, step_of
 from derive.specialise import Specialised
 from derive.stage import Traced, exact_number, used_inputs
@@ -150,6 +150,11 @@ def _runge_kutta(moving: Moving, name: str) -> Program:
     slopes = rates[SLOPES[name.rpartition("_")[2]]] if name in STEP_DERIVATIVES else None
     system = System(moving.known.words.states, rates["state_rate"], slopes, step)
     program = _STEP_PROGRAMS[name](system)
+    if program.sparsity and not any(pattern.row for pattern in program.sparsity.values()):
+        raise SceneError(
+            f"scene '{moving.known.scene.name}': wanted '{name}' must have entries, "
+            "but nothing that it is a derivative by changes the step"
+        )
     program = replace(
         program,
         inputs=used_inputs(program.inputs, program.ops, program.results),

@@ -23,6 +23,7 @@ from derive.program import (
     renamed,
 )
 from derive.schedule import schedule
+from derive.trace import needed
 from derive.wording import spelling
 
 
@@ -168,6 +169,7 @@ def setup(
     placed = dict(zip(traced.given, results[own : own + given], strict=True))
     whole = (*ops, *renamed(traced.ops, placed))
     made = [placed.get(o, o) for o in traced.names]
+    whole = needed(whole, (*results, *made))  # a trace may hold what no constant rests on
     names = (*constants.names.values(), *traced.names.values())
     says = "constants made of parameters only, for the functions of this scene"
     output = Quantity("constants", names, (len(names),), "", "", None, None, says)

@@ -22,8 +22,8 @@ PROPOSED = Quantity(
     "",
     None,
     None,
-    "length at which a step's last terms are within rounding; for an error of e "
-    "instead of u, (e/u)^(1/order) times it",
+    "length at which a step's last terms are within rounding, a quarter to four times "
+    "time_step; for an error of e instead of u, (e/u)^(1/order) times it",
 )
 LARGEST = 4  # the next step is within a factor of this one
 BITS = 9  # of 1/order, of which the root is made

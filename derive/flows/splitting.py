@@ -53,11 +53,10 @@ def step_split(
     Source: Fasso, J. Comput. Phys. 189 (2003) 527, for the pieces; coefficients: see ``schemes``.
     """
     axes = frame(tape, body)
-    begin, end = _moved(axes, body, order, attitude, omega, moment, time_step)
-    change = [m - n for m, n in zip(end.mu, begin.mu, strict=True)]
+    end = _moved(axes, body, order, attitude, omega, moment, time_step)
     turn = quaternion_change(attitude, end.less, axes.back(end.turn))
     q = [x + dx for x, dx in zip(attitude, turn, strict=True)]
-    return q, [w + dw for w, dw in zip(omega, _of_omega(axes, change), strict=True)]
+    return q, [w + dw for w, dw in zip(omega, _of_omega(axes, end.gain), strict=True)]
 
 
 def step_split_compensated(
@@ -75,7 +74,7 @@ def step_split_compensated(
     remainder : (7,) what rounding has kept from attitude and omega; zero at first
     """
     axes = frame(tape, body)
-    _, end = _moved(axes, body, order, attitude, omega, moment, time_step)
+    end = _moved(axes, body, order, attitude, omega, moment, time_step)
     turn = quaternion_change(attitude, end.less, axes.back(end.turn))
     return compensated_sums(attitude, omega, turn, _of_omega(axes, end.gain), remainder)
 
@@ -88,18 +87,18 @@ def _moved(
     omega: Vector,
     moment: Moment | None,
     time_step: Number,
-) -> tuple[State, State]:
-    """Return the states in which a step begins and ends."""
+) -> State:
+    """Return the state in which a step ends."""
     ratios = _ratios(axes)
     begin = at_rest([r * w for r, w in zip(ratios, axes.along(omega), strict=True)])
     pieces = _pieces(body, axes, attitude, moment, time_step)
     closed = body.kind in ("axisymmetric", "spherical")
     if moment is not None:
         scheme = NYSTROEM6 if closed and order == 4 else SCHEMES[order]
-        return begin, _kicked(pieces, scheme, begin)
+        return _kicked(pieces, scheme, begin)
     if closed:
-        return begin, _free(pieces, Fraction(1), (Fraction(1), Fraction(0)), begin)
-    return begin, _spun(pieces, SCHEMES[order], pieces.swing(Fraction(1), begin))
+        return _free(pieces, Fraction(1), (Fraction(1), Fraction(0)), begin)
+    return _spun(pieces, SCHEMES[order], pieces.swing(Fraction(1), begin))
 
 
 def _ratios(axes: Frame) -> list[Number]:

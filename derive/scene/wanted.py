@@ -58,7 +58,8 @@ def read_wanted(value: object) -> tuple[str, ...]:
     for name in value:
         if not isinstance(name, str) or name not in WANTED:
             hint = nearest(name, WANTED) if isinstance(name, str) else ""
-            hint = hint or f" (known: {', '.join(EQUATIONS)}, and more in docs/scenes.md)"
+            more = "and more in docs/scenes.md and docs/motion.md"
+            hint = hint or f" (known: {', '.join(EQUATIONS)}, {more})"
             raise SceneError(f"wanted has {shown(name)}, which is no function{hint}")
         if value.count(name) > 1:
             raise SceneError(f"wanted has '{name}' twice")

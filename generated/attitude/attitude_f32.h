@@ -9,7 +9,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest term of the sum that an output is. Body of these files: sha256 fb07b8ddd308e8e5.
+ * float, times the largest term of the sum that an output is. Body of these files: sha256 4171ec32b94caf8e.
  */
 #ifndef ATTITUDE_F32_H
 #define ATTITUDE_F32_H

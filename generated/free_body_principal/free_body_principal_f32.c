@@ -3,8 +3,9 @@
  */
 #include "free_body_principal_f32.h"
 
-#if defined(__FAST_MATH__)
-#error "free_body_principal_f32.h: -ffast-math breaks the stated errors; compile without it"
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
+    (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "free_body_principal_f32.h: -ffast-math and its parts break the stated errors; compile without"
 #endif
 #if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0
 #error "free_body_principal_f32.h: needs arithmetic in the type's own precision (for x86: -msse2 -mfpmath=sse)"

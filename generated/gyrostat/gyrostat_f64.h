@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is. Body of these files: sha256 1400aef434313fa8.
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 45d7acc840b6a5b8.
  */
 #ifndef GYROSTAT_F64_H
 #define GYROSTAT_F64_H

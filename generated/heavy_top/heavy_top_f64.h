@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is. Body of these files: sha256 e7cfe71d8167d205.
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 337e41f56ee4510d.
  */
 #ifndef HEAVY_TOP_F64_H
 #define HEAVY_TOP_F64_H

@@ -11,7 +11,7 @@ numbers agree with double C to the last bit. Derivatives by CasADi are exact and
 import casadi as ca
 
 PARAMETERS = ['A', 'C']
-CONSTANTS = ['k1', 'moment_ratio', 'lag', 'spin_c', 'inverse_c']
+CONSTANTS = ['k1', 'moment_ratio', 'lag', 'spin_c']
 
 
 def _built(build):
@@ -131,8 +131,7 @@ def _setup():
     p1 = _sub((parameters[0], 0.0), (parameters[1], 0.0))
     p2 = _div(p1, (parameters[0], 0.0))
     p3 = _div(p1, (parameters[1], 0.0))
-    p4 = _div((parameters[0], 0.0), (parameters[1], 0.0))
-    constants = ca.vertcat(s1[0], p0[0], p2[0], p3[0], p4[0])
+    constants = ca.vertcat(s1[0], p0[0], p2[0], p3[0])
     return ca.Function("tumbling_disc_setup", [parameters], [constants], ["parameters"], ["constants"])
 
 
@@ -155,7 +154,7 @@ def flow_exact_hot():
 
 
 def _flow_exact():
-    constants = ca.SX.sym("constants", 5)
+    constants = ca.SX.sym("constants", 4)
     attitude = ca.SX.sym("attitude", 4)
     omega = ca.SX.sym("omega", 3)
     time = ca.SX.sym("time", 1)
@@ -272,7 +271,7 @@ def plan_dmv_hot():
 
 
 def _plan_dmv():
-    constants = ca.SX.sym("constants", 5)
+    constants = ca.SX.sym("constants", 4)
     omega = ca.SX.sym("omega", 3)
     time_step = ca.SX.sym("time_step", 1)
     t0 = constants[1] * omega[2]
@@ -439,7 +438,7 @@ def step_split_hot():
 
 
 def _step_split():
-    constants = ca.SX.sym("constants", 5)
+    constants = ca.SX.sym("constants", 4)
     attitude = ca.SX.sym("attitude", 4)
     omega = ca.SX.sym("omega", 3)
     time_step = ca.SX.sym("time_step", 1)
@@ -515,57 +514,54 @@ def _step_split():
     t69 = omega[1] + t68
     t70 = t48 * t69
     t71 = t66 + t70
+    t72 = t65 + t70
     t73 = t51 * t71
     t74 = -t73
     t75 = t69 + t74
+    t76 = t68 + t74
     t77 = t47 * t75
-    t78 = t71 + t77
-    t80 = t78 - omega[0]
-    t81 = t75 - omega[1]
-    t82 = t0 - t0
-    t83 = t58 * attitude[0]
-    t84 = attitude[1] * t62
-    t85 = t83 + t84
-    t86 = attitude[2] * t64
-    t87 = t85 + t86
-    t88 = attitude[3] * t56
-    t89 = t87 + t88
-    t90 = -t89
-    t91 = attitude[0] * t62
-    t92 = attitude[2] * t56
-    t93 = t91 + t92
-    t94 = attitude[3] * t64
-    t95 = t93 - t94
-    t96 = t58 * attitude[1]
-    t97 = t95 - t96
-    t98 = attitude[0] * t64
-    t99 = attitude[3] * t62
-    t100 = t98 + t99
-    t101 = attitude[1] * t56
-    t102 = t100 - t101
-    t103 = t58 * attitude[2]
-    t104 = t102 - t103
-    t105 = attitude[0] * t56
-    t106 = attitude[1] * t64
-    t107 = t105 + t106
-    t108 = attitude[2] * t62
-    t109 = t107 - t108
-    t110 = t58 * attitude[3]
-    t111 = t109 - t110
-    t112 = attitude[0] + t90
-    t113 = attitude[1] + t97
-    t114 = attitude[2] + t104
-    t115 = attitude[3] + t111
-    t116 = t82 * constants[4]
-    t117 = omega[0] + t80
-    t118 = omega[1] + t81
-    t119 = omega[2] + t116
+    t79 = t72 + t77
+    t80 = t58 * attitude[0]
+    t81 = attitude[1] * t62
+    t82 = t80 + t81
+    t83 = attitude[2] * t64
+    t84 = t82 + t83
+    t85 = attitude[3] * t56
+    t86 = t84 + t85
+    t87 = -t86
+    t88 = attitude[0] * t62
+    t89 = attitude[2] * t56
+    t90 = t88 + t89
+    t91 = attitude[3] * t64
+    t92 = t90 - t91
+    t93 = t58 * attitude[1]
+    t94 = t92 - t93
+    t95 = attitude[0] * t64
+    t96 = attitude[3] * t62
+    t97 = t95 + t96
+    t98 = attitude[1] * t56
+    t99 = t97 - t98
+    t100 = t58 * attitude[2]
+    t101 = t99 - t100
+    t102 = attitude[0] * t56
+    t103 = attitude[1] * t64
+    t104 = t102 + t103
+    t105 = attitude[2] * t62
+    t106 = t104 - t105
+    t107 = t58 * attitude[3]
+    t108 = t106 - t107
+    t109 = attitude[0] + t87
+    t110 = attitude[1] + t94
+    t111 = attitude[2] + t101
+    t112 = attitude[3] + t108
+    t113 = omega[0] + t79
+    t114 = omega[1] + t76
     return ca.Function(
         "tumbling_disc_step_split_hot",
         [constants, attitude, omega, time_step],
         [
-            ca.vertcat(t112, t113, t114, t115),
-            ca.vertcat(t117, t118, t119),
+            ca.vertcat(t109, t110, t111, t112),
+            ca.vertcat(t113, t114, omega[2]),
         ],
         ['constants', 'attitude', 'omega', 'time_step'],
         ['attitude_next', 'omega_next'],
@@ -583,7 +579,7 @@ def step_rk4_hot():
 
 
 def _step_rk4():
-    constants = ca.SX.sym("constants", 5)
+    constants = ca.SX.sym("constants", 4)
     attitude = ca.SX.sym("attitude", 4)
     omega = ca.SX.sym("omega", 3)
     time_step = ca.SX.sym("time_step", 1)

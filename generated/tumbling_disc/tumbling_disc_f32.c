@@ -5,8 +5,9 @@
 
 #include <math.h>
 
-#if defined(__FAST_MATH__)
-#error "tumbling_disc_f32.h: -ffast-math breaks the stated errors; compile without it"
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
+    (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "tumbling_disc_f32.h: -ffast-math and its parts break the stated errors; compile without"
 #endif
 #if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0
 #error "tumbling_disc_f32.h: needs arithmetic in the type's own precision (for x86: -msse2 -mfpmath=sse)"
@@ -92,12 +93,10 @@ int tumbling_disc_setup_f32(float A, float C, tumbling_disc_constants_f32 *const
     const tumbling_disc_pair_f32 p1 = tumbling_disc_sub_f32((tumbling_disc_pair_f32){A, 0.0F}, (tumbling_disc_pair_f32){C, 0.0F});
     const tumbling_disc_pair_f32 p2 = tumbling_disc_div_f32(p1, (tumbling_disc_pair_f32){A, 0.0F});
     const tumbling_disc_pair_f32 p3 = tumbling_disc_div_f32(p1, (tumbling_disc_pair_f32){C, 0.0F});
-    const tumbling_disc_pair_f32 p4 = tumbling_disc_div_f32((tumbling_disc_pair_f32){A, 0.0F}, (tumbling_disc_pair_f32){C, 0.0F});
     constants->k1 = s1.high;
     constants->moment_ratio = p0.high;
     constants->lag = p2.high;
     constants->spin_c = p3.high;
-    constants->inverse_c = p4.high;
     return (A > 0.0F && C > 0.0F) ? 0 : 1;
 }
 
@@ -447,58 +446,56 @@ void tumbling_disc_step_split_f32(const tumbling_disc_constants_f32 *constants,
     const float t69 = omega[1] + t68;
     const float t70 = t48 * t69;
     const float t71 = t66 + t70;
+    const float t72 = t65 + t70;
     const float t73 = t51 * t71;
     const float t74 = -t73;
     const float t75 = t69 + t74;
+    const float t76 = t68 + t74;
     const float t77 = t47 * t75;
-    const float t78 = t71 + t77;
-    const float t80 = t78 - omega[0];
-    const float t81 = t75 - omega[1];
-    const float t82 = t0 - t0;
-    const float t83 = t58 * attitude[0];
-    const float t84 = attitude[1] * t62;
-    const float t85 = t83 + t84;
-    const float t86 = attitude[2] * t64;
-    const float t87 = t85 + t86;
-    const float t88 = attitude[3] * t56;
-    const float t89 = t87 + t88;
-    const float t90 = -t89;
-    const float t91 = attitude[0] * t62;
-    const float t92 = attitude[2] * t56;
-    const float t93 = t91 + t92;
-    const float t94 = attitude[3] * t64;
-    const float t95 = t93 - t94;
-    const float t96 = t58 * attitude[1];
-    const float t97 = t95 - t96;
-    const float t98 = attitude[0] * t64;
-    const float t99 = attitude[3] * t62;
-    const float t100 = t98 + t99;
-    const float t101 = attitude[1] * t56;
-    const float t102 = t100 - t101;
-    const float t103 = t58 * attitude[2];
-    const float t104 = t102 - t103;
-    const float t105 = attitude[0] * t56;
-    const float t106 = attitude[1] * t64;
-    const float t107 = t105 + t106;
-    const float t108 = attitude[2] * t62;
-    const float t109 = t107 - t108;
-    const float t110 = t58 * attitude[3];
-    const float t111 = t109 - t110;
-    const float t112 = attitude[0] + t90;
-    const float t113 = attitude[1] + t97;
-    const float t114 = attitude[2] + t104;
-    const float t115 = attitude[3] + t111;
-    const float t116 = t82 * constants->inverse_c;
-    const float t117 = omega[0] + t80;
-    const float t118 = omega[1] + t81;
-    const float t119 = omega[2] + t116;
-    attitude_next[0] = t112;
-    attitude_next[1] = t113;
-    attitude_next[2] = t114;
-    attitude_next[3] = t115;
-    omega_next[0] = t117;
-    omega_next[1] = t118;
-    omega_next[2] = t119;
+    const float t79 = t72 + t77;
+    const float t80 = t58 * attitude[0];
+    const float t81 = attitude[1] * t62;
+    const float t82 = t80 + t81;
+    const float t83 = attitude[2] * t64;
+    const float t84 = t82 + t83;
+    const float t85 = attitude[3] * t56;
+    const float t86 = t84 + t85;
+    const float t87 = -t86;
+    const float t88 = attitude[0] * t62;
+    const float t89 = attitude[2] * t56;
+    const float t90 = t88 + t89;
+    const float t91 = attitude[3] * t64;
+    const float t92 = t90 - t91;
+    const float t93 = t58 * attitude[1];
+    const float t94 = t92 - t93;
+    const float t95 = attitude[0] * t64;
+    const float t96 = attitude[3] * t62;
+    const float t97 = t95 + t96;
+    const float t98 = attitude[1] * t56;
+    const float t99 = t97 - t98;
+    const float t100 = t58 * attitude[2];
+    const float t101 = t99 - t100;
+    const float t102 = attitude[0] * t56;
+    const float t103 = attitude[1] * t64;
+    const float t104 = t102 + t103;
+    const float t105 = attitude[2] * t62;
+    const float t106 = t104 - t105;
+    const float t107 = t58 * attitude[3];
+    const float t108 = t106 - t107;
+    const float t109 = attitude[0] + t87;
+    const float t110 = attitude[1] + t94;
+    const float t111 = attitude[2] + t101;
+    const float t112 = attitude[3] + t108;
+    const float t113 = omega[0] + t79;
+    const float t114 = omega[1] + t76;
+    const float omega_z_in = omega[2];
+    attitude_next[0] = t109;
+    attitude_next[1] = t110;
+    attitude_next[2] = t111;
+    attitude_next[3] = t112;
+    omega_next[0] = t113;
+    omega_next[1] = t114;
+    omega_next[2] = omega_z_in;
 }
 
 /* One classic Runge-Kutta step (order 4). */

@@ -5,8 +5,9 @@
 
 #include <math.h>
 
-#if defined(__FAST_MATH__)
-#error "tumbling_disc_f64.h: -ffast-math breaks the stated errors; compile without it"
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
+    (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "tumbling_disc_f64.h: -ffast-math and its parts break the stated errors; compile without"
 #endif
 #if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0
 #error "tumbling_disc_f64.h: needs arithmetic in the type's own precision (for x86: -msse2 -mfpmath=sse)"
@@ -92,12 +93,10 @@ int tumbling_disc_setup_f64(double A, double C, tumbling_disc_constants_f64 *con
     const tumbling_disc_pair_f64 p1 = tumbling_disc_sub_f64((tumbling_disc_pair_f64){A, 0.0}, (tumbling_disc_pair_f64){C, 0.0});
     const tumbling_disc_pair_f64 p2 = tumbling_disc_div_f64(p1, (tumbling_disc_pair_f64){A, 0.0});
     const tumbling_disc_pair_f64 p3 = tumbling_disc_div_f64(p1, (tumbling_disc_pair_f64){C, 0.0});
-    const tumbling_disc_pair_f64 p4 = tumbling_disc_div_f64((tumbling_disc_pair_f64){A, 0.0}, (tumbling_disc_pair_f64){C, 0.0});
     constants->k1 = s1.high;
     constants->moment_ratio = p0.high;
     constants->lag = p2.high;
     constants->spin_c = p3.high;
-    constants->inverse_c = p4.high;
     return (A > 0.0 && C > 0.0) ? 0 : 1;
 }
 
@@ -448,58 +447,56 @@ void tumbling_disc_step_split_f64(const tumbling_disc_constants_f64 *constants,
     const double t69 = omega[1] + t68;
     const double t70 = t48 * t69;
     const double t71 = t66 + t70;
+    const double t72 = t65 + t70;
     const double t73 = t51 * t71;
     const double t74 = -t73;
     const double t75 = t69 + t74;
+    const double t76 = t68 + t74;
     const double t77 = t47 * t75;
-    const double t78 = t71 + t77;
-    const double t80 = t78 - omega[0];
-    const double t81 = t75 - omega[1];
-    const double t82 = t0 - t0;
-    const double t83 = t58 * attitude[0];
-    const double t84 = attitude[1] * t62;
-    const double t85 = t83 + t84;
-    const double t86 = attitude[2] * t64;
-    const double t87 = t85 + t86;
-    const double t88 = attitude[3] * t56;
-    const double t89 = t87 + t88;
-    const double t90 = -t89;
-    const double t91 = attitude[0] * t62;
-    const double t92 = attitude[2] * t56;
-    const double t93 = t91 + t92;
-    const double t94 = attitude[3] * t64;
-    const double t95 = t93 - t94;
-    const double t96 = t58 * attitude[1];
-    const double t97 = t95 - t96;
-    const double t98 = attitude[0] * t64;
-    const double t99 = attitude[3] * t62;
-    const double t100 = t98 + t99;
-    const double t101 = attitude[1] * t56;
-    const double t102 = t100 - t101;
-    const double t103 = t58 * attitude[2];
-    const double t104 = t102 - t103;
-    const double t105 = attitude[0] * t56;
-    const double t106 = attitude[1] * t64;
-    const double t107 = t105 + t106;
-    const double t108 = attitude[2] * t62;
-    const double t109 = t107 - t108;
-    const double t110 = t58 * attitude[3];
-    const double t111 = t109 - t110;
-    const double t112 = attitude[0] + t90;
-    const double t113 = attitude[1] + t97;
-    const double t114 = attitude[2] + t104;
-    const double t115 = attitude[3] + t111;
-    const double t116 = t82 * constants->inverse_c;
-    const double t117 = omega[0] + t80;
-    const double t118 = omega[1] + t81;
-    const double t119 = omega[2] + t116;
-    attitude_next[0] = t112;
-    attitude_next[1] = t113;
-    attitude_next[2] = t114;
-    attitude_next[3] = t115;
-    omega_next[0] = t117;
-    omega_next[1] = t118;
-    omega_next[2] = t119;
+    const double t79 = t72 + t77;
+    const double t80 = t58 * attitude[0];
+    const double t81 = attitude[1] * t62;
+    const double t82 = t80 + t81;
+    const double t83 = attitude[2] * t64;
+    const double t84 = t82 + t83;
+    const double t85 = attitude[3] * t56;
+    const double t86 = t84 + t85;
+    const double t87 = -t86;
+    const double t88 = attitude[0] * t62;
+    const double t89 = attitude[2] * t56;
+    const double t90 = t88 + t89;
+    const double t91 = attitude[3] * t64;
+    const double t92 = t90 - t91;
+    const double t93 = t58 * attitude[1];
+    const double t94 = t92 - t93;
+    const double t95 = attitude[0] * t64;
+    const double t96 = attitude[3] * t62;
+    const double t97 = t95 + t96;
+    const double t98 = attitude[1] * t56;
+    const double t99 = t97 - t98;
+    const double t100 = t58 * attitude[2];
+    const double t101 = t99 - t100;
+    const double t102 = attitude[0] * t56;
+    const double t103 = attitude[1] * t64;
+    const double t104 = t102 + t103;
+    const double t105 = attitude[2] * t62;
+    const double t106 = t104 - t105;
+    const double t107 = t58 * attitude[3];
+    const double t108 = t106 - t107;
+    const double t109 = attitude[0] + t87;
+    const double t110 = attitude[1] + t94;
+    const double t111 = attitude[2] + t101;
+    const double t112 = attitude[3] + t108;
+    const double t113 = omega[0] + t79;
+    const double t114 = omega[1] + t76;
+    const double omega_z_in = omega[2];
+    attitude_next[0] = t109;
+    attitude_next[1] = t110;
+    attitude_next[2] = t111;
+    attitude_next[3] = t112;
+    omega_next[0] = t113;
+    omega_next[1] = t114;
+    omega_next[2] = omega_z_in;
 }
 
 /* One classic Runge-Kutta step (order 4). */
