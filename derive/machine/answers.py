@@ -1,0 +1,193 @@
+"""What each wanted answer is made of: unknowns, energies, momenta, results, small and steady motion."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from sympy import Expr, Integer, Matrix, Symbol
+
+from derive.formula import Formula
+from derive.machine.balances import Balances
+from derive.machine.bodies import centre, centre_velocity, kinetic_energy, mass, momentum
+from derive.machine.choice import chosen, contradiction, unbalanced
+from derive.machine.frames import ZERO, Frames
+from derive.machine.linearised import linearised
+from derive.machine.loads import potential_energy
+from derive.machine.probe import POINTS, independent
+from derive.machine.question import Question
+from derive.machine.words import MATRICES
+from derive.program import Quantity
+from derive.scene import Machine, SceneError
+from derive.scene.machine_file import JACOBIAN, written_out
+from derive.specialise import stated
+
+BALANCE_STEPS = ("mass_centre_motion", "general_form", "any_point_form")
+FRAME_STEPS = ("angular_velocities_add", "acceleration_seen_from_axes")
+
+
+@dataclass
+class Answers:
+    """The answers of a machine, each as an expression in unknowns and named quantities."""
+
+    machine: Machine
+    frames: Frames
+    balances: Balances
+
+    def question(self, base: str) -> Question:
+        """Return a wanted function as a question."""
+        names = self.machine.asked.get(base) or self.machine.asked[base + JACOBIAN]
+        if names == ("steady",):
+            return self._steady(base)
+        parts = {q: e for name in names for q, e in self._answer(name).items()}
+        quantities = tuple(parts)
+        answers = {s: e for q, own in parts.items() for s, e in zip(self._symbols(q), own, strict=True)}
+        steps = tuple(s for name in names for s in _STEPS.get(name, ()))
+        return self._asked(base, quantities, answers, steps)
+
+    def _symbols(self, q: Quantity) -> list[Symbol]:
+        return [self.frames.sheet.symbols[c] for c in q.components]
+
+    def _quantity(self, name: str) -> Quantity:
+        return self.frames.words.vocabulary[name]
+
+    def _asked(
+        self,
+        base: str,
+        outputs: tuple[Quantity, ...],
+        answers: Mapping[Symbol, Expr],
+        steps: tuple[str, ...],
+    ) -> Question:
+        sheet = self.frames.sheet
+        used = {s for e in (*answers.values(), *sheet.needed(answers.values()).values())
+                for s in e.free_symbols}  # fmt: skip
+        wanted = used & sheet.unknowns
+        rows, unknowns = self._chosen(wanted)
+        written = tuple(self.balances.written(row) for row in rows)
+        definitions = sheet.needed([*written, *answers.values()])
+        balance = BALANCE_STEPS if rows else ()
+        says = f"{_listed([q.meaning for q in outputs])}."
+        return Question(base, says[:1].upper() + says[1:], outputs, answers, definitions, written,
+                        unknowns, tuple(rows), (*balance, *steps, *FRAME_STEPS))  # fmt: skip
+
+    def _chosen(self, wanted: set[Symbol]) -> tuple[list, tuple[Symbol, ...]]:  # type: ignore[type-arg]
+        every = self.balances.unknowns
+        missing = [s for s in wanted if s not in every]
+        if missing:
+            name = self.frames.sheet.label(missing[0])
+            raise SceneError(f"no balance holds '{name}', so it cannot be found")
+        if not wanted:
+            return [], ()
+        if self.machine.steady is None and (sentence := contradiction(self.balances)):
+            raise SceneError(sentence)
+        rows, unknowns = chosen(self.balances, frozenset(every.index(s) for s in wanted))
+        return [row.balance for row in rows], tuple(every[k] for k in sorted(unknowns))
+
+    def _answer(self, name: str) -> dict[Quantity, list[Expr]]:
+        if name == "accelerations":
+            free = [m.unknown for m in (*self.machine.coordinates, *self.machine.speeds) if m.free]
+            return {self._quantity(n): self._symbols(self._quantity(n)) for n in free}
+        if name == "linearised":
+            matrices = linearised(self.machine, self.balances)
+            return {self._quantity(n): list(matrices[n]) for n in MATRICES}
+        q = self._quantity(name)
+        if name == "angular_momentum":
+            return {q: list(self.angular_momentum)}
+        if name in ("kinetic_energy", "potential_energy", "energy"):
+            return {q: [self.energies[name]]}
+        result = next((r for r in self.machine.results if r.name == name), None)
+        if result is not None:
+            return {q: [self.expression(result.formula)]}
+        return {q: list(self._symbols(q))}
+
+    def expression(self, formula: Formula) -> Expr:
+        """Return a formula of answers, with every result in it written out."""
+        whole = self.frames.words.expression(written_out(formula, self.machine.results))
+        symbols = self.frames.sheet.symbols
+        swaps: dict[Symbol, Expr] = {}
+        for name in ("kinetic_energy", "potential_energy", "energy"):
+            if symbols[name] in whole.free_symbols:
+                swaps[symbols[name]] = self.energies[name]
+        for k, axis in enumerate("xyz"):
+            own = symbols[f"angular_momentum_{axis}"]
+            if own in whole.free_symbols:
+                swaps[own] = self.frames.sheet.named(f"l.{axis}", self.angular_momentum[k])
+        return whole.xreplace(swaps)
+
+    @property
+    def energies(self) -> Mapping[str, Expr]:
+        """Return the energies of all bodies; what is not asked for may not exist."""
+        return _Energies(self.frames)
+
+    @cached_property
+    def angular_momentum(self) -> Matrix:
+        """Return the angular momentum of bodies about the point that the scene names."""
+        frames, place = self.frames, self.machine.momentum
+        at = (place.frame, frames.words.column(place.at))
+        total = ZERO
+        for body in place.of:
+            own = frames.own(body)
+            spin = frames.carried(momentum(frames, body), own, place.frame)
+            v = frames.carried(centre_velocity(frames, body), own, place.frame)
+            if v != ZERO:
+                arm = frames.apart(at, centre(frames, body), place.frame)
+                known = {"M_G": ZERO, "rho_G": arm, "F": mass(frames, body) * v}
+                spin = spin + stated("moment_about_any_point", known)
+            total = total + spin
+        return total
+
+    def _steady(self, base: str) -> Question:
+        """Return what vanishes in a steady motion: a formula, or balances without an unknown."""
+        steady = self.machine.steady
+        assert steady is not None  # noqa: S101
+        q = self._quantity("steady")
+        if steady.vanishes is not None:
+            values: list[Expr] = [self.expression(steady.vanishes)]
+            return self._asked(base, (q,), dict(zip(self._symbols(q), values, strict=True)), ())
+        rows = self._without_unknowns(len(steady.unknown))
+        written = [self.balances.written(row.balance) for row in rows]
+        answers = dict(zip(self._symbols(q), written, strict=True))
+        found = self._asked(base, (q,), answers, BALANCE_STEPS)
+        return Question(found.name, found.says, found.outputs, found.answers, found.definitions,
+                        (), (), tuple(row.balance for row in rows), found.steps)  # fmt: skip
+
+    def _without_unknowns(self, count: int) -> list:  # type: ignore[type-arg]
+        """Return so many independent balances without an unknown that move with the rates."""
+        rows = unbalanced(self.balances)
+        independent_ = independent(
+            ({p: row.values[p][0] for p in range(POINTS)} for row in rows), count
+        )
+        if len(independent_) < count:
+            raise SceneError(f"'steady' needs {count} balances that hold no unknown and do not "
+                             f"vanish by themselves, found {len(independent_)}")  # fmt: skip
+        return [rows[k] for k in independent_]
+
+
+@dataclass(frozen=True)
+class _Energies(Mapping[str, Expr]):
+    frames: Frames
+
+    def __getitem__(self, name: str) -> Expr:
+        total: Expr = Integer(0)
+        if name != "potential_energy":
+            for body in self.frames.machine.bodies:
+                total += kinetic_energy(self.frames, body.name)
+        return total if name == "kinetic_energy" else total + potential_energy(self.frames)
+
+    def __iter__(self):  # type: ignore[no-untyped-def]
+        return iter(("kinetic_energy", "potential_energy", "energy"))
+
+    def __len__(self) -> int:
+        return 3
+
+
+_STEPS = {
+    "kinetic_energy": ("koenig",),
+    "energy": ("koenig",),
+    "angular_momentum": ("angular_momentum",),
+    "linearised": BALANCE_STEPS,
+}
+
+
+def _listed(parts: list[str]) -> str:
+    *first, last = [part or "result" for part in parts]
+    return f"{', '.join(first)} and {last}" if first else last

@@ -1,0 +1,310 @@
+"""Every balance that a machine offers: forces on any bodies, moments about any point, any axis.
+
+Whole vectors are valued at trial points in common axes, so that thousands of balances can be
+looked at; only those that are chosen are written out.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from typing import Any, Literal
+
+import numpy as np
+from mpmath import mp
+from numpy.typing import NDArray
+from sympy import Expr, Integer, Matrix, Symbol
+
+from derive.machine.bodies import Effort, effort
+from derive.machine.frames import ZERO, Frames, Point
+from derive.machine.loads import Wrench, wrenches
+from derive.machine.probe import DIGITS, NOTHING, POINTS, Probe, point
+from derive.motion import unit_vector
+from derive.scene.machine import INERTIAL
+from derive.specialise import stated
+
+MOST_TOGETHER = 6
+Array = NDArray[Any]
+
+
+@dataclass(frozen=True)
+class Balance:
+    """One equation: bodies cut free, force or moment about a point, along an axis of a frame."""
+
+    bodies: tuple[str, ...]
+    kind: Literal["force", "moment"]
+    point: Point | None
+    spot: str
+    frame: str
+    axis: str
+
+    def __str__(self) -> str:
+        about = f" about {self.spot}" if self.kind == "moment" else ""
+        return f"{self.kind} on {' + '.join(self.bodies)}{about} along {self.axis} of {self.frame}"
+
+
+@dataclass(frozen=True)
+class Row:
+    """A balance with its coefficients at each trial point: the rest first, then the unknowns."""
+
+    balance: Balance
+    values: tuple[Array, ...]
+
+    @cached_property
+    def holds(self) -> frozenset[int]:
+        """Return which unknowns enter."""
+        found = set()
+        for row in self.values:
+            size = max(abs(x) for x in row)
+            found |= {k - 1 for k, x in enumerate(row) if k and abs(x) > NOTHING * size}
+        return frozenset(found)
+
+    @cached_property
+    def empty(self) -> bool:
+        """Tell whether nothing is left: the balance holds by itself."""
+        return all(max(abs(x) for x in row) <= NOTHING for row in self.values)
+
+
+@dataclass
+class Balances:
+    """The efforts and loads of a machine, and the balances made of them."""
+
+    frames: Frames
+
+    @cached_property
+    def efforts(self) -> dict[str, Effort]:
+        """Return what each body's motion needs."""
+        return {b.name: effort(self.frames, b.name) for b in self.frames.machine.bodies}
+
+    @cached_property
+    def wrenches(self) -> tuple[Wrench, ...]:
+        """Return all loads."""
+        return wrenches(self.frames)
+
+    @cached_property
+    def unknowns(self) -> tuple[Symbol, ...]:
+        """Return the unknowns in order of their names' places."""
+        used: set[Symbol] = set()
+        for e in self.efforts.values():
+            used |= e.force.free_symbols | e.moment.free_symbols
+        for w in self.wrenches:
+            used |= w.force.free_symbols | w.couple.free_symbols
+        return tuple(sorted(used & self.frames.sheet.unknowns, key=str))
+
+    @cached_property
+    def probes(self) -> tuple[Probe, ...]:
+        """Return the trial points, every named quantity valued."""
+        self.efforts, self.wrenches  # noqa: B018 - they name quantities on the sheet
+        found = tuple(point(self.frames.words, n) for n in range(POINTS))
+        for probe in found:
+            probe.define(self.frames.sheet.definitions)
+        return found
+
+    @cached_property
+    def rows(self) -> tuple[Row, ...]:
+        """Return every balance that holds anything, plainest first."""
+        with mp.workdps(DIGITS):
+            return tuple(row for row in self._every() if not row.empty)
+
+    def _every(self) -> Iterator[Row]:
+        valued = [Valued(self, probe) for probe in self.probes]
+        names = list(self.efforts)
+        for size in range(1, min(len(names), MOST_TOGETHER) + 1):
+            for bodies in combinations(names, size):
+                if all(self.frames.linked(self.efforts[bodies[0]].frame, self.efforts[b].frame)
+                       for b in bodies):  # fmt: skip
+                    yield from self._on(bodies, valued)
+
+    def _on(self, bodies: tuple[str, ...], valued: Sequence["Valued"]) -> Iterator[Row]:
+        axes = self._axes(bodies, valued[0])
+        forces = [v.force(bodies) for v in valued]
+        for frame, axis in axes:
+            yield self._row(bodies, "force", None, "", frame, axis, valued, forces)
+        for spot, place in self._points(bodies, valued[0]):
+            moments = [v.moment(bodies, place) for v in valued]
+            for frame, axis in axes:
+                yield self._row(bodies, "moment", place, spot, frame, axis, valued, moments)
+
+    def _row(self, bodies: tuple[str, ...], kind: Any, place: Point | None, spot: str,
+             frame: str, axis: str, valued: Sequence["Valued"], vectors: Sequence[Array]) -> Row:  # fmt: skip
+        k = "xyz".index(axis)
+        values = tuple(v.rotation(frame)[:, k] @ vector
+                       for v, vector in zip(valued, vectors, strict=True))  # fmt: skip
+        return Row(Balance(bodies, kind, place, spot, frame, axis), values)
+
+    def _frames_of(self, bodies: tuple[str, ...]) -> list[str]:
+        """Return the frames whose axes and origins are near at hand for these bodies."""
+        own = [self.efforts[b].frame for b in bodies]
+        found = dict.fromkeys(own)
+        found |= dict.fromkeys(w.along for w in self.wrenches if w.body in bodies)
+        found |= dict.fromkeys(w.point[0] for w in self.wrenches if w.body in bodies)
+        for name in [*found]:
+            found |= dict.fromkeys(self.frames.chain(name))
+        return [name for name in found if self.frames.linked(own[0], name)]
+
+    def _axes(self, bodies: tuple[str, ...], valued: "Valued") -> list[tuple[str, str]]:
+        found: list[tuple[str, str]] = []
+        seen: list[Array] = []
+        for frame in self._frames_of(bodies):
+            for k, axis in enumerate("xyz"):
+                e = valued.rotation(frame)[:, k]
+                if not any(abs(abs(e @ other) - 1) < NOTHING for other in seen):
+                    found.append((frame, axis))
+                    seen.append(e)
+        return found
+
+    def _points(self, bodies: tuple[str, ...], valued: "Valued") -> list[tuple[str, Point]]:
+        """Return the points that moments of these bodies may be taken about."""
+        near: list[tuple[str, Point]] = []
+        for frame in self._frames_of(bodies):
+            near.append((f"the origin of {frame}", (frame, ZERO)))
+        for b in bodies:
+            near.append((f"the mass centre of {b}", self.efforts[b].centre))
+        for w in self.wrenches:
+            if w.body in bodies and w.force != ZERO:
+                near.append((f"the point of {w.load}", w.point))
+        found: list[tuple[str, Point]] = []
+        seen: list[Array] = []
+        for spot, place in near:
+            if not self._reachable(place[0], bodies):
+                continue
+            at = valued.place(place)
+            if not any(max(abs(at - other)) < NOTHING for other in seen):
+                found.append((spot, place))
+                seen.append(at)
+        return found
+
+    def _reachable(self, frame: str, bodies: tuple[str, ...]) -> bool:
+        """Tell whether all that acts on bodies has a known place from a frame's origin."""
+        ends = [self.efforts[b].centre[0] for b in bodies]
+        ends += [w.point[0] for w in self.wrenches if w.body in bodies and w.force != ZERO]
+        return all(self.frames.placed(frame, e) and self.frames.linked(frame, e) for e in ends)
+
+    def written(self, balance: Balance) -> Expr:
+        """Return a balance as an expression that is zero."""
+        frames, sheet = self.frames, self.frames.sheet
+        e = unit_vector(balance.axis)
+        total: Expr = Integer(0)
+        for body in balance.bodies:
+            own = self.efforts[body]
+            force = frames.carried(own.force, own.frame, balance.frame)
+            vector = force
+            if balance.kind == "moment":
+                vector = frames.carried(own.moment, own.frame, balance.frame)
+                vector = vector + self._shift(balance, own.centre, force)
+            total += (e.T * vector)[0]
+        for w in self.wrenches:
+            if w.body in balance.bodies:
+                total -= (e.T * self._load(balance, w))[0]
+        return sheet.linear("balance", total)
+
+    def _shift(self, balance: Balance, place: Point, force: Matrix) -> Matrix:
+        """Return the moment of a force at a place about the point of a balance."""
+        assert balance.point is not None  # noqa: S101
+        if force == ZERO:
+            return ZERO
+        arm = self.frames.apart(balance.point, place, balance.frame)
+        known = {"M_G": ZERO, "rho_G": self.frames.sheet.column("arm", arm), "F": force}
+        return stated("moment_about_any_point", known)
+
+    def _load(self, balance: Balance, w: Wrench) -> Matrix:
+        force = self.frames.carried(w.force, w.along, balance.frame)
+        if balance.kind == "force":
+            return force
+        return self.frames.carried(w.couple, w.along, balance.frame) + self._shift(
+            balance, w.point, force
+        )
+
+
+@dataclass
+class Valued:
+    """Vectors of a machine at one trial point, along the axes of the topmost linked frame."""
+
+    balances: Balances
+    probe: Probe
+
+    def __post_init__(self) -> None:
+        """Begin with nothing remembered."""
+        self._turned: dict[str, Array] = {}
+        self._wrenches: dict[int, tuple[Array, Array]] = {}
+
+    def rotation(self, name: str) -> Array:
+        """Return R from a frame to the topmost one that it is linked with."""
+        frames = self.balances.frames
+        if name not in self._turned:
+            R = frames.rotations[name] if name != INERTIAL else None
+            if R is None:
+                self._turned[name] = np.array([[mp.mpf(i == k) for k in range(3)]
+                                               for i in range(3)])  # fmt: skip
+            else:
+                own = self.array(R)
+                self._turned[name] = self.rotation(frames.each[name].parent) @ own
+        return self._turned[name]
+
+    def array(self, matrix: Matrix) -> Array:
+        """Return the values of a matrix."""
+        rows, columns = matrix.shape
+        return np.array([[self.probe.value(matrix[i, k]) for k in range(columns)]
+                         for i in range(rows)])  # fmt: skip
+
+    def linear(self, vector: Matrix, frame: str) -> Array:
+        """Return a vector's rest and its coefficients of each unknown, (3, 1 + unknowns)."""
+        table = np.array([[mp.mpf(0)] * (1 + len(self.balances.unknowns)) for _ in range(3)])
+        for i in range(3):
+            rest, slopes = self.balances.frames.sheet.split(vector[i])
+            table[i, 0] = self.probe.value(rest)
+            for u, slope in slopes.items():
+                table[i, 1 + self.balances.unknowns.index(u)] = self.probe.value(slope)
+        return self.rotation(frame) @ table
+
+    def place(self, place: Point) -> Array:
+        """Return where a point is from the origin of the topmost frame that it is placed in."""
+        frames = self.balances.frames
+        name, at = place[0], self.rotation(place[0]) @ self.array(place[1])[:, 0]
+        while name != INERTIAL:
+            parent = frames.each[name].parent
+            if not (frames.placed(name, parent) and frames.linked(name, parent)):
+                break
+            own = self.array(frames.words.column(frames.each[name].origin))[:, 0]
+            at = at + self.rotation(parent) @ own
+            name = parent
+        return at
+
+    def force(self, bodies: tuple[str, ...]) -> Array:
+        """Return mass times acceleration less the forces."""
+        b = self.balances
+        total = sum(self.linear(b.efforts[n].force, b.efforts[n].frame) for n in bodies)
+        return total - sum((self._acting(k)[0] for k in self._on(bodies)), 0 * total)
+
+    def moment(self, bodies: tuple[str, ...], place: Point) -> Array:
+        """Return the rate of angular momentum less the moments, about a point."""
+        b, here = self.balances, self.place(place)
+        total = 0 * self.linear(ZERO, INERTIAL)
+        for n in bodies:
+            own = b.efforts[n]
+            arm = self.place(own.centre) - here
+            total = total + self.linear(own.moment, own.frame)
+            total = total + _crossed(arm, self.linear(own.force, own.frame))
+        for k in self._on(bodies):
+            force, couple = self._acting(k)
+            total = total - couple - self._crossed_at(k, here, force)
+        return total
+
+    def _crossed_at(self, k: int, here: Array, force: Array) -> Array:
+        w = self.balances.wrenches[k]
+        return 0 * force if w.force == ZERO else _crossed(self.place(w.point) - here, force)
+
+    def _on(self, bodies: tuple[str, ...]) -> list[int]:
+        return [k for k, w in enumerate(self.balances.wrenches) if w.body in bodies]
+
+    def _acting(self, k: int) -> tuple[Array, Array]:
+        if k not in self._wrenches:
+            w = self.balances.wrenches[k]
+            self._wrenches[k] = (self.linear(w.force, w.along), self.linear(w.couple, w.along))
+        return self._wrenches[k]
+
+
+def _crossed(arm: Array, table: Array) -> Array:
+    x, y, z = arm
+    return np.array([y * table[2] - z * table[1], z * table[0] - x * table[2],
+                     x * table[1] - y * table[0]])  # fmt: skip

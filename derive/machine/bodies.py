@@ -1,0 +1,91 @@
+"""What each body of a machine needs by its motion: force at the mass centre, moment about it."""
+
+from dataclasses import dataclass
+
+from sympy import Expr, Matrix, zeros
+
+from derive.machine.frames import ZERO, Frames, Point
+from derive.machine.words import inertia_name, mass_name
+from derive.motion import reduced
+from derive.specialise import stated
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Mass times acceleration and rate of angular momentum about G, along the body's own axes."""
+
+    body: str
+    frame: str
+    centre: Point
+    force: Matrix
+    moment: Matrix
+
+
+def mass(frames: Frames, body: str) -> Expr:
+    """Return the mass of a body, or a symbol if the user left it out."""
+    return frames.words.data(frames.machine.body(body).mass, mass_name(body))
+
+
+def tensor(frames: Frames, body: str) -> Matrix:
+    """Return the inertia tensor of a body about its mass centre, along its own axes."""
+    member = frames.machine.body(body)
+    xx, yy, zz, xy, xz, yz = (
+        frames.words.data(f, inertia_name(frames.machine, body, place))
+        for place, f in enumerate(member.inertia)
+    )
+    return Matrix([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]])
+
+
+def centre(frames: Frames, body: str) -> Point:
+    """Return the mass centre of a body in the frame of its own axes."""
+    member = frames.machine.body(body)
+    if member.turned:
+        return frames.own(body), ZERO
+    return member.frame, frames.words.column(member.centre)
+
+
+def effort(frames: Frames, body: str) -> Effort:
+    """Return what the motion of ``body`` needs, by the general form and the motion of G."""
+    sheet, own = frames.sheet, frames.own(body)
+    place = centre(frames, body)
+    a_G = frames.acceleration[own] + frames.acceleration_seen(own, place[1])
+    a_G = sheet.column(f"{body}.a_G", a_G)
+    force = stated("mass_centre_motion", {"m": mass(frames, body), "a_G": a_G})
+    return Effort(body, own, place, sheet.column(f"{body}.F", force), moment(frames, body))
+
+
+def moment(frames: Frames, body: str) -> Matrix:
+    """Return the rate of the angular momentum of a body about its mass centre."""
+    sheet, own = frames.sheet, frames.own(body)
+    omega = sheet.column(f"{body}.omega", frames.turning_of_body(body))
+    known = {"I": tensor(frames, body), "omega": omega, "Omega": frames.Omega[own]}
+    known["omega_dot"] = sheet.column(f"{body}.omega_dot", sheet.rate_of_column(omega))
+    I_dot = stated("inertia_rate_in_axes", known)
+    known["I_dot"] = zeros(3, 3) if I_dot.applyfunc(reduced) == zeros(3, 3) else I_dot
+    return sheet.column(f"{body}.M", stated("general_form", known))
+
+
+def momentum(frames: Frames, body: str) -> Matrix:
+    """Return the angular momentum of a body about its mass centre."""
+    omega = frames.sheet.column(f"{body}.omega", frames.turning_of_body(body))
+    return stated("angular_momentum", {"I": tensor(frames, body), "omega": omega})
+
+
+def centre_velocity(frames: Frames, body: str) -> Matrix:
+    """Return the velocity of a body's mass centre in the inertial frame."""
+    own, at = centre(frames, body)
+    known = {"rho_i": at, "rho_i_dot": frames.sheet.rate_of_column(at), "Omega": frames.Omega[own]}
+    v = frames.velocity(own) + stated("velocity_seen_from_axes", known)
+    return frames.sheet.column(f"{body}.v_G", v)
+
+
+def kinetic_energy(frames: Frames, body: str) -> Expr:
+    """Return the kinetic energy of a body."""
+    known = {
+        "m": mass(frames, body),
+        "v_G": centre_velocity(frames, body),
+        "I": tensor(frames, body),
+        "omega": frames.sheet.column(f"{body}.omega", frames.turning_of_body(body)),
+    }
+    energy: Expr = stated("koenig", known)
+    return energy

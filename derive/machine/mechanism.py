@@ -1,0 +1,101 @@
+"""A machine in the lecture's terms: its words, its equations, and the ways to compute answers."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from sympy import Expr, Integer, Symbol
+
+from derive.draft import Arrangement, Stage
+from derive.machine.answers import Answers
+from derive.machine.balances import Balances
+from derive.machine.frames import Frames
+from derive.machine.matter import Lean, lean
+from derive.machine.probe import point
+from derive.machine.question import Question, substituted
+from derive.machine.solve import solved
+from derive.machine.words import Words, words
+from derive.scene import Machine, SceneError
+from derive.truth import Truth
+from derive.vocabulary import Vocabulary
+
+
+@dataclass
+class Mechanism:
+    """A machine with its words and balances; questions are asked once and kept."""
+
+    scene: Machine
+    made: Words
+    answers: Answers
+    questions: dict[str, Question] = field(default_factory=dict)
+    leans: dict[str, Lean] = field(default_factory=dict)
+
+    @property
+    def words(self) -> Vocabulary:
+        """Return the vocabulary."""
+        return self.made.vocabulary
+
+    def question(self, base: str) -> Question:
+        """Return a wanted function as a question, everything that is given still in it."""
+        if base not in self.questions:
+            self.questions[base] = self.answers.question(base)
+        return self.questions[base]
+
+    def lean(self, base: str) -> Lean:
+        """Return the question without what does not matter."""
+        if base not in self.leans:
+            self.leans[base] = lean(self.question(base), self.made)
+        return self.leans[base]
+
+
+def mechanism(machine: Machine) -> Mechanism:
+    """Return ``machine`` in the lecture's terms."""
+    made = words(machine)
+    frames = Frames(machine, made)
+    return Mechanism(machine, made, Answers(machine, frames, Balances(frames)))
+
+
+def truth(known: Mechanism, base: str) -> Truth:
+    """Return what the lecture says of a wanted function: named quantities, balances, answers."""
+    try:
+        known.lean(base)
+    except SceneError as error:
+        raise SceneError(f"scene '{known.scene.name}': {error}") from None
+    question = substituted(known.question(base), dict.fromkeys(known.made.hidden, Integer(1)))
+    unknowns: list[Symbol] = [*question.definitions, *question.unknowns]
+    residuals: list[Expr] = [value - s for s, value in question.definitions.items()]
+    residuals += question.rows
+    for s, value in question.answers.items():
+        if s not in question.unknowns:
+            unknowns.append(s)
+            residuals.append(value - s)
+    steps = tuple(dict.fromkeys(question.steps))
+    return Truth(base, question.says, question.outputs, tuple(unknowns), tuple(residuals), steps)
+
+
+def arrange(known: Mechanism, fact: Truth) -> tuple[Arrangement, ...]:
+    """Return the way to compute the outputs of ``fact``."""
+    question = known.lean(fact.name).question
+    stages = [Stage("let", s, value) for s, value in question.definitions.items()]
+    if question.rows:
+        probe = point(known.made, 0)
+        probe.define(question.definitions)
+        stages += solved(question.rows, question.unknowns, known.made.sheet.split, probe).stages
+    outputs = tuple(question.answers.values())
+    return (Arrangement(tuple(stages), outputs),)
+
+
+def dropped(known: Mechanism, base: str) -> Mapping[str, tuple[str, ...]]:
+    """Return what was found not to matter to a function: what cancels, what never enters."""
+    sheet, machine = known.made.sheet, known.scene
+    found = known.lean(base)
+    cancelled = {sheet.label(s) for s in found.cancelled}
+    used = {sheet.label(s) for s in known.question(base).arguments()}
+    every = [c for q in (*known.words.parameters, *known.words.states, *known.words.inputs)
+             for c in q.components]  # fmt: skip
+    asked = known.question(base).unknowns
+    unasked = [u.name for u in machine.unknowns if sheet.symbols[u.name] not in asked]
+    return {
+        "cancels": tuple(c for c in every if c in cancelled),
+        "never enters": tuple(c for c in every if c not in used),
+        "unknowns left out": tuple(unasked),
+    }
