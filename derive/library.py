@@ -12,8 +12,10 @@ from derive.forms import Block, best_values, best_with_jacobian, cost
 from derive.graph import Graph, Value
 from derive.lecture import LECTURE
 from derive.lower import lower
+from derive.machine import mechanism as machines
+from derive.machine.mechanism import Mechanism
 from derive.program import Program, Quantity, Sparsity
-from derive.scene import Scene, SceneError
+from derive.scene import Machine, Scene, SceneError
 from derive.specialise import Specialised, specialise
 from derive.stage import (
     Constant,
@@ -33,11 +35,14 @@ JACOBIAN = "_jacobian"
 INVERSE = re.compile("J_[xyz][xyz]")
 
 
+Known = Specialised | Mechanism
+
+
 @dataclass(frozen=True)
 class Library:
     """What a scene's files are printed from."""
 
-    known: Specialised
+    known: Known
     setup: Program
     functions: tuple[Program, ...]
     constants: tuple[Constant, ...]
@@ -56,13 +61,13 @@ class Wanted:
     positive: tuple[Value, ...]
 
 
-def library(scene: Scene) -> Library:
+def library(scene: Scene | Machine) -> Library:
     """Return the programs that ``scene`` asks for."""
-    known = specialise(scene)
+    known = machines.mechanism(scene) if isinstance(scene, Machine) else specialise(scene)
     graph = Graph()
     leaves = _leaves(graph, known)
     constants = Constants(graph)
-    truths = {base: truth(known, base) for base in dict.fromkeys(map(_base, scene.wanted))}
+    truths = {base: _truth(known, base) for base in dict.fromkeys(map(_base, scene.wanted))}
     wanted = {base: _wanted(graph, known, fact, leaves) for base, fact in truths.items()}
     functions = tuple(
         _with_jacobian(graph, constants, known, wanted[_base(name)], leaves)
@@ -85,6 +90,14 @@ def library(scene: Scene) -> Library:
     return Library(known, made, functions, named, truths)
 
 
+def _truth(known: Known, base: str) -> Truth:
+    return machines.truth(known, base) if isinstance(known, Mechanism) else truth(known, base)
+
+
+def _ways(known: Known, fact: Truth) -> tuple[Arrangement, ...]:
+    return machines.arrange(known, fact) if isinstance(known, Mechanism) else arrange(known, fact)
+
+
 def _meaning(graph: Graph, value: Value) -> str:
     text = formula(graph, value)
     return f"{text[2:]} of the inverse inertia tensor" if INVERSE.fullmatch(text) else text
@@ -94,16 +107,16 @@ def _base(name: str) -> str:
     return name.removesuffix(JACOBIAN)
 
 
-def _leaves(graph: Graph, known: Specialised) -> dict[str, Value]:
+def _leaves(graph: Graph, known: Known) -> dict[str, Value]:
     words = known.words
     leaves = {c: graph.parameter(c) for q in words.parameters for c in q.components}
     varying = [c for q in (*words.states, *words.inputs) for c in q.components]
     return leaves | {c: graph.variable(c) for c in varying}
 
 
-def _wanted(graph: Graph, known: Specialised, fact: Truth, leaves: Mapping[str, Value]) -> Wanted:
+def _wanted(graph: Graph, known: Known, fact: Truth, leaves: Mapping[str, Value]) -> Wanted:
     by_symbol = {known.words.symbols[c]: value for c, value in leaves.items()}
-    ways = [_lowered(graph, fact, way, by_symbol) for way in arrange(known, fact)]
+    ways = [_lowered(graph, fact, way, by_symbol) for way in _ways(known, fact)]
     return min(ways, key=lambda way: cost(graph, _best(graph, way))) if len(ways) > 1 else ways[0]
 
 
@@ -122,14 +135,14 @@ def _best(graph: Graph, wanted: Wanted) -> list[Value]:
     return best_values(graph, [Block(output, ()) for output in wanted.outputs])
 
 
-def _values_only(graph: Graph, constants: Constants, known: Specialised, wanted: Wanted) -> Program:
+def _values_only(graph: Graph, constants: Constants, known: Known, wanted: Wanted) -> Program:
     return _program(graph, constants, known, wanted.fact, _best(graph, wanted))
 
 
 def _with_jacobian(
     graph: Graph,
     constants: Constants,
-    known: Specialised,
+    known: Known,
     wanted: Wanted,
     leaves: Mapping[str, Value],
 ) -> Program:
@@ -166,7 +179,7 @@ def _jacobian_quantity(pattern: Sparsity) -> Quantity:
     return Quantity("jacobian", parts, (len(parts),), "", "", None, None, says)
 
 
-def _columns(graph: Graph, known: Specialised, wanted: Wanted) -> tuple[Quantity, ...]:
+def _columns(graph: Graph, known: Known, wanted: Wanted) -> tuple[Quantity, ...]:
     """Return what the Jacobian is taken by: every state of a state rate, and all that is used."""
     words = known.words
     used = _inputs_below(graph, [v for output in wanted.outputs for v in output])
@@ -192,7 +205,7 @@ def _inputs_below(graph: Graph, values: Iterable[Value]) -> set[str]:
 
 
 def _program(
-    graph: Graph, constants: Constants, known: Specialised, fact: Truth, values: Sequence[Value]
+    graph: Graph, constants: Constants, known: Known, fact: Truth, values: Sequence[Value]
 ) -> Program:
     ops, results = hot(graph, constants, values)
     inputs = used_inputs((*known.words.states, *known.words.inputs), ops, results)
