@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 from derive.blocks import in_order
-from derive.specialise import Specialised
+from derive.machine.mechanism import Known
 from derive.truth import Truth
 from derive.valuation import Atom, Atoms, Monomial, Polynomial, terms
 
@@ -78,7 +78,7 @@ def _coefficient_of(row: Polynomial, unknown: int) -> Polynomial:
     }
 
 
-def equations(known: Specialised, fact: Truth) -> Equations:
+def equations(known: Known, fact: Truth) -> Equations:
     """Return the equations of ``fact``, multiplied out and in an order to solve them in."""
     words, atoms = known.words, Atoms()
     rows = [atoms.polynomial(residual) for residual in fact.residuals]

@@ -13,7 +13,7 @@ from derive.graph import Graph, Value
 from derive.lecture import LECTURE
 from derive.lower import lower
 from derive.machine import mechanism as machines
-from derive.machine.mechanism import Mechanism
+from derive.machine.mechanism import Known, Mechanism
 from derive.program import Program, Quantity, Sparsity
 from derive.scene import Machine, Scene, SceneError
 from derive.specialise import Specialised, specialise
@@ -33,9 +33,6 @@ from derive.wording import formula
 
 JACOBIAN = "_jacobian"
 INVERSE = re.compile("J_[xyz][xyz]")
-
-
-Known = Specialised | Mechanism
 
 
 @dataclass(frozen=True)

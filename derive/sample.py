@@ -14,8 +14,8 @@ from random import Random
 from derive.arithmetic import rounded
 from derive.body_sample import BODIES, Hard, admissible, bodies_taken, hard_body, solvable
 from derive.c_text import Precision
+from derive.machine.mechanism import Known
 from derive.program import Quantity
-from derive.specialise import Specialised
 
 Values = dict[str, float]
 LARGE_SPIN = 1e4
@@ -46,7 +46,7 @@ class Samples:
 class Source:
     """Where samples come from: a scene, a precision, and dice for one kind of sample."""
 
-    known: Specialised
+    known: Known
     precision: Precision
     dice: Random
 
@@ -55,13 +55,13 @@ class Source:
         return float(rounded(Fraction(x), self.precision.dtype))
 
 
-def source(known: Specialised, precision: Precision, kind: str) -> Source:
+def source(known: Known, precision: Precision, kind: str) -> Source:
     """Return the source of one kind of sample."""
     seed = f"derive: {known.scene.name} {precision.name} {kind}"
     return Source(known, precision, Random(seed))  # noqa: S311 - samples, no secret
 
 
-def samples(known: Specialised, precision: Precision, ordinary: int, corners: int) -> Samples:
+def samples(known: Known, precision: Precision, ordinary: int, corners: int) -> Samples:
     """Return ``ordinary`` samples on the declared ranges, and ``corners`` of each hard kind."""
     plain = source(known, precision, "ordinary")
     found = [("ordinary", _ordinary(plain)) for _ in range(ordinary)]
@@ -104,12 +104,12 @@ def _motion(of: Source) -> Values:
     values: Values = {}
     for q in varying(of.known):
         own = [uniform(of.dice, q) for _ in q.components]
-        own = _unit(own) if q.name == "attitude" else own
+        own = _unit(own) if _is_attitude(q) else own
         values |= {name: of.held(x) for name, x in zip(q.components, own, strict=True)}
     return values
 
 
-def varying(known: Specialised) -> tuple[Quantity, ...]:
+def varying(known: Known) -> tuple[Quantity, ...]:
     """Return all quantities that vary with time and enter from outside."""
     return (*known.words.states, *known.words.inputs)
 
@@ -153,9 +153,13 @@ def _denormal(of: Source, _: int) -> Values | None:
     return _changed(of, lambda q, x: x * tiny if _may_vanish(q) else x)
 
 
+def _is_attitude(q: Quantity) -> bool:
+    return q.name.startswith("attitude") and q.shape == (4,)
+
+
 def _may_vanish(q: Quantity) -> bool:
     within = (q.low or 0) <= 0 <= (q.high or 0)
-    return q.name != "attitude" and within
+    return not _is_attitude(q) and within
 
 
 def _half_turn(of: Source, number: int) -> Values | None:
@@ -180,7 +184,7 @@ def _extremes(of: Source, _: int) -> Values | None:
     """Return a sample with every varying value at an end of its range."""
 
     def change(q: Quantity, x: float) -> float:
-        return x if q.name == "attitude" else _end(of, q, of.dice.randrange(2))
+        return x if _is_attitude(q) else _end(of, q, of.dice.randrange(2))
 
     return _changed(of, change)
 

@@ -15,6 +15,7 @@ from derive.machine.question import Question, substituted
 from derive.machine.solve import solved
 from derive.machine.words import Words, words
 from derive.scene import Machine, SceneError
+from derive.specialise import Specialised
 from derive.truth import Truth
 from derive.vocabulary import Vocabulary
 
@@ -45,6 +46,10 @@ class Mechanism:
         if base not in self.leans:
             self.leans[base] = lean(self.question(base), self.made)
         return self.leans[base]
+
+
+Known = Specialised | Mechanism
+"""A scene in the lecture's terms: of a single body, or of a machine."""
 
 
 def mechanism(machine: Machine) -> Mechanism:

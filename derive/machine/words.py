@@ -11,7 +11,7 @@ from derive.machine.sheet import Sheet
 from derive.program import Quantity
 from derive.scene import Input, Machine
 from derive.scene.machine_file import AXES, ENERGIES, _groups
-from derive.scene.moving import PER_SECOND
+from derive.scene.scalars import PER_SECOND
 from derive.vocabulary import ANY, Vocabulary
 
 QUATERNION = ("w", "x", "y", "z")

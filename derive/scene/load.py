@@ -19,7 +19,7 @@ from derive.scene.machine import (
     Unknown,
     Weight,
 )
-from derive.scene.moving import Scalars, known, places
+from derive.scene.scalars import Scalars, known, places
 from derive.scene.names import identifier
 from derive.scene.table import Scope, Table, formula, keys, shown, table, triple, word
 from derive.unit import ACCELERATION, FORCE, LENGTH, MOMENT, NONE, Dimension, dimension

@@ -10,7 +10,7 @@ from derive.scene.frames import read_frames
 from derive.scene.load import MARK, read_loads, unknown_units
 from derive.scene.machine import INERTIAL, Frame, Machine, Member, Place, Result, Steady, Unknown
 from derive.scene.member import read_member
-from derive.scene.moving import PER_SECOND, Scalars, known, places, read_scalars, unknown_rates
+from derive.scene.scalars import PER_SECOND, Scalars, known, places, read_scalars, unknown_rates
 from derive.scene.names import distinct, identifier
 from derive.scene.table import Scope, Table, formula, keys, nearest, shown, table, text, triple, word
 from derive.unit import LENGTH, NONE, Dimension, dimension, dimension_of, spelled

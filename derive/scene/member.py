@@ -13,7 +13,7 @@ from derive.formula import ZERO, Formula, number
 from derive.scene.body import AXES, KINDS, read_body
 from derive.scene.declaration import Axis, SceneError, Sextuple, Triple
 from derive.scene.machine import Entries, Frame, Member, Turning
-from derive.scene.moving import Scalars, motions, places, turnings
+from derive.scene.scalars import Scalars, motions, places, turnings
 from derive.scene.numbers import positive
 from derive.scene.shape import CONE_CENTRE, SHAPES, about_axis, box, diagonal, moved
 from derive.scene.symbols import Symbols, constants
