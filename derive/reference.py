@@ -38,7 +38,8 @@ def solution(
     asked: Equations, given: Mapping[str, Any], columns: Iterable[str], arithmetic: Arithmetic
 ) -> dict[str, Known]:
     """Return every unknown by its component's name, with its slopes by the ``columns``."""
-    known = _atoms_known(asked, given, set(columns), arithmetic)
+    known = _given(asked, given, set(columns), arithmetic)
+    _apply(asked, known, arithmetic)
     fixed = {place: known[place].value for place in asked.fixed}
     values = [value(c, fixed, arithmetic) for c in asked.coefficients]
     coefficients = [(v, arithmetic["size"](v)) for v in values]
@@ -50,22 +51,28 @@ def solution(
         right = [_summed(s, known, coefficients, arithmetic) for s in block.right]
         for atom, solved in zip(block.unknowns, _solved(matrix, right, arithmetic), strict=True):
             known[atom] = found[asked.names[atom]] = solved
+        _apply(asked, known, arithmetic)
     return found
 
 
-def _atoms_known(
+def _given(
     asked: Equations, given: Mapping[str, Any], columns: set[str], arithmetic: Arithmetic
 ) -> dict[int, Known]:
     known: dict[int, Known] = {}
     one = arithmetic["number"](Fraction(1))
-    for place, atom in enumerate(asked.atoms):
-        name = asked.names.get(place)
-        if name is None:
-            known[place] = _applied(atom, known, arithmetic)
-        elif name in given:
+    for place, name in asked.names.items():
+        if name in given:
             slopes: Slopes = {name: (one, 1.0)} if name in columns else {}
             known[place] = Known(given[name], arithmetic["size"](given[name]), slopes)
     return known
+
+
+def _apply(asked: Equations, known: dict[int, Known], arithmetic: Arithmetic) -> None:
+    """Add the functions that are made of what is known by now."""
+    for place, atom in enumerate(asked.atoms):
+        made_of = {a for monomial, _ in atom.inner for a, _ in monomial}
+        if place not in known and place not in asked.names and made_of <= known.keys():
+            known[place] = _applied(atom, known, arithmetic)
 
 
 def _applied(atom: Atom, known: Mapping[int, Known], arithmetic: Arithmetic) -> Known:

@@ -47,6 +47,15 @@ class Atoms:
         """Return where a symbol stands."""
         return self.place(Atom("symbol", symbol, ()))
 
+    def within(self, monomial: Monomial) -> set[int]:
+        """Return the atoms of a monomial, and those that its functions are made of."""
+        found: set[int] = set()
+        for atom, _ in monomial:
+            found.add(atom)
+            for inner, _ in self.each[atom].inner:
+                found |= self.within(inner)
+        return found
+
     def power(self, kind: str, inner: Polynomial, power: int) -> Polynomial:
         """Return a power of a function of a polynomial."""
         atom = Atom(kind, None, tuple(sorted(inner.items())))

@@ -1,18 +1,19 @@
 """What each wanted answer is made of: unknowns, energies, momenta, results, small and steady motion."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from sympy import Expr, Integer, Matrix, Symbol
 
 from derive.formula import Formula
-from derive.machine.balances import Balances
+from derive.machine.balances import Balances, Row
 from derive.machine.bodies import centre, centre_velocity, kinetic_energy, mass, momentum
 from derive.machine.choice import chosen, contradiction, unbalanced
 from derive.machine.frames import ZERO, Frames
 from derive.machine.linearised import linearised
 from derive.machine.loads import potential_energy
+from derive.machine.matter import without_factors
 from derive.machine.probe import POINTS, independent
 from derive.machine.question import Question
 from derive.machine.words import MATRICES
@@ -64,31 +65,31 @@ class Answers:
         rows, unknowns = self._chosen(wanted)
         written = tuple(self.balances.written(row) for row in rows)
         definitions = sheet.needed([*written, *answers.values()])
+        held = tuple(row.balance for row in rows)
         balance = BALANCE_STEPS if rows else ()
         says = f"{_listed([q.meaning for q in outputs])}."
         return Question(base, says[:1].upper() + says[1:], outputs, answers, definitions, written,
-                        unknowns, tuple(rows), (*balance, *steps, *FRAME_STEPS))  # fmt: skip
+                        unknowns, held, (*balance, *steps, *FRAME_STEPS))  # fmt: skip
 
-    def _chosen(self, wanted: set[Symbol]) -> tuple[list, tuple[Symbol, ...]]:  # type: ignore[type-arg]
+    def _chosen(self, wanted: set[Symbol]) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
         every = self.balances.unknowns
         missing = [s for s in wanted if s not in every]
         if missing:
             name = self.frames.sheet.label(missing[0])
             raise SceneError(f"no balance holds '{name}', so it cannot be found")
         if not wanted:
-            return [], ()
+            return (), ()
         if self.machine.steady is None and (sentence := contradiction(self.balances)):
             raise SceneError(sentence)
         rows, unknowns = chosen(self.balances, frozenset(every.index(s) for s in wanted))
-        return [row.balance for row in rows], tuple(every[k] for k in sorted(unknowns))
+        return rows, tuple(every[k] for k in sorted(unknowns))
 
     def _answer(self, name: str) -> dict[Quantity, list[Expr]]:
         if name == "accelerations":
             free = [m.unknown for m in (*self.machine.coordinates, *self.machine.speeds) if m.free]
             return {self._quantity(n): self._symbols(self._quantity(n)) for n in free}
         if name == "linearised":
-            matrices = linearised(self.machine, self.balances)
-            return {self._quantity(n): list(matrices[n]) for n in MATRICES}
+            return {self._quantity(n): self.matrices[n] for n in MATRICES}
         q = self._quantity(name)
         if name == "angular_momentum":
             return {q: list(self.angular_momentum)}
@@ -111,7 +112,17 @@ class Answers:
             own = symbols[f"angular_momentum_{axis}"]
             if own in whole.free_symbols:
                 swaps[own] = self.frames.sheet.named(f"l.{axis}", self.angular_momentum[k])
+        for name in MATRICES:
+            own_ = self._symbols(self._quantity(name))
+            if whole.free_symbols & set(own_):
+                swaps |= dict(zip(own_, self.matrices[name], strict=True))
         return whole.xreplace(swaps)
+
+    @cached_property
+    def matrices(self) -> Mapping[str, list[Expr]]:
+        """Return the entries of the matrices of small motion, column by column."""
+        made = linearised(self.machine, self.balances)
+        return {name: list(made[name].T) for name in MATRICES}
 
     @property
     def energies(self) -> Mapping[str, Expr]:
@@ -144,13 +155,13 @@ class Answers:
             values: list[Expr] = [self.expression(steady.vanishes)]
             return self._asked(base, (q,), dict(zip(self._symbols(q), values, strict=True)), ())
         rows = self._without_unknowns(len(steady.unknown))
-        written = [self.balances.written(row.balance) for row in rows]
+        written = [self.balances.written(row) for row in rows]
         answers = dict(zip(self._symbols(q), written, strict=True))
         found = self._asked(base, (q,), answers, BALANCE_STEPS)
-        return Question(found.name, found.says, found.outputs, found.answers, found.definitions,
-                        (), (), tuple(row.balance for row in rows), found.steps)  # fmt: skip
+        found = replace(found, balances=tuple(row.balance for row in rows))
+        return without_factors(found, self.frames.words)
 
-    def _without_unknowns(self, count: int) -> list:  # type: ignore[type-arg]
+    def _without_unknowns(self, count: int) -> list[Row]:
         """Return so many independent balances without an unknown that move with the rates."""
         rows = unbalanced(self.balances)
         independent_ = independent(

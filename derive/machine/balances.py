@@ -180,9 +180,9 @@ class Balances:
         ends += [w.point[0] for w in self.wrenches if w.body in bodies and w.force != ZERO]
         return all(self.frames.placed(frame, e) and self.frames.linked(frame, e) for e in ends)
 
-    def written(self, balance: Balance) -> Expr:
-        """Return a balance as an expression that is zero."""
-        frames, sheet = self.frames, self.frames.sheet
+    def written(self, row: Row) -> Expr:
+        """Return a balance as an expression that is zero, without unknowns that drop out of it."""
+        frames, sheet, balance = self.frames, self.frames.sheet, row.balance
         e = unit_vector(balance.axis)
         total: Expr = Integer(0)
         for body in balance.bodies:
@@ -196,7 +196,15 @@ class Balances:
         for w in self.wrenches:
             if w.body in balance.bodies:
                 total -= (e.T * self._load(balance, w))[0]
-        return sheet.linear("balance", total)
+        rest, slopes = sheet.split(total)
+        kept = {u: c for u, c in slopes.items() if self.unknowns.index(u) in row.holds}
+        return sheet.linear("balance", rest + sum((c * u for u, c in kept.items()), Integer(0)))
+
+    def carried_vectors(self, balance: Balance) -> int:
+        """Return how many vectors must be carried to other axes to write a balance."""
+        own = [self.efforts[b].frame for b in balance.bodies]
+        own += [w.along for w in self.wrenches if w.body in balance.bodies]
+        return sum(frame != balance.frame for frame in own)
 
     def _shift(self, balance: Balance, place: Point, force: Matrix) -> Matrix:
         """Return the moment of a force at a place about the point of a balance."""

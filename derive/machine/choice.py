@@ -23,8 +23,14 @@ def chosen(balances: Balances, wanted: frozenset[int]) -> Chosen:
     """
     if not wanted:
         return (), frozenset()
-    ordered = sorted(enumerate(balances.rows), key=lambda n: (*_plainness(n[1]), n[0]))
-    rows = [row for _, row in ordered if row.holds]
+    rows = sorted(
+        (row for row in balances.rows if row.holds),
+        key=lambda row: (
+            len(row.holds),
+            len(row.balance.bodies),
+            balances.carried_vectors(row.balance),
+        ),
+    )
     for unknowns in _sets(rows, wanted, len(balances.unknowns)):
         within = [row for row in rows if row.holds <= unknowns]
         covered = frozenset(k for row in within for k in row.holds)
@@ -34,10 +40,6 @@ def chosen(balances: Balances, wanted: frozenset[int]) -> Chosen:
         if len(kept) == len(unknowns):
             return tuple(within[k] for k in kept), unknowns
     raise SceneError(undetermined(balances, wanted))
-
-
-def _plainness(row: Row) -> tuple[int, int]:
-    return len(row.holds), len(row.balance.bodies)
 
 
 def _sets(rows: Sequence[Row], wanted: frozenset[int], count: int) -> Iterator[frozenset[int]]:
@@ -94,7 +96,12 @@ def _joint(balances: Balances, k: int) -> list[int]:
 def unbalanced(balances: Balances) -> tuple[Row, ...]:
     """Return the balances that hold no unknown and yet do not vanish, plainest first."""
     found = [row for row in balances.rows if not row.holds]
-    return tuple(sorted(found, key=lambda row: len(row.balance.bodies)))
+    return tuple(
+        sorted(
+            found,
+            key=lambda row: (len(row.balance.bodies), balances.carried_vectors(row.balance)),
+        )
+    )
 
 
 def contradiction(balances: Balances) -> str:

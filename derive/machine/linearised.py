@@ -36,7 +36,7 @@ def linearised(machine: Machine, balances: Balances) -> dict[str, Matrix]:
         raise SceneError(f"no balance holds '{sheet.label(missing[0])}'; "
                          "nothing that has mass moves with it")  # fmt: skip
     rows, held = chosen(balances, frozenset(every.index(a) for a in accelerations))
-    written = [balances.written(row.balance) for row in rows]
+    written = [balances.written(row) for row in rows]
     reactions = [every[k] for k in sorted(held) if every[k] not in accelerations]
     base = {sheet.symbols[n]: balances.frames.words.expression(f) for n, f in machine.about.items()}
     velocities = [sheet.symbols[m.rate.name] if isinstance(m.rate, Input) else

@@ -92,6 +92,29 @@ def _stands_in(question: Question, words: Words, taken: Mapping[Symbol, Expr]) -
     )
 
 
+def without_factors(question: Question, words: Words) -> Question:
+    """Return a question of what vanishes without the symbols that only multiply it.
+
+    A factor moves no root: with it and without it the answers at two points are in one ratio.
+    """
+    taken: dict[Symbol, Expr] = {}
+    for symbol in sorted(question.arguments(), key=str):
+        if _is_factor(question, words, symbol):
+            taken[symbol] = Integer(1)
+    return substituted(question, taken)
+
+
+def _is_factor(question: Question, words: Words, symbol: Symbol) -> bool:
+    here, there = (_answers(question, words, n, {symbol: mpf(2)}) for n in range(POINTS))
+    once, twice = (_answers(question, words, n, {symbol: mpf(3)}) for n in range(POINTS))
+    if here is None or there is None or once is None or twice is None:
+        return False
+    with mp.workdps(DIGITS):
+        left = [a * d for a, d in zip(here, twice, strict=True)]
+        right = [b * c for b, c in zip(there, once, strict=True)]
+    return _same(left, right)
+
+
 def names(sheet: Sheet, symbols: tuple[Symbol, ...]) -> tuple[str, ...]:
     """Return what symbols are called."""
     return tuple(sheet.label(s) for s in symbols)

@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import prod
 
-from sympy import Expr, Integer, Symbol
+from sympy import Add, Expr, Integer, Mul, Pow, Symbol
 
 from derive.draft import Arrangement, Stage
 from derive.machine.answers import Answers
@@ -18,6 +19,9 @@ from derive.scene import Machine, SceneError
 from derive.specialise import Specialised
 from derive.truth import Truth
 from derive.vocabulary import Vocabulary
+
+
+MANY_TERMS = 10  # a named quantity of more terms is not multiplied out by its users
 
 
 @dataclass
@@ -80,13 +84,35 @@ def truth(known: Mechanism, base: str) -> Truth:
 def arrange(known: Mechanism, fact: Truth) -> tuple[Arrangement, ...]:
     """Return the way to compute the outputs of ``fact``."""
     question = known.lean(fact.name).question
-    stages = [Stage("let", s, value) for s, value in question.definitions.items()]
+    stages = staged(question)
     if question.rows:
         probe = point(known.made, 0)
         probe.define(question.definitions)
         stages += solved(question.rows, question.unknowns, known.made.sheet.split, probe).stages
     outputs = tuple(question.answers.values())
     return (Arrangement(tuple(stages), outputs),)
+
+
+def staged(question: Question) -> list[Stage]:
+    """Return the named quantities as stages; one that would multiply out to much is cut off."""
+    sizes: dict[Symbol, int] = {}
+    stages = []
+    for symbol, value in question.definitions.items():
+        size = _terms(value, sizes)
+        sizes[symbol] = 1 if size > MANY_TERMS else size
+        stages.append(Stage("cut" if size > MANY_TERMS else "let", symbol, value))
+    return stages
+
+
+def _terms(e: Expr, sizes: Mapping[Symbol, int]) -> int:
+    """Return how many terms an expression has when it is multiplied out."""
+    if isinstance(e, Add):
+        return sum(_terms(part, sizes) for part in e.args)
+    if isinstance(e, Mul):
+        return prod(_terms(part, sizes) for part in e.args)
+    if isinstance(e, Pow) and e.exp.is_Integer and e.exp > 0:
+        return _terms(e.base, sizes) ** min(int(e.exp), 4)
+    return sizes.get(e, 1)
 
 
 def dropped(known: Mechanism, base: str) -> Mapping[str, tuple[str, ...]]:

@@ -10,7 +10,7 @@ from random import Random
 from typing import Any
 
 from mpmath import mp, mpf
-from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, sin, tan
+from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, pi, sin, tan
 
 from derive.machine.words import Words
 from derive.program import Quantity
@@ -39,6 +39,8 @@ class Probe:
 
     def _valued(self, e: Expr) -> Any:
         with mp.workdps(DIGITS):
+            if e is pi:
+                return +mp.pi
             match e:
                 case Rational():
                     return mpf(int(e.p)) / int(e.q)

@@ -28,7 +28,7 @@ class Sheet:
     def symbol(self, name: str) -> Symbol:
         """Return the symbol of a name, a new one if there is none yet."""
         if name not in self.symbols:
-            self.symbols[name] = Symbol(f"s{len(self.symbols):04d}", real=True)
+            self.symbols[name] = Symbol(f"s{len(self.symbols):04d}")
         return self.symbols[name]
 
     def named(self, label: str, value: Expr) -> Expr:

@@ -55,7 +55,11 @@ def words(machine: Machine) -> Words:
     outputs = tuple(_outputs(machine))
     every = (*parameters, *states, *inputs, *outputs)
     names = dict.fromkeys(c for q in every for c in q.components)
-    symbols = {name: Symbol(f"s{place:04d}", real=True) for place, name in enumerate(names)}
+    above = {c for q in every for c in q.components if q.low is not None and q.low > 0}
+    symbols = {
+        name: Symbol(f"s{place:04d}", positive=True) if name in above else Symbol(f"s{place:04d}")
+        for place, name in enumerate(names)
+    }
     book = Vocabulary(parameters, states, inputs, outputs, numbers, symbols)
     unknowns = {u.name for u in machine.unknowns} | {m.unknown for m in machine.moving if m.free}
     rateless = {symbols[m.name]: f"the rate of input '{m.name}' is not known"

@@ -84,7 +84,24 @@ def _answers(scalars: Scalars, unknowns: tuple[Unknown, ...]) -> dict[str, Dimen
     found = dict(unknown_units(unknowns)) | unknown_rates(scalars)
     found |= dict.fromkeys(ENERGIES, dimension("J"))
     momentum = dimension("kg m^2/s")
+    found |= _entries(scalars)
     return found | {f"angular_momentum_{axis}": momentum for axis in AXES}
+
+
+def _entries(scalars: Scalars) -> dict[str, Dimension]:
+    """Return the entries of the matrices of small motion, each with its dimension.
+
+    Entries stand for forces or moments; of one kind alone they are told apart by nothing else.
+    """
+    free = [m for m in (*scalars.coordinates, *scalars.speeds) if m.free]
+    inertia = {"rad": "kg m^2", "rad/s": "kg m^2", "m": "kg", "m/s": "kg"}
+    found = {}
+    for name, per in (("mass", 0), ("damping", 1), ("stiffness", 2)):
+        for i in range(len(free)):
+            for k, m in enumerate(free):
+                unit = dimension(inertia[m.unit])
+                found[f"{name}_matrix_{i + 1}_{k + 1}"] = (unit[0], unit[1], unit[2] - per)
+    return found
 
 
 def _results(

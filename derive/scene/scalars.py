@@ -165,7 +165,7 @@ def _input(name: str, given: Table) -> Moving:
 
 def places(scalars: Scalars) -> Scope:
     """Return the scope of where things are: parameters and coordinates."""
-    known = {p.name: dimension(p.unit) for p in scalars.parameters}
+    known = {"pi": NONE} | {p.name: dimension(p.unit) for p in scalars.parameters}
     known |= {c.name: dimension(c.unit) for c in scalars.coordinates}
     others = {m.name: f"{'an' if m.kind == 'input' else 'a'} {m.kind}"
               for m in (*scalars.speeds, *scalars.inputs)}  # fmt: skip
