@@ -114,13 +114,21 @@ def _summed(
         for atom, power in part.factors:
             factor = known[atom]
             product = product * (factor.value if power == 1 else factor.value**power)
-            size *= factor.scale**power
+            size *= _power_scale(factor, power, arithmetic)
         total, largest = total + product, max(largest, size)
         for place, (atom, _) in enumerate(part.factors):
             if known[atom].slopes:
                 partial = _partial(part, place, known, coefficients)
                 _add_slopes(slopes, known[atom].slopes, *partial)
     return Known(total, largest, slopes)
+
+
+def _power_scale(factor: Known, power: int, arithmetic: Arithmetic) -> float:
+    """Return the size of a power; a quotient magnifies what its divisor has lost."""
+    if power > 0:
+        return factor.scale**power
+    size = arithmetic["size"](factor.value) or factor.scale
+    return float(size ** (power - 1) * factor.scale)
 
 
 def _partial(

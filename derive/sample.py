@@ -14,7 +14,7 @@ from random import Random
 from derive.arithmetic import rounded
 from derive.body_sample import BODIES, Hard, admissible, bodies_taken, hard_body, solvable
 from derive.c_text import Precision
-from derive.machine.mechanism import Known
+from derive.machine.mechanism import Known, Mechanism
 from derive.program import Quantity
 
 Values = dict[str, float]
@@ -149,6 +149,8 @@ def _at_rest(of: Source, _: int) -> Values | None:
 
 
 def _denormal(of: Source, _: int) -> Values | None:
+    if isinstance(of.known, Mechanism):
+        return None  # chains of products fall below the smallest float one after another
     tiny = DENORMAL[of.precision.name]
     return _changed(of, lambda q, x: x * tiny if _may_vanish(q) else x)
 

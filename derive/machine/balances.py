@@ -135,7 +135,7 @@ class Balances:
     def _frames_of(self, bodies: tuple[str, ...]) -> list[str]:
         """Return the frames whose axes and origins are near at hand for these bodies."""
         own = [self.efforts[b].frame for b in bodies]
-        found = dict.fromkeys(own)
+        found = dict.fromkeys([*own, *(self.efforts[b].centre[0] for b in bodies)])
         found |= dict.fromkeys(w.along for w in self.wrenches if w.body in bodies)
         found |= dict.fromkeys(w.point[0] for w in self.wrenches if w.body in bodies)
         for name in [*found]:
@@ -187,7 +187,7 @@ class Balances:
         total: Expr = Integer(0)
         for body in balance.bodies:
             own = self.efforts[body]
-            force = frames.carried(own.force, own.frame, balance.frame)
+            force = frames.carried(own.force, own.centre[0], balance.frame)
             vector = force
             if balance.kind == "moment":
                 vector = frames.carried(own.moment, own.frame, balance.frame)
@@ -202,7 +202,8 @@ class Balances:
 
     def carried_vectors(self, balance: Balance) -> int:
         """Return how many vectors must be carried to other axes to write a balance."""
-        own = [self.efforts[b].frame for b in balance.bodies]
+        own = [f for b in balance.bodies for f in (self.efforts[b].frame,
+                                                   self.efforts[b].centre[0])]  # fmt: skip
         own += [w.along for w in self.wrenches if w.body in balance.bodies]
         return sum(frame != balance.frame for frame in own)
 
@@ -281,7 +282,7 @@ class Valued:
     def force(self, bodies: tuple[str, ...]) -> Array:
         """Return mass times acceleration less the forces."""
         b = self.balances
-        total = sum(self.linear(b.efforts[n].force, b.efforts[n].frame) for n in bodies)
+        total = sum(self.linear(b.efforts[n].force, b.efforts[n].centre[0]) for n in bodies)
         return total - sum((self._acting(k)[0] for k in self._on(bodies)), 0 * total)
 
     def moment(self, bodies: tuple[str, ...], place: Point) -> Array:
@@ -292,7 +293,7 @@ class Valued:
             own = b.efforts[n]
             arm = self.place(own.centre) - here
             total = total + self.linear(own.moment, own.frame)
-            total = total + _crossed(arm, self.linear(own.force, own.frame))
+            total = total + _crossed(arm, self.linear(own.force, own.centre[0]))
         for k in self._on(bodies):
             force, couple = self._acting(k)
             total = total - couple - self._crossed_at(k, here, force)

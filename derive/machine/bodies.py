@@ -12,7 +12,10 @@ from derive.specialise import stated
 
 @dataclass(frozen=True)
 class Effort:
-    """Mass times acceleration and rate of angular momentum about G, along the body's own axes."""
+    """Mass times acceleration of G along one frame, rate of angular momentum along another.
+
+    centre : G, in the frame along which the force is written
+    """
 
     body: str
     frame: str
@@ -46,12 +49,23 @@ def centre(frames: Frames, body: str) -> Point:
 
 def effort(frames: Frames, body: str) -> Effort:
     """Return what the motion of ``body`` needs, by the general form and the motion of G."""
-    sheet, own = frames.sheet, frames.own(body)
-    place = centre(frames, body)
-    a_G = frames.acceleration[own] + frames.acceleration_seen(own, place[1])
+    sheet = frames.sheet
+    name, at = attached(frames, centre(frames, body))
+    a_G = frames.acceleration[name] + frames.acceleration_seen(name, at)
     a_G = sheet.column(f"{body}.a_G", a_G)
     force = stated("mass_centre_motion", {"m": mass(frames, body), "a_G": a_G})
-    return Effort(body, own, place, sheet.column(f"{body}.F", force), moment(frames, body))
+    force = sheet.column(f"{body}.F", force)
+    return Effort(body, frames.own(body), (name, at), force, moment(frames, body))
+
+
+def attached(frames: Frames, place: Point) -> Point:
+    """Return a point in the first frame of the chain that carries it at a place of its own."""
+    name, at = place
+    while frames.fixed_in_parent(name):
+        frame = frames.each[name]
+        at = frames.words.column(frame.origin) + frames.carried(at, name, frame.parent)
+        name = frame.parent
+    return name, at
 
 
 def moment(frames: Frames, body: str) -> Matrix:

@@ -150,6 +150,16 @@ class Frames:
         }
         return stated("acceleration_seen_from_axes", known)
 
+    def fixed_in_parent(self, name: str) -> bool:
+        """Tell whether a frame keeps its place and its axes in its parent."""
+        frame = self.each[name]
+        if name == INERTIAL or frame.parent == INERTIAL:
+            return False
+        moves = (frame.angular_velocity, frame.velocity, frame.acceleration, frame.rolls)
+        given = (*(t.angle for t in frame.turned), *frame.origin)
+        still = all(self.sheet.rate(self.words.expression(f)) == 0 for f in given)
+        return all(m is None for m in moves) and still
+
     def own(self, body: str) -> str:
         """Return the frame of a body's own axes."""
         member = self.machine.body(body)

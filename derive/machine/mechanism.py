@@ -130,3 +130,10 @@ def dropped(known: Mechanism, base: str) -> Mapping[str, tuple[str, ...]]:
         "never enters": tuple(c for c in every if c not in used),
         "unknowns left out": tuple(unasked),
     }
+
+
+def depends_on(known: Mechanism, base: str) -> tuple[str, ...]:
+    """Return the parameters, states and inputs that the answers of a function change with."""
+    used = {known.made.sheet.label(s) for s in known.lean(base).question.arguments()}
+    every = (*known.words.parameters, *known.words.states, *known.words.inputs)
+    return tuple(c for q in every for c in q.components if c in used)
