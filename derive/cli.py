@@ -23,6 +23,8 @@ from derive.lecture import LECTURE
 from derive.notation import expression_text
 from derive.prove import ProofError
 from derive.scene import SceneError, catalogue, load
+from derive.solve.command import options as solve_options
+from derive.solve.command import solved
 from derive.step import first_fall, verify
 
 OUT = Path("generated")
@@ -72,6 +74,9 @@ def parser() -> argparse.ArgumentParser:
     _bench_options(
         commands.add_parser("bench", help="compare cost and error with peers, in one run")
     )
+    answers = commands.add_parser("solve", help="evaluate the answers of a scene, roots included")
+    solve_options(answers)
+    answers.set_defaults(run=solve)
     scenes = commands.add_parser("scenes", help="list the catalogue")
     scenes.set_defaults(run=list_scenes)
     return top
@@ -132,6 +137,15 @@ def list_scenes(_: argparse.Namespace) -> int:
     for name in catalogue():
         scene = load(name)
         table.add_row(name, scene.title, ", ".join(scene.wanted))
+    console.print(table)
+    return 0
+
+
+def solve(options: argparse.Namespace) -> int:
+    """Print the answers of a scene with their units."""
+    table = Table("function", "answer", "value", "unit", box=None)
+    for row in solved(options):
+        table.add_row(*row)
     console.print(table)
     return 0
 

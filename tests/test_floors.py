@@ -20,7 +20,7 @@ FLOORS = (
     ("library",),
     ("c_text", "comment", "signature", "example", "emit", "casadi_text", "manifest", "page"),
     ("blocks", "equations", "reference", "body_sample", "sample", "prove", "measure"),
-    ("files", "generation", "check", "bench"),
+    ("files", "generation", "check", "bench", "solve"),
     ("cli", "__main__"),
 )
 WITHOUT_SYMPY = (

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sympy import Expr, Integer, Matrix, Symbol
 
 from derive.machine.bodies import Effort, effort
-from derive.machine.frames import ZERO, Frames, Point
+from derive.machine.frames import ZERO, Frames, Parts, Point
 from derive.machine.loads import Wrench, wrenches
 from derive.machine.probe import DIGITS, NOTHING, POINTS, Probe, point
 from derive.motion import unit_vector
@@ -86,7 +86,8 @@ class Balances:
         """Return the unknowns in order of their names' places."""
         used: set[Symbol] = set()
         for e in self.efforts.values():
-            used |= e.force.free_symbols | e.moment.free_symbols
+            used |= e.moment.free_symbols
+            used |= {s for part in e.force.values() for s in part.free_symbols}
         for w in self.wrenches:
             used |= w.force.free_symbols | w.couple.free_symbols
         return tuple(sorted(used & self.frames.sheet.unknowns, key=str))
@@ -135,7 +136,7 @@ class Balances:
     def _frames_of(self, bodies: tuple[str, ...]) -> list[str]:
         """Return the frames whose axes and origins are near at hand for these bodies."""
         own = [self.efforts[b].frame for b in bodies]
-        found = dict.fromkeys([*own, *(self.efforts[b].centre[0] for b in bodies)])
+        found = dict.fromkeys([*own, *(name for b in bodies for name in self.efforts[b].force)])
         found |= dict.fromkeys(w.along for w in self.wrenches if w.body in bodies)
         found |= dict.fromkeys(w.point[0] for w in self.wrenches if w.body in bodies)
         for name in [*found]:
@@ -187,7 +188,8 @@ class Balances:
         total: Expr = Integer(0)
         for body in balance.bodies:
             own = self.efforts[body]
-            force = frames.carried(own.force, own.centre[0], balance.frame)
+            force = sum((frames.carried(part, name, balance.frame)
+                         for name, part in own.force.items()), ZERO)  # fmt: skip
             vector = force
             if balance.kind == "moment":
                 vector = frames.carried(own.moment, own.frame, balance.frame)
@@ -202,8 +204,7 @@ class Balances:
 
     def carried_vectors(self, balance: Balance) -> int:
         """Return how many vectors must be carried to other axes to write a balance."""
-        own = [f for b in balance.bodies for f in (self.efforts[b].frame,
-                                                   self.efforts[b].centre[0])]  # fmt: skip
+        own = [f for b in balance.bodies for f in (self.efforts[b].frame, *self.efforts[b].force)]
         own += [w.along for w in self.wrenches if w.body in balance.bodies]
         return sum(frame != balance.frame for frame in own)
 
@@ -266,6 +267,11 @@ class Valued:
                 table[i, 1 + self.balances.unknowns.index(u)] = self.probe.value(slope)
         return self.rotation(frame) @ table
 
+    def parts(self, vector: Parts) -> Array:
+        """Return a vector that is a sum of parts along several frames."""
+        nothing = self.linear(ZERO, INERTIAL)
+        return sum((self.linear(part, name) for name, part in vector.items()), nothing)
+
     def place(self, place: Point) -> Array:
         """Return where a point is from the origin of the topmost frame that it is placed in."""
         frames = self.balances.frames
@@ -282,7 +288,7 @@ class Valued:
     def force(self, bodies: tuple[str, ...]) -> Array:
         """Return mass times acceleration less the forces."""
         b = self.balances
-        total = sum(self.linear(b.efforts[n].force, b.efforts[n].centre[0]) for n in bodies)
+        total = sum(self.parts(b.efforts[n].force) for n in bodies)
         return total - sum((self._acting(k)[0] for k in self._on(bodies)), 0 * total)
 
     def moment(self, bodies: tuple[str, ...], place: Point) -> Array:
@@ -293,7 +299,7 @@ class Valued:
             own = b.efforts[n]
             arm = self.place(own.centre) - here
             total = total + self.linear(own.moment, own.frame)
-            total = total + _crossed(arm, self.linear(own.force, own.centre[0]))
+            total = total + _crossed(arm, self.parts(own.force))
         for k in self._on(bodies):
             force, couple = self._acting(k)
             total = total - couple - self._crossed_at(k, here, force)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from sympy import Expr, Matrix, zeros
 
-from derive.machine.frames import ZERO, Frames, Point
+from derive.machine.frames import ZERO, Frames, Parts, Point
 from derive.machine.words import inertia_name, mass_name
 from derive.motion import reduced
 from derive.specialise import stated
@@ -12,15 +12,15 @@ from derive.specialise import stated
 
 @dataclass(frozen=True)
 class Effort:
-    """Mass times acceleration of G along one frame, rate of angular momentum along another.
+    """Mass times acceleration of G, in parts, and rate of angular momentum about G along a frame.
 
-    centre : G, in the frame along which the force is written
+    centre : G, in the first frame that carries it
     """
 
     body: str
     frame: str
     centre: Point
-    force: Matrix
+    force: Parts
     moment: Matrix
 
 
@@ -51,10 +51,12 @@ def effort(frames: Frames, body: str) -> Effort:
     """Return what the motion of ``body`` needs, by the general form and the motion of G."""
     sheet = frames.sheet
     name, at = attached(frames, centre(frames, body))
-    a_G = frames.acceleration[name] + frames.acceleration_seen(name, at)
-    a_G = sheet.column(f"{body}.a_G", a_G)
-    force = stated("mass_centre_motion", {"m": mass(frames, body), "a_G": a_G})
-    force = sheet.column(f"{body}.F", force)
+    force: dict[str, Matrix] = {}
+    for part, a_G in frames.accelerated(name, at, frames.acceleration[name]).items():
+        if not frames.linked(part, frames.own(body)):
+            frames.carried(a_G, part, frames.own(body))
+        known = {"m": mass(frames, body), "a_G": sheet.column(f"{body}.a_G", a_G)}
+        force[part] = sheet.column(f"{body}.F", stated("mass_centre_motion", known))
     return Effort(body, frames.own(body), (name, at), force, moment(frames, body))
 
 

@@ -15,6 +15,7 @@ from derive.specialise import stated
 
 ZERO = zeros(3, 1)
 Point = tuple[str, Matrix]
+Parts = Mapping[str, Matrix]  # a vector as a sum of columns, each along the axes of a frame
 
 
 @dataclass
@@ -118,25 +119,31 @@ class Frames:
         return -stated("velocity_of_particle", known)
 
     @cached_property
-    def acceleration(self) -> Mapping[str, Matrix]:
-        """Return the acceleration of every frame's origin in the inertial frame."""
-        found: dict[str, Matrix] = {INERTIAL: ZERO}
+    def acceleration(self) -> Mapping[str, Parts]:
+        """Return the acceleration of every frame's origin, each part along its own axes."""
+        found: dict[str, Parts] = {INERTIAL: {}}
         for name, frame in self.each.items():
             if name != INERTIAL:
-                found[name] = self.sheet.column(f"{name}.a", self._accelerated(frame, found))
+                found[name] = self._accelerated(frame, found)
         return found
 
-    def _accelerated(self, frame: Frame, found: Mapping[str, Matrix]) -> Matrix:
+    def _accelerated(self, frame: Frame, found: Mapping[str, Parts]) -> Parts:
         name = frame.name
         if frame.acceleration is not None:
-            return self.words.column(frame.acceleration)
+            return {name: self.words.column(frame.acceleration)}
         if frame.velocity is not None or frame.rolls is not None:
             v = self.velocity(name)
             known = {"any": v, "any_dot": self.sheet.rate_of_column(v), "Omega": self.Omega[name]}
-            return transported(known)
+            return {name: self.sheet.column(f"{name}.a", transported(known))}
         offset = self.words.column(frame.origin)
-        here = found[frame.parent] + self.acceleration_seen(frame.parent, offset)
-        return self.carried(here, frame.parent, name)
+        return self.accelerated(frame.parent, offset, found[frame.parent])
+
+    def accelerated(self, name: str, offset: Matrix, origin: Parts) -> Parts:
+        """Return the acceleration of a point placed in a frame, by that of the frame's origin."""
+        own = self.sheet.column(f"{name}.a_seen", self.acceleration_seen(name, offset))
+        if own == ZERO:
+            return origin
+        return dict(origin) | {name: origin.get(name, ZERO) + own}
 
     def acceleration_seen(self, name: str, offset: Matrix) -> Matrix:
         """Return the acceleration, relative to a frame's origin, of a point placed in it."""
