@@ -26,8 +26,8 @@ from tests.machines.expected import (
 )
 
 DOUBLE, FLOAT = 1e-9, 2e-5  # the relative differences that are allowed
-TOO_LARGE_FOR_PAIRS = ("chandler_rigid_earth",)
-"""8e37 kg m^2 times the splitter 4097 is beyond the largest float, and set-up splits."""
+EARTH_UNIT = 1e38
+"""8e37 kg m^2 times the splitter 4097 is beyond the largest float; only a ratio matters."""
 ZERO = 1e-12  # an expected zero, beside terms of size one thousand
 
 
@@ -80,10 +80,11 @@ def test_casadi_gives_every_expected_number(case: Case) -> None:
 def test_compiled_c_gives_every_expected_number(case: Case, emitted: Built) -> None:
     for one in emitted.of(case.scene):
         allowed = DOUBLE if one.precision.name == "f64" else FLOAT
-        if one.precision.name == "f32" and case.scene in TOO_LARGE_FOR_PAIRS:
-            continue
+        values = case.values
+        if one.precision.name == "f32" and case.scene == "chandler_rigid_earth":
+            values = values | {name: values[name] / EARTH_UNIT for name in "AC"}
         for answer in case.answers:
-            found = c_answers(one, answer.function, case.values)[answer.component]
+            found = c_answers(one, answer.function, values)[answer.component]
             assert close(answer.made(found), case.expected(answer.expected), allowed), answer
 
 
