@@ -106,6 +106,8 @@ def working(dtype: type) -> Table:
         **_CHOICES,
         "pi": lambda: rounded(PI, dtype),
         "power_of_two": lambda x: power_of_two(x, dtype),
+        "unit_roundoff": lambda: dtype(2.0 ** -MANTISSA[dtype]),
+        "splitter": lambda: dtype(splitter(MANTISSA[dtype])),
     }
 
 
@@ -125,6 +127,11 @@ def power_of_two(x: Any, dtype: type) -> Any:
     p = MANTISSA[dtype]
     q = dtype(2.0 ** (p - 1) + 1.0) * x
     return q - dtype(1.0 - 2.0**-p) * q
+
+
+def splitter(bits: int) -> int:
+    """Return the number that splits a float of so many bits into halves (Veltkamp)."""
+    return (1 << (bits + 1) // 2) + 1
 
 
 def two_sum(a: Any, b: Any) -> Pair:
@@ -195,7 +202,7 @@ def _pair_select(condition: Any, yes: Pair, no: Pair) -> Pair:
 
 def extended(dtype: type) -> Table:
     """Return the arithmetic of pairs of ``dtype``, vectorised over samples."""
-    factor = dtype(2.0 ** ((MANTISSA[dtype] + 1) // 2) + 1.0)
+    factor = dtype(splitter(MANTISSA[dtype]))
     base = working(dtype)
 
     def number(q: Fraction) -> Pair:

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from derive.arithmetic import TRUTHS, rounded
+from derive.arithmetic import PI, TRUTHS, rounded, splitter
 from derive.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
 
 
@@ -112,9 +112,7 @@ def written(
 def _loop(
     loop: Repeat, one: Callable[[Op], str], text: Callable[[Operand], str], kind: str
 ) -> list[str]:
-    begin = [
-        f"{kind} {c} = {text(s)};" for c, s in zip(loop.carried, loop.start, strict=True)
-    ]
+    begin = [f"{kind} {c} = {text(s)};" for c, s in zip(loop.carried, loop.start, strict=True)]
     kept = {c: f"{c}_then" for c in loop.carried if c in loop.then}
     after = [f"const {kind} {name} = {c};" for c, name in kept.items()]
     after += [
@@ -137,18 +135,32 @@ def _operation(op: Op, text: Callable[[Operand], str], precision: Precision) -> 
         return f"-{operands[0]}"
     if op.operator == "select":
         return f"{operands[0]} ? {operands[1]} : {operands[2]}"
-    if op.operator == "pi":
-        return literal(Fraction(np.pi), precision)
+    if not op.operands:
+        return literal(machine_number(op.operator, precision), precision)
     if op.operator == "power_of_two":
         return _power_of_two(operands[0], precision)
     return f"{precision.functions[op.operator]}({', '.join(operands)})"
 
 
+def machine_number(operator: str, precision: Precision) -> Fraction:
+    """Return a number that depends on the precision alone: pi, u, or what splits a float."""
+    numbers = {
+        "pi": PI,
+        "unit_roundoff": Fraction(1, 2**precision.bits),
+        "splitter": Fraction(splitter(precision.bits)),
+    }
+    return numbers[operator]
+
+
 def _power_of_two(x: str, precision: Precision) -> str:
-    """Return the expression of a power of two near x, by float operations only (Rump)."""
-    top = literal(Fraction(2 ** (precision.bits - 1) + 1), precision)
-    less = literal(1 - Fraction(1, 2**precision.bits), precision)
-    return f"{top} * {x} - {less} * ({top} * {x})"
+    """Return the expression of a power of two near x, by float operations only (Rump).
+
+    Every product is one with a power of two, so that fused operations give the same.
+    """
+    top = literal(Fraction(2 ** (precision.bits - 1)), precision)
+    u = literal(Fraction(1, 2**precision.bits), precision)
+    q = f"({top} * {x} + {x})"
+    return f"{q} - ({q} - {u} * {q})"
 
 
 def _stores(program: Program, text: Callable[[Operand], str], precision: Precision) -> list[str]:

@@ -4,10 +4,12 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 from derive.arithmetic import rounded
-from derive.c_text import F64
+from derive.c_text import F64, machine_number
 from derive.emit import TEMPLATES, first_line
+from derive.flows.series import Series
 from derive.library import Library
 from derive.program import Line, Op, Operand, Program, Quantity, Repeat
+from derive.series_text import series_casadi
 
 Text = Callable[[Operand], str]
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/", "less": "<", "at_most": "<="}
@@ -23,8 +25,8 @@ def casadi_file(library: Library) -> str:
         title=library.known.scene.title,
         scene=name,
         setup=_setup(library.setup, name) if has_setup else None,
-        pairs=has_setup or any(p.arithmetic == "pairs" for p in library.functions),
-        functions=[_function(p, name) for p in library.functions],
+        pairs=has_setup or any(p.arithmetic == "pairs" for p in library.printed()),
+        functions=[_function(p, name) for p in library.printed()],
     )
 
 
@@ -51,9 +53,7 @@ def _pairs(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
     return _written(program.ops, one, text, "_select"), stored
 
 
-def _written(
-    lines: Sequence[Line], one: Callable[[Op], str], text: Text, select: str
-) -> list[str]:
+def _written(lines: Sequence[Line], one: Callable[[Op], str], text: Text, select: str) -> list[str]:
     """Return the Python lines of operations and loops; a loop is unrolled where it is built."""
     found: list[str] = []
     for line in lines:
@@ -95,13 +95,10 @@ def _components(quantities: tuple[Quantity, ...]) -> list[str]:
     return [c for q in quantities for c in q.components]
 
 
-def _plain(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
+def plain_lines(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
     """Return the lines of a program in the working precision, and how to read a result."""
 
-    def text(operand: Operand) -> str:
-        if isinstance(operand, Fraction):
-            return repr(float(rounded(operand, F64.dtype)))
-        return place.get(operand, operand)
+    text = _read(place)
 
     def one(op: Op) -> str:
         return f"{op.result} = {_operation(op, text)}"
@@ -109,9 +106,21 @@ def _plain(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
     return _written(program.ops, one, text, "ca.if_else"), text
 
 
+def _read(place: dict[str, str]) -> Text:
+    def text(operand: Operand) -> str:
+        if isinstance(operand, Fraction):
+            return repr(float(rounded(operand, F64.dtype)))
+        return place.get(operand, operand)
+
+    return text
+
+
 def _function(program: Program, scene: str) -> dict[str, object]:
     place = {c: f"{q.name}[{i}]" for q in program.inputs for i, c in enumerate(q.components)}
-    lines, text = (_pairs if program.arithmetic == "pairs" else _plain)(program, place)
+    if isinstance(program.loops, Series):
+        lines, text = series_casadi(program.loops, _operation), _read(place)
+    else:
+        lines, text = (_pairs if program.arithmetic == "pairs" else plain_lines)(program, place)
     return {
         "builder": program.name,
         "name": f"{scene}_{program.name}",
@@ -129,6 +138,8 @@ def _operation(op: Op, text: Text) -> str:
         return f"{operands[0]} {_INFIX[op.operator]} {operands[1]}"
     if op.operator == "neg":
         return f"-{operands[0]}"
+    if not op.operands:
+        return repr(float(rounded(machine_number(op.operator, F64), F64.dtype)))
     if op.operator == "power_of_two":
         top = f"4503599627370497.0 * {operands[0]}"
         return f"{top} - 0.9999999999999999 * ({top})"

@@ -19,7 +19,8 @@ def comment(program: Program, figures: Sequence[Measurement]) -> str:
         lines += _labelled("Error:", _error(program, figures))
         pairs = " (on pairs of floats)" if program.arithmetic == "pairs" else ""
         lines += _labelled("Cost:", cost(program) + pairs + ".")
-        lines += _labelled("Rests on:", ", ".join(program.assumptions) + ".")
+        if program.assumptions:
+            lines += _labelled("Rests on:", ", ".join(program.assumptions) + ".")
     text = "\n".join(f" * {line}".rstrip() for line in lines)
     return f"/*{text[2:]}\n */" if text.startswith(" *") else text
 
@@ -76,14 +77,23 @@ def _error(program: Program, figures: Sequence[Measurement]) -> str:
     worst = max(own, key=lambda m: m.worst)
     median = max(m.median for m in own)
     return (
-        f"median {median:.2g}, largest {worst.worst:.2g} u of the largest term "
+        f"median {median:.2g}, largest {worst.worst:.2g} u {of_what(program)} "
         f"(sampled: {worst.samples} points, worst at {worst.output}, point {worst.sample})."
     )
+
+
+def of_what(program: Program) -> str:
+    """Return what errors are a part of: of the largest term, or of the largest component.
+
+    Functions without a step of the lecture (motion, attitudes) are measured for rounding alone.
+    """
+    return "of the largest term" if program.steps else "of the largest component, by rounding alone"
 
 
 def cost(program: Program) -> str:
     """Return the operations of a program in words."""
     counts = program.count()
     order = ("add", "sub", "mul", "div", "neg", "sqrt", "sin", "cos")
-    listed = [f"{counts[kind]} {kind}" for kind in order if kind in counts]
+    kinds = (*order, *(kind for kind in counts if kind not in order))
+    listed = [f"{counts[kind]} {kind}" for kind in kinds if kind in counts]
     return ", ".join(listed) or "no operations"

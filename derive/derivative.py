@@ -17,11 +17,12 @@ RULES: dict[str, Rule] = {
     "sin": lambda g, v: (g.call("cos", *v),),
     "cos": lambda g, v: (_minus(g.call("sin", *v)),),
     "sqrt": lambda g, v: (g.mul([g.number(Fraction(1, 2)), g.power(g.call("sqrt", *v), -1)]),),
+    "power_of_two": lambda g, v: (ZERO,),  # noqa: ARG005 - it scales, and goes up in steps
 }
 
 
 def derivative(graph: Graph, value: Value, leaf: Value) -> Value:
-    """Return the partial derivative of ``value`` by an input.
+    """Return the partial derivative of ``value`` by an input, a variable or a parameter.
 
     >>> g = Graph()
     >>> x = g.variable("x")
@@ -29,18 +30,18 @@ def derivative(graph: Graph, value: Value, leaf: Value) -> Value:
     True
     """
     memory: dict[int, Value] = {leaf[1]: (Fraction(1), ONE)}
+    varies = not graph.fixed[leaf[1]]
 
     def visit(node: int) -> Value:
         if node not in memory:
-            memory[node] = _by_rule(graph, node, visit)
+            constant = varies and graph.fixed[node]
+            memory[node] = ZERO if constant else _by_rule(graph, node, visit)
         return memory[node]
 
     return graph.mul([(value[0], ONE), visit(value[1])])
 
 
 def _by_rule(graph: Graph, node: int, visit: Callable[[int], Value]) -> Value:
-    if graph.fixed[node]:
-        return ZERO
     kind, *rest = graph.nodes[node]
     match kind:
         case "sum":

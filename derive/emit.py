@@ -8,17 +8,18 @@ from pathlib import Path
 import jinja2
 
 from derive import __version__
-from derive.arithmetic import PI, rounded
+from derive.arithmetic import PI, rounded, splitter
 from derive.c_text import (
+    MATH,
     PRECISIONS,
     Precision,
     admissible,
-    body,
     literal,
     pair_body,
     pair_functions,
 )
 from derive.comment import comment
+from derive.definition import definition
 from derive.example import example
 from derive.library import Library
 from derive.program import Measurement, Program
@@ -97,7 +98,7 @@ def _header(
     digest: str,
 ) -> str:
     has_setup = bool(library.constants)
-    functions = ([library.setup] if has_setup else []) + list(library.functions)
+    functions = ([library.setup] if has_setup else []) + list(library.printed())
     described = []
     for program in functions:
         described.append(
@@ -130,7 +131,7 @@ def _header(
 def _source(library: Library, names: Names, precision: Precision) -> str:
     has_setup = bool(library.constants)
     programs = [library.setup] if has_setup else []
-    pairs = pair_functions(p for p in (*programs, *library.functions) if works_in_pairs(p))
+    pairs = pair_functions(p for p in (*programs, *library.printed()) if works_in_pairs(p))
     return TEMPLATES.get_template("source.c.jinja").render(
         first_line=f"/* {first_line(library)}",
         header=names.file(precision, "h"),
@@ -149,12 +150,8 @@ def _source(library: Library, names: Names, precision: Precision) -> str:
 
 def _definitions(library: Library, names: Names, precision: Precision) -> list[dict[str, str]]:
     found = []
-    for program in library.functions:
-        written = (
-            pair_body(program, names.scene, precision)
-            if works_in_pairs(program)
-            else body(program, precision)
-        )
+    for program in library.printed():
+        written = definition(program, names.scene, precision)
         lines = "\n".join(f"    {line}" for line in written)
         text = f"{prototype(program, names, precision)}\n{{\n{lines}\n}}"
         found.append({"says": program.says, "definition": text})
@@ -170,13 +167,12 @@ def works_in_pairs(program: Program) -> bool:
 
 
 def _uses_math(library: Library) -> bool:
-    programs = (library.setup, *library.functions)
-    return any(op.operator in ("sin", "cos", "sqrt") for p in programs for op in p.ops)
+    programs = (library.setup, *library.printed())
+    return any(kind in MATH for p in programs for kind in p.count())
 
 
 def _pair_function(name: str, names: Names, precision: Precision) -> str:
     bits = precision.bits
-    split = 2 ** ((bits + 1) // 2) + 1
     pi = Fraction(float(rounded(PI, precision.dtype)))
     return (
         TEMPLATES.get_template(f"pair/{name}.c.jinja")
@@ -186,7 +182,7 @@ def _pair_function(name: str, names: Names, precision: Precision) -> str:
             scalar=precision.scalar,
             pair=f"{names.scene}_pair_{precision.name}",
             zero=literal(Fraction(0), precision),
-            split=literal(Fraction(split), precision),
+            split=literal(Fraction(splitter(bits)), precision),
             top=literal(Fraction(2 ** (bits - 1) + 1), precision),
             one_less=literal(1 - Fraction(1, 2**bits), precision),
             pi_high=literal(pi, precision),

@@ -10,7 +10,7 @@ from derive.signature import Names
 
 def example(library: Library, names: Names, precision: Precision) -> list[str]:
     """Return a few lines of C that use the first function."""
-    program = library.functions[0]
+    program = library.printed()[0]
     lines = []
     if any(q.name == "constants" for q in program.inputs):
         given = ", ".join(literal(_middle(q), precision) for q in library.setup.inputs)

@@ -89,8 +89,27 @@ def best_with_jacobian(
 ) -> tuple[list[Value], list[list[Value]]]:
     """Return the cheapest values and Jacobian rows of ``block``.
 
+    Derivatives by parameters have no say in the choice: there are many, mostly made in set-up.
+
     shared : values that are computed anyway, which both may use
     """
+    leaves = [leaf for quantity in block.inputs for leaf in quantity]
+    varying = tuple(q for q in block.inputs if not all(graph.fixed[node] for _, node in q))
+    values, rows = _best_by_varying(graph, Block(block.values, varying), shared)
+    if len(varying) == len(block.inputs):
+        return values, rows
+    own = [leaf for quantity in varying for leaf in quantity]
+    fixed = [leaf for leaf in leaves if leaf not in own]
+    more = jacobian(graph, values, fixed)
+    by_leaf = [
+        dict(zip((*own, *fixed), (*a, *b), strict=True)) for a, b in zip(rows, more, strict=True)
+    ]
+    return values, [[row[leaf] for leaf in leaves] for row in by_leaf]
+
+
+def _best_by_varying(
+    graph: Graph, block: Block, shared: Sequence[Value]
+) -> tuple[list[Value], list[list[Value]]]:
     leaves = [leaf for quantity in block.inputs for leaf in quantity]
     forms = value_forms(graph, block)
     jacobians = _cheapest(graph, [jacobian(graph, form, leaves) for form in forms])

@@ -8,6 +8,7 @@ from math import isfinite
 from derive.files import scene_files
 from derive.library import Library, library
 from derive.measure import figures
+from derive.motion_error import moving_figures
 from derive.page import lecture_page
 from derive.program import Measurement
 from derive.prove import prove
@@ -41,7 +42,7 @@ def made(source: str) -> Made:
     scene = load(source)
     programs = library(scene)
     prove(programs)
-    measured = figures(programs)
+    measured = figures(programs) + moving_figures(programs)
     _finite(scene.name, measured)
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in scene.warnings)
     return Made(scene_files(programs, measured), warnings, cost_rows(programs, measured))
@@ -67,7 +68,7 @@ def cost_rows(programs: Library, measured: Sequence[Measurement]) -> tuple[CostR
     name = programs.known.scene.name
     return tuple(
         CostRow(name, p.name, p.flops(), p.count().get("div", 0), _errors(p.name, measured))
-        for p in programs.functions
+        for p in programs.printed()
     )
 
 

@@ -8,14 +8,17 @@ from sympy import Symbol
 
 from derive.arrange import arrange
 from derive.draft import Arrangement
+from derive.flows.series import Series
 from derive.forms import Block, best_values, best_with_jacobian, cost
 from derive.graph import Graph, Value
 from derive.lecture import LECTURE
-from derive.lower import lower
+from derive.lower import lower, value_of
 from derive.machine import mechanism as machines
 from derive.machine.mechanism import Known, Mechanism
-from derive.program import Program, Quantity, Sparsity
+from derive.motions import Moving, motions, needs, traced, with_names
+from derive.program import Program, Quantity, Sparsity, read_by
 from derive.scene import Machine, Scene, SceneError
+from derive.scene.wanted import EQUATIONS, SPLITTINGS, step_of
 from derive.specialise import Specialised, specialise
 from derive.stage import (
     Constant,
@@ -37,16 +40,27 @@ INVERSE = re.compile("J_[xyz][xyz]")
 
 @dataclass(frozen=True)
 class Library:
-    """What a scene's files are printed from."""
+    """What a scene's files are printed from.
+
+    functions : what the lecture states; each satisfies one of the ``truths``
+    rates     : further such functions that ``motions`` rest on and nobody wanted for themselves
+    motions   : what moves the state in time, and formulas for attitudes
+    """
 
     known: Known
     setup: Program
     functions: tuple[Program, ...]
     constants: tuple[Constant, ...]
     truths: Mapping[str, Truth]
+    rates: tuple[Program, ...] = ()
+    motions: tuple[Program, ...] = ()
 
     def __getitem__(self, name: str) -> Program:
-        return next(p for p in (self.setup, *self.functions) if p.name == name)
+        return next(p for p in (self.setup, *self.printed(), *self.rates) if p.name == name)
+
+    def printed(self) -> tuple[Program, ...]:
+        """Return the functions that are emitted: the lecture's, then those that move the state."""
+        return self.functions + self.motions
 
 
 @dataclass(frozen=True)
@@ -64,27 +78,73 @@ def library(scene: Scene | Machine) -> Library:
     graph = Graph()
     leaves = _leaves(graph, known)
     constants = Constants(graph)
-    truths = {base: _truth(known, base) for base in dict.fromkeys(map(_base, scene.wanted))}
+    asked, hidden = _asked(scene)
+    truths = {base: _truth(known, base) for base in dict.fromkeys(map(_base, (*asked, *hidden)))}
     wanted = {base: _wanted(graph, known, fact, leaves) for base, fact in truths.items()}
-    functions = tuple(
-        _with_jacobian(graph, constants, known, wanted[_base(name)], leaves)
+    every = {
+        name: _with_jacobian(graph, constants, known, wanted[_base(name)], leaves)
         if name.endswith(JACOBIAN)
         else _values_only(graph, constants, known, wanted[name])
-        for name in scene.wanted
-    )
-    asked = dict.fromkeys(p for w in wanted.values() for p in w.positive if graph.fixed[p[1]])
-    positive = [p for p in asked if exact_number(graph, p) is None]
-    made = setup(graph, constants, known.words.parameters, positive)
+        for name in (*asked, *hidden)
+    }
+    moving = Moving(known, graph, leaves, every, _moment(graph, constants, known, leaves))
+    moves = motions(moving)
+    taken = {name: _parameter(graph, value) for value, name in constants.names.items()}
+    traced_part, renaming = traced(moving, taken)
+    moves = tuple(with_names(program, renaming) for program in moves)
+    required = dict.fromkeys(p for w in wanted.values() for p in w.positive if graph.fixed[p[1]])
+    positive = [p for p in required if exact_number(graph, p) is None]
+    made = setup(graph, constants, known.words.parameters, positive, traced_part)
     meanings = {name: _meaning(graph, value) for value, name in constants.names.items()}
+    meanings |= {
+        traced_part.names[operand]: says
+        for operand, (_, says) in moving.tape.names.items()
+        if operand in traced_part.names
+    }
+    functions = tuple(every.values())
     if scene.form == "accurate" and made.outputs:
         made = with_low_parts(made)
         meanings |= {f"{name}_low": f"what rounding {name} left" for name in list(meanings)}
-    functions = _in_parameters(made, functions)
+    functions, moves = _in_parameters(made, functions), _in_parameters(made, moves)
     if scene.form == "accurate":
         functions = tuple(in_pairs(f, set(constants.names.values())) for f in functions)
     fields = [c for q in made.outputs for c in q.components]
     named = tuple(Constant(name, meanings[name]) for name in fields)
-    return Library(known, made, functions, named, truths)
+    shown, rates = functions[: len(asked)], functions[len(asked) :]
+    return Library(known, made, shown, named, truths, rates, moves)
+
+
+def _asked(scene: Scene | Machine) -> tuple[list[str], list[str]]:
+    """Return the functions that satisfy equations, and those that only motions rest on."""
+    if isinstance(scene, Machine):
+        return list(scene.wanted), []
+    asked = [name for name in scene.wanted if _base(name) in EQUATIONS]
+    return asked, [name for name in needs(scene) if name not in asked]
+
+
+def _moment(
+    graph: Graph, constants: Constants, known: Known, leaves: Mapping[str, Value]
+) -> Program | None:
+    """Return the program of the moment along the axes, for steps that kick; None if it is zero."""
+    if isinstance(known, Mechanism):
+        return None
+    if not any(step_of(name) in SPLITTINGS for name in known.scene.wanted):
+        return None
+    by_symbol = {known.words.symbols[c]: value for c, value in leaves.items()}
+    values = [value_of(graph, e, by_symbol) for e in known.bindings["M"]]
+    if not any(coefficient for coefficient, _ in values):
+        return None
+    ops, results = hot(graph, constants, values)
+    inputs = used_inputs((*known.words.states, *known.words.inputs), ops, results)
+    output = known.words["moment"]
+    return Program("applied_moment", "", inputs, (output,), ops, results)
+
+
+def _parameter(graph: Graph, value: Value) -> str:
+    """Return the parameter that a constant is, "" if it is made of several."""
+    coefficient, node = value
+    kind, *rest = graph.nodes[node]
+    return str(rest[0]) if kind == "input" and coefficient == 1 else ""
 
 
 def _truth(known: Known, base: str) -> Truth:
@@ -222,11 +282,16 @@ def _program(
 def _in_parameters(made: Program, functions: Sequence[Program]) -> tuple[Program, ...]:
     """Return the functions, each with the constants as its first input if it uses any."""
     names = {c for q in made.outputs for c in q.components}
-    return tuple(
-        replace(f, inputs=(*made.outputs, *f.inputs)) if _reads(f, names) else f for f in functions
-    )
+    return tuple(_with_inputs(f, made.outputs) if _reads(f, names) else f for f in functions)
+
+
+def _with_inputs(program: Program, more: tuple[Quantity, ...]) -> Program:
+    """Return a program that is given ``more`` before its other inputs."""
+    inputs = (*more, *program.inputs)
+    if isinstance(program.loops, Series):
+        return replace(program, inputs=inputs, loops=replace(program.loops, inputs=inputs))
+    return replace(program, inputs=inputs)
 
 
 def _reads(program: Program, names: set[str]) -> bool:
-    operands = {o for op in program.ops for o in op.operands} | set(program.results)
-    return any(o in names for o in operands if isinstance(o, str))
+    return bool(read_by(program) & names)

@@ -7,6 +7,7 @@ from typing import Any
 
 from derive import __version__
 from derive.c_text import F32, F64, PRECISIONS, pair_functions
+from derive.comment import of_what
 from derive.emit import JACOBIAN_DENSE
 from derive.lecture import LECTURE
 from derive.library import JACOBIAN, Library
@@ -65,7 +66,7 @@ def _quantity(q: Quantity) -> dict[str, Any]:
 
 def _functions(library: Library, figures: Sequence[Measurement]) -> list[dict[str, Any]]:
     found = [_setup(library)] if library.constants else []
-    for program in library.functions:
+    for program in library.printed():
         found.append(_function(library, program, figures))
         if program.sparsity:
             found.append(_dense(library, program))
@@ -176,6 +177,8 @@ def _error(program: Program, figures: Sequence[Measurement]) -> dict[str, Any]:
                 "samples": m.samples,
             }
     return found | {
-        "measure": "ulps of the largest term of the sum that the output is",
+        "measure": "ulps of the largest term of the sum that the output is"
+        if program.steps
+        else f"ulps {of_what(program)}",
         "kind": "sampled",
     }

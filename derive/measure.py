@@ -8,7 +8,7 @@ as smaller than the smallest normal number, below which floats are spaced alike.
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from statistics import median
 from typing import Any
 
@@ -20,7 +20,7 @@ from derive.arithmetic import Table, extended, paired, working
 from derive.c_text import PRECISIONS, Precision
 from derive.equations import equations
 from derive.library import JACOBIAN, Library
-from derive.program import Measurement, Program, run
+from derive.program import Measurement, Program, component_names, run
 from derive.reference import Known, reference
 from derive.sample import Sample, samples
 
@@ -44,7 +44,8 @@ def figures(library: Library) -> tuple[Measurement, ...]:
     found: list[Measurement] = []
     for precision in PRECISIONS:
         each = samples(library.known, precision, ORDINARY, CORNERS).each
-        results = replayed(library, each, precision, working(precision.dtype))
+        lectured = replace(library, motions=())
+        results = replayed(lectured, each, precision, working(precision.dtype))
         for program, true in references(library, each):
             every = errors(program, results[program.name], true, precision)
             found += [measurement(one, precision, each) for one in every]
@@ -102,11 +103,9 @@ def replayed(
 ) -> dict[str, list[NDArray[Any]]]:
     """Return the results of every program at all samples, in the ``table`` of C's arithmetic."""
     pairs = extended(precision.dtype)
-    names = [c for q in library.known.words.every() for c in q.components]
+    names = each[0].values if each else ()
     known: dict[str, NDArray[Any]] = {
-        name: np.array([s.values[name] for s in each], precision.dtype)
-        for name in names
-        if each and name in each[0].values
+        name: np.array([s.values[name] for s in each], precision.dtype) for name in names
     }
     with np.errstate(all="ignore"):
         constants = _replay(library.setup, pairs, known)
@@ -116,7 +115,7 @@ def replayed(
         known |= dict(zip(component_names(library.setup), each_one, strict=True))
         return {
             p.name: _replay(p, pairs if p.arithmetic == "pairs" else table, known)
-            for p in library.functions
+            for p in library.printed()
         }
 
 
@@ -125,11 +124,6 @@ def _replay(program: Program, table: Table, known: Mapping[str, NDArray[Any]]) -
     in_pairs = program.name == "setup" or program.arithmetic == "pairs"
     results = run(program, table, paired(np.array(given)) if in_pairs else given)
     return [r[0] for r in results] if in_pairs else results
-
-
-def component_names(program: Program) -> list[str]:
-    """Return the components of all outputs in order."""
-    return [c for q in program.outputs for c in q.components]
 
 
 def errors(

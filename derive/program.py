@@ -5,11 +5,13 @@ is the name of an earlier value or an exact number.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 Operand = str | Fraction
+
+Table = Mapping[str, Callable[..., Any]]  # an arithmetic: what each operator does
 
 FLOPS = ("add", "sub", "mul", "div")
 
@@ -74,6 +76,22 @@ class Repeat:
 Line = Op | Repeat
 
 
+class Loops(Protocol):
+    """Operations on arrays in loops over their places: what ``Program.ops`` cannot say."""
+
+    def count(self) -> dict[str, int]:
+        """Return how often each operator is used."""
+
+    def flops(self) -> int:
+        """Return the number of + - * / in the operations."""
+
+    def operands(self) -> set[str]:
+        """Return the names that the operations refer to."""
+
+    def run(self, arithmetic: Table, known: dict[str, Any]) -> list[Any]:
+        """Return the results in an arithmetic, from the inputs by name."""
+
+
 @dataclass(frozen=True)
 class Program:
     """A function without branches, ready for any arithmetic; its loops have an end known before.
@@ -81,7 +99,7 @@ class Program:
     ``results`` are the values of the outputs' components in order; ``sparsity`` gives the pattern
     of an output that holds the nonzeros of a matrix; ``positive`` are results of ``ops`` that
     must be above zero for the inputs to be admissible. In ``arithmetic`` "pairs" every operation
-    works on pairs of floats, and results are rounded once.
+    works on pairs of floats, and results are rounded once. With ``loops`` there are no ``ops``.
     """
 
     name: str
@@ -95,9 +113,12 @@ class Program:
     sparsity: Mapping[str, Sparsity] | None = None
     positive: tuple[Operand, ...] = ()
     arithmetic: Literal["working", "pairs"] = "working"
+    loops: Loops | None = None
 
     def count(self) -> dict[str, int]:
         """Return how often each operator is used at most, every pass of a loop counted."""
+        if self.loops is not None:
+            return self.loops.count()
         found: dict[str, int] = {}
         for op, times in every_op(self.ops):
             found[op.operator] = found.get(op.operator, 0) + times
@@ -105,6 +126,8 @@ class Program:
 
     def flops(self) -> int:
         """Return the number of + - * / in the operations, every pass of a loop counted."""
+        if self.loops is not None:
+            return self.loops.flops()
         return sum(times for op, times in every_op(self.ops) if op.operator in FLOPS)
 
 
@@ -117,9 +140,50 @@ def every_op(lines: Sequence[Line]) -> Iterator[tuple[Op, int]]:
             yield line, 1
 
 
-def run(
-    program: Program, arithmetic: Mapping[str, Callable[..., Any]], values: Sequence[Any]
-) -> list[Any]:
+def operands_of(lines: Sequence[Line], results: Sequence[Operand] = ()) -> set[str]:
+    """Return the names that operations, loops and results refer to."""
+    found: set[Operand] = {operand for op, _ in every_op(lines) for operand in op.operands}
+    for line in lines:
+        if isinstance(line, Repeat):
+            found |= {*line.start, *line.then} | ({line.done} if line.done is not None else set())
+    return {operand for operand in found | set(results) if isinstance(operand, str)}
+
+
+def component_names(program: Program) -> list[str]:
+    """Return the components of all outputs in order."""
+    return [c for q in program.outputs for c in q.components]
+
+
+def read_by(program: Program) -> set[str]:
+    """Return the names that a program's operations and results refer to."""
+    inside = program.loops.operands() if program.loops is not None else set()
+    return operands_of(program.ops, program.results) | inside
+
+
+def renamed(lines: Sequence[Line], names: Mapping[str, Operand]) -> tuple[Line, ...]:
+    """Return the lines with operands called by their new ``names``; results keep theirs."""
+
+    def new(operands: Sequence[Operand]) -> tuple[Operand, ...]:
+        return tuple(names.get(o, o) if isinstance(o, str) else o for o in operands)
+
+    def one(op: Op) -> Op:
+        return Op(op.result, op.operator, new(op.operands))
+
+    return tuple(
+        one(line)
+        if isinstance(line, Op)
+        else replace(
+            line,
+            start=new(line.start),
+            ops=tuple(map(one, line.ops)),
+            then=new(line.then),
+            done=None if line.done is None else new((line.done,))[0],
+        )
+        for line in lines
+    )
+
+
+def run(program: Program, arithmetic: Table, values: Sequence[Any]) -> list[Any]:
     """Run ``program`` in an arithmetic: floats, exact fractions, intervals, CasADi.
 
     ``values`` are the input components in declared order. The arithmetic maps each operator,
@@ -128,35 +192,38 @@ def run(
     names = [name for quantity in program.inputs for name in quantity.components]
     known = dict(zip(names, values, strict=True))
 
-    def value(operand: Operand) -> Any:
-        return known[operand] if isinstance(operand, str) else arithmetic["number"](operand)
-
-    def operate(ops: Sequence[Op]) -> None:
-        for op in ops:
-            known[op.result] = arithmetic[op.operator](*map(value, op.operands))
-
-    def repeat(loop: Repeat) -> None:
-        known.update(zip(loop.carried, map(value, loop.start), strict=True))
-        done: Any = None
-        for _ in range(loop.passes):
-            operate(loop.ops)
-            new = [value(operand) for operand in loop.then]
-            if done is not None:
-                old = [known[name] for name in loop.carried]
-                new = [
-                    arithmetic["select"](done, o, n) for o, n in zip(old, new, strict=True)
-                ]
-            known.update(zip(loop.carried, new, strict=True))
-            if loop.done is not None:
-                now = value(loop.done)
-                done = now if done is None else arithmetic["either"](done, now)
-
+    if program.loops is not None:
+        return program.loops.run(arithmetic, known)
     for line in program.ops:
         if isinstance(line, Repeat):
-            repeat(line)
+            _repeat(line, arithmetic, known)
         else:
-            operate((line,))
-    return [value(result) for result in program.results]
+            _operate((line,), arithmetic, known)
+    return _values(program.results, arithmetic, known)
+
+
+def _values(operands: Sequence[Operand], arithmetic: Table, known: Mapping[str, Any]) -> list[Any]:
+    return [known[o] if isinstance(o, str) else arithmetic["number"](o) for o in operands]
+
+
+def _operate(ops: Sequence[Op], arithmetic: Table, known: dict[str, Any]) -> None:
+    for op in ops:
+        known[op.result] = arithmetic[op.operator](*_values(op.operands, arithmetic, known))
+
+
+def _repeat(loop: Repeat, arithmetic: Table, known: dict[str, Any]) -> None:
+    known.update(zip(loop.carried, _values(loop.start, arithmetic, known), strict=True))
+    done: Any = None
+    for _ in range(loop.passes):
+        _operate(loop.ops, arithmetic, known)
+        new = _values(loop.then, arithmetic, known)
+        if done is not None:
+            old = [known[name] for name in loop.carried]
+            new = [arithmetic["select"](done, o, n) for o, n in zip(old, new, strict=True)]
+        known.update(zip(loop.carried, new, strict=True))
+        if loop.done is not None:
+            (now,) = _values((loop.done,), arithmetic, known)
+            done = now if done is None else arithmetic["either"](done, now)
 
 
 @dataclass(frozen=True)

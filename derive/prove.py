@@ -7,7 +7,7 @@ holds a root, balls of 4000 bits stand in for fractions.
 
 import operator
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from random import Random
 from typing import Any
 
@@ -15,8 +15,9 @@ from flint import arb, ctx, fmpq, fmpq_mat
 
 from derive.equations import Equations, equations
 from derive.library import JACOBIAN, Library
-from derive.program import Program, run
+from derive.program import Program, component_names, read_by, run
 from derive.reference import BALLS, Known, solution
+from derive.trace import needed
 
 POINTS = 2
 TRIES = 50
@@ -132,15 +133,28 @@ def _dice(library: Library, number: int) -> Iterator[tuple[str, Any]]:
 
 
 def _prove_at(library: Library, asked: Mapping[str, Equations], at: Point) -> None:
-    constants = constants_at(library.setup, at)
+    constants = constants_at(lectured(library), at)
     for name, question in asked.items():
-        functions = [f for f in library.functions if f.name.removesuffix(JACOBIAN) == name]
+        functions = [
+            f for f in (*library.functions, *library.rates) if f.name.removesuffix(JACOBIAN) == name
+        ]
         columns = {c for f in functions for s in (f.sparsity or {}).values() for c in s.columns}
         true = solution(question, at.values, columns, at.arithmetic)
         for program in functions:
             fault = first_fault(program, true, constants, at)
             if fault:
                 raise ProofError(_sentence(library, program, fault))
+
+
+def lectured(library: Library) -> Program:
+    """Return the part of set-up that the functions of the lecture read."""
+    setup = library.setup
+    used = {name for f in (*library.functions, *library.rates) for name in read_by(f)}
+    names = component_names(setup)
+    kept = [(c, r) for c, r in zip(names, setup.results, strict=True) if c in used]
+    outputs = tuple(replace(q, components=tuple(c for c, _ in kept)) for q in setup.outputs)
+    results = tuple(r for _, r in kept)
+    return replace(setup, outputs=outputs, ops=needed(setup.ops, results), results=results)
 
 
 def constants_at(setup: Program, at: Point) -> dict[str, Any]:
@@ -151,7 +165,11 @@ def constants_at(setup: Program, at: Point) -> dict[str, Any]:
 
 def _run(program: Program, at: Point, constants: Mapping[str, Any]) -> list[Any]:
     known = {**at.values, **constants} if program.name != "setup" else at.values
-    given = [known[c] for q in program.inputs for c in q.components]
+    given = [  # constants of motion alone are not made here, and not read either
+        known.get(c) if q.name == "constants" else known[c]
+        for q in program.inputs
+        for c in q.components
+    ]
     return run(program, at.arithmetic, given)
 
 

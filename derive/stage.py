@@ -4,14 +4,24 @@ All functions of a scene share one graph, one set-up and one struct of named con
 in twice the working precision and rounds each constant once.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import prod
 
 from derive.arithmetic import EXACT
 from derive.graph import ONE, Graph, Value
-from derive.program import Op, Operand, Program, Quantity, Sparsity
+from derive.program import (
+    Line,
+    Op,
+    Operand,
+    Program,
+    Quantity,
+    Sparsity,
+    every_op,
+    operands_of,
+    renamed,
+)
 from derive.schedule import schedule
 from derive.wording import spelling
 
@@ -69,6 +79,22 @@ def exact_number(graph: Graph, value: Value) -> Fraction | None:
 
 
 @dataclass(frozen=True)
+class Traced:
+    """The part of set-up that the formulas of motion were traced to.
+
+    given : the graph's value of each input of the tape
+    names : the constants that functions read, by operand
+    """
+
+    ops: tuple[Line, ...]
+    given: Mapping[str, Value]
+    names: Mapping[str, str]
+
+
+NOTHING_TRACED = Traced((), {}, {})
+
+
+@dataclass(frozen=True)
 class Constant:
     """One named constant and the formula it is made by."""
 
@@ -100,10 +126,7 @@ def in_pairs(program: Program, constants: set[str]) -> Program:
     joined = tuple(
         Op(f"{prefix}{place}", "add", (c, f"{c}_low")) for place, c in enumerate(ordered)
     )
-    ops = tuple(
-        Op(op.result, op.operator, tuple(whole.get(o, o) for o in op.operands))
-        for op in program.ops
-    )
+    ops = renamed(program.ops, {name: o for name, o in whole.items() if isinstance(name, str)})
     results = tuple(whole.get(r, r) for r in program.results)
     return replace(program, ops=joined + ops, results=results, arithmetic="pairs")
 
@@ -111,7 +134,7 @@ def in_pairs(program: Program, constants: set[str]) -> Program:
 def with_low_parts(made: Program) -> Program:
     """Return set-up that also gives what rounding each constant left."""
     (constants,) = made.outputs
-    computed = {op.result for op in made.ops}
+    computed = {op.result for op, _ in every_op(made.ops)}
     rounded = [r for r in dict.fromkeys(made.results) if isinstance(r, str) and r in computed]
     lows = tuple(Op(f"{r}low", "low", (r,)) for r in rounded)
     low_of: dict[Operand, str] = {r: op.result for r, op in zip(rounded, lows, strict=True)}
@@ -123,10 +146,17 @@ def with_low_parts(made: Program) -> Program:
 
 
 def setup(
-    graph: Graph, constants: Constants, parameters: Sequence[Quantity], positive: Sequence[Value]
+    graph: Graph,
+    constants: Constants,
+    parameters: Sequence[Quantity],
+    positive: Sequence[Value],
+    traced: Traced,
 ) -> Program:
-    """Return the program that makes the constants from the parameters."""
-    values = [*constants.names, *positive]
+    """Return the program that makes the constants from the parameters.
+
+    traced : what the formulas of motion need, worked out after the graph's constants
+    """
+    values = [*constants.names, *traced.given.values(), *positive]
 
     def number(value: Value) -> Fraction:
         return value[0]
@@ -134,31 +164,28 @@ def setup(
     ops, results = schedule(
         graph, values, lambda node: node == ONE, number, free_prefix("s", graph.leaf_names())
     )
-    count = len(constants.names)
-    names = tuple(constants.names.values())
+    own, given = len(constants.names), len(traced.given)
+    placed = dict(zip(traced.given, results[own : own + given], strict=True))
+    whole = (*ops, *renamed(traced.ops, placed))
+    made = [placed.get(o, o) for o in traced.names]
+    names = (*constants.names.values(), *traced.names.values())
     says = "constants made of parameters only, for the functions of this scene"
-    output = Quantity("constants", names, (count,), "", "", None, None, says)
-    used = operands_of(ops, results)
+    output = Quantity("constants", names, (len(names),), "", "", None, None, says)
+    used = operands_of(whole, results)
     inputs = tuple(p for p in parameters if used & set(p.components))
     return Program(
         "setup",
         "Make the constants of this scene from its parameters; call it once.",
         inputs,
-        (output,) if count else (),
-        ops,
-        results[:count],
-        positive=results[count:],
+        (output,) if names else (),
+        whole,
+        (*results[:own], *made),
+        positive=results[own + given :],
     )
 
 
-def operands_of(ops: Sequence[Op], results: Sequence[Operand]) -> set[str]:
-    """Return the names that operations and results refer to."""
-    named = {operand for op in ops for operand in op.operands}
-    return {operand for operand in named | set(results) if isinstance(operand, str)}
-
-
 def used_inputs(
-    quantities: Sequence[Quantity], ops: Sequence[Op], results: Sequence[Operand]
+    quantities: Sequence[Quantity], ops: Sequence[Line], results: Sequence[Operand]
 ) -> tuple[Quantity, ...]:
     """Return the quantities of which some component is used: inputs follow from use."""
     used = operands_of(ops, results)

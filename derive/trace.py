@@ -31,10 +31,12 @@ class Tape:
     ops: list[Line] = field(default_factory=list)
     names: dict[str, tuple[str, str]] = field(default_factory=dict)
     numbered: dict[tuple[object, ...], str] = field(default_factory=dict)
+    inputs: set[str] = field(default_factory=set)
     made: int = 0
 
     def input(self, name: str) -> Number:
         """Return the number of an input."""
+        self.inputs.add(name)
         return Number(self, name)
 
     def fresh(self) -> str:
@@ -54,8 +56,16 @@ class Tape:
     def constant(self, operand: str) -> str:
         """Return the name that a value of set-up has in the functions."""
         if operand not in self.names:
-            self.names[operand] = (f"c{len(self.names)}", "")
+            own = operand if operand in self.inputs else f"c{len(self.names)}"
+            self.name(operand, own, "")
         return self.names[operand][0]
+
+    def name(self, operand: str, name: str, says: str) -> None:
+        """Name a value of set-up, by a number after the name if it is another's already."""
+        if operand not in self.names:
+            taken = {own for own, _ in self.names.values()}
+            several = (name, *(f"{name}{k}" for k in range(2, len(taken) + 3)))
+            self.names[operand] = (next(n for n in several if n not in taken), says)
 
     @contextmanager
     def within(self) -> Iterator[list[Line]]:
@@ -173,8 +183,18 @@ def _div(a: Number, b: Number) -> Number:
 def named(name: str, value: Number, says: str) -> Number:
     """Name a value of set-up: what the constant is called in C, and what is said of it there."""
     if value.tape is not None and value.tape.below is None and isinstance(value.operand, str):
-        value.tape.names.setdefault(value.operand, (name, says))
+        value.tape.name(value.operand, name, says)
     return value
+
+
+def unit_roundoff(tape: Tape) -> Number:
+    """Return u of the arithmetic that the program runs in: half the distance from 1 to the next."""
+    return Number(tape, tape.record("unit_roundoff", ()))
+
+
+def splitter(tape: Tape) -> Number:
+    """Return the number that splits a float into halves, 2^ceil(p/2) + 1 for p bits (Veltkamp)."""
+    return Number(tape, tape.record("splitter", ()))
 
 
 def sqrt(x: Number) -> Number:
@@ -242,9 +262,7 @@ def either(a: Number, b: Number) -> Number:
     return operation("either", a, b)
 
 
-def select(
-    condition: Number, yes: Number | int | Fraction, no: Number | int | Fraction
-) -> Number:
+def select(condition: Number, yes: Number | int | Fraction, no: Number | int | Fraction) -> Number:
     """Return ``yes`` where ``condition`` is true, else ``no``; both are worked out."""
     if number(yes) == number(no):
         return number(yes)
@@ -298,12 +316,13 @@ def called(tape: Tape, program: Program, values: Mapping[str, Number]) -> list[N
 
     The program's constants are read as they are; equal operations are recorded once.
     """
-    constants = {c for q in program.inputs if q.name == "constants" for c in q.components}
-    known = {name: number(value) for name, value in values.items()}
-    known |= {name: Number(tape, name) for name in constants}
+    inputs = [c for q in program.inputs if q.name != "constants" for c in q.components]
+    known = {name: number(values[name]) for name in inputs}
 
     def value(operand: Operand) -> Number:
-        return known[operand] if isinstance(operand, str) else number(operand)
+        if isinstance(operand, str):
+            return known.get(operand) or Number(tape, operand)  # what is left are constants
+        return number(operand)
 
     for op in program.ops:
         if not isinstance(op, Op):

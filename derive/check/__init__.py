@@ -9,12 +9,22 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from derive.check.agreement import accuracy, aliasing, casadi_bits, dense, refusal, replay
+from derive.check.agreement import (
+    accuracy,
+    aliasing,
+    casadi_bits,
+    dense,
+    motion_accuracy,
+    refusal,
+    replay,
+)
 from derive.check.compiler import Compiler, CompilerError, find_compiler
 from derive.check.emitted import Emitted, Files, casadi_module, files, is_double, loaded
 from derive.check.invariants import power_balance, turned_axes
+from derive.check.motion import orders
 from derive.check.verdict import JUDGED, Verdict
 from derive.library import Library, library
+from derive.motion_error import with_motion
 from derive.prove import ProofError, prove
 from derive.sample import Sample, samples
 from derive.scene import load
@@ -69,7 +79,7 @@ def interface(made: Library, found: Files) -> Verdict:
     """Return whether the JSON describes the functions that the scene asks for."""
     name, says = made.known.scene.name, ""
     described = {f["name"]: f["arguments"] for f in found.manifest["functions"]}
-    programs = [*([made.setup] if made.constants else []), *made.functions]
+    programs = [*([made.setup] if made.constants else []), *made.printed()]
     for program in programs:
         every = (*program.inputs, *program.outputs)
         meant = {q.name: list(q.components) for q in every if q.name != "constants"}
@@ -89,14 +99,18 @@ def _on_files(one: Emitted, check_: str, says: str) -> Verdict:
 
 def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterator[Verdict]:
     drawn = samples(one.library.known, one.precision, ordinary, CORNERS)
-    each, few = drawn.each, spread(drawn.each)
+    each = with_motion(one.library, drawn.each, one.precision)
+    few = spread(each)
     printed = {f["name"]: f.get("error", {}) for f in found.manifest["functions"]}
-    yield from accuracy(one, each, {n: e for n, e in printed.items() if isinstance(e, dict)})
+    stated = {n: e for n, e in printed.items() if isinstance(e, dict)}
+    yield from accuracy(one, each, stated)
+    yield from motion_accuracy(one, few, stated)
     yield from replay(one, each)
     yield from dense(one, few)
     yield from aliasing(one, few)
     yield from refusal(one, few)
     if is_double(one):
+        yield from orders(one.library, each)
         yield from casadi_bits(one, casadi_module(one.library, found, workshop), each)
         plain = [s for s in each if s.kind == "ordinary"][: FEW * FEW]
         yield from power_balance(one, plain)

@@ -13,17 +13,17 @@ from typing import Any
 import casadi
 import numpy as np
 
-from derive.arithmetic import Table, working
+from derive.arithmetic import LIBM, Table, working
 from derive.check.emitted import Emitted, inputs
 from derive.check.verdict import JUDGED, Outcome, Verdict
 from derive.library import Library
 from derive.measure import Errors, errors, measurement, references, replayed
+from derive.motion_error import motion_errors
 from derive.program import Program
 from derive.sample import Sample
 
 MEDIAN_BOUND, LARGEST_BOUND = 2.0, 16.0
 FACTOR = 3.0  # more samples than the printed figure's may find an error this much larger
-TRANSCENDENTAL = {"sin", "cos"}
 
 
 def same_bits(a: Sequence[float], b: Sequence[float]) -> bool:
@@ -39,16 +39,19 @@ def linked_arithmetic(emitted: Emitted) -> Table:
     """Return the file's arithmetic with the sine and cosine that the C is linked with."""
     loaded, dtype = ctypes.CDLL(str(emitted.shared)), emitted.precision.dtype
     return working(dtype) | {
-        name: _linked(loaded, emitted.precision.functions[name], dtype) for name in TRANSCENDENTAL
+        name: _linked(loaded, emitted.precision.functions[name], dtype) for name in sorted(LIBM)
     }
 
 
-def _linked(loaded: ctypes.CDLL, symbol: str, dtype: type) -> Callable[[Any], Any]:
-    def each(x: Any) -> Any:
+def _linked(loaded: ctypes.CDLL, symbol: str, dtype: type) -> Callable[..., Any]:
+    def each(*given: Any) -> Any:
         function = loaded[symbol]
         function.restype = ctypes.c_double if dtype is np.float64 else ctypes.c_float
-        function.argtypes = [function.restype]
-        return np.array([function(float(v)) for v in np.ravel(x)], dtype).reshape(np.shape(x))
+        function.argtypes = [function.restype] * len(given)
+        several = np.broadcast_arrays(*given)
+        flat = zip(*(np.ravel(x) for x in several), strict=True)
+        results = [function(*(float(v) for v in values)) for values in flat]
+        return np.array(results, dtype).reshape(several[0].shape)
 
     return each
 
@@ -56,11 +59,11 @@ def _linked(loaded: ctypes.CDLL, symbol: str, dtype: type) -> Callable[[Any], An
 def replay(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether the C of every function gives the bits of its program."""
     uses_libm = any(
-        op.operator in TRANSCENDENTAL for f in emitted.library.functions for op in f.ops
+        kind in LIBM for f in emitted.library.printed() for kind in f.count()
     )
     table = linked_arithmetic(emitted) if uses_libm else working(emitted.precision.dtype)
     expected = replayed(emitted.library, each, emitted.precision, table)
-    for program in emitted.library.functions:
+    for program in emitted.library.printed():
         reason = _not_replayed(emitted.library, program)
         if reason:
             yield _verdict(emitted, program, "bits of the program", "skipped", reason)
@@ -78,7 +81,7 @@ def replay(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
 def _not_replayed(library: Library, program: Program) -> str:
     """Return why a program's bits cannot be told: sines in pairs of floats are libm's own."""
     in_pairs = [library.setup] + ([program] if program.arithmetic == "pairs" else [])
-    if any(op.operator in TRANSCENDENTAL for p in in_pairs for op in p.ops):
+    if any(kind in LIBM for p in in_pairs for kind in p.count()):
         return "sine or cosine in pairs of floats differ with the platform"
     return ""
 
@@ -92,6 +95,22 @@ def accuracy(
         columns = [np.array(column) for column in zip(*rows, strict=True)]
         for found in errors(program, columns, true, emitted.precision):
             yield _accurate(emitted, program, found, each, printed.get(program.name, {}))
+
+
+def motion_accuracy(
+    emitted: Emitted, each: Sequence[Sample], printed: Mapping[str, Any]
+) -> Iterator[Verdict]:
+    """Yield whether rounding in the functions of motion is as small as promised."""
+    for program in emitted.library.motions:
+        rows = [emitted.results(program, s) for s in each]
+        columns = [list(column) for column in zip(*rows, strict=True)]
+        for found in motion_errors(emitted.library, program, columns, each, emitted.precision):
+            size = measurement(found, emitted.precision, each)
+            figure = _figure(printed.get(program.name, {}), emitted, found.output)
+            allowed = FACTOR * max(LARGEST_BOUND, figure)
+            says = f"{found.output}: median {size.median:.2g} u, largest {size.worst:.2g} u"
+            says += f" of {len(each)} samples; the header says {figure:.2g} u"
+            yield _verdict(emitted, program, "rounding", JUDGED[size.worst <= allowed], says)
 
 
 def _accurate(
@@ -128,7 +147,7 @@ def casadi_bits(emitted: Emitted, module: Any, each: Sequence[Sample]) -> Iterat
         yield _verdict(
             emitted, library.setup, "CasADi's bits", JUDGED[not differ], _differing(differ, each)
         )
-    for program in library.functions:
+    for program in library.printed():
         built = _built(module, program)
         differ = [s.number for s in each if not _same(emitted, built, s)]
         yield _verdict(
@@ -193,7 +212,7 @@ def _same_patterns(emitted: Emitted, program: Program, function: Any) -> Iterato
 
 def aliasing(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether outputs written over inputs are the outputs written elsewhere."""
-    for program in emitted.library.functions:
+    for program in emitted.library.printed():
         function = emitted.functions[program.name]
         given = [inputs(program, s, emitted.constants(s)) for s in each]
         pairs = [
@@ -236,7 +255,7 @@ def _with(sample: Sample, values: dict[str, float]) -> Sample:
 
 def dense(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether the whole matrices hold the nonzeros in their places, and zeros elsewhere."""
-    for program in emitted.library.functions:
+    for program in emitted.library.printed():
         for name, pattern in (program.sparsity or {}).items():
             bad = [s.number for s in each if not _same_matrix(emitted, program, name, s)]
             says = _differing(bad, each) + f", {len(pattern.rows)} x {len(pattern.columns)}"

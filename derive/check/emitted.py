@@ -13,6 +13,7 @@ from derive.check.compiler import Compiler, compiled
 from derive.files import scene_files
 from derive.library import Library
 from derive.measure import figures
+from derive.motion_error import moving_figures
 from derive.program import Program
 from derive.sample import Sample
 
@@ -71,7 +72,7 @@ def files(library: Library, folder: Path) -> Files:
     if (place / f"{name}.json").is_file():
         texts = {p.name: p.read_text(encoding="utf-8") for p in sorted(place.iterdir())}
         return Files(texts, f"{place}")
-    made = scene_files(library, figures(library))
+    made = scene_files(library, figures(library) + moving_figures(library))
     return Files({path.partition("/")[2]: text for path, text in made.items()}, "made in memory")
 
 

@@ -6,7 +6,8 @@ from html import escape
 
 from markupsafe import Markup
 
-from derive.c_text import F64, body, pair_body
+from derive.c_text import F64
+from derive.definition import definition
 from derive.program import Program
 from derive.signature import Names, prototype
 
@@ -18,8 +19,7 @@ def listing(program: Program, scene: str, links: Mapping[str, str]) -> Markup:
 
     links : from an output's component to the place of its equation on the page
     """
-    in_pairs = program.arithmetic == "pairs"
-    lines = pair_body(program, scene, F64) if in_pairs else body(program, F64)
+    lines = definition(program, scene, F64)
     components = [c for q in program.outputs for c in q.components]
     first_store = len(lines) - len(components)
     shown = [escape(prototype(program, Names(scene), F64)), "{"]

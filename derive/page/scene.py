@@ -87,7 +87,7 @@ def _sections(library: Library, figures: Sequence[Measurement]) -> list[Section]
     owners: dict[str, str] = {}
     return [
         _section(library, program, owners.setdefault(_base(program), program.name), figures)
-        for program in library.functions
+        for program in library.printed()
     ]
 
 
@@ -98,7 +98,8 @@ def _base(program: Program) -> str:
 def _section(
     library: Library, program: Program, owner: str, figures: Sequence[Measurement]
 ) -> Section:
-    equations = passages(library, library.truths[_base(program)])
+    fact = library.truths.get(_base(program)) if program in library.functions else None
+    equations = passages(library, fact) if fact else ()
     links = {line.unknown: line.place for passage in equations for line in passage.lines}
     sparsity = (program.sparsity or {}).get("jacobian")
     says = f"pattern of the Jacobian of {_base(program)}"

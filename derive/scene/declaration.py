@@ -158,4 +158,7 @@ class Scene:
     velocity: Given | None
     wanted: tuple[str, ...]
     form: Literal["fast", "accurate"]
+    emission: Literal["fast", "compact"]
+    time_step: Given
+    time: Given
     warnings: tuple[str, ...]

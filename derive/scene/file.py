@@ -22,6 +22,7 @@ from derive.scene.symbols import (
     rates,
     read_symbols,
     turns,
+    with_state,
 )
 from derive.scene.table import (
     Scope,
@@ -29,13 +30,13 @@ from derive.scene.table import (
     formula,
     interval,
     keys,
-    nearest,
     shown,
     table,
     text,
     triple,
     word,
 )
+from derive.scene.wanted import attitudes_only, read_wanted
 from derive.unit import (
     ACCELERATION,
     ANGULAR_ACCELERATION,
@@ -50,16 +51,15 @@ from derive.unit import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-FUNCTIONS = (
-    "angular_momentum",
-    "angular_momentum_rate",
-    "moment",
-    "acceleration",
-    "state_rate",
-    "kinetic_energy",
+TABLES = (
+    *("parameters", "coordinates", "speeds", "axes", "body", "point", "known", "position"),
+    "motion",
 )
-WANTED = (*FUNCTIONS, *(f"{name}_jacobian" for name in FUNCTIONS))
-TABLES = ("parameters", "coordinates", "speeds", "axes", "body", "point", "known", "position")
+TIMES = {
+    "time_step": (Fraction(0), Fraction(1, 100)),
+    "time": (Fraction(0), Fraction(10)),
+}
+"""Ranges in s where the scene gives none: of a step, and of the time that a flow goes on for."""
 LATER = ("frames", "bodies", "loads")
 KNOWN: Mapping[str, tuple[Dimension, int]] = {
     "angular_velocity": (ANGULAR_VELOCITY, 10),
@@ -72,15 +72,17 @@ PointKind = Literal["centre_of_mass", "fixed", "moving"]
 POINTS: tuple[PointKind, ...] = ("centre_of_mass", "fixed", "moving")
 
 
-def read_scene(document: Mapping[str, object], name: str, source: str) -> Scene:
+def read_scene(document: dict[str, object], name: str, source: str) -> Scene:
     """Return the scene of a parsed TOML document, checked table by table."""
     _top_level(document)
     part = {key: table(document.get(key, {}), key) for key in TABLES}
+    keys(part["motion"], (), tuple(TIMES))
     symbols = read_symbols(part["parameters"], part["coordinates"], part["speeds"])
     wheels = _wheels(document.get("wheels", []), symbols)
     distinct(_declared(symbols, wheels))
     scope = anything(symbols, wheels)
     point = _point(part["point"], scope)
+    axes = _axes(part["axes"], symbols)
     ranges = _position(part["position"]) if "position" in document else (None, None)
     return Scene(
         name=name,
@@ -89,44 +91,49 @@ def read_scene(document: Mapping[str, object], name: str, source: str) -> Scene:
         parameters=symbols.parameters,
         coordinates=symbols.coordinates,
         speeds=symbols.speeds,
-        axes=_axes(part["axes"], symbols),
+        axes=axes,
         body=read_body(part["body"], point.kind, symbols),
         wheels=wheels,
         point=point,
-        known=_known(part["known"], scope, symbols),
+        known=_known(part["known"], scope, symbols, axes),
         position=ranges[0],
         velocity=ranges[1],
-        wanted=_wanted(document["wanted"]),
+        wanted=read_wanted(document["wanted"]),
         form="accurate" if _form(document) == "accurate" else "fast",
+        emission="compact" if _emission(document) == "compact" else "fast",
+        time_step=_time(part["motion"], "time_step"),
+        time=_time(part["motion"], "time"),
         warnings=(),
     )
 
 
-def _top_level(document: Mapping[str, object]) -> None:
+def _top_level(document: dict[str, object]) -> None:
     for key in document:
         if key in LATER:
             raise SceneError(f"table '{key}' is reserved for a later version; use body and axes")
-    optional = (*(name for name in TABLES if name != "body"), "wheels", "title", "form")
     if "wanted" not in document:
         raise SceneError("the file needs 'wanted', above its first [table]")
+    if "body" not in document and attitudes_only(document["wanted"]):
+        document["body"] = {"kind": "spherical", "moment": 1}  # nothing asks about it
+    optional = (*(name for name in TABLES if name != "body"), "wheels", "title", "form", "emission")
     keys(Table("the file", document), ("wanted", "body"), optional)
+
+
+def _emission(document: Mapping[str, object]) -> str:
+    return word(document.get("emission", "fast"), "emission", ("fast", "compact"))
+
+
+def _time(given: Table, name: str) -> Given:
+    """Return the range of a time in s; a step goes forward, a time may be negative."""
+    if name not in given.entries:
+        return Given(*TIMES[name], None)
+    inner = table(given.entries[name], f"motion.{name}")
+    keys(inner, ("range",), ())
+    return Given(*interval(inner.entries["range"], f"motion.{name}.range"), None)
 
 
 def _form(document: Mapping[str, object]) -> str:
     return word(document.get("form", "fast"), "form", ("fast", "accurate"))
-
-
-def _wanted(value: object) -> tuple[str, ...]:
-    if not isinstance(value, list) or not value:
-        raise SceneError(f"wanted must be a list of at least one function, not {shown(value)}")
-    for name in value:
-        if not isinstance(name, str) or name not in WANTED:
-            hint = nearest(name, WANTED) if isinstance(name, str) else ""
-            hint = hint or f" (known: {', '.join(FUNCTIONS)}, and each with _jacobian)"
-            raise SceneError(f"wanted has {shown(name)}, which is no function{hint}")
-        if value.count(name) > 1:
-            raise SceneError(f"wanted has '{name}' twice")
-    return tuple(value)
 
 
 def _axes(given: Table, symbols: Symbols) -> Axes:
@@ -180,12 +187,13 @@ def _declared(symbols: Symbols, wheels: tuple[Wheel, ...]) -> list[tuple[str, st
     found += [(entry.name, f"speed '{entry.name}'") for entry in symbols.speeds]
     derived = [entry.name for entry in (*rates(symbols), *accelerations(symbols))]
     free = [entry.name for entry in symbols.coordinates if entry.motion == "free"]
-    derived += [f"{name}_{dots}" for name in free for dots in ("dot", "ddot")]
+    derived += [f"{name}_{dots}" for name in free for dots in ("dot", "ddot", "next")]
     found += [(name, f"the rate '{name}'") for name in derived]
     for wheel in wheels:
         found += [(wheel.speed.name, f"the speed of wheel '{wheel.name}'")]
         found += [(wheel.torque.name, f"the torque on wheel '{wheel.name}'")]
         found += [(f"{wheel.speed.name}_dot", f"the rate of wheel '{wheel.name}'")]
+        found += [(f"{wheel.speed.name}_next", f"the next speed of wheel '{wheel.name}'")]
     return found
 
 
@@ -210,13 +218,14 @@ def _given(value: object, label: str, scope: Scope, expected: Dimension) -> Give
     return Given(*interval(inner.entries["range"], f"{label}.range"), None)
 
 
-def _known(given: Table, scope: Scope, symbols: Symbols) -> Mapping[str, Given]:
+def _known(given: Table, scope: Scope, symbols: Symbols, axes: Axes) -> Mapping[str, Given]:
     keys(given, (), KNOWN)
     result = {}
     for name, (expected, end) in KNOWN.items():
         allowed = motions(symbols) if name == "angular_velocity" else scope
         if name in given.entries:
-            result[name] = _given(given.entries[name], f"known.{name}", allowed, expected)
+            wider = with_state(allowed, axes) if name in ("moment", "force") else allowed
+            result[name] = _given(given.entries[name], f"known.{name}", wider, expected)
         else:
             result[name] = Given(Fraction(-end), Fraction(end), None)
     return result

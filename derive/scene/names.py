@@ -54,13 +54,18 @@ GENERATED: Mapping[str, str] = {
     "wheel_accelerations": "the accelerations of the wheels",
     "wheel_torques": "the torques on the wheels",
     "jacobian": "a Jacobian",
+    "time_step": "the length of a step in time",
+    "time": "the time that a flow goes on for",
+    "plan": "what a plan for many steps holds",
+    "remainder": "what rounding left of earlier steps",
+    "step_proposed": "the length that a step proposes for the next",
     "dense": "a Jacobian with its zeros",
     "parameters": "the parameters of the CasADi functions",
     "constants": "what set-up computes",
     "pi": "the number pi is no symbol of a scene",
 }
 """Names that the emitted code uses itself, and for what; so are their components, as omega_x."""
-_COMPONENT = re.compile(r"(_[wxyz])?(_in)?$")
+_COMPONENT = re.compile(r"(_[wxyz])?(_next)?(_in)?$")
 
 
 def identifier(name: str, label: str) -> str:

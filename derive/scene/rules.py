@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from derive.formula import ZERO, symbols
 from derive.scene.declaration import SceneError
+from derive.scene.moving import check_moving
 from derive.scene.numbers import (
     check_axis,
     check_carrier,
@@ -45,6 +46,7 @@ def check(scene: Scene, said: tuple[str, ...]) -> None:
     check_inertia(scene.body, scene.parameters)
     _wheels(scene)
     _forward(scene)
+    check_moving(scene, _prescribed(scene))
 
 
 def _chain(scene: Scene) -> tuple[Turn, ...]:
@@ -208,7 +210,9 @@ def _unused(scene: Scene, said: tuple[str, ...]) -> Iterator[str]:
     for name in turning + [entry.name for entry in scene.speeds]:
         if name not in used and f"{name}_dot" not in used:
             yield f"'{name}' is declared, but nothing turns with it"
-    if "moment" in said and not any(name.startswith(FORWARD) for name in scene.wanted):
+    if "moment" in said and not any(
+        name.startswith((*FORWARD, "step_", "flow_")) for name in scene.wanted
+    ):
         yield "known.moment is given, but no acceleration or state_rate is wanted"
 
 

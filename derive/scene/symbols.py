@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, cast
 
 from derive.scene.declaration import (
+    Axes,
     Axis,
     Coordinate,
     Input,
@@ -206,6 +207,13 @@ def anything(symbols: Symbols, wheels: tuple[Wheel, ...]) -> Scope:
     )
     rule = "a known vector is a formula of parameters, coordinates, speeds and given rates"
     return Scope(_dimensions(scalars), others, rule)
+
+
+def with_state(scope: Scope, axes: Axes) -> Scope:
+    """Return the scope of a moment or force that depends on attitude and angular velocity."""
+    state = {f"attitude_{part}": NONE for part in "wxyz" if axes.quaternion}
+    state |= {f"omega_{part}": ANGULAR_VELOCITY for part in "xyz" if axes.fixed_in_body}
+    return Scope({**scope.dimensions, **state}, scope.others, scope.rule)
 
 
 def _dimensions(scalars: tuple[Scalar, ...]) -> Mapping[str, Dimension]:

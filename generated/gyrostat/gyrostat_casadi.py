@@ -76,7 +76,7 @@ def _div(a, b):
 def _sqrt(a):
     s = ca.sqrt(a[0])
     r = _add(a, _neg(_two_product(s, s)))
-    e = r[0] / (s + s)
+    e = ca.if_else(s > 0.0, r[0] / (s + s), 0.0)
     high = s + e
     return high, e - (high - s)
 
@@ -100,6 +100,22 @@ def _power_of_two(a):
 
 def _pi():
     return 3.141592653589793, 1.2246467991473532e-16
+
+
+def _abs(a):
+    return _select(a[0] < 0.0, _neg(a), a)
+
+
+def _less(a, b):
+    return ca.logic_or(a[0] < b[0], ca.logic_and(a[0] == b[0], a[1] < b[1]))
+
+
+def _at_most(a, b):
+    return ca.logic_or(a[0] < b[0], ca.logic_and(a[0] == b[0], a[1] <= b[1]))
+
+
+def _select(condition, yes, no):
+    return ca.if_else(condition, yes[0], no[0]), ca.if_else(condition, yes[1], no[1])
 
 
 def setup():

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from flint import arb, arb_mat, ctx
 
-from derive.check.agreement import LARGEST_BOUND, MEDIAN_BOUND
 from derive.arithmetic import extended, paired
 from derive.c_text import F32, F64, PRECISIONS, Precision
+from derive.check.agreement import LARGEST_BOUND, MEDIAN_BOUND
 from derive.library import Library, library
-from derive.measure import Expected, component_names, error, figures, upwards
-from derive.program import Measurement, run
+from derive.measure import Expected, error, figures, upwards
+from derive.program import Measurement, component_names, run
 from derive.prove import WIDE_BALLS
 from derive.sample import samples
 from derive.scene import catalogue, load

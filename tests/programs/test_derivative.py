@@ -33,9 +33,29 @@ def test_a_derivative_is_the_slope(tree, point):
     assert found == [slope(tree, point, "x")]
 
 
-def test_a_parameter_has_no_slope():
+@given(expressions, points)
+def test_a_derivative_by_a_parameter_is_the_slope(tree, point):
+    g, leaves = graph_with_leaves()
+    value = built(g, leaves, tree)
+    found = value_at(g, [derivative(g, value, leaves["p"])], point)
+    assert found == [slope(tree, point, "p")]
+
+
+def test_a_parameter_does_not_change_with_what_varies():
     g, leaves = graph_with_leaves()
     assert derivative(g, leaves["p"], leaves["x"]) == ZERO
+
+
+def test_what_is_made_of_parameters_only_has_a_derivative_made_of_parameters_only():
+    g, leaves = graph_with_leaves()
+    by_parameter = derivative(g, g.power(leaves["p"], -3), leaves["p"])
+    assert by_parameter == (Fraction(-3), g.power(leaves["p"], -4)[1])
+    assert g.fixed[by_parameter[1]]
+
+
+def test_a_scale_does_not_change_with_what_it_is_the_scale_of():
+    g, leaves = graph_with_leaves()
+    assert derivative(g, g.call("power_of_two", leaves["p"]), leaves["p"]) == ZERO
 
 
 def test_the_second_derivative_of_the_sine_is_minus_the_sine():
@@ -54,4 +74,4 @@ def test_a_quotient_and_a_root_are_differentiated():
 
 
 def test_every_smooth_function_has_a_rule():
-    assert set(RULES) == {"sin", "cos", "sqrt"}
+    assert set(RULES) == {"sin", "cos", "sqrt", "power_of_two"}

@@ -25,7 +25,7 @@ SPHERE = "[body]\nkind = 'spherical'\nmoment = 1"
 LIST = "must be a list of at least one function"
 KNOWN = (
     "angular_momentum, angular_momentum_rate, moment, acceleration, state_rate, kinetic_energy, "
-    "and each with _jacobian"
+    "and more in docs/scenes.md"
 )
 
 

@@ -10,16 +10,20 @@ from derive.scene import SceneError, catalogue, parse_scene, shape
 from derive.scene import body as scene_body
 from derive.scene import file as scene_file
 from derive.scene import symbols as scene_symbols
+from derive.scene import wanted as scene_wanted
 
-PAGE = (Path(__file__).parents[2] / "docs" / "scenes.md").read_text(encoding="utf-8")
-EXAMPLES = re.findall(r"^```toml\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE = (DOCS / "scenes.md").read_text(encoding="utf-8")
+MOTION = (DOCS / "motion.md").read_text(encoding="utf-8")
+EXAMPLE = re.compile(r"^```toml\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+EXAMPLES = EXAMPLE.findall(PAGE)
 REFUSED = [text for text in EXAMPLES if text.startswith("# scene 'example': ")]
 ACCEPTED = [text for text in EXAMPLES if text not in REFUSED]
 LONGEST_PAGE = 220
 """Lines, examples included: one page, read in a sitting."""
 
 
-@pytest.mark.parametrize("text", ACCEPTED)
+@pytest.mark.parametrize("text", [*ACCEPTED, *EXAMPLE.findall(MOTION)])
 def test_an_example_of_the_page_is_a_scene_without_a_warning(text: str) -> None:
     assert parse_scene(text, "example").warnings == ()
 
@@ -38,7 +42,7 @@ def test_the_page_has_its_examples_and_is_one_page() -> None:
 
 def test_every_word_that_a_scene_may_use_stands_on_the_page() -> None:
     words = [
-        *scene_file.FUNCTIONS,
+        *scene_wanted.EQUATIONS,
         *(*scene_file.TABLES, "wheels", *scene_file.LATER),
         *(*scene_file.KNOWN, *scene_file.POINTS),
         *scene_body.KINDS,
@@ -50,6 +54,15 @@ def test_every_word_that_a_scene_may_use_stands_on_the_page() -> None:
         *unit.UNITS,
     ]
     assert [word for word in words if not re.search(rf"\b{word}\b", PAGE)] == []
+
+
+def test_every_motion_and_attitude_formula_stands_on_its_page() -> None:
+    words = [*scene_wanted.STEPS, *scene_wanted.STEP_DERIVATIVES, *scene_file.TIMES]
+    words += [name for name in scene_wanted.ATTITUDES if "euler" not in name]
+    numbered = {f"step_taylor{order}" for order in range(13, 19)}
+    lacking = [w for w in words if w not in numbered and not re.search(rf"\b{w}\b", MOTION)]
+    assert lacking == []
+    assert len(MOTION.splitlines()) <= LONGEST_PAGE
 
 
 def test_the_page_says_where_the_catalogue_is() -> None:

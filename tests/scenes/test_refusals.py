@@ -23,6 +23,7 @@ RULES = [
     "_position",
     "_wheels",
     "_forward",
+    "check_moving",
     "check_inertia",
     "check_axis",
     "check_carrier",

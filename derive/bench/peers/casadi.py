@@ -12,6 +12,7 @@ from derive.bench.candidate import LOAD, STORE, Candidate, Source, sizes
 from derive.bench.problem import Problem
 
 AUTHOR = "CasADi"
+Equations = Callable[[list[Any], list[Any]], list[Any]]
 GLUE = """\
 #include <string.h>
 #include "candidate.h"
@@ -30,13 +31,18 @@ static inline void call(arguments *given, results *r)
 """
 
 
-def candidate(problem: Problem) -> Candidate:
-    """Return CasADi's answer to a problem. Raises ImportError where it is not installed."""
+def candidate(problem: Problem, equations: Equations | None = None) -> Candidate:
+    """Return CasADi's answer to a problem. Raises ImportError where it is not installed.
+
+    equations : of the problem, from (parameters, inputs); ``EQUATIONS`` has them if None
+    """
     import casadi as ca
+
+    stated = equations or EQUATIONS[problem.name]
 
     p = ca.SX.sym("p", len(problem.parameters))
     x = ca.SX.sym("x", len(problem.inputs))
-    rate = ca.vertcat(*EQUATIONS[problem.name](ca.vertsplit(p), ca.vertsplit(x)))
+    rate: Any = ca.vertcat(*stated(ca.vertsplit(p), ca.vertsplit(x)))
     results = [rate]
     if problem.pattern:
         results.append(ca.jacobian(rate, x))
@@ -124,7 +130,7 @@ def _rigid_body(p: list[Any], x: list[Any]) -> list[Any]:
     return [v, -ca.dot(q_v, w) / 2, vector, turned / p[0], _spin_rate(_tensor(p[1:]), w, moment)]
 
 
-EQUATIONS: dict[str, Callable[[list[Any], list[Any]], list[Any]]] = {
+EQUATIONS: dict[str, Equations] = {
     "free_body": _free_body,
     "free_body_principal": _principal,
     "heavy_top": _heavy_top,

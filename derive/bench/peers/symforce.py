@@ -13,6 +13,7 @@ from derive.bench.candidate import Candidate, Source, sizes
 from derive.bench.problem import Problem
 
 AUTHOR = "SymForce"
+Equations = Callable[[Any, list[Any], list[Any]], list[Any]]
 GLUE = """\
 #include <algorithm>
 #include "candidate.h"
@@ -43,15 +44,19 @@ static inline void call(const arguments *given, results *r)
 """
 
 
-def candidate(problem: Problem) -> Candidate:
-    """Return SymForce's answer to a problem. Raises ImportError where it is not installed."""
+def candidate(problem: Problem, equations: Equations | None = None) -> Candidate:
+    """Return SymForce's answer to a problem. Raises ImportError where it is not installed.
+
+    equations : of the problem, from (symforce, parameters, inputs); ``EQUATIONS`` has them if None
+    """
+    stated = equations or EQUATIONS[problem.name]
     sf = _symbolic()
     from symforce.codegen import Codegen, CppConfig
     from symforce.values import Values
 
     p = sf.Matrix(len(problem.parameters), 1).symbolic("p")
     x = sf.Matrix(len(problem.inputs), 1).symbolic("x")
-    outputs = Values(rate=sf.Matrix(EQUATIONS[problem.name](sf, list(p), list(x))))
+    outputs = Values(rate=sf.Matrix(stated(sf, list(p), list(x))))
     if problem.pattern:
         outputs["jacobian"] = _jacobian(sf, problem, outputs["rate"], x)
     generator = Codegen(
@@ -159,7 +164,7 @@ def _rigid_body(sf: Any, p: list[Any], x: list[Any]) -> list[Any]:
     return [*v, turning.w, turning.x, turning.y, turning.z, *acceleration, *rates]
 
 
-EQUATIONS: dict[str, Callable[[Any, list[Any], list[Any]], list[Any]]] = {
+EQUATIONS: dict[str, Equations] = {
     "free_body": _free_body,
     "free_body_principal": _principal,
     "heavy_top": _heavy_top,

@@ -1,0 +1,40 @@
+"""The functions of motion beside the motion that the lecture's equations give.
+
+Orders are measured in balls of 500 bits, so they are free of rounding; what rounding does is
+``motion_accuracy``'s part. Power and momentum need no reference: without torque they are kept.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from derive.check.verdict import JUDGED, Verdict
+from derive.convergence import BITS, EXACT, LEVELS, course, exactness, order
+from derive.library import Library
+from derive.sample import Sample
+from derive.scene.wanted import STEPS
+
+FEW = 2
+
+
+def orders(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
+    """Yield whether every step converges as fast as it claims, and every flow is exact."""
+    ordinary = [s for s in each if s.kind == "ordinary"][:FEW]
+    for program in library.motions:
+        if program.name == "flow_exact":
+            yield _exact(library, ordinary)
+        elif program.name in STEPS:
+            yield _order(library, program.name, ordinary)
+
+
+def _exact(library: Library, each: Sequence[Sample]) -> Verdict:
+    worst = max(exactness(library, s.values) for s in each)
+    says = f"relative error {worst:.1g} without rounding, {BITS} bits, {LEVELS} levels"
+    outcome = JUDGED[worst <= EXACT]
+    return Verdict(library.known.scene.name, "flow_exact", "exact", "is the motion", outcome, says)
+
+
+def _order(library: Library, name: str, each: Sequence[Sample]) -> Verdict:
+    found = [order(library, name, course(library, name, s.values)) for s in each]
+    measured = ", ".join(f"{one.measured:.2f}" for one in found)
+    says = f"claimed {found[0].claimed}, measured {measured}"
+    outcome = JUDGED[all(one.holds for one in found)]
+    return Verdict(library.known.scene.name, name, "exact", "order", outcome, says)

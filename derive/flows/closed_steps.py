@@ -1,0 +1,73 @@
+"""Torque-free steps of bodies of revolution and of spheres, in closed form: exact at any step.
+
+In one step the body turns about its angular momentum, which stands still in space, and then about
+its own axis; both angles are the same in every step of a motion, and so are their sines.
+"""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+from derive.flows.inertia import Inertia
+from derive.trace import Number, cos, less, named, number, select, sin, sqrt
+
+Plan = list[tuple[str, Number, str]]
+AXES = "xyz"
+
+
+def plan_revolution(body: Inertia, omega: Sequence[Number], time_step: Number) -> Plan:
+    """Return what every step of a body of revolution has in common: name, value, meaning."""
+    i, j, k = order(body)
+    across, own = body.tensor[i], body.tensor[k]
+    along = named("ratio", own / across, "moment about the axis over the other") * omega[k]
+    sine, versed = _about_momentum([omega[i], omega[j], along], time_step)
+    slip = named("slip", (across - own) / across, "one less that ratio")
+    angle = time_step * (slip * omega[k])
+    half, quarter = sin(angle * Fraction(1, 2)), sin(angle * Fraction(1, 4))
+    less_spin = 2 * quarter * quarter
+    return [
+        ("keep", sine * (1 - less_spin), "attitude change along omega across the axis, s"),
+        ("turn", sine * half, "attitude change square to that, s"),
+        ("spin", (1 - versed) * half + sine * along * (1 - less_spin), "attitude change, axis"),
+        ("less", versed + less_spin - versed * less_spin + sine * along * half, "1 - its scalar"),
+        ("sine", 2 * half * cos(angle * Fraction(1, 2)), "sine of the turn of omega in the body"),
+        ("versed", 2 * half * half, "one less its cosine"),
+    ]
+
+
+def plan_sphere(omega: Sequence[Number], time_step: Number) -> Plan:
+    """Return what every step of a sphere has in common: the attitude change itself."""
+    sine, versed = _about_momentum(omega, time_step)
+    names = zip(AXES, omega, strict=True)
+    return [("less", versed, "1 - scalar part of the attitude change")] + [
+        (f"turn_{axis}", sine * w, "vector part of the attitude change") for axis, w in names
+    ]
+
+
+def _about_momentum(mu: Sequence[Number], time_step: Number) -> tuple[Number, Number]:
+    """Return sin(|mu| h/2)/|mu| and 1 - cos(|mu| h/2)."""
+    size = sqrt(mu[0] * mu[0] + mu[1] * mu[1] + mu[2] * mu[2])
+    turns = less(0, size)
+    angle = time_step * size
+    sine = sin(angle * Fraction(1, 2)) / select(turns, size, 1)
+    quarter = sin(angle * Fraction(1, 4))
+    return select(turns, sine, time_step * Fraction(1, 2)), 2 * quarter * quarter
+
+
+def change_of_revolution(
+    body: Inertia, plan: Mapping[str, Number], omega: Sequence[Number]
+) -> tuple[Number, list[Number], list[Number]]:
+    """Return a step's attitude change, as one less its scalar and its vector, and omega's."""
+    i, j, k = order(body)
+    turn, change = list(omega), [number(0)] * 3
+    turn[i] = plan["keep"] * omega[i] + plan["turn"] * omega[j]
+    turn[j] = plan["keep"] * omega[j] - plan["turn"] * omega[i]
+    turn[k] = plan["spin"]
+    change[i] = plan["sine"] * omega[j] - plan["versed"] * omega[i]
+    change[j] = -(plan["sine"] * omega[i] + plan["versed"] * omega[j])
+    return plan["less"], turn, change
+
+
+def order(body: Inertia) -> tuple[int, int, int]:
+    """Return the places of two axes across the axis of revolution, and its own."""
+    k = AXES.index(body.axis or "z")
+    return (k + 1) % 3, (k + 2) % 3, k

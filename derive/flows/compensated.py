@@ -1,0 +1,70 @@
+"""Sums that keep what rounding takes away, and carry it to the next call.
+
+A state that moves by small increments loses half a unit in the last place at every step. Kept
+beside the state, that loss is added to the next increment, and the error of a long run no longer
+grows with the number of steps.
+"""
+
+from collections.abc import Sequence
+
+from derive import trace
+from derive.trace import Number
+
+Vector = Sequence[Number]
+
+
+def compensated_add(state: Number, increment: Number, remainder: Number) -> tuple[Number, Number]:
+    """Return the state after an increment, and what rounding kept from it.
+
+    ``remainder`` is what the call before gave, zero at first; state + remainder is the better
+    value. Exact while the increment is not larger than the state; where it is, the loss is a
+    rounding of the increment. Source: Kahan, CACM 8 (1965) 40.
+    """
+    if increment.exact == 0:
+        return state, remainder
+    wanted = increment + remainder
+    after = state + wanted
+    return after, wanted - (after - state)
+
+
+def closely_added(
+    state: Number, increment: Number, low: Number, remainder: Number
+) -> tuple[Number, Number]:
+    """Return the same for an increment with a low part, of which nothing is dropped on the way.
+
+    A low part below half a rounding of the increment would otherwise be rounded away every time.
+    """
+    wanted = increment + remainder
+    short = remainder - (wanted - increment)
+    after = state + wanted
+    return after, (wanted - (after - state)) + (short + low)
+
+
+def compensated_sums(
+    attitude: Vector, omega: Vector, turn: Vector, change: Vector, remainder: Vector
+) -> tuple[list[Number], list[Number], list[Number]]:
+    """Return attitude and omega after their increments, and the remainder of the seven sums."""
+    state, increments = [*attitude, *omega], [*turn, *change]
+    sums = [compensated_add(*each) for each in zip(state, increments, remainder, strict=True)]
+    after = [x for x, _ in sums]
+    return after[:4], after[4:], [r for _, r in sums]
+
+
+def splitter(value: Number) -> Number:
+    """Return the factor that cuts a float in two halves, on the tape of a value."""
+    if value.tape is None:
+        raise ValueError(f"{value.operand} is exact, and needs no halves")
+    return trace.splitter(value.tape)
+
+
+def two_product(a: Number, b: Number, factor: Number) -> tuple[Number, Number]:
+    """Return p and e with p + e = a b exactly and p the rounded product (Veltkamp and Dekker)."""
+    p = a * b
+    (a1, a2), (b1, b2) = _halves(a, factor), _halves(b, factor)
+    return p, a1 * b1 - p + a1 * b2 + a2 * b1 + a2 * b2
+
+
+def _halves(a: Number, factor: Number) -> tuple[Number, Number]:
+    c = factor * a
+    high = c - (c - a)
+    return high, a - high

@@ -1,0 +1,63 @@
+"""The exact motion of a body on which no moment acts, to any time at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from derive.flows.inertia import Inertia
+from derive.flows.principal_axes import Row, Three, principal_axes
+from derive.flows.revolution import precess, spun
+from derive.flows.tumbling import tumble
+from derive.rotations.lengths import largest
+from derive.rotations.quaternion import product
+from derive.trace import Number, Tape, less, named, power_of_two, select
+
+Motion = tuple[list[Number], list[Number]]
+
+
+def flow_exact(
+    tape: Tape,  # noqa: ARG001  every motion is given the tape that it is recorded on
+    body: Inertia,
+    attitude: Sequence[Number],
+    omega: Sequence[Number],
+    time: Number,
+) -> Motion:
+    """Return the attitude (4,) and the angular velocity (3,) of a free body after ``time``.
+
+    attitude : scalar first, Hamilton, body to inertial, of any length, which it keeps
+    omega    : of the body in the inertial frame, along body axes, rad/s
+    time     : s, of either sign; the attitude keeps the sign that a continuous motion gives it
+    Rates are worked out over a power of two near the largest, and a body at rest as one that spins
+    for no time: nothing overflows, and nothing is divided by zero.
+    """
+    size = power_of_two(largest(omega))
+    moves = less(0, size)
+    scaled = [w / select(moves, size, 1) for w in omega]
+    scaled[0] = select(moves, scaled[0], 1)
+    turn, after = _moved(body, (scaled[0], scaled[1], scaled[2]), time * size)
+    return product(attitude, turn), [w * size for w in after]
+
+
+def _moved(body: Inertia, omega: Three, time: Number) -> Motion:
+    """Return the turn and the angular velocity along body axes."""
+    if body.kind == "spherical":
+        return spun(omega, time), list(omega)
+    if body.kind == "axisymmetric":
+        axis = "xyz".index(body.axis or "z")
+        across = body.tensor[(axis + 1) % 3]
+        return precess((across, body.tensor[axis]), axis, omega, time)
+    found = principal_axes(body)
+    rows = [_named(k, row) for k, row in enumerate(found.axes, start=1)]
+    a, b, c = (_dot(row, omega) for row in rows)
+    (scalar, *vector), after = tumble(found.moments, (a, b, c), time)
+    columns = list(zip(*rows, strict=True))
+    return [scalar, *(_dot(n, vector) for n in columns)], [_dot(n, after) for n in columns]
+
+
+def _named(k: int, row: Row) -> Row:
+    says = "principal axis {}, along {}"
+    return [named(f"axis_{k}_{n}", e, says.format(k, n)) for n, e in zip("xyz", row, strict=True)]
+
+
+def _dot(a: Sequence[Number], b: Sequence[Number]) -> Number:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

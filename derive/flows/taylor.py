@@ -1,0 +1,90 @@
+"""From a rate to its Taylor step: the state's terms up to an order, their sum, the next step."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+from derive.flows.proposal import PROPOSED, proposal
+from derive.flows.recurrences import record
+from derive.flows.series import Series
+from derive.flows.terms import Draft
+from derive.program import Op, Operand, Program, Quantity
+
+TIME_STEP = Quantity(
+    "time_step", ("time_step",), (), "s", "", Fraction(0), Fraction(1), "length of the step"
+)
+
+
+def taylor_step(
+    rate: Program,
+    states: tuple[Quantity, ...],
+    inputs: tuple[Quantity, ...],
+    order: int,
+    time_step: Quantity = TIME_STEP,
+) -> Series:
+    """Return the step of ``order`` terms of a state whose rate is ``rate``.
+
+    rate : its outputs' components are the rates of the states' components, in their order
+    inputs : what else the rate may read; it is held while the step lasts
+    Raises ValueError for an operation that has no recurrence here.
+    """
+    names = [c for q in states for c in q.components]
+    rates = dict(zip(names, rate.results, strict=True))
+    draft = Draft({x for x in names if rates[x] != 0}, _joining(rate))
+    for op in rate.ops:
+        if not isinstance(op, Op):
+            raise ValueError(f"'{rate.name}' has a loop, of which there is no Taylor series")
+        record(draft, op, rate.ops)
+    moving = {
+        x: (rates[x], draft.term(rates[x]) if draft.moves(rates[x]) else Fraction(0))
+        for x in names
+        if rates[x] != 0
+    }
+    used = [q for q in rate.inputs if q.name == "constants"]
+    used += [*states, *(q for q in inputs if q in rate.inputs), time_step]
+    close, proposed = proposal(order, [[c for c in q.components if c in moving] for q in states])
+    ends = {x: f"{x}_after" if x in moving else x for x in names}
+    sums = [Op(ends[x], "add", (x, f"{x}_sum")) for x in moving]
+    series = Series(
+        name="step_taylor" if order == 20 else f"step_taylor{order}",
+        says=f"One step by a Taylor series of order {order}.",
+        inputs=tuple(used),
+        outputs=(*map(_next, states), PROPOSED),
+        order=order,
+        start=tuple(draft.start),
+        products=tuple(draft.products),
+        squares=tuple(draft.squares),
+        each=tuple(draft.each),
+        kept=tuple(draft.kept),
+        rates=moving,
+        close=(*sums, *close),
+        results=(*ends.values(), proposed),
+    )
+    _refuse_clashes(series)
+    return series
+
+
+def _joining(rate: Program) -> frozenset[str]:
+    """Return the values that one operation alone reads, and that operation adds or divides."""
+    readers: dict[Operand, list[str]] = {result: ["result"] for result in rate.results}
+    for op in rate.ops:
+        if isinstance(op, Op):
+            for place, operand in enumerate(op.operands):
+                divides = op.operator == "div" and place == 0
+                kind = "add" if divides or op.operator in ("add", "sub", "neg") else op.operator
+                readers.setdefault(operand, []).append(kind)
+    return frozenset(str(value) for value, kinds in readers.items() if kinds == ["add"])
+
+
+def _next(q: Quantity) -> Quantity:
+    parts = tuple(f"{c}_next" for c in q.components)
+    return replace(q, name=f"{q.name}_next", components=parts, meaning=f"{q.meaning}, next")
+
+
+def _refuse_clashes(series: Series) -> None:
+    """Refuse a state or an input that is called as something of ours is."""
+    given = {c for q in series.inputs for c in q.components}
+    ours = [op.result for op in (*series.start, *series.each, *series.close)]
+    ours += [c.result for c in (*series.products, *series.squares)]
+    twice = given.intersection(ours) | {name for name in ours if ours.count(name) > 1}
+    if twice:
+        raise ValueError(f"'{min(twice)}' is also the name of a value of the Taylor step")

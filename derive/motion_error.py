@@ -1,0 +1,210 @@
+"""How far rounding takes the functions of motion from what their own formulas say.
+
+The same program is run in balls of 300 bits, set-up included, on the same inputs; the difference is
+rounding alone. What a step leaves out by its order is another matter: tests measure the order, and
+the report shows error against cost. Errors are in u of the largest component of an output.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx
+
+from derive.arithmetic import working
+from derive.c_text import PRECISIONS, Precision
+from derive.library import Library
+from derive.measure import Errors, measurement, replayed
+from derive.program import Measurement, Program, Quantity, component_names, run
+from derive.reference import BALLS, BITS
+from derive.sample import Sample, Values, samples, source, uniform
+
+ORDINARY, CORNERS = 24, 2
+PLAN = "plan"
+UNMEASURED = ("remainder_next", "step_proposed")
+"""What rounding left, and a length that is proposed: neither has a true value."""
+REACH = 0.3
+"""Turn in rad, by omega and by its rate, that a sampled step covers at most."""
+LONG = 1000.0
+"""So many such steps make the longest time that a flow is sampled at."""
+NOTHING = 1e-60
+"""A part this much smaller than the rest of a plan is what rounding left, and has no true value."""
+OMEGA_DOT = ("omega_dot_x", "omega_dot_y", "omega_dot_z")
+
+
+def _middle(x: Any) -> Any:
+    return x.mid() if isinstance(x, arb) else x
+
+
+def _power_of_two(x: Any) -> Any:
+    if not x.is_finite() or x.contains(0):
+        return x  # on a way that is not taken
+    mantissa, exponent = x.mid().man_exp()
+    return arb(2) ** (int(exponent) + int(abs(mantissa)).bit_length())
+
+
+MOTION_BALLS: Mapping[str, Callable[..., Any]] = {
+    **BALLS,
+    "add": lambda a, b: a + b,
+    "sub": lambda a, b: a - b,
+    "mul": lambda a, b: a * b,
+    "div": lambda a, b: a / b,
+    "neg": lambda a: -a,
+    "low": lambda a: a * 0,
+    "abs": abs,
+    "exp": lambda x: x.exp(),
+    "log": lambda x: x.log(),
+    "atan2": lambda y, x: arb.atan2(y, x),
+    "floor": lambda x: x.mid().floor(),
+    "power_of_two": _power_of_two,
+    "unit_roundoff": lambda: arb(2) ** (-ctx.prec // 2),
+    "splitter": lambda: arb(1),
+    "less": lambda a, b: bool(_middle(a) < _middle(b)),
+    "at_most": lambda a, b: bool(_middle(a) <= _middle(b)),
+    "both": lambda a, b: a and b,
+    "either": lambda a, b: a or b,
+    "select": lambda condition, yes, no: yes if condition else no,
+}
+"""Balls of whatever precision is set; choices are made by their middles."""
+
+
+def moving_figures(library: Library) -> tuple[Measurement, ...]:
+    """Return the errors of every function of motion, both precisions."""
+    found: list[Measurement] = []
+    for precision in PRECISIONS if library.motions else ():
+        drawn = samples(library.known, precision, ORDINARY, CORNERS).each
+        found += motion_figures(library, with_motion(library, drawn, precision), precision)
+    return tuple(found)
+
+
+def with_motion(
+    library: Library, each: Sequence[Sample], precision: Precision
+) -> tuple[Sample, ...]:
+    """Return the samples with values for all that only the functions of motion are given."""
+    known = {c for q in library.known.words.every() for c in q.components}
+    known |= set(component_names(library.setup))
+    given = {q.name: q for f in library.motions for q in f.inputs}
+    fresh = [q for q in given.values() if not known & set(q.components) and q.name != PLAN]
+    dice = source(library.known, precision, "motion")
+    own = [(c, q) for q in fresh for c in q.components]
+    drawn = [
+        replace(s, values=s.values | {c: uniform(dice.dice, q) for c, q in own}) for s in each
+    ]
+    rates = _omega_rates(library, drawn, precision)
+    kept = tuple(
+        replace(s, values={c: dice.held(x) for c, x in _in_reach(s.values, fast).items()})
+        for s, fast in zip(drawn, rates, strict=True)
+    )
+    return tuple(_planned(library, kept, precision)) if PLAN in given else kept
+
+
+def _omega_rates(library: Library, each: Sequence[Sample], precision: Precision) -> list[float]:
+    """Return how fast omega changes at each sample, 0 where no function tells."""
+    every = (*library.rates, *library.functions)
+    telling = [f for f in every if any(q.name == "omega_dot" for q in f.outputs)][:1]
+    if not telling:
+        return [0.0] * len(each)
+    table = working(precision.dtype)
+    (f,) = telling
+    columns = replayed(replace(library, functions=(f,), motions=()), each, precision, table)
+    named = zip(component_names(f), columns[f.name], strict=True)
+    own = [np.abs(np.broadcast_to(c, len(each))) for name, c in named if name in OMEGA_DOT]
+    return [float(x) for x in np.max(np.nan_to_num(own), axis=0)]
+
+
+def _in_reach(values: Values, fast: float) -> Values:
+    """Return the values with times in which the body turns by no more than a step can take."""
+    if "omega_x" not in values:
+        return values
+    omega = max(abs(values[f"omega_{axis}"]) for axis in "xyz")
+    longest = REACH / max(omega, math.sqrt(fast), 1e-300)
+    step = min(values.get("time_step", 0.0), longest)
+    time = max(-LONG * longest, min(values.get("time", 0.0), LONG * longest))
+    return values | {c: x for c, x in (("time_step", step), ("time", time)) if c in values}
+
+
+def _planned(library: Library, each: Sequence[Sample], precision: Precision) -> Iterator[Sample]:
+    """Yield the samples, each with the plan that the plan's own function makes of it."""
+    (plan,) = (f for f in library.motions if f.name.startswith("plan_"))
+    only = replace(library, functions=(), motions=(plan,))
+    columns = replayed(only, each, precision, working(precision.dtype))[plan.name]
+    rows = np.array([np.broadcast_to(c, len(each)) for c in columns]).T.tolist()
+    names = component_names(plan)
+    for s, row in zip(each, rows, strict=True):
+        yield replace(s, values=s.values | dict(zip(names, row, strict=True)))
+
+
+def motion_figures(
+    library: Library, each: Sequence[Sample], precision: Precision
+) -> tuple[Measurement, ...]:
+    """Return the errors of rounding of every output of every function of motion."""
+    found = []
+    results = replayed(library, each, precision, working(precision.dtype))
+    for program in library.motions:
+        columns = [np.broadcast_to(c, len(each)).tolist() for c in results[program.name]]
+        errors = motion_errors(library, program, columns, each, precision)
+        found += [measurement(one, precision, each) for one in errors]
+    return tuple(found)
+
+
+def motion_errors(
+    library: Library,
+    program: Program,
+    columns: Sequence[Sequence[float]],
+    each: Sequence[Sample],
+    precision: Precision,
+) -> Iterator[Errors]:
+    """Yield the errors of each output, from the results by component and sample."""
+    true = [exact(library, program, s) for s in each]
+    place = 0
+    for q in program.outputs:
+        span = range(place, place + len(q.components))
+        place += len(q.components)
+        if q.name not in UNMEASURED:
+            rows = tuple(
+                _errors([columns[k][n] for k in span], [here[k] for k in span], q, precision)
+                for n, here in enumerate(true)
+            )
+            yield Errors(program.name, q.name, rows)
+
+
+def exact(library: Library, program: Program, sample: Sample) -> list[Any]:
+    """Return the results of a program at a sample, in balls, from the scene's parameters on."""
+    with ctx.workprec(BITS):
+        values = {name: arb(x) for name, x in sample.values.items()}
+        setup = library.setup
+        constants = run(setup, MOTION_BALLS, [values[c] for c in _inputs(setup)])
+        values |= dict(zip(component_names(setup), constants, strict=True))
+        return run(program, MOTION_BALLS, [values[c] for c in _inputs(program)])
+
+
+def _inputs(program: Program) -> list[str]:
+    return [c for q in program.inputs for c in q.components]
+
+
+def _errors(
+    found: Sequence[float], should: Sequence[Any], q: Quantity, precision: Precision
+) -> tuple[float, ...]:
+    """Return the errors of one output's components, in u of the largest; a plan's one by one."""
+    true = [arb(x).mid() for x in should]
+    if not all(x.is_finite() for x in true):
+        both = not all(map(math.isfinite, found))  # nothing is said where there is no value
+        return (0.0 if both else math.inf,) * len(found)
+    smallest = float(np.finfo(precision.dtype).smallest_normal)
+    sizes = [max(abs(float(x)), smallest) for x in true]
+    largest = max(sizes)
+    own = [size if size > largest * NOTHING else largest for size in sizes]
+    scales = own if q.name == PLAN else [largest] * len(sizes)
+    return tuple(
+        _error(x, y, scale) / precision.unit_roundoff
+        for x, y, scale in zip(found, true, scales, strict=True)
+    )
+
+
+def _error(found: float, should: Any, scale: float) -> float:
+    if not math.isfinite(found):
+        return math.inf
+    with ctx.workprec(BITS):
+        return abs(float((arb(found) - should) / arb(scale)))

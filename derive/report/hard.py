@@ -1,0 +1,218 @@
+"""Hard cases: what a naive form loses and what ours keeps, in float and in double.
+
+A figure is omega (relative) / attitude (rad) for motions, and one number for formulas.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+
+from derive.bench.build import BuildError
+from derive.bench.motion.case import Case
+from derive.bench.motion.ours import parameters, scenes_for
+from derive.bench.motion.runner import Job, Mover, moved
+from derive.bench.motion.textbook import PUBLISHED, RK4, published, textbook
+from derive.bench.motion.textbook import parameters as textbook_parameters
+from derive.bench.motion.wrong import ROUNDOFF, Wrong, invariants, wrong
+from derive.report.case_run import PRECISIONS, Workshop
+from derive.report.elliptic import elliptic
+from derive.report.settings import steps
+
+Figures = Mapping[str, tuple[float, ...]]
+
+
+@dataclass(frozen=True)
+class Hard:
+    """A hard case: figures by precision of a naive form and of ours.
+
+    bound : what ours must keep to, with ``why``; every figure is compared with it
+    """
+
+    name: str
+    measure: str
+    naive: str
+    naive_found: Figures
+    ours: str
+    ours_found: Figures
+    bound: Mapping[str, float]
+    why: str
+
+    def holds(self, precision: str) -> bool:
+        """Tell whether ours keeps to its bound."""
+        found = self.ours_found.get(precision, (math.nan,))
+        return max(found, key=_worst) <= self.bound[precision]
+
+
+def _worst(x: float) -> float:
+    return math.inf if math.isnan(x) else x
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A hard motion: the case, the naive and our method, and the bound in units of kappa u."""
+
+    case: str
+    says: str
+    naive: str
+    ours: str
+    kappas: float = 4.0
+
+
+ELLIPTIC = "textbook elliptic functions"
+MOTIONS = (
+    Asked("dzhanibekov_2e-20", "flip about the intermediate axis, 2^-20", RK4, "flow_exact"),
+    Asked("dzhanibekov_2e-20", "flip about the intermediate axis, 2^-20", ELLIPTIC, "flow_exact"),
+    Asked("separatrix_40", "on the separatrix for 40 s", RK4, "flow_exact"),
+    Asked("oblate_nearly_sym", "I1 and I2 differ by 2^-26", RK4, "flow_exact"),
+    Asked("rod_7e-9", "rod with I3/I1 = 7e-9", PUBLISHED, "step_dmv"),
+    Asked("rod_7e-9", "rod with I3/I1 = 7e-9", ELLIPTIC, "flow_exact"),
+    Asked("sphere", "sphere for 1000 s", ELLIPTIC, "flow_exact"),
+    Asked("sphere", "sphere for 1000 s", RK4, "flow_exact"),
+    Asked("spin_1e4", "1e4 rad/s, 1 rad a step", RK4, "flow_exact"),
+    Asked("spin_1e4", "1e4 rad/s, 1 rad a step", RK4, "step_split6"),
+)
+LEAST_KAPPA = 8.0  # 16 u where the inputs hardly matter: the steps round too
+
+
+def motions(every: Mapping[str, Case], shop: Workshop) -> Iterator[Hard]:
+    """Yield the rows of hard motions of the reference cases."""
+    for asked in MOTIONS:
+        if asked.case in every:
+            case = every[asked.case]
+            kappa = max(case.kappa or LEAST_KAPPA, LEAST_KAPPA)
+            yield Hard(
+                asked.says,
+                "omega / attitude",
+                asked.naive,
+                _by_precision(partial(best, case, asked.naive, shop)),
+                asked.ours,
+                _by_precision(partial(best, case, asked.ours, shop)),
+                {p: asked.kappas * kappa * ROUNDOFF[p] for p in PRECISIONS},
+                f"{asked.kappas:g} kappa u: what rounded inputs do, and as much again for rounding",
+            )
+
+
+SCALES = {"f64": (-360, 300), "f32": (-70, 60)}
+
+
+def scaled(every: Mapping[str, Case], shop: Workshop) -> Iterator[Hard]:
+    """Yield the rows of bodies whose moments are far from 1."""
+    base = every["tiny_scale_f32"]
+    for place in (0, 1):
+        powers = {p: SCALES[p][place] for p in PRECISIONS}
+        says = " / ".join(f"2^{powers[p]} {p}" for p in PRECISIONS)
+        cases = {p: _times(base, Fraction(2) ** (70 + powers[p])) for p in PRECISIONS}
+        for ours in ("flow_exact", "step_dmv"):
+            kappa = base.kappa or LEAST_KAPPA
+            yield Hard(
+                f"inertia times {says}",
+                "omega / attitude",
+                PUBLISHED,
+                _by_precision(partial(_best_of, cases, PUBLISHED, shop)),
+                ours,
+                _by_precision(partial(_best_of, cases, ours, shop)),
+                {p: 4 * kappa * ROUNDOFF[p] for p in PRECISIONS},
+                "4 kappa u, as without the scale: powers of two are exact",
+            )
+
+
+def _times(case: Case, factor: Fraction) -> Case:
+    return replace(case, inertia=tuple(x * factor for x in case.inertia))
+
+
+def long_run(every: Mapping[str, Case], shop: Workshop, count: int) -> Iterator[Hard]:
+    """Yield the drift of energy and momentum over ``count`` steps of 0.01 s."""
+    case = replace(every["asym_ii_generic"], time=Fraction(count, 100))
+    for place, what, bound in (
+        (0, "energy", {"f64": 1e-14, "f32": 3e-6}),
+        (1, "|l|", {"f64": 5e-15, "f32": 1e-6}),
+    ):
+        yield Hard(
+            f"{count:.0e} steps of 0.01 s: {what}",
+            f"largest drift of {what}",
+            RK4,
+            _by_precision(partial(drift, case, RK4, shop, count, place)),
+            "step_dmv",
+            _by_precision(partial(drift, case, "step_dmv", shop, count, place)),
+            bound,
+            "the target: rounding adds up like a random walk when it is carried along",
+        )
+
+
+def drift(
+    case: Case, method: str, shop: Workshop, count: int, place: int, precision: str
+) -> tuple[float]:
+    """Return the largest relative drift of energy or |l|, seen a thousand times on the way.
+
+    place : 0 energy, 1 |l|
+    """
+    mover, given = program(case, method, precision, shop)
+    job = Job(method, 0.01, count, every=max(1, count // 1000))
+    (motion,) = moved(mover, case, given, [job])
+    start = invariants(case, case.omega0)
+    worst = 0.0
+    for state in motion.states if motion else ():
+        if not all(map(math.isfinite, state)):
+            return (math.nan,)
+        now = invariants(case, [Fraction(x) for x in state[4:]])
+        worst = max(worst, abs(float(now[place] / start[place] - 1)))
+    return (worst,)
+
+
+def program(
+    case: Case, method: str, precision: str, shop: Workshop
+) -> tuple[Mover, Sequence[float]]:
+    """Return the program that holds a method for a case, and the numbers it takes.
+
+    Raises BuildError if there is none.
+    """
+    if method == PUBLISHED:
+        built = published(precision, shop.folder / f"published_{precision}")
+        return built, textbook_parameters(case)
+    if method == RK4:
+        built = textbook(case, precision, shop.folder / f"textbook_{case.name}_{precision}")
+        return built, textbook_parameters(case)
+    for scene in scenes_for(case)[::-1]:
+        mover = shop.movers.get((scene, precision))
+        if isinstance(mover, Mover) and method in mover.methods:
+            return mover, parameters(shop.emissions[scene], case)
+    raise BuildError(f"no scene holds '{method}' for case '{case.name}'")
+
+
+def _best_of(
+    cases: Mapping[str, Case], method: str, shop: Workshop, precision: str
+) -> tuple[float, float]:
+    return best(cases[precision], method, shop, precision)
+
+
+def best(case: Case, method: str, shop: Workshop, precision: str) -> tuple[float, float]:
+    """Return the errors of omega and attitude with the best of the steps that are tried."""
+    if method == ELLIPTIC:
+        return elliptic(case, precision), math.nan
+    mover, given = program(case, method, precision, shop)
+    if method.startswith("flow_"):
+        jobs = [Job(method, float(case.time), 1)]
+    else:
+        counts = [n for n in steps(case, shop.limits) if n >= float(case.time) * case.rate]
+        jobs = [Job(method, float(case.time) / n, n) for n in _tried(case, counts)]
+    found = moved(mover, case, given, jobs)
+    every = [wrong(case, m.states[-1]) for m in found if m] or [Wrong(*[math.nan] * 4)]
+    chosen = min(every, key=lambda w: _worst(w.state))
+    return chosen.omega, chosen.attitude
+
+
+def _tried(case: Case, counts: Sequence[int]) -> Sequence[int]:
+    """Return numbers of steps: about 1 rad a step for the fast spin, all of them otherwise."""
+    return counts[:1] if case.name == "spin_1e4" else counts
+
+
+def _by_precision(found: Callable[[str], tuple[float, ...]]) -> Figures:
+    figures = {}
+    for precision in PRECISIONS:
+        try:
+            figures[precision] = found(precision)
+        except (BuildError, ImportError):
+            continue
+    return figures

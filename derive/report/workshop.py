@@ -1,0 +1,63 @@
+"""Programs for all cases, made before anything is timed: scenes compiled, peers' passes counted."""
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from derive.bench.build import BuildError
+from derive.bench.motion.ours import Emission, emission, ours
+from derive.bench.motion.peer_count import counted
+from derive.bench.motion.peers import PEERS, Peer
+from derive.bench.motion.runner import Mover
+from derive.report.case_run import ANY, PRECISIONS, Workshop
+from derive.report.point import Limits
+from derive.report.settings import tolerances
+
+COUNTED_CASE = "asym_ii_generic"
+WORKERS = 2
+
+
+def workshop(scenes: Sequence[str], limits: Limits, folder: Path) -> Workshop:
+    """Return everything that cases of these scenes are run with."""
+    with ThreadPoolExecutor(WORKERS) as pool:
+        peers = [pool.submit(per_pass, peer, limits, folder) for peer in PEERS]
+        ready = list(pool.map(_programs, scenes, [folder] * len(scenes)))
+        counts = {key: count for found in peers for key, count in found.result().items()}
+    emissions = {scene: made for scene, (made, _) in zip(scenes, ready, strict=True) if made}
+    movers = {
+        (scene, precision): mover
+        for scene, (_, built) in zip(scenes, ready, strict=True)
+        for precision, mover in built.items()
+    }
+    return Workshop(emissions, movers, folder, limits, counts)
+
+
+def _programs(scene: str, folder: Path) -> tuple[Emission | None, Mapping[str, Mover | str]]:
+    """Return the emission of a scene and its program in each precision, or why there is none."""
+    try:
+        made = emission(scene)
+    except Exception as reason:
+        return None, dict.fromkeys(PRECISIONS, f"{type(reason).__name__}: {reason}")
+    built: dict[str, Mover | str] = {}
+    for precision in PRECISIONS:
+        try:
+            built[precision] = ours(made, precision, folder / f"{scene}_{precision}")
+        except BuildError as reason:
+            built[precision] = str(reason)
+    return made, built
+
+
+def per_pass(peer: Peer, limits: Limits, folder: Path) -> dict[tuple[str, float], float]:
+    """Return the instructions of a peer's pass at each of its settings, by callgrind.
+
+    A tolerance changes the pass of a Taylor series only; a step changes none.
+    """
+    settings = tolerances("f64", limits.ratio**6.6) if peer.setting == "tolerance" else []
+    asked = settings if peer.package == "heyoka" else [settings[2] if settings else 2.0**-6]
+    jobs = [(COUNTED_CASE, value) for value in (asked[0], *asked)]  # the first one warms up
+    try:
+        found = counted(peer, jobs, folder / peer.package)
+    except (FileNotFoundError, BuildError):
+        return {}
+    every = len(asked) > 1
+    return {(peer.name, v if every else ANY): found[COUNTED_CASE, v] for v in asked}

@@ -1,0 +1,84 @@
+"""What a scene may ask for: functions of the lecture, motion in time, formulas for attitudes."""
+
+from __future__ import annotations
+
+from itertools import permutations
+
+from derive.scene.declaration import SceneError
+from derive.scene.table import nearest, shown
+
+EQUATIONS = (
+    "angular_momentum",
+    "angular_momentum_rate",
+    "moment",
+    "acceleration",
+    "state_rate",
+    "kinetic_energy",
+)
+"""What the lecture states; each may be wanted with its Jacobian."""
+
+SPLITTINGS = {"step_split2": 2, "step_split": 4, "step_split6": 6}
+TAYLOR = {"step_taylor": 20} | {f"step_taylor{order}": order for order in range(12, 20)}
+STEPS = ("step_rk4", "step_lie", *SPLITTINGS, "step_dmv", *TAYLOR, "flow_exact")
+"""Motion in time: steps of the whole state, and the exact torque-free rotation."""
+
+COMPENSATED = tuple(f"{name}_compensated" for name in ("step_rk4", "step_lie", *SPLITTINGS))
+STEP_DERIVATIVES = (
+    *(f"step_rk4_{kind}" for kind in ("jacobian", "tangent", "sensitivity")),
+    *(f"step_lie_{kind}" for kind in ("jacobian", "tangent")),
+)
+TORQUE_FREE = ("step_dmv", "flow_exact")
+ROTATIONAL = (*TORQUE_FREE, *SPLITTINGS, *(f"{name}_compensated" for name in SPLITTINGS))
+"""Those that move a free rotation, attitude and omega, and nothing else."""
+
+SEQUENCES = tuple(
+    first + middle + last
+    for first, middle in permutations("xyz", 2)
+    for last in "xyz"
+    if last != middle
+)
+"""The twelve ways to turn through three angles: x-y-x to z-y-z."""
+
+ATTITUDES = (
+    *(f"quaternion_{name}" for name in ("product", "exp", "log", "normalise")),
+    *("quaternion_rotate", "quaternion_rotate_back"),
+    *(f"quaternion_{way}_{other}" for other in ("matrix", "mrp") for way in ("to", "from")),
+    *(f"quaternion_{way}_euler_{s}" for s in SEQUENCES for way in ("to", "from")),
+)
+"""Formulas for attitudes, which need no body."""
+
+JACOBIANS = tuple(f"{name}_jacobian" for name in EQUATIONS)
+WANTED = (*EQUATIONS, *JACOBIANS, *STEPS, *COMPENSATED, *STEP_DERIVATIVES, *ATTITUDES)
+
+
+def read_wanted(value: object) -> tuple[str, ...]:
+    """Return the wanted functions of a scene file."""
+    if not isinstance(value, list) or not value:
+        raise SceneError(f"wanted must be a list of at least one function, not {shown(value)}")
+    for name in value:
+        if not isinstance(name, str) or name not in WANTED:
+            hint = nearest(name, WANTED) if isinstance(name, str) else ""
+            hint = hint or f" (known: {', '.join(EQUATIONS)}, and more in docs/scenes.md)"
+            raise SceneError(f"wanted has {shown(name)}, which is no function{hint}")
+        if value.count(name) > 1:
+            raise SceneError(f"wanted has '{name}' twice")
+    return tuple(value)
+
+
+def attitudes_only(value: object) -> bool:
+    """Tell whether a file asks for formulas of attitudes and nothing else, so needs no body."""
+    return isinstance(value, list) and bool(value) and all(name in ATTITUDES for name in value)
+
+
+def moves(name: str) -> bool:
+    """Tell whether a wanted function moves the state in time."""
+    return name.startswith(("step_", "flow_"))
+
+
+def step_of(name: str) -> str:
+    """Return the step that a compensated step or a derivative belongs to.
+
+    >>> step_of("step_rk4_jacobian"), step_of("step_split6_compensated")
+    ('step_rk4', 'step_split6')
+    """
+    return "_".join(name.split("_")[:2])
