@@ -1,13 +1,13 @@
 """What each wanted answer is made of: unknowns, energies, momenta, results, small and steady motion."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 from sympy import Expr, Integer, Matrix, Symbol
 
 from derive.formula import Formula
-from derive.machine.balances import Balances, Row
+from derive.machine.balances import Balance, Balances, Row
 from derive.machine.bodies import centre, centre_velocity, kinetic_energy, mass, momentum
 from derive.machine.choice import chosen, contradiction, unbalanced
 from derive.machine.frames import ZERO, Frames
@@ -22,8 +22,15 @@ from derive.scene import Machine, SceneError
 from derive.scene.machine_file import JACOBIAN, written_out
 from derive.specialise import stated
 
-BALANCE_STEPS = ("mass_centre_motion", "general_form", "any_point_form")
 FRAME_STEPS = ("angular_velocities_add", "acceleration_seen_from_axes")
+
+
+def balance_steps(balances: Iterable[Balance]) -> tuple[str, ...]:
+    """Return the lecture steps that balances are written by."""
+    kinds = {balance.kind for balance in balances}
+    force = ("mass_centre_motion",) if "force" in kinds else ()
+    moment = ("general_form", "moving_point_form", "any_point_form")
+    return force + (moment if "moment" in kinds else ())
 
 
 @dataclass
@@ -66,10 +73,10 @@ class Answers:
         written = tuple(self.balances.written(row) for row in rows)
         definitions = sheet.needed([*written, *answers.values()])
         held = tuple(row.balance for row in rows)
-        balance = BALANCE_STEPS if rows else ()
+        motion = FRAME_STEPS if definitions else ()
         says = f"{_listed([q.meaning for q in outputs])}."
         return Question(base, says[:1].upper() + says[1:], outputs, answers, definitions, written,
-                        unknowns, held, (*balance, *steps, *FRAME_STEPS))  # fmt: skip
+                        unknowns, held, (*balance_steps(held), *steps, *motion))  # fmt: skip
 
     def _chosen(self, wanted: set[Symbol]) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
         every = self.balances.unknowns
@@ -157,8 +164,9 @@ class Answers:
         rows = self._without_unknowns(len(steady.unknown))
         written = [self.balances.written(row) for row in rows]
         answers = dict(zip(self._symbols(q), written, strict=True))
-        found = self._asked(base, (q,), answers, BALANCE_STEPS)
-        found = replace(found, balances=tuple(row.balance for row in rows))
+        held = tuple(row.balance for row in rows)
+        found = self._asked(base, (q,), answers, balance_steps(held))
+        found = replace(found, balances=held)
         return without_factors(found, self.frames.words)
 
     def _without_unknowns(self, count: int) -> list[Row]:
@@ -195,7 +203,7 @@ _STEPS = {
     "kinetic_energy": ("koenig",),
     "energy": ("koenig",),
     "angular_momentum": ("angular_momentum",),
-    "linearised": BALANCE_STEPS,
+    "linearised": ("general_form", "moving_point_form", "any_point_form"),
 }
 
 

@@ -15,7 +15,7 @@ from mpmath import mp
 from numpy.typing import NDArray
 from sympy import Expr, Integer, Matrix, Symbol
 
-from derive.machine.bodies import Effort, effort
+from derive.machine.bodies import Effort, carries, effort, moment_about
 from derive.machine.frames import ZERO, Frames, Parts, Point
 from derive.machine.loads import Wrench, wrenches
 from derive.machine.probe import DIGITS, NOTHING, POINTS, Probe, point
@@ -188,6 +188,10 @@ class Balances:
         total: Expr = Integer(0)
         for body in balance.bodies:
             own = self.efforts[body]
+            if balance.point is not None and carries(frames, body, balance.point):
+                moment = moment_about(frames, body, balance.point[1])
+                total += (e.T * frames.carried(moment, own.frame, balance.frame))[0]
+                continue
             force = sum((frames.carried(part, name, balance.frame)
                          for name, part in own.force.items()), ZERO)  # fmt: skip
             vector = force

@@ -1,8 +1,10 @@
 """What each body of a machine needs by its motion: force at the mass centre, moment about it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
-from sympy import Expr, Matrix, zeros
+from sympy import Expr, Matrix, eye, zeros
 
 from derive.machine.frames import ZERO, Frames, Parts, Point
 from derive.machine.words import inertia_name, mass_name
@@ -72,13 +74,60 @@ def attached(frames: Frames, place: Point) -> Point:
 
 def moment(frames: Frames, body: str) -> Matrix:
     """Return the rate of the angular momentum of a body about its mass centre."""
-    sheet, own = frames.sheet, frames.own(body)
+    return _moment(frames, body, body, tensor(frames, body), {})
+
+
+def moment_about(frames: Frames, body: str, at: Matrix) -> Matrix:
+    """Return the moment that a body's motion needs about a point that it carries, along its axes.
+
+    at : the point, along the body's own axes from their origin
+    """
+    own, (_, G) = frames.own(body), centre(frames, body)
+    known = {"m": mass(frames, body), "rho_G": G - at}
+    I_P = stated("parallel_axes", known | {"I_G": tensor(frames, body)})
+    parts = frames.accelerated(own, at, frames.acceleration[own])
+    a_A = sum((frames.carried(part, name, own) for name, part in parts.items()), ZERO)
+    known["a_A"] = frames.sheet.column(f"{body}.a_A", a_A)
+    return _moment(frames, body, f"{body}.about", I_P, known)
+
+
+def _moment(
+    frames: Frames, body: str, label: str, I: Matrix, about: Mapping[str, Any]  # noqa: E741
+) -> Matrix:
+    sheet, Omega = frames.sheet, frames.Omega[frames.own(body)]
     omega = sheet.column(f"{body}.omega", frames.turning_of_body(body))
-    known = {"I": tensor(frames, body), "omega": omega, "Omega": frames.Omega[own]}
-    known["omega_dot"] = sheet.column(f"{body}.omega_dot", sheet.rate_of_column(omega))
+    known = {"I": I, "omega": omega, "Omega": Omega}
     I_dot = stated("inertia_rate_in_axes", known)
     known["I_dot"] = zeros(3, 3) if I_dot.applyfunc(reduced) == zeros(3, 3) else I_dot
-    return sheet.column(f"{body}.M", stated("general_form", known))
+    known["omega_dot"] = sheet.column(f"{body}.omega_dot", sheet.rate_of_column(omega))
+    step = "moving_point_form" if about else "general_form"
+    if omega != Omega:
+        return sheet.column(f"{label}.M", stated(step, known | about))
+    still = known | {"omega": ZERO, "Omega": ZERO}
+    gyroscopic = stated("body_axes_form", known | {"I": aspherical(I), "omega_dot": ZERO})
+    return sheet.column(f"{label}.M", stated(step, still | about) + gyroscopic)
+
+
+def aspherical(I: Matrix) -> Matrix:  # noqa: E741
+    """Return a tensor less a multiple of the identity, by the lecture step "spherical_part"."""
+    moments = [I[1, 1], I[0, 0], I[2, 2]]
+    best = max(moments, key=lambda c: sum((m - c).expand() == 0 for m in moments))
+    return I - best * eye(3)
+
+
+def carries(frames: Frames, body: str, place: Point) -> bool:
+    """Tell whether a point moves with a body: fixed in its own axes, and on the axis it spins on."""
+    own, G = centre(frames, body)
+    if place[0] != own or frames.sheet.rate_of_column(place[1]) != ZERO:
+        return False
+    member = frames.machine.body(body)
+    if member.spin is None and member.axial_speed is None:
+        return True
+    return all(
+        (x - y).expand() == 0
+        for x, y, axis in zip(G, place[1], "xyz", strict=True)
+        if axis != member.axis
+    )
 
 
 def momentum(frames: Frames, body: str) -> Matrix:

@@ -84,6 +84,7 @@ def truth(known: Mechanism, base: str) -> Truth:
 def arrange(known: Mechanism, fact: Truth) -> tuple[Arrangement, ...]:
     """Return the way to compute the outputs of ``fact``."""
     question = known.lean(fact.name).question
+    question = with_parameters_put_in(question, known.words)
     stages = staged(question)
     if question.rows:
         probe = point(known.made, 0)
@@ -91,6 +92,17 @@ def arrange(known: Mechanism, fact: Truth) -> tuple[Arrangement, ...]:
         stages += solved(question.rows, question.unknowns, known.made.sheet.split, probe).stages
     outputs = tuple(question.answers.values())
     return (Arrangement(tuple(stages), outputs),)
+
+
+def with_parameters_put_in(question: Question, words: Vocabulary) -> Question:
+    """Return the question without names for short sums of parameters: set-up finds them itself."""
+    fixed = {words.symbols[c] for q in words.parameters for c in q.components}
+    known: dict[Symbol, Expr] = {}
+    for symbol, value in question.definitions.items():
+        made = value.xreplace(known)
+        if made.free_symbols <= fixed and _terms(made, {}) <= MANY_TERMS:
+            known[symbol] = made
+    return substituted(question, known)
 
 
 def staged(question: Question) -> list[Stage]:

@@ -6,7 +6,7 @@ from sympy import Expr, Symbol
 
 from derive.formula import ZERO, Formula
 from derive.lecture import LECTURE
-from derive.machine.answers import BALANCE_STEPS, FRAME_STEPS
+from derive.machine.answers import FRAME_STEPS, balance_steps
 from derive.machine.mechanism import Mechanism, dropped
 from derive.notation import equation_mathml, sympy_equation_mathml
 from derive.page.passage import Line, Passage
@@ -91,11 +91,10 @@ def passages(known: Mechanism, fact: Truth) -> tuple[Passage, ...]:
     motion = [(s, s, value) for s, value in question.definitions.items()]
     rows = [(u, row - row, row) for u, row in zip(question.unknowns, question.rows, strict=True)]
     answers = [(s, s, value) for s, value in question.answers.items() if s != value]
-    groups = (
-        (FRAME_STEPS if motion else (), motion),
-        (BALANCE_STEPS, rows),
-        (("koenig",) if "koenig" in question.steps else (), answers),
-    )
+    of_rows = balance_steps(question.balances) if rows else ()
+    of_motion = FRAME_STEPS if motion else ()
+    others = tuple(s for s in dict.fromkeys(question.steps) if s not in (*of_rows, *of_motion))
+    groups = ((of_motion, motion), (of_rows, rows), (others, answers))
     return tuple(_passage(known, fact, steps, lines, names) for steps, lines in groups if lines)
 
 

@@ -22,6 +22,7 @@ TABLES = (
     "parameters", "coordinates", "speeds", "inputs", "frames", "bodies", "loads", "results",
     "angular_momentum", "linearised", "steady",
 )  # fmt: skip
+OF_ONE_BODY = ("body", "axes", "wheels", "point", "known", "position")
 ENERGIES = ("kinetic_energy", "potential_energy", "energy")
 FUNCTIONS = (*ENERGIES, "angular_momentum", "accelerations", "linearised", "steady")
 JACOBIAN = "_jacobian"
@@ -35,6 +36,12 @@ def is_machine(document: Mapping[str, object]) -> bool:
 
 def read_machine(document: Mapping[str, object], name: str, source: str) -> Machine:
     """Return the machine of a parsed TOML document, checked table by table."""
+    for key in OF_ONE_BODY:
+        if key in document:
+            rule = "is for a single body; with bodies and frames, use bodies, frames and loads"
+            raise SceneError(f"table '{key}' {rule}")
+    if "wanted" not in document:
+        raise SceneError("the file needs 'wanted', above its first [table]")
     keys(Table("the file", document), ("wanted", "bodies"),
          (*TABLES, "title", "source", "form"))  # fmt: skip
     part = {key: table(document.get(key, {}), key) for key in TABLES}
