@@ -22,6 +22,7 @@ from derive.generation import Made, all_made, lecture_made
 from derive.lecture import LECTURE
 from derive.notation import expression_text
 from derive.prove import ProofError
+from derive.saving import Saving
 from derive.scene import SceneError, catalogue, load
 from derive.solve.command import options as solve_options
 from derive.solve.command import solved
@@ -210,6 +211,20 @@ def _print_costs(results: Sequence[Made]) -> None:
         table.add_row(row.scene, row.function, str(row.flops), str(row.divisions), *row.errors)
     console.print(table)
     console.print("Errors in u (2^-24 float, 2^-53 double) of the largest term, sampled.")
+    _print_savings([saving for result in results for saving in result.savings])
+
+
+def _print_savings(savings: Sequence[Saving]) -> None:
+    """Print what each answer of a machine was found not to need, and the operations it saves."""
+    if not savings:
+        return
+    columns = ("unknowns left out", "cancels", "never enters", "+ - * /", "body by body")
+    table = Table("scene", "function", *columns, box=None)
+    for s in savings:
+        plain = "" if s.plain is None else str(s.plain)
+        lists = [" ".join(names) for names in (s.unknowns, s.cancels, s.absent)]
+        table.add_row(s.scene, s.function, *lists, str(s.operations), plain)
+    console.print(table)
 
 
 def _compare(options: argparse.Namespace, texts: dict[str, str]) -> int:

@@ -12,6 +12,7 @@ from derive.motion_error import moving_figures
 from derive.page import lecture_page
 from derive.program import Measurement
 from derive.prove import prove
+from derive.saving import Saving, savings
 from derive.scene import SceneError, load
 
 LECTURE_PAGE = "lecture.html"
@@ -35,6 +36,7 @@ class Made:
     texts: dict[str, str]
     warnings: tuple[str, ...]
     costs: tuple[CostRow, ...]
+    savings: tuple[Saving, ...] = ()
 
 
 def made(source: str) -> Made:
@@ -45,7 +47,8 @@ def made(source: str) -> Made:
     measured = figures(programs) + moving_figures(programs)
     _finite(scene.name, measured)
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in scene.warnings)
-    return Made(scene_files(programs, measured), warnings, cost_rows(programs, measured))
+    costs, spared = cost_rows(programs, measured), tuple(savings(programs))
+    return Made(scene_files(programs, measured), warnings, costs, spared)
 
 
 def _finite(scene: str, measured: Sequence[Measurement]) -> None:

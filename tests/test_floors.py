@@ -18,6 +18,7 @@ FLOORS = (
     ("lower", "forms", "stage"),
     ("flows",),
     ("motions", "library"),
+    ("saving",),
     (
         *("c_text", "series_text", "compact_text", "definition", "comment", "signature", "example"),
         *("emit", "casadi_text", "manifest", "page"),
@@ -108,7 +109,7 @@ def test_sympy_stays_out_of_the_modules_that_must_not_know_it(path: Path) -> Non
 
 def test_an_import_that_goes_up_is_found() -> None:
     assert faults("program", "from derive.cli import main") == [
-        "derive.program (floor 0) imports derive.cli (floor 14)"
+        "derive.program (floor 0) imports derive.cli (floor 15)"
     ]
     assert faults("program", "def f():\n    from derive import emit") != []
 

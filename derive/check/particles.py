@@ -9,7 +9,7 @@ from mpmath import mp, mpf
 from derive.check.verdict import JUDGED, Verdict
 from derive.cloud import Answers, answers
 from derive.cloud.series import DIGITS
-from derive.cloud.small import slopes
+from derive.cloud.small import at_rest, slopes
 from derive.equations import equations
 from derive.formula import symbols
 from derive.library import Library
@@ -44,7 +44,7 @@ def clouds(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
                 gaps = _gaps(known.scene, sample, names, true)
             worst, count = max([worst, *gaps]), count + len(gaps)
         if not count:
-            says = "a residual; its roots are compared instead"
+            says = "the cloud has no such number at these points"
             yield Verdict(known.scene.name, base, "exact", "cloud of particles", "skipped", says)
             continue
         says = f"{count} numbers, {float(worst):.1g} apart, relative to the largest term"
@@ -95,6 +95,8 @@ def digits(ball: Any) -> Any:
 
 def _small(machine: Machine, sample: Sample, true: Mapping[str, Known]) -> list[Any]:
     """Return how far M, D and K are from the slopes of the cloud's accelerations."""
+    if not at_rest(machine, sample.values):
+        return []  # the given motion is none, for these values
     by_velocity, by_place = slopes(machine, sample.values)
     size = by_velocity.rows
     with mp.workdps(DIGITS):

@@ -101,7 +101,8 @@ class History:
     def _start(self, frame: Frame) -> Array:
         if not frame.quaternion:
             return np.array([[mpf(i == k) for k in range(3)] for i in range(3)], dtype=object)
-        w, x, y, z = (self.values[f"attitude_{frame.name}_{p}"] for p in "wxyz")
+        parts = [self.values[f"attitude_{frame.name}_{p}"] for p in "wxyz"]
+        w, x, y, z = (p / mp.sqrt(mp.fsum(q * q for q in parts)) for p in parts)
         return np.array([
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
             [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],

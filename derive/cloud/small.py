@@ -34,6 +34,14 @@ def slopes(machine: Machine, given: Mapping[str, float]) -> tuple[Any, Any]:
         return found[0], found[1]
 
 
+def at_rest(machine: Machine, given: Mapping[str, float]) -> bool:
+    """Tell whether the motion of the scene goes on without any acceleration."""
+    free = [m.unknown for m in (*machine.coordinates, *machine.speeds) if m.free]
+    with mp.workdps(DIGITS):
+        found = answers(machine, _base(machine, given)).unknowns
+        return all(abs(found.get(name, mpf(1))) < STEP for name in free)
+
+
 def _base(machine: Machine, given: Mapping[str, float]) -> dict[str, Any]:
     """Return the motion about which the scene is linearised."""
     values = {name: mpf(x) for name, x in given.items()}

@@ -18,7 +18,7 @@ from sympy import Expr, Integer, Matrix, Symbol
 from derive.machine.bodies import Effort, carries, effort, moment_about
 from derive.machine.frames import ZERO, Frames, Parts, Point
 from derive.machine.loads import Wrench, wrenches
-from derive.machine.probe import DIGITS, NOTHING, POINTS, Probe, point
+from derive.machine.probe import DIGITS, NOTHING, POINTS, Probe, at_rest, point
 from derive.motion import unit_vector
 from derive.scene.machine import INERTIAL
 from derive.specialise import stated
@@ -37,6 +37,7 @@ class Balance:
     spot: str
     frame: str
     axis: str
+    central: bool = False  # about the mass centre of its one body, whatever the spot is called
 
     def __str__(self) -> str:
         about = f" about {self.spot}" if self.kind == "moment" else ""
@@ -45,7 +46,10 @@ class Balance:
 
 @dataclass(frozen=True)
 class Row:
-    """A balance with its coefficients at each trial point: the rest first, then the unknowns."""
+    """A balance with its coefficients at each trial point: the rest first, then the unknowns.
+
+    The last point is at rest, where what is independent elsewhere may not be.
+    """
 
     balance: Balance
     values: tuple[Array, ...]
@@ -54,7 +58,7 @@ class Row:
     def holds(self) -> frozenset[int]:
         """Return which unknowns enter."""
         found = set()
-        for row in self.values:
+        for row in self.values[:POINTS]:
             size = max(abs(x) for x in row)
             found |= {k - 1 for k, x in enumerate(row) if k and abs(x) > NOTHING * size}
         return frozenset(found)
@@ -62,7 +66,7 @@ class Row:
     @cached_property
     def empty(self) -> bool:
         """Tell whether nothing is left: the balance holds by itself."""
-        return all(max(abs(x) for x in row) <= NOTHING for row in self.values)
+        return all(max(abs(x) for x in row) <= NOTHING for row in self.values[:POINTS])
 
 
 @dataclass
@@ -96,7 +100,8 @@ class Balances:
     def probes(self) -> tuple[Probe, ...]:
         """Return the trial points, every named quantity valued."""
         self.efforts, self.wrenches  # noqa: B018 - they name quantities on the sheet
-        found = tuple(point(self.frames.words, n) for n in range(POINTS))
+        words = self.frames.words
+        found = (*(point(words, n) for n in range(POINTS)), at_rest(words))
         for probe in found:
             probe.define(self.frames.sheet.definitions)
         return found
@@ -131,7 +136,10 @@ class Balances:
         k = "xyz".index(axis)
         values = tuple(v.rotation(frame)[:, k] @ vector
                        for v, vector in zip(valued, vectors, strict=True))  # fmt: skip
-        return Row(Balance(bodies, kind, place, spot, frame, axis), values)
+        centre = self.efforts[bodies[0]].centre
+        central = place is not None and max(
+            abs(valued[0].place(centre) - valued[0].place(place))) < NOTHING  # fmt: skip
+        return Row(Balance(bodies, kind, place, spot, frame, axis, central), values)
 
     def _frames_of(self, bodies: tuple[str, ...]) -> list[str]:
         """Return the frames whose axes and origins are near at hand for these bodies."""

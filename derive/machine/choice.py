@@ -7,7 +7,7 @@ from typing import Any
 from mpmath import mp
 
 from derive.machine.balances import Balances, Row
-from derive.machine.probe import DIGITS, independent
+from derive.machine.probe import DIGITS, independent, independent_at_all
 from derive.scene import SceneError
 
 MOST_EXTRA = 5  # unknowns that are solved along without being asked for, before all are
@@ -36,9 +36,11 @@ def chosen(balances: Balances, wanted: frozenset[int]) -> Chosen:
         covered = frozenset(k for row in within for k in row.holds)
         if len(within) < len(unknowns) or covered != unknowns:
             continue
-        kept = independent([_coefficients(row) for row in within], len(unknowns))
-        if len(kept) == len(unknowns):
-            return tuple(within[k] for k in kept), unknowns
+        for tables in ((0, -1), (0,)):
+            each = [[_coefficients(row, point) for row in within] for point in tables]
+            kept = independent_at_all(each, len(unknowns))
+            if len(kept) == len(unknowns):
+                return tuple(within[k] for k in kept), unknowns
     raise SceneError(undetermined(balances, wanted))
 
 
@@ -55,8 +57,8 @@ def _sets(rows: Sequence[Row], wanted: frozenset[int], count: int) -> Iterator[f
     yield wanted | frozenset(others)
 
 
-def _coefficients(row: Row) -> dict[int, Any]:
-    return {k: row.values[0][1 + k] for k in sorted(row.holds)}
+def _coefficients(row: Row, point: int = 0) -> dict[int, Any]:
+    return {k: row.values[point][1 + k] for k in sorted(row.holds)}
 
 
 def undetermined(balances: Balances, wanted: frozenset[int]) -> str:

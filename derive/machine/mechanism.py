@@ -83,7 +83,11 @@ def truth(known: Mechanism, base: str) -> Truth:
 
 def arrange(known: Mechanism, fact: Truth) -> tuple[Arrangement, ...]:
     """Return the way to compute the outputs of ``fact``."""
-    question = known.lean(fact.name).question
+    return (plain_arrangement(known, known.lean(fact.name).question),)
+
+
+def plain_arrangement(known: Mechanism, question: Question) -> Arrangement:
+    """Return the stages of a question: named quantities, solved balances, answers."""
     question = with_parameters_put_in(question, known.words)
     stages = staged(question)
     if question.rows:
@@ -91,7 +95,7 @@ def arrange(known: Mechanism, fact: Truth) -> tuple[Arrangement, ...]:
         probe.define(question.definitions)
         stages += solved(question.rows, question.unknowns, known.made.sheet.split, probe).stages
     outputs = tuple(question.answers.values())
-    return (Arrangement(tuple(stages), outputs),)
+    return Arrangement(tuple(stages), outputs)
 
 
 def with_parameters_put_in(question: Question, words: Vocabulary) -> Question:

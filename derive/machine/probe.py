@@ -4,7 +4,7 @@ What is zero at two such points is zero; so it is told which unknowns a balance 
 answer does not depend on. Everything that is decided here is proved again, exactly, afterwards.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from random import Random
 from typing import Any
@@ -85,6 +85,15 @@ def point(words: Words, number: int) -> Probe:
     return Probe(values)
 
 
+def at_rest(words: Words) -> Probe:
+    """Return the first trial point with everything that varies at zero where it may be zero."""
+    found, book = point(words, 0), words.vocabulary
+    for q in (*book.states, *book.inputs):
+        if q.shape == () and (q.low or 0) <= 0 <= (q.high or 0):
+            found.values[book.symbols[q.name]] = mpf(0)
+    return Probe(found.values)
+
+
 def _within(dice: Random, q: Quantity) -> Any:
     low, high = (mpf(int(x.numerator)) / int(x.denominator) if x is not None else mpf(0)
                  for x in (q.low, q.high))  # fmt: skip
@@ -107,16 +116,22 @@ def small(value: Any, size: Any) -> bool:
 
 def independent(rows: Iterable[Mapping[int, Any]], wanted: int) -> list[int]:
     """Return the places of the first rows that are independent of those before, at most so many."""
-    kept: list[tuple[int, dict[int, Any]]] = []
+    return independent_at_all([rows], wanted)
+
+
+def independent_at_all(tables: Sequence[Iterable[Mapping[int, Any]]], wanted: int) -> list[int]:
+    """Return the places of the first rows that are independent in every one of several tables."""
+    kept: list[list[tuple[int, dict[int, Any]]]] = [[] for _ in tables]
     places: list[int] = []
-    for place, row in enumerate(rows):
-        if len(places) == wanted:
-            break
-        left = _reduced(row, kept)
-        if left:
-            pivot = max(left, key=lambda k: abs(left[k]))
-            kept.append((pivot, left))
-            places.append(place)
+    with mp.workdps(DIGITS):
+        for place, rows in enumerate(zip(*tables, strict=True)):
+            if len(places) == wanted:
+                break
+            left = [_reduced(row, own) for row, own in zip(rows, kept, strict=True)]
+            if all(left):
+                for own, row in zip(kept, left, strict=True):
+                    own.append((max(row, key=lambda k, row=row: abs(row[k])), row))  # type: ignore[misc]
+                places.append(place)
     return places
 
 

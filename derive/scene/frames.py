@@ -8,7 +8,7 @@ from derive.formula import ZERO
 from derive.scene.declaration import SceneError
 from derive.scene.machine import INERTIAL, Frame, Rolling
 from derive.scene.scalars import Scalars, known, motions, places, turnings
-from derive.scene.names import identifier
+from derive.scene.names import label
 from derive.scene.table import Table, keys, nearest, table, triple, word
 from derive.unit import ACCELERATION, ANGULAR_VELOCITY, LENGTH, VELOCITY
 
@@ -24,7 +24,7 @@ def read_frames(given: Table, scalars: Scalars, bodies: tuple[str, ...]) -> tupl
     """Return the inertial frame and all others, each after its parent."""
     found: dict[str, Frame] = {INERTIAL: STILL}
     waiting = {
-        identifier(name, "a frame"): table(value, f"frame '{name}'")
+        label(name, "a frame"): table(value, f"frame '{name}'")
         for name, value in given.entries.items()
     }
     if INERTIAL in waiting:

@@ -20,7 +20,7 @@ from derive.scene.machine import (
     Weight,
 )
 from derive.scene.scalars import Scalars, known, places
-from derive.scene.names import identifier
+from derive.scene.names import identifier, label
 from derive.scene.table import Scope, Table, formula, keys, shown, table, triple, word
 from derive.unit import ACCELERATION, FORCE, LENGTH, MOMENT, NONE, Dimension, dimension
 
@@ -75,7 +75,7 @@ def read_loads(
     """Return the loads and the unknowns among their components."""
     reader = _Reader(scalars, frames, bodies)
     tables = [
-        (identifier(name, "a load"), table(value, f"load '{name}'"))
+        (label(name, "a load"), table(value, f"load '{name}'"))
         for name, value in given.entries.items()
     ]
     for key, unit, text in (("force", FORCE, "N"), ("couple", MOMENT, "N m")):

@@ -11,7 +11,7 @@ from derive.scene.load import MARK, read_loads, unknown_units
 from derive.scene.machine import INERTIAL, Frame, Machine, Member, Place, Result, Steady, Unknown
 from derive.scene.member import read_member
 from derive.scene.scalars import PER_SECOND, Scalars, known, places, read_scalars, unknown_rates
-from derive.scene.names import distinct, identifier
+from derive.scene.names import distinct, identifier, label
 from derive.scene.table import Scope, Table, formula, keys, nearest, shown, table, text, triple, word
 from derive.unit import LENGTH, NONE, Dimension, dimension, dimension_of, spelled
 
@@ -81,7 +81,7 @@ def _bodies(given: Table, frames: tuple[Frame, ...], scalars: Scalars) -> tuple[
     if not given.entries:
         raise SceneError("bodies must hold at least one body")
     return tuple(
-        read_member(identifier(name, "a body"), table(value, f"body '{name}'"), frames, scalars)
+        read_member(label(name, "a body"), table(value, f"body '{name}'"), frames, scalars)
         for name, value in given.entries.items()
     )
 

@@ -76,13 +76,18 @@ GENERATED: Mapping[str, str] = {
 _COMPONENT = re.compile(r"(_[wxyz])?(_next)?(_in)?$")
 
 
-def identifier(name: str, label: str) -> str:
+def identifier(name: str, what: str) -> str:
     """Return a name that is an identifier in C and Python and not a word of either."""
+    if label(name, what) in _WORDS:
+        raise SceneError(f"{what} has the name '{name}', which is a word of C or Python")
+    return name
+
+
+def label(name: str, what: str) -> str:
+    """Return a name of a frame, body or load, which no code carries: any that can be read."""
     if not _IDENTIFIER.fullmatch(name) or len(name) > LONGEST_NAME:
         rule = f"letters, digits and single underscores, a letter first, at most {LONGEST_NAME}"
-        raise SceneError(f"{label} has the name {name[:60]!r}; a name is {rule}")
-    if name in _WORDS:
-        raise SceneError(f"{label} has the name '{name}', which is a word of C or Python")
+        raise SceneError(f"{what} has the name {name[:60]!r}; a name is {rule}")
     return name
 
 
