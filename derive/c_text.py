@@ -9,6 +9,8 @@ import numpy as np
 from derive.arithmetic import PI, TRUTHS, rounded, splitter
 from derive.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
 
+UNSIGNED_CHAR = 255
+
 
 @dataclass(frozen=True)
 class Precision:
@@ -161,6 +163,18 @@ def _power_of_two(x: str, precision: Precision) -> str:
     u = literal(Fraction(1, 2**precision.bits), precision)
     q = f"({top} * {x} + {x})"
     return f"{q} - ({q} - {u} * {q})"
+
+
+def table(name: str, values: Sequence[int]) -> list[str]:
+    """Return the lines of a constant table, in the smallest type that holds its numbers."""
+    kind = "unsigned char" if max(values) <= UNSIGNED_CHAR else "unsigned short"
+    lines, line = [f"static const {kind} {name}[{len(values)}] = {{"], ""
+    for value in values:
+        if len(line) > 80:
+            lines.append(f"    {line.rstrip()}")
+            line = ""
+        line += f"{value}, "
+    return [*lines, f"    {line.rstrip(', ')}", "};"]
 
 
 def _stores(program: Program, text: Callable[[Operand], str], precision: Precision) -> list[str]:

@@ -6,6 +6,7 @@ from fractions import Fraction
 from derive.arithmetic import rounded
 from derive.c_text import F64, machine_number
 from derive.emit import TEMPLATES, first_line
+from derive.flows.compact import Compact
 from derive.flows.series import Series
 from derive.library import Library
 from derive.program import Line, Op, Operand, Program, Quantity, Repeat
@@ -116,6 +117,8 @@ def _read(place: dict[str, str]) -> Text:
 
 
 def _function(program: Program, scene: str) -> dict[str, object]:
+    if isinstance(program.loops, Compact):
+        program = program.loops.unrolled  # CasADi has no loops to save memory with
     place = {c: f"{q.name}[{i}]" for q in program.inputs for i, c in enumerate(q.components)}
     if isinstance(program.loops, Series):
         lines, text = series_casadi(program.loops, _operation), _read(place)

@@ -116,6 +116,14 @@ def _check_options(command: argparse.ArgumentParser) -> None:
 
 def _report_options(command: argparse.ArgumentParser) -> None:
     _scene_argument(command)
+    command.add_argument("--full", action="store_true", help="finer steps and longer runs")
+    command.add_argument(
+        "--only",
+        nargs="+",
+        default=[],
+        metavar="NAME",
+        help="run one case or section, print its figures and write nothing",
+    )
     command.set_defaults(run=report)
 
 
@@ -170,9 +178,19 @@ def generate(options: argparse.Namespace) -> int:
 
 
 def report(options: argparse.Namespace) -> int:
-    """Print what every function costs and how wrong it is, without writing anything."""
-    _print_costs(_made(options.scenes, ()))
-    return 0
+    """Write the speed-against-error report; of scenes, only print what their functions cost."""
+    if options.scenes:
+        _print_costs(_made(options.scenes, ()))
+        return 0
+    from derive.report import command  # matplotlib and the peers are an extra
+
+    try:
+        return command.report(
+            OUT, "full" if options.full else "small", options.only, console, progress()
+        )
+    except ImportError as absent:
+        errors.print(f"derive: {absent}", style="red", highlight=False, markup=False)
+        return 2
 
 
 def _made(scenes: Sequence[str], also: Sequence[Callable[[], Made]]) -> list[Made]:

@@ -4,11 +4,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from derive.c_text import Precision, body, literal
+from derive.c_text import Precision, body, literal, table
 from derive.flows.compact import SIXTH, WEIGHTS, Columns, Compact
 from derive.program import Program, Quantity
-
-UNSIGNED_CHAR = 255
 
 
 def compact_c(loops: Compact, program: Program, precision: Precision) -> list[str]:
@@ -56,18 +54,7 @@ def _tables(columns: Columns | None) -> list[str]:
         "step_colind": columns.step.colind,
         "step_row": columns.step.row,
     }
-    return [line for name, table in named.items() for line in _table(name, table)]
-
-
-def _table(name: str, values: Sequence[int]) -> list[str]:
-    kind = "unsigned char" if max(values) <= UNSIGNED_CHAR else "unsigned short"
-    lines, line = [f"static const {kind} {name}[{len(values)}] = {{"], ""
-    for value in values:
-        if len(line) > 80:
-            lines.append(f"    {line.rstrip()}")
-            line = ""
-        line += f"{value}, "
-    return [*lines, f"    {line.rstrip(', ')}", "};"]
+    return [line for name, values in named.items() for line in table(name, values)]
 
 
 def _places(program: Program, names: Sequence[str]) -> list[str]:

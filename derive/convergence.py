@@ -110,7 +110,7 @@ class Course:
 def course(library: Library, name: str, values: Mapping[str, float]) -> Course:
     """Return the true motion over a step that suits ``name`` and over half of it."""
     with ctx.workprec(BITS):
-        given = _unit({c: arb(x) for c, x in values.items()})
+        given = unit_attitude({c: arb(x) for c, x in values.items()})
         rate = rate_of(library, given)
         start = [given[c] for c in _states(library)]
         h = arb(TURN.get(step_of(name), 0.2) / _turning(library, rate(start), start))
@@ -135,7 +135,7 @@ def _states(library: Library) -> list[str]:
 def exactness(library: Library, values: Mapping[str, float]) -> float:
     """Return the relative error of the exact flow over half a turn of the state or so."""
     with ctx.workprec(BITS):
-        given = _unit({c: arb(x) for c, x in values.items()})
+        given = unit_attitude({c: arb(x) for c, x in values.items()})
         states = _states(library)
         rate = rate_of(library, given)
         start = [given[c] for c in states]
@@ -147,7 +147,8 @@ def exactness(library: Library, values: Mapping[str, float]) -> float:
         return _distance([found[f"{c}_next"] for c in states], here)
 
 
-def _unit(values: dict[str, Any]) -> dict[str, Any]:
+def unit_attitude(values: dict[str, Any]) -> dict[str, Any]:
+    """Return the values with the attitude brought to length one."""
     parts = [c for c in values if c.startswith("attitude_")]
     size = sum((values[c] ** 2 for c in parts), arb(0)).sqrt()
     return values | {c: (values[c] / size).mid() for c in parts}

@@ -17,6 +17,7 @@ from derive.c_text import (
     literal,
     pair_body,
     pair_functions,
+    table,
 )
 from derive.comment import comment
 from derive.definition import definition
@@ -204,19 +205,19 @@ def _setup_definition(program: Program, names: Names, precision: Precision) -> s
 
 def _dense_definition(program: Program, names: Names, precision: Precision) -> str:
     pattern = next(iter((program.sparsity or {}).values()))
-    places = pattern.places()
+    spots = [c * len(pattern.rows) + r for r, c in pattern.places()]
     passed = [q.name for q in (*program.inputs, *program.outputs[:-1])] + ["nonzeros"]
     lines = [
-        f"{precision.scalar} nonzeros[{len(places)}];",
+        *table("places", spots),
+        f"{precision.scalar} nonzeros[{len(spots)}];",
         "int entry;",
         f"{names.symbol(program.name, precision)}({', '.join(passed)});",
         f"for (entry = 0; entry < {dense_size(program)}; ++entry) {{",
         f"    jacobian[entry] = {literal(Fraction(0), precision)};",
         "}",
-        *(
-            f"jacobian[{c * len(pattern.rows) + r}] = nonzeros[{k}];"
-            for k, (r, c) in enumerate(places)
-        ),
+        f"for (entry = 0; entry < {len(spots)}; ++entry) {{",
+        "    jacobian[places[entry]] = nonzeros[entry];",
+        "}",
     ]
     text = "\n".join(f"    {line}" for line in lines)
     return f"{dense_prototype(program, names, precision)}\n{{\n{text}\n}}"

@@ -8,6 +8,7 @@ from sympy import Symbol
 
 from derive.arrange import arrange
 from derive.draft import Arrangement
+from derive.flows.compact import Compact
 from derive.flows.series import Series
 from derive.forms import Block, best_values, best_with_jacobian, cost
 from derive.graph import Graph, Value
@@ -35,6 +36,7 @@ from derive.truth import Truth, truth
 from derive.wording import formula
 
 JACOBIAN = "_jacobian"
+SENSITIVITY = "_sensitivity"
 INVERSE = re.compile("J_[xyz][xyz]")
 
 
@@ -82,9 +84,9 @@ def library(scene: Scene | Machine) -> Library:
     truths = {base: _truth(known, base) for base in dict.fromkeys(map(_base, (*asked, *hidden)))}
     wanted = {base: _wanted(graph, known, fact, leaves) for base, fact in truths.items()}
     every = {
-        name: _with_jacobian(graph, constants, known, wanted[_base(name)], leaves)
-        if name.endswith(JACOBIAN)
-        else _values_only(graph, constants, known, wanted[name])
+        name: _values_only(graph, constants, known, wanted[name])
+        if name in wanted
+        else _with_jacobian(graph, constants, known, wanted[_base(name)], (leaves, name))
         for name in (*asked, *hidden)
     }
     moving = Moving(known, graph, leaves, every, _moment(graph, constants, known, leaves))
@@ -161,7 +163,7 @@ def _meaning(graph: Graph, value: Value) -> str:
 
 
 def _base(name: str) -> str:
-    return name.removesuffix(JACOBIAN)
+    return name.removesuffix(JACOBIAN).removesuffix(SENSITIVITY)
 
 
 def _leaves(graph: Graph, known: Known) -> dict[str, Value]:
@@ -201,9 +203,12 @@ def _with_jacobian(
     constants: Constants,
     known: Known,
     wanted: Wanted,
-    leaves: Mapping[str, Value],
+    by: tuple[Mapping[str, Value], str],
 ) -> Program:
+    leaves, name = by
     columns = _columns(graph, known, wanted)
+    if name.endswith(SENSITIVITY):
+        columns = (*known.words.states, *known.words.parameters)
     inputs = tuple(tuple(leaves[c] for c in q.components) for q in columns)
     values: list[Value] = []
     rows: list[list[Value]] = []
@@ -223,7 +228,7 @@ def _with_jacobian(
     program = _program(graph, constants, known, wanted.fact, [*values, *nonzeros])
     return replace(
         program,
-        name=wanted.fact.name + JACOBIAN,
+        name=name,
         says=wanted.fact.says.rstrip(".") + ", with its Jacobian.",
         outputs=(*program.outputs, _jacobian_quantity(pattern)),
         sparsity={"jacobian": pattern},
@@ -287,10 +292,13 @@ def _in_parameters(made: Program, functions: Sequence[Program]) -> tuple[Program
 
 def _with_inputs(program: Program, more: tuple[Quantity, ...]) -> Program:
     """Return a program that is given ``more`` before its other inputs."""
-    inputs = (*more, *program.inputs)
-    if isinstance(program.loops, Series):
-        return replace(program, inputs=inputs, loops=replace(program.loops, inputs=inputs))
-    return replace(program, inputs=inputs)
+    inputs, loops = (*more, *program.inputs), program.loops
+    if isinstance(loops, Series):
+        loops = replace(loops, inputs=inputs)
+    elif isinstance(loops, Compact):
+        rate, unrolled = (_with_inputs(p, more) for p in (loops.rate, loops.unrolled))
+        loops = replace(loops, rate=rate, unrolled=unrolled)
+    return replace(program, inputs=inputs, loops=loops)
 
 
 def _reads(program: Program, names: set[str]) -> bool:

@@ -193,9 +193,9 @@ def _errors(
         both = not all(map(math.isfinite, found))  # nothing is said where there is no value
         return (0.0 if both else math.inf,) * len(found)
     smallest = float(np.finfo(precision.dtype).smallest_normal)
-    sizes = [max(abs(float(x)), smallest) for x in true]
-    largest = max(sizes)
-    own = [size if size > largest * NOTHING else largest for size in sizes]
+    sizes = [abs(float(x)) for x in true]
+    largest = max(*sizes, smallest)
+    own = [max(size, smallest) if size > largest * NOTHING else largest for size in sizes]
     scales = own if q.name == PLAN else [largest] * len(sizes)
     return tuple(
         _error(x, y, scale) / precision.unit_roundoff

@@ -6,16 +6,18 @@ rates, and become programs. What rests on parameters only is on the tape of set-
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 
+from derive.flows import steps
+from derive.flows.carried import remainder
+from derive.flows.compact import compact
 from derive.flows.exact import flow_exact
 from derive.flows.inertia import Inertia
 from derive.flows.moser_veselov import plan_dmv, step_dmv
-from derive.flows.splitting import step_split
-from derive.flows.steps import step_rk4, step_rk4_jacobian
+from derive.flows.splitting import step_split, step_split_compensated
 from derive.flows.system import System, next_of
 from derive.flows.taylor import taylor_step
 from derive.graph import Graph, Value
+from derive.lecture import LECTURE
 from derive.lower import value_of
 from derive.program import Operand, Program, Quantity, renamed
 from derive.rotations.functions import attitude_program
@@ -26,6 +28,19 @@ from derive.stage import Traced, exact_number, used_inputs
 from derive.trace import Number, Tape, called, needed, number
 from derive.vocabulary import Vocabulary
 
+LOOPED = ("step_rk4", "step_rk4_jacobian", "step_rk4_sensitivity")
+"""Steps that may be printed as loops over their stages."""
+COMPENSATION = "_compensated"
+FREE_ROTATION = tuple(
+    sorted(
+        {
+            assumption
+            for step in ("general_form", "quaternion_rate_scalar", "quaternion_rate_vector")
+            for assumption in LECTURE.assumptions(step)
+        }
+    )
+)
+"""What the closed forms and splittings of a free rotation rest on."""
 RATES = ("step_rk4", "step_lie", *TAYLOR)
 """Steps that are made from the rate of the state."""
 SLOPES = {
@@ -120,8 +135,15 @@ def _taylor(moving: Moving, order: int) -> Program:
 
 
 _STEP_PROGRAMS: Mapping[str, Callable[[System], Program]] = {
-    "step_rk4": step_rk4,
-    "step_rk4_jacobian": step_rk4_jacobian,
+    "step_rk4": steps.step_rk4,
+    "step_rk4_compensated": steps.step_rk4_compensated,
+    "step_rk4_jacobian": steps.step_rk4_jacobian,
+    "step_rk4_tangent": steps.step_rk4_tangent,
+    "step_rk4_sensitivity": steps.step_rk4_sensitivity,
+    "step_lie": steps.step_lie,
+    "step_lie_compensated": steps.step_lie_compensated,
+    "step_lie_jacobian": steps.step_lie_jacobian,
+    "step_lie_tangent": steps.step_lie_tangent,
 }
 
 
@@ -130,8 +152,13 @@ def _runge_kutta(moving: Moving, name: str) -> Program:
     slopes = rates[SLOPES[name.rpartition("_")[2]]] if name in STEP_DERIVATIVES else None
     system = System(moving.known.words.states, rates["state_rate"], slopes, step)
     program = _STEP_PROGRAMS[name](system)
-    inputs = used_inputs(program.inputs, program.ops, program.results)
-    return replace(program, inputs=inputs, assumptions=rates["state_rate"].assumptions)
+    program = replace(
+        program,
+        inputs=used_inputs(program.inputs, program.ops, program.results),
+        assumptions=rates["state_rate"].assumptions,
+    )
+    small = moving.known.scene.emission == "compact" and name in LOOPED
+    return compact(system, program) if small else program
 
 
 def _time(scene: Scene, name: str) -> Quantity:
@@ -158,7 +185,7 @@ def _program(name: str, says: str, tape: Tape, made: Recorded) -> Program:
     )
     ops = needed(tape.ops, results)
     inputs = used_inputs(made.inputs, ops, results)
-    return Program(name, says, inputs, made.outputs, ops, results, steps=(), assumptions=())
+    return Program(name, says, inputs, made.outputs, ops, results, assumptions=FREE_ROTATION)
 
 
 def _inputs(tape: Tape, q: Quantity) -> list[Number]:
@@ -198,13 +225,6 @@ def _dmv(moving: Moving) -> tuple[Program, ...]:
     return planned, _dmv_step(moving, plan, [name for name, _, _ in entries])
 
 
-def remainder(states: Sequence[Quantity]) -> Quantity:
-    """Return the quantity that carries what rounding left of earlier steps: zeros at the start."""
-    parts = tuple(f"remainder_{c}" for q in states for c in q.components)
-    says = "what rounding left of earlier steps, zeros at the start"
-    return Quantity("remainder", parts, (len(parts),), "", "", Fraction(0), Fraction(0), says)
-
-
 def _dmv_step(moving: Moving, plan: Quantity, names: Sequence[str]) -> Program:
     tape, (attitude, omega) = moving.function(), _rotation(moving.known.words)
     rest = remainder((attitude, omega))
@@ -226,16 +246,20 @@ def _dmv_step(moving: Moving, plan: Quantity, names: Sequence[str]) -> Program:
 def _split(moving: Moving, name: str) -> Program:
     tape, step = moving.function(), _time(moving.known.scene, "time_step")
     attitude, omega = _rotation(moving.known.words)
-    order = SPLITTINGS[step_of(name)]
+    order, body, rest = SPLITTINGS[step_of(name)], moving.inertia(), remainder((attitude, omega))
     (h,) = _inputs(tape, step)
-    given = _inputs(tape, attitude), _inputs(tape, omega)
-    q, w = step_split(tape, moving.inertia(), order, *given, _moment(moving, tape), h)
-    says = f"One step of the rotation by splitting it into turns about two axes (order {order})."
-    made = Recorded(
-        (attitude, omega, *_outside(moving), step),
-        (next_of(attitude), next_of(omega)),
-        tuple(map(number, (*q, *w))),
-    )
+    given = _inputs(tape, attitude), _inputs(tape, omega), _moment(moving, tape), h
+    inputs = (attitude, omega, *_outside(moving), step)
+    outputs = [next_of(attitude), next_of(omega)]
+    says = "One step of the rotation by splitting it into turns about two axes"
+    if name.endswith(COMPENSATION):
+        moved = step_split_compensated(tape, body, order, *given, _inputs(tape, rest))
+        inputs, outputs = (*inputs, rest), [*outputs, next_of(rest)]
+        says += f" (order {order}), carrying what rounding leaves."
+    else:
+        moved = step_split(tape, body, order, *given)
+        says += f" (order {order})."
+    made = Recorded(inputs, tuple(outputs), tuple(number(n) for part in moved for n in part))
     return _program(name, says, tape, made)
 
 

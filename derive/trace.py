@@ -273,7 +273,10 @@ Body = Callable[[list[Number]], tuple[Sequence[Number], Number | None]]
 
 
 def repeat(tape: Tape, passes: int, start: Sequence[Number], body: Body) -> list[Number]:
-    """Record a loop: ``body`` takes what is carried, and returns it anew and the truth of done."""
+    """Record a loop: ``body`` takes what is carried, and returns it anew and the truth of done.
+
+    A loop that is there already, whatever its values are called, is not recorded twice.
+    """
     names = [tape.fresh() for _ in start]
     with tape.within() as ops:
         then, done = body([Number(tape, name) for name in names])
@@ -283,8 +286,25 @@ def repeat(tape: Tape, passes: int, start: Sequence[Number], body: Body) -> list
     if len(inner) < len(ops):
         raise ValueError("a loop within a loop is not there")
     begin = tuple(_seen_from(tape, number(n)) for n in start)
-    tape.ops.append(Repeat(tuple(names), begin, inner, after, until, passes))
-    return [Number(tape, name) for name in names]
+    loop = Repeat(tuple(names), begin, inner, after, until, passes)
+    key = _without_names(loop)
+    if key not in tape.numbered:
+        tape.numbered[key] = " ".join(names)
+        tape.ops.append(loop)
+    return [Number(tape, name) for name in tape.numbered[key].split()]
+
+
+def _without_names(loop: Repeat) -> tuple[object, ...]:
+    """Return what a loop does, its own values called by their places."""
+    own = (*loop.carried, *(op.result for op in loop.ops))
+    places = {name: ("place", i) for i, name in enumerate(own)}
+
+    def called(operand: Operand | None) -> object:
+        return places.get(operand, operand) if isinstance(operand, str) else operand
+
+    steps = ((op.operator, *map(called, op.operands)) for op in loop.ops)
+    ends = (*map(called, loop.then), called(loop.done))
+    return ("repeat", loop.passes, *loop.start, *steps, *ends)
 
 
 def needed(ops: Sequence[Line], results: Sequence[Operand]) -> tuple[Line, ...]:

@@ -226,7 +226,7 @@ DEFECTS = (
         "whole matrix by rows",
         "a dense Jacobian filled by rows where columns are promised",
         "free_body_principal",
-        other_text("_f64.c", ("jacobian[1] = nonzeros[0]", "jacobian[6] = nonzeros[0]")),
+        other_text("_f64.c", ("jacobian[places[entry]]", "jacobian[places[entry] / 2]")),
         ("whole matrix",),
     ),
     Defect(

@@ -33,6 +33,7 @@ FLOORS = (
         "measure",
         "motion_error",
         "convergence",
+        "differences",
     ),
     ("cloud",),
     ("files", "generation", "check", "bench", "report", "solve"),

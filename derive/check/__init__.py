@@ -21,7 +21,7 @@ from derive.check.agreement import (
 from derive.check.compiler import Compiler, CompilerError, find_compiler
 from derive.check.emitted import Emitted, Files, casadi_module, files, is_double, loaded
 from derive.check.invariants import power_balance, turned_axes
-from derive.check.motion import orders
+from derive.check.motion import orders, step_slopes
 from derive.check.particles import clouds
 from derive.check.verdict import JUDGED, Verdict
 from derive.library import Library, library
@@ -113,6 +113,7 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
     yield from refusal(one, few)
     if is_double(one):
         yield from orders(one.library, each)
+        yield from step_slopes(one.library, each)
         yield from casadi_bits(one, casadi_module(one.library, found, workshop), each)
         plain = [s for s in each if s.kind == "ordinary"][: FEW * FEW]
         if isinstance(one.library.known, Mechanism):

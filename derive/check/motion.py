@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 
 from derive.check.verdict import JUDGED, Verdict
 from derive.convergence import BITS, EXACT, LEVELS, course, exactness, order
+from derive.differences import GAP, slopes
 from derive.library import Library
 from derive.sample import Sample
 from derive.scene.wanted import STEPS
@@ -38,3 +39,17 @@ def _order(library: Library, name: str, each: Sequence[Sample]) -> Verdict:
     says = f"claimed {found[0].claimed}, measured {measured}"
     outcome = JUDGED[all(one.holds for one in found)]
     return Verdict(library.known.scene.name, name, "exact", "order", outcome, says)
+
+
+def step_slopes(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
+    """Yield whether the derivatives of every step are the slopes of the step."""
+    ordinary = [s for s in each if s.kind == "ordinary"][:1]
+    for program in library.motions:
+        if program.sparsity:
+            found = [slope for s in ordinary for slope in slopes(library, program, s.values)]
+            worst = max(found, key=lambda slope: slope.gap)
+            where = f"d({worst.row})/d({worst.column})"
+            says = f"{len(found)} slopes, largest gap {worst.gap:.1g} at {where}"
+            outcome = JUDGED[worst.gap <= GAP]
+            name = library.known.scene.name
+            yield Verdict(name, program.name, "exact", "slopes", outcome, says)

@@ -24,11 +24,12 @@ def plan_revolution(body: Inertia, omega: Sequence[Number], time_step: Number) -
     angle = time_step * (slip * omega[k])
     half, quarter = sin(angle * Fraction(1, 2)), sin(angle * Fraction(1, 4))
     less_spin = 2 * quarter * quarter
+    scalar = (1 - versed) * (1 - less_spin) - sine * along * half
     return [
         ("keep", sine * (1 - less_spin), "attitude change along omega across the axis, s"),
         ("turn", sine * half, "attitude change square to that, s"),
         ("spin", (1 - versed) * half + sine * along * (1 - less_spin), "attitude change, axis"),
-        ("less", versed + less_spin - versed * less_spin + sine * along * half, "1 - its scalar"),
+        ("forward", scalar, "the scalar part of the attitude change, of which the sign is read"),
         ("sine", 2 * half * cos(angle * Fraction(1, 2)), "sine of the turn of omega in the body"),
         ("versed", 2 * half * half, "one less its cosine"),
     ]
@@ -55,8 +56,8 @@ def _about_momentum(mu: Sequence[Number], time_step: Number) -> tuple[Number, Nu
 
 def change_of_revolution(
     body: Inertia, plan: Mapping[str, Number], omega: Sequence[Number]
-) -> tuple[Number, list[Number], list[Number]]:
-    """Return a step's attitude change, as one less its scalar and its vector, and omega's."""
+) -> tuple[list[Number], list[Number]]:
+    """Return the vector part of a step's attitude change, and the change of omega."""
     i, j, k = order(body)
     turn, change = list(omega), [number(0)] * 3
     turn[i] = plan["keep"] * omega[i] + plan["turn"] * omega[j]
@@ -64,7 +65,17 @@ def change_of_revolution(
     turn[k] = plan["spin"]
     change[i] = plan["sine"] * omega[j] - plan["versed"] * omega[i]
     change[j] = -(plan["sine"] * omega[i] + plan["versed"] * omega[j])
-    return plan["less"], turn, change
+    return turn, change
+
+
+def less_than_one(forward: Number, v: Sequence[Number]) -> Number:
+    """Return one less the scalar part of a turn, from its vector and the scalar's sign.
+
+    A scalar part from the plan would leave the same error of the length in every step.
+    """
+    square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
+    size = 1 + sqrt(1 - square)
+    return select(less(0, forward), square / size, size)
 
 
 def order(body: Inertia) -> tuple[int, int, int]:

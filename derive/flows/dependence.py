@@ -14,14 +14,18 @@ from derive.trace import needed
 TRIALS = 3  # each in exact numbers: two bilinear forms that differ do not agree by chance
 
 
-def attitude_turns_freely(system: System) -> bool:
-    """Tell whether the attitude is a quaternion whose angular velocity never rests on it."""
+def free_omega(system: System) -> slice | None:
+    """Return where the angular velocity stands that turns the attitude and never rests on it.
+
+    None if it rests on the attitude, or if no quaternion of the state follows it.
+    """
     attitude, omega = system.place("attitude"), system.place("omega")
     if attitude is None or omega is None:
-        return False
+        return None
     names = system.names
     below = closure(system, set(names[omega]))
-    return below.isdisjoint(names[attitude]) and attitude_turns(system)
+    free = below.isdisjoint(names[attitude]) and attitude_turns(system)
+    return omega if free else None
 
 
 def closure(system: System, wanted: set[str]) -> set[str]:

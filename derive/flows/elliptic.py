@@ -99,7 +99,7 @@ def angle(means: Ladder, at: Values, weight: Number, pole: Number) -> Angle:
     """
     product, sn2, cn2, dn = at.first
     rate, tangents, first = number(0), list[Number](), weight
-    for a, b in zip(means.a[1:], means.b[1:], strict=True):
+    for a, b in zip(means.a[1:-1], means.b[1:-1], strict=True):
         rate = rate + weight
         ratio = b / a
         quotient = product / dn

@@ -49,9 +49,21 @@ def _moved(body: Inertia, omega: Three, time: Number) -> Motion:
     found = principal_axes(body)
     rows = [_named(k, row) for k, row in enumerate(found.axes, start=1)]
     a, b, c = (_dot(row, omega) for row in rows)
-    (scalar, *vector), after = tumble(found.moments, (a, b, c), time)
+    (scalar, *vector), after = _along_axes(found.moments, (a, b, c), time)
     columns = list(zip(*rows, strict=True))
     return [scalar, *(_dot(n, vector) for n in columns)], [_dot(n, after) for n in columns]
+
+
+def _along_axes(moments: Three, omega: Three, time: Number) -> Motion:
+    """Return the motion along principal axes; moments that are numbers may be simpler than told."""
+    one, two, three = moments
+    if one.exact is not None and one.exact == three.exact:
+        return spun(omega, time), list(omega)
+    if two.exact is not None and two.exact == three.exact:
+        return precess((two, one), 0, omega, time)
+    if two.exact is not None and one.exact == two.exact:
+        return precess((two, three), 2, omega, time)
+    return tumble(moments, omega, time)
 
 
 def _named(k: int, row: Row) -> Row:

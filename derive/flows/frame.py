@@ -17,12 +17,14 @@ class Frame:
     """Moments about a, b, c, and how a vector goes from the axes x, y, z to these and back.
 
     unit : kg m^2, what the moments are measured in
+    rows : the axes a, b, c along x, y, z where they are turned; none where they are x, y, z
     """
 
     moments: list[Number]
     unit: Number
     along: Change
     back: Change
+    rows: tuple[Vector, ...] = ()
 
 
 def frame(tape: Tape, body: Inertia) -> Frame:
@@ -105,8 +107,15 @@ def principal_frame(body: Inertia) -> Frame:
     xx, yy, zz = body.tensor[:3]
     unit = (xx + yy + zz) / (found.moments[0] + found.moments[1] + found.moments[2])
     columns = [[row[i] for row in rows] for i in range(3)]
-    return Frame(list(found.moments), unit, lambda v: _times(rows, v), lambda v: _times(columns, v))
+    return Frame(
+        list(found.moments),
+        unit,
+        lambda v: times(rows, v),
+        lambda v: times(columns, v),
+        tuple(rows),
+    )
 
 
-def _times(rows: Sequence[Vector], v: Vector) -> list[Number]:
+def times(rows: Sequence[Vector], v: Vector) -> list[Number]:
+    """Return the product of a matrix and a vector."""
     return [row[0] * v[0] + row[1] * v[1] + row[2] * v[2] for row in rows]

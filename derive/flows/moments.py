@@ -8,7 +8,8 @@ from derive.trace import Number, less, select
 def in_order(moments: Sequence[Number]) -> tuple[Number, Number, Number]:
     """Return three moments, the smallest first.
 
-    >>> [int(m.operand) for m in in_order([number(3), number(1), number(2)])]
+    >>> from derive.trace import number
+    >>> [int(m.exact) for m in in_order([number(3), number(1), number(2)])]
     [1, 2, 3]
     """
     x, y, z = moments

@@ -25,7 +25,7 @@ from derive.trace import (
     sqrt,
 )
 
-BITS = 256  # kept of an exact root, and of exact numbers from turn to turn
+BITS = 192  # kept of an exact root, and of exact numbers from turn to turn
 PASSES = 8  # over the three pairs of axes; six reach 2^-106 from any tensor tried
 TURNS = ((0, 1, 2), (0, 2, 1), (1, 2, 0))
 
@@ -112,9 +112,10 @@ def _turned_to_principal(
 
 
 def _numbers_turned(start: Sequence[Number]) -> list[Number]:
-    for _ in range(PASSES):
-        start = [_shortened(x) for x in _pass(start)]
-    return list(start)
+    values = list(start)
+    for p, q, r in TURNS * PASSES:
+        values = [_shortened(x) for x in _turn(p, q, r, values)]
+    return values
 
 
 def _shortened(x: Number) -> Number:

@@ -11,8 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from derive.flows.attitude_stages import Turning, added, norm_squared, turning
-from derive.flows.dependence import attitude_turns_freely
+from derive.flows.attitude_stages import Turning, norm_squared, turning
+from derive.flows.dependence import free_omega
 from derive.flows.matrices import Matrix
 from derive.flows.system import System, rates_at, slopes_at
 from derive.rotations.quaternion import product
@@ -59,9 +59,9 @@ def stages(tape: Tape, system: System) -> Stages:
         moved = [g * part for g in found.rates[-1]] if part else []
         state = [y + g for y, g in zip(start, moved, strict=True)] if part else start
         _add(tape, system, found, state, half)
-    if not attitude_turns_freely(system):
+    omega = free_omega(system)
+    if omega is None:
         return found
-    omega = system.place("omega")
     return replace(found, turn=turning([state[omega] for state in found.states], h))
 
 
@@ -78,19 +78,21 @@ def _add(tape: Tape, system: System, found: Stages, state: Row, half: Number) ->
     found.by.append([row[n:] for row in slopes])
 
 
+def increments(system: System, stages: Stages) -> Row:
+    """Return what the step adds: (k1 + 2 k2 + 2 k3 + k4) h / 6, an attitude not yet normalised."""
+    found = [(a + 2 * (b + c) + d) * THIRD for a, b, c, d in zip(*stages.rates, strict=True)]
+    attitude = system.place("attitude")
+    if attitude is not None and stages.turn is not None:
+        found[attitude] = product(stages.start[attitude], stages.turn.increment)
+    return found
+
+
 def step(system: System, stages: Stages) -> Step:
-    """Return the state after the step: start + (k1 + 2 k2 + 2 k3 + k4) h / 6."""
-    g1, g2, g3, g4 = stages.rates
-    after = [
-        y + (a + 2 * (b + c) + d) * THIRD
-        for y, a, b, c, d in zip(stages.start, g1, g2, g3, g4, strict=True)
-    ]
+    """Return the state after the step, its attitude of length one."""
+    after = [y + d for y, d in zip(stages.start, increments(system, stages), strict=True)]
     attitude = system.place("attitude")
     if attitude is None:
         return Step(after, None)
-    if stages.turn is not None:
-        q = stages.start[attitude]
-        after[attitude] = added(q, product(q, stages.turn.increment))
     after[attitude], length_squared = unit(after[attitude])
     return Step(after, length_squared)
 

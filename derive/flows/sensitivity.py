@@ -151,7 +151,7 @@ def _on_the_sphere(q: Row, rows: Matrix) -> Matrix:
 
 def _turned(system: System, stages: Stages, turn: Turning) -> Back:
     """Return the derivatives (3, n) and (3, m) of v, if the attitude q changes by q (0, v)."""
-    n, omega = len(stages.start), system.place("omega")
+    n, omega = len(stages.start), system.place("omega") or slice(0)
     scale = stages.time_step * Fraction(1, 12) / norm_squared(one_and(turn.increment))
     on_states = [zeros(3, n) for _ in turn.quarters]
     for rows, part in zip(on_states, turn_slopes(turn, scale), strict=True):
@@ -167,6 +167,6 @@ def _attitude_by_itself(whole: Row, scale: Number, start: Row, after: Row) -> Ma
     return minus(turned, product([[x] for x in after], [radial]))
 
 
-def _put(rows: Matrix, place: slice | None, parts: Matrix) -> None:
+def _put(rows: Matrix, place: slice, parts: Matrix) -> None:
     for row, entries in zip(rows, parts, strict=True):
         row[place] = entries

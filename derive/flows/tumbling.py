@@ -31,10 +31,8 @@ def tumble(moments: Three, omega: Three, time: Number) -> tuple[list[Number], li
     at = functions(means, sin(phase), cos(phase))
     after = _added(path, at)
     third = _third_kind(path, means, at)
-    rate, direction = (
-        _mean_rate(path, third),
-        _product(third.direction, _added_angle(path, at, after)),
-    )
+    direction = _product(third.direction, _added_angle(path, at, after))
+    rate = _mean_rate(path, third)
     half = path.hand * HALF * (moving * rate + resting * path.length)
     scalar, *vector = _turn(path, after, _product(direction, (cos(half), sin(half))))
     a, b, c = (path.hand * v for v in vector)

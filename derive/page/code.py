@@ -20,7 +20,7 @@ def listing(program: Program, scene: str, links: Mapping[str, str]) -> Markup:
     links : from an output's component to the place of its equation on the page
     """
     lines = definition(program, scene, F64)
-    components = [c for q in program.outputs for c in q.components]
+    components = [c for q in program.outputs for c in q.components] if links else []
     first_store = len(lines) - len(components)
     shown = [escape(prototype(program, Names(scene), F64)), "{"]
     shown += [f"    {escape(line)}" for line in lines[:first_store]]

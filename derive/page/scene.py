@@ -62,7 +62,7 @@ class Section:
 def scene_page(library: Library, figures: Sequence[Measurement]) -> str:
     """Return the text of ``<scene>.html``, complete in one file and without scripts."""
     scene = library.known.scene
-    rests_on = {a for program in library.functions for a in program.assumptions}
+    rests_on = {a for program in library.printed() for a in program.assumptions}
     return TEMPLATES.get_template("scene.html.jinja").render(
         first_line=first_line(library).replace("--", "- -"),
         scene=scene,

@@ -8,7 +8,6 @@ import json
 import re
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,7 @@ from derive.bench.build import BuildError, run
 from derive.bench.callgrind import total
 from derive.bench.motion.runner import FLAGS, REAL
 
-CALLS, WORKERS = 8, 2
+CALLS = 8
 MARK = re.compile(r"^desc: Trigger: Client Request: (\w+)$", re.MULTILINE)
 Manifest = Mapping[str, Any]
 
@@ -56,9 +55,7 @@ class Function:
 
 def functions(generated: Path, folder: Path) -> list[Function]:
     """Return every function of every scene below ``generated``."""
-    paths = sorted(generated.glob("*/*.json"))
-    with ThreadPoolExecutor(WORKERS) as pool:
-        return [f for found in pool.map(_scene, paths, [folder] * len(paths)) for f in found]
+    return [f for path in sorted(generated.glob("*/*.json")) for f in _scene(path, folder)]
 
 
 def _scene(path: Path, folder: Path) -> list[Function]:

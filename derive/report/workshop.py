@@ -13,7 +13,8 @@ from derive.report.case_run import ANY, PRECISIONS, Workshop
 from derive.report.point import Limits
 from derive.report.settings import tolerances
 
-COUNTED_CASE = "asym_ii_generic"
+COUNTED_CASE, SHORT_CASE = "asym_ii_generic", "const_body_torque"
+SLOW = ("scipy", "mujoco")  # under callgrind; a short case does for them
 WORKERS = 2
 
 
@@ -54,10 +55,11 @@ def per_pass(peer: Peer, limits: Limits, folder: Path) -> dict[tuple[str, float]
     """
     settings = tolerances("f64", limits.ratio**6.6) if peer.setting == "tolerance" else []
     asked = settings if peer.package == "heyoka" else [settings[2] if settings else 2.0**-6]
-    jobs = [(COUNTED_CASE, value) for value in (asked[0], *asked)]  # the first one warms up
+    case = SHORT_CASE if peer.package in SLOW else COUNTED_CASE
+    jobs = [(case, value) for value in (asked[0], *asked)]  # the first one warms up
     try:
         found = counted(peer, jobs, folder / peer.package)
     except (FileNotFoundError, BuildError):
         return {}
     every = len(asked) > 1
-    return {(peer.name, v if every else ANY): found[COUNTED_CASE, v] for v in asked}
+    return {(peer.name, v if every else ANY): found[case, v] for v in asked}

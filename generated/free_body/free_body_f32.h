@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest term of the sum that an output is. Body of these files: sha256 8e19b44847891f2f.
+ * float, times the largest term of the sum that an output is. Body of these files: sha256 26756786bc22fbdf.
  */
 #ifndef FREE_BODY_F32_H
 #define FREE_BODY_F32_H

@@ -413,30 +413,18 @@ void free_body_acceleration_jacobian_f64(const free_body_constants_f64 *constant
 void free_body_acceleration_jacobian_dense_f64(const free_body_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18])
 {
+    static const unsigned char places[18] = {
+        0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17
+    };
     double nonzeros[18];
     int entry;
     free_body_acceleration_jacobian_f64(constants, omega, moment, omega_dot, nonzeros);
     for (entry = 0; entry < 18; ++entry) {
         jacobian[entry] = 0.0;
     }
-    jacobian[0] = nonzeros[0];
-    jacobian[1] = nonzeros[1];
-    jacobian[2] = nonzeros[2];
-    jacobian[3] = nonzeros[3];
-    jacobian[4] = nonzeros[4];
-    jacobian[5] = nonzeros[5];
-    jacobian[6] = nonzeros[6];
-    jacobian[7] = nonzeros[7];
-    jacobian[8] = nonzeros[8];
-    jacobian[9] = nonzeros[9];
-    jacobian[10] = nonzeros[10];
-    jacobian[11] = nonzeros[11];
-    jacobian[12] = nonzeros[12];
-    jacobian[13] = nonzeros[13];
-    jacobian[14] = nonzeros[14];
-    jacobian[15] = nonzeros[15];
-    jacobian[16] = nonzeros[16];
-    jacobian[17] = nonzeros[17];
+    for (entry = 0; entry < 18; ++entry) {
+        jacobian[places[entry]] = nonzeros[entry];
+    }
 }
 
 /* External moment that the motion needs (inverse dynamics). */

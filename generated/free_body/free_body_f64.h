@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is. Body of these files: sha256 bb229149eb89d230.
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 8d7eb7dfea5f7338.
  */
 #ifndef FREE_BODY_F64_H
 #define FREE_BODY_F64_H

@@ -186,21 +186,18 @@ void free_body_principal_acceleration_jacobian_f64(const free_body_principal_con
 void free_body_principal_acceleration_jacobian_dense_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18])
 {
+    static const unsigned char places[9] = {
+        1, 2, 3, 5, 6, 7, 9, 13, 17
+    };
     double nonzeros[9];
     int entry;
     free_body_principal_acceleration_jacobian_f64(constants, omega, moment, omega_dot, nonzeros);
     for (entry = 0; entry < 18; ++entry) {
         jacobian[entry] = 0.0;
     }
-    jacobian[1] = nonzeros[0];
-    jacobian[2] = nonzeros[1];
-    jacobian[3] = nonzeros[2];
-    jacobian[5] = nonzeros[3];
-    jacobian[6] = nonzeros[4];
-    jacobian[7] = nonzeros[5];
-    jacobian[9] = nonzeros[6];
-    jacobian[13] = nonzeros[7];
-    jacobian[17] = nonzeros[8];
+    for (entry = 0; entry < 9; ++entry) {
+        jacobian[places[entry]] = nonzeros[entry];
+    }
 }
 
 /* External moment that the motion needs (inverse dynamics). */

@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is. Body of these files: sha256 bbc428dbf46b4bd8.
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 da793d5407e5d31d.
  */
 #ifndef FREE_BODY_PRINCIPAL_F64_H
 #define FREE_BODY_PRINCIPAL_F64_H

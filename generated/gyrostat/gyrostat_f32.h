@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest term of the sum that an output is. Body of these files: sha256 2d0144a087985695.
+ * float, times the largest term of the sum that an output is. Body of these files: sha256 b1c19a87c153de22.
  */
 #ifndef GYROSTAT_F32_H
 #define GYROSTAT_F32_H

@@ -625,96 +625,22 @@ void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *consta
     const double wheel_torques[3], double coordinate_rates[3], double omega_dot[3],
     double wheel_accelerations[3], double jacobian[135])
 {
+    static const unsigned char places[84] = {
+        9, 11, 18, 19, 20, 29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44,
+        45, 46, 47, 48, 49, 50, 51, 52, 53, 57, 58, 59, 60, 61, 62, 66, 67, 68, 69, 70, 71,
+        75, 76, 77, 78, 79, 80, 84, 85, 86, 87, 88, 89, 93, 94, 95, 96, 97, 98, 102, 103,
+        104, 105, 106, 107, 111, 112, 113, 114, 115, 116, 120, 121, 122, 123, 124, 125, 129,
+        130, 131, 132, 133, 134
+    };
     double nonzeros[84];
     int entry;
     gyrostat_state_rate_jacobian_f64(constants, theta, phi, omega, wheel_speeds, moment, wheel_torques, coordinate_rates, omega_dot, wheel_accelerations, nonzeros);
     for (entry = 0; entry < 135; ++entry) {
         jacobian[entry] = 0.0;
     }
-    jacobian[9] = nonzeros[0];
-    jacobian[11] = nonzeros[1];
-    jacobian[18] = nonzeros[2];
-    jacobian[19] = nonzeros[3];
-    jacobian[20] = nonzeros[4];
-    jacobian[29] = nonzeros[5];
-    jacobian[30] = nonzeros[6];
-    jacobian[31] = nonzeros[7];
-    jacobian[32] = nonzeros[8];
-    jacobian[33] = nonzeros[9];
-    jacobian[34] = nonzeros[10];
-    jacobian[35] = nonzeros[11];
-    jacobian[36] = nonzeros[12];
-    jacobian[37] = nonzeros[13];
-    jacobian[38] = nonzeros[14];
-    jacobian[39] = nonzeros[15];
-    jacobian[40] = nonzeros[16];
-    jacobian[41] = nonzeros[17];
-    jacobian[42] = nonzeros[18];
-    jacobian[43] = nonzeros[19];
-    jacobian[44] = nonzeros[20];
-    jacobian[45] = nonzeros[21];
-    jacobian[46] = nonzeros[22];
-    jacobian[47] = nonzeros[23];
-    jacobian[48] = nonzeros[24];
-    jacobian[49] = nonzeros[25];
-    jacobian[50] = nonzeros[26];
-    jacobian[51] = nonzeros[27];
-    jacobian[52] = nonzeros[28];
-    jacobian[53] = nonzeros[29];
-    jacobian[57] = nonzeros[30];
-    jacobian[58] = nonzeros[31];
-    jacobian[59] = nonzeros[32];
-    jacobian[60] = nonzeros[33];
-    jacobian[61] = nonzeros[34];
-    jacobian[62] = nonzeros[35];
-    jacobian[66] = nonzeros[36];
-    jacobian[67] = nonzeros[37];
-    jacobian[68] = nonzeros[38];
-    jacobian[69] = nonzeros[39];
-    jacobian[70] = nonzeros[40];
-    jacobian[71] = nonzeros[41];
-    jacobian[75] = nonzeros[42];
-    jacobian[76] = nonzeros[43];
-    jacobian[77] = nonzeros[44];
-    jacobian[78] = nonzeros[45];
-    jacobian[79] = nonzeros[46];
-    jacobian[80] = nonzeros[47];
-    jacobian[84] = nonzeros[48];
-    jacobian[85] = nonzeros[49];
-    jacobian[86] = nonzeros[50];
-    jacobian[87] = nonzeros[51];
-    jacobian[88] = nonzeros[52];
-    jacobian[89] = nonzeros[53];
-    jacobian[93] = nonzeros[54];
-    jacobian[94] = nonzeros[55];
-    jacobian[95] = nonzeros[56];
-    jacobian[96] = nonzeros[57];
-    jacobian[97] = nonzeros[58];
-    jacobian[98] = nonzeros[59];
-    jacobian[102] = nonzeros[60];
-    jacobian[103] = nonzeros[61];
-    jacobian[104] = nonzeros[62];
-    jacobian[105] = nonzeros[63];
-    jacobian[106] = nonzeros[64];
-    jacobian[107] = nonzeros[65];
-    jacobian[111] = nonzeros[66];
-    jacobian[112] = nonzeros[67];
-    jacobian[113] = nonzeros[68];
-    jacobian[114] = nonzeros[69];
-    jacobian[115] = nonzeros[70];
-    jacobian[116] = nonzeros[71];
-    jacobian[120] = nonzeros[72];
-    jacobian[121] = nonzeros[73];
-    jacobian[122] = nonzeros[74];
-    jacobian[123] = nonzeros[75];
-    jacobian[124] = nonzeros[76];
-    jacobian[125] = nonzeros[77];
-    jacobian[129] = nonzeros[78];
-    jacobian[130] = nonzeros[79];
-    jacobian[131] = nonzeros[80];
-    jacobian[132] = nonzeros[81];
-    jacobian[133] = nonzeros[82];
-    jacobian[134] = nonzeros[83];
+    for (entry = 0; entry < 84; ++entry) {
+        jacobian[places[entry]] = nonzeros[entry];
+    }
 }
 
 /* Kinetic energy. */

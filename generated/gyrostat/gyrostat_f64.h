@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is. Body of these files: sha256 62ce185748b3ca4b.
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 1400aef434313fa8.
  */
 #ifndef GYROSTAT_F64_H
 #define GYROSTAT_F64_H

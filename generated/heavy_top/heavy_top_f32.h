@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest term of the sum that an output is. Body of these files: sha256 8dff2581874c44c4.
+ * float, times the largest term of the sum that an output is. Body of these files: sha256 eb10acd9d5226162.
  */
 #ifndef HEAVY_TOP_F32_H
 #define HEAVY_TOP_F32_H

@@ -194,25 +194,18 @@ void heavy_top_state_rate_jacobian_f64(const heavy_top_constants_f64 *constants,
 void heavy_top_state_rate_jacobian_dense_f64(const heavy_top_constants_f64 *constants, double theta,
     const double omega[3], double coordinate_rates[3], double omega_dot[3], double jacobian[36])
 {
+    static const unsigned char places[13] = {
+        6, 8, 9, 10, 19, 22, 24, 26, 27, 28, 32, 33, 34
+    };
     double nonzeros[13];
     int entry;
     heavy_top_state_rate_jacobian_f64(constants, theta, omega, coordinate_rates, omega_dot, nonzeros);
     for (entry = 0; entry < 36; ++entry) {
         jacobian[entry] = 0.0;
     }
-    jacobian[6] = nonzeros[0];
-    jacobian[8] = nonzeros[1];
-    jacobian[9] = nonzeros[2];
-    jacobian[10] = nonzeros[3];
-    jacobian[19] = nonzeros[4];
-    jacobian[22] = nonzeros[5];
-    jacobian[24] = nonzeros[6];
-    jacobian[26] = nonzeros[7];
-    jacobian[27] = nonzeros[8];
-    jacobian[28] = nonzeros[9];
-    jacobian[32] = nonzeros[10];
-    jacobian[33] = nonzeros[11];
-    jacobian[34] = nonzeros[12];
+    for (entry = 0; entry < 13; ++entry) {
+        jacobian[places[entry]] = nonzeros[entry];
+    }
 }
 
 /* Kinetic energy. */

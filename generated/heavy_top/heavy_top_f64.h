@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is. Body of these files: sha256 13d5adbba9a8d61c.
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 e7cfe71d8167d205.
  */
 #ifndef HEAVY_TOP_F64_H
 #define HEAVY_TOP_F64_H

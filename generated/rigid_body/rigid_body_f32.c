@@ -656,78 +656,21 @@ void rigid_body_state_rate_jacobian_dense_f32(const rigid_body_constants_f32 *co
     const float moment[3], float position_rate[3], float attitude_rate[4], float velocity_rate[3],
     float omega_dot[3], float jacobian[247])
 {
+    static const unsigned char places[66] = {
+        43, 44, 45, 46, 47, 48, 55, 57, 58, 59, 60, 61, 68, 69, 71, 72, 73, 74, 81, 82, 83,
+        85, 86, 87, 91, 105, 119, 133, 134, 135, 136, 140, 141, 142, 146, 147, 148, 149,
+        153, 154, 155, 159, 160, 161, 162, 166, 167, 168, 176, 177, 178, 189, 190, 191, 202,
+        203, 204, 218, 219, 220, 231, 232, 233, 244, 245, 246
+    };
     float nonzeros[66];
     int entry;
     rigid_body_state_rate_jacobian_f32(constants, attitude, velocity, omega, force, moment, position_rate, attitude_rate, velocity_rate, omega_dot, nonzeros);
     for (entry = 0; entry < 247; ++entry) {
         jacobian[entry] = 0.0F;
     }
-    jacobian[43] = nonzeros[0];
-    jacobian[44] = nonzeros[1];
-    jacobian[45] = nonzeros[2];
-    jacobian[46] = nonzeros[3];
-    jacobian[47] = nonzeros[4];
-    jacobian[48] = nonzeros[5];
-    jacobian[55] = nonzeros[6];
-    jacobian[57] = nonzeros[7];
-    jacobian[58] = nonzeros[8];
-    jacobian[59] = nonzeros[9];
-    jacobian[60] = nonzeros[10];
-    jacobian[61] = nonzeros[11];
-    jacobian[68] = nonzeros[12];
-    jacobian[69] = nonzeros[13];
-    jacobian[71] = nonzeros[14];
-    jacobian[72] = nonzeros[15];
-    jacobian[73] = nonzeros[16];
-    jacobian[74] = nonzeros[17];
-    jacobian[81] = nonzeros[18];
-    jacobian[82] = nonzeros[19];
-    jacobian[83] = nonzeros[20];
-    jacobian[85] = nonzeros[21];
-    jacobian[86] = nonzeros[22];
-    jacobian[87] = nonzeros[23];
-    jacobian[91] = nonzeros[24];
-    jacobian[105] = nonzeros[25];
-    jacobian[119] = nonzeros[26];
-    jacobian[133] = nonzeros[27];
-    jacobian[134] = nonzeros[28];
-    jacobian[135] = nonzeros[29];
-    jacobian[136] = nonzeros[30];
-    jacobian[140] = nonzeros[31];
-    jacobian[141] = nonzeros[32];
-    jacobian[142] = nonzeros[33];
-    jacobian[146] = nonzeros[34];
-    jacobian[147] = nonzeros[35];
-    jacobian[148] = nonzeros[36];
-    jacobian[149] = nonzeros[37];
-    jacobian[153] = nonzeros[38];
-    jacobian[154] = nonzeros[39];
-    jacobian[155] = nonzeros[40];
-    jacobian[159] = nonzeros[41];
-    jacobian[160] = nonzeros[42];
-    jacobian[161] = nonzeros[43];
-    jacobian[162] = nonzeros[44];
-    jacobian[166] = nonzeros[45];
-    jacobian[167] = nonzeros[46];
-    jacobian[168] = nonzeros[47];
-    jacobian[176] = nonzeros[48];
-    jacobian[177] = nonzeros[49];
-    jacobian[178] = nonzeros[50];
-    jacobian[189] = nonzeros[51];
-    jacobian[190] = nonzeros[52];
-    jacobian[191] = nonzeros[53];
-    jacobian[202] = nonzeros[54];
-    jacobian[203] = nonzeros[55];
-    jacobian[204] = nonzeros[56];
-    jacobian[218] = nonzeros[57];
-    jacobian[219] = nonzeros[58];
-    jacobian[220] = nonzeros[59];
-    jacobian[231] = nonzeros[60];
-    jacobian[232] = nonzeros[61];
-    jacobian[233] = nonzeros[62];
-    jacobian[244] = nonzeros[63];
-    jacobian[245] = nonzeros[64];
-    jacobian[246] = nonzeros[65];
+    for (entry = 0; entry < 66; ++entry) {
+        jacobian[places[entry]] = nonzeros[entry];
+    }
 }
 
 /* Kinetic energy. */

@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest term of the sum that an output is. Body of these files: sha256 28de318bd8df1426.
+ * float, times the largest term of the sum that an output is. Body of these files: sha256 415310310edfb133.
  */
 #ifndef RIGID_BODY_F32_H
 #define RIGID_BODY_F32_H

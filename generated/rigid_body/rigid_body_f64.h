@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is. Body of these files: sha256 b358c32fc0898c99.
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 a1437c061cfe87b2.
  */
 #ifndef RIGID_BODY_F64_H
 #define RIGID_BODY_F64_H

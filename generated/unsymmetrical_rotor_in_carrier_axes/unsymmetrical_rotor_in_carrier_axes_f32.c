@@ -198,23 +198,18 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f32(const unsymme
     float gamma, float gamma_dot, float gamma_ddot, float W, float W_dot, float moment[3],
     float jacobian[15])
 {
+    static const unsigned char places[11] = {
+        0, 1, 2, 4, 5, 6, 9, 10, 11, 13, 14
+    };
     float nonzeros[11];
     int entry;
     unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f32(constants, gamma, gamma_dot, gamma_ddot, W, W_dot, moment, nonzeros);
     for (entry = 0; entry < 15; ++entry) {
         jacobian[entry] = 0.0F;
     }
-    jacobian[0] = nonzeros[0];
-    jacobian[1] = nonzeros[1];
-    jacobian[2] = nonzeros[2];
-    jacobian[4] = nonzeros[3];
-    jacobian[5] = nonzeros[4];
-    jacobian[6] = nonzeros[5];
-    jacobian[9] = nonzeros[6];
-    jacobian[10] = nonzeros[7];
-    jacobian[11] = nonzeros[8];
-    jacobian[13] = nonzeros[9];
-    jacobian[14] = nonzeros[10];
+    for (entry = 0; entry < 11; ++entry) {
+        jacobian[places[entry]] = nonzeros[entry];
+    }
 }
 
 /* Angular momentum from the angular velocity. */

@@ -10,7 +10,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest term of the sum that an output is. Body of these files: sha256 a835b62f45855e41.
+ * float, times the largest term of the sum that an output is. Body of these files: sha256 33c9ebadd190ee2d.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H

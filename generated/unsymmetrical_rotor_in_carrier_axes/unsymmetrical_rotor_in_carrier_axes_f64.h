@@ -10,7 +10,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is. Body of these files: sha256 84cf887ed1f28ec7.
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 e526ed2a13b1358c.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from derive.arithmetic import working
-from derive.flows.steps import step_lie, step_rk4
+from derive.flows.steps import step_lie, step_lie_jacobian, step_rk4
 from derive.program import Op, run
 from tests.flows.systems import at, mpf, start, system, without_slopes
 from tests.flows.test_runge_kutta import order
-from tests.flows.test_step_jacobian import CASES
+from tests.flows.test_step_jacobian import CASES, EXACTLY, rounding, worst
 
 QUATERNIONS = ("principal", "rigid_body", "hung")
 
@@ -69,3 +69,28 @@ def test_a_body_at_rest_stays_at_rest() -> None:
 def test_a_motion_without_a_quaternion_has_no_such_step() -> None:
     with pytest.raises(ValueError, match="needs an attitude quaternion"):
         step_lie(system("heavy_top"))
+
+
+@pytest.mark.parametrize("name", QUATERNIONS)
+def test_the_jacobian_is_the_slope_of_the_step(name: str) -> None:
+    given, values = CASES[name]
+    assert worst(step_lie_jacobian(given), step_lie(given), values) < EXACTLY
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@pytest.mark.parametrize("speed", ["1e-30", "1e-6", "1"])
+def test_rounding_leaves_a_few_u_also_where_a_body_hardly_turns(speed: str, dtype: type) -> None:
+    given, values = CASES["principal"]
+    slow = {c: v * mpf(speed) if c[:2] in ("om", "mo") else v for c, v in values.items()}
+    # a few hundred roundings, most of them of terms that the step's length makes small
+    assert rounding(step_lie_jacobian(given), slow, dtype) <= 8
+
+
+def test_a_mutant_of_the_jacobian_is_found() -> None:
+    given, values = CASES["principal"]
+    made = step_lie_jacobian(given)
+    for place, op in list(enumerate(made.ops))[-300::37]:
+        if isinstance(op, Op) and op.operator in ("add", "sub"):
+            flipped = replace(op, operator="sub" if op.operator == "add" else "add")
+            ops = (*made.ops[:place], flipped, *made.ops[place + 1 :])
+            assert worst(replace(made, ops=ops), step_lie(given), values) > mpf(10) ** -9, op

@@ -1,6 +1,6 @@
 """Derivatives of a step are its slopes, keep its structure, and cost what they were given for."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 from derive.arithmetic import EXACT, working
-from derive.flows.dependence import attitude_turns_freely
+from derive.flows.dependence import free_omega
 from derive.flows.signs import with_signs_moved
 from derive.flows.steps import (
+    step_lie,
+    step_lie_tangent,
     step_rk4,
     step_rk4_jacobian,
     step_rk4_sensitivity,
@@ -142,12 +144,16 @@ def errors(given: System, after: list[Any], reference: list[Any]) -> list[Any]:
     return [*apart[: place.start], *(2 * x for x in turn[1:]), *apart[place.stop :]]
 
 
+@pytest.mark.parametrize("made", [step_rk4_tangent, step_lie_tangent], ids=["rk4", "lie"])
 @pytest.mark.parametrize("name", ["principal", "rigid_body", "hung"])
-def test_the_tangent_jacobian_is_the_slope_through_the_exponential_map(name: str) -> None:
+def test_the_tangent_jacobian_is_the_slope_through_the_exponential_map(
+    name: str, made: Callable[[System], Program]
+) -> None:
     given, values = CASES[name]
-    plain, made = step_rk4(without_slopes(given)), step_rk4_tangent(given)
-    reference, found = at(plain, values), entries(made, values)
-    pattern = (made.sparsity or {})["jacobian"]
+    tangent = made(given)
+    plain = (step_rk4 if made is step_rk4_tangent else step_lie)(without_slopes(given))
+    reference, found = at(plain, values), entries(tangent, values)
+    pattern = (tangent.sparsity or {})["jacobian"]
     for column in pattern.columns:
         ends = [
             errors(given, at(plain, moved(given, values, column, part * SMALL)), reference)
@@ -201,14 +207,14 @@ def test_known_zeros_are_not_stored() -> None:
 
 
 def test_an_attitude_turns_freely_if_its_angular_velocity_never_knows_it() -> None:
-    found = {name: attitude_turns_freely(given) for name, (given, _) in CASES.items()}
-    assert [name for name, free in found.items() if free] == ["principal", "rigid_body"]
+    found = {name: free_omega(given) for name, (given, _) in CASES.items()}
+    assert [name for name, place in found.items() if place] == ["principal", "rigid_body"]
 
 
 def test_an_attitude_with_other_kinematics_is_not_taken_for_one_that_turns_freely() -> None:
     given = system("principal")
     swapped = (given.rate.results[1], given.rate.results[0], *given.rate.results[2:])
-    assert not attitude_turns_freely(replace(given, rate=replace(given.rate, results=swapped)))
+    assert not free_omega(replace(given, rate=replace(given.rate, results=swapped)))
 
 
 def test_a_mutant_of_the_jacobian_is_found() -> None:

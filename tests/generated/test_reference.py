@@ -14,6 +14,7 @@ from derive.library import JACOBIAN
 from derive.reference import BALLS, Known, reference, solution
 from derive.sample import Sample, samples
 from derive.scene import catalogue, load
+from derive.scene.wanted import EQUATIONS
 from derive.specialise import Specialised, specialise
 from derive.truth import Truth, truth
 
@@ -28,7 +29,7 @@ def scene(name: str) -> Specialised:
 
 def truths(known: Specialised) -> list[Truth]:
     bases = dict.fromkeys(w.removesuffix(JACOBIAN) for w in known.scene.wanted)
-    return [truth(known, base) for base in bases]
+    return [truth(known, base) for base in bases if base in EQUATIONS]
 
 
 def valued(e: Any, values: Mapping[Any, Any]) -> Any:

@@ -41,7 +41,7 @@ def figures(of: Library) -> tuple[Measurement, ...]:
     """Return figures for every output, as if they had been measured."""
     return tuple(
         Measurement(p.name, precision, q.name, 0.5, 3.25, 7, 48)
-        for p in of.functions
+        for p in of.printed()
         for precision in ("f32", "f64")
         for q in p.outputs
     )
@@ -105,13 +105,13 @@ def test_every_stored_result_leads_to_the_equation_that_it_satisfies(name: str) 
 def test_a_scene_page_says_all_that_a_reader_needs(name: str) -> None:
     text, scene = page(name), load(name)
     assert scene.title in text.replace("&#39;", "'")
-    for program in made(name).functions:
+    for program in made(name).printed():
         assert f'id="{program.name}"' in text
         assert f"{program.flops()} operations" in text
         for q in program.inputs:
             assert q.name == "constants" or q.meaning in text.replace("&#39;", "'")
     assert "3.2" in text
-    assert all(f"lecture.html#{a}" in text for p in made(name).functions for a in p.assumptions)
+    assert all(f"lecture.html#{a}" in text for p in made(name).printed() for a in p.assumptions)
 
 
 def test_a_function_that_was_not_measured_says_so() -> None:

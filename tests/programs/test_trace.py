@@ -11,7 +11,18 @@ from derive.arithmetic import working
 from derive.c_text import F32, F64, body
 from derive.casadi_text import plain_lines
 from derive.program import Op, Program, Quantity, Repeat, run
-from derive.trace import Number, Tape, called, named, needed, number, operation, repeat, select
+from derive.trace import (
+    Number,
+    Tape,
+    called,
+    less,
+    named,
+    needed,
+    number,
+    operation,
+    repeat,
+    select,
+)
 
 X = Quantity("x", ("x_0", "x_1"), (2,), "1", "", None, None, "two numbers")
 Y = Quantity("y", ("y",), (), "1", "", None, None, "what comes out")
@@ -110,6 +121,18 @@ def _longer(line: Op | Repeat) -> Op | Repeat:
 def test_a_loop_counts_all_its_passes() -> None:
     _, tape = tapes()
     assert root_by_newton(tape, 60).flops() == 3 + 1 + 60 * 3
+
+
+def test_the_same_loop_is_recorded_once_and_another_is_not() -> None:
+    _, tape = tapes()
+    x = tape.input("x_0")
+
+    def halved(by: int):
+        return repeat(tape, 5, [x], lambda c: ([c[0] / by], less(c[0], 1)))[0]
+
+    assert halved(2) == halved(2)
+    assert halved(2) != halved(3)
+    assert len([line for line in tape.ops if isinstance(line, Repeat)]) == 2
 
 
 def test_a_loop_is_printed_as_a_loop() -> None:

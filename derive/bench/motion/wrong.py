@@ -60,7 +60,7 @@ def angle(p: Exact, q: Exact) -> float:
         a * y[i] - b * x[i] - (x[i - 2] * y[i - 1] - x[i - 1] * y[i - 2]) for i in range(3)
     ]
     scalar = sum((m * n for m, n in zip(p, q, strict=True)), Fraction(0))
-    return 2 * math.atan2(float(norm(vector)), abs(float(scalar)))
+    return 2 * math.atan2(_float(norm(vector)), _float(abs(scalar)))
 
 
 def invariants(case: Case, w: Exact) -> tuple[Fraction, Fraction]:
@@ -84,4 +84,12 @@ def norm(a: Exact) -> Fraction:
 
 
 def _ratio(a: Fraction, b: Fraction) -> float:
-    return float(a / b) if b else float(a)
+    return _float(a / b if b else a)
+
+
+def _float(x: Fraction) -> float:
+    """Return the float next to ``x``; infinity beyond the largest."""
+    try:
+        return float(x)
+    except OverflowError:
+        return math.inf

@@ -1,0 +1,46 @@
+"""A step that carries what rounding leaves to the next: increments, summed with a remainder.
+
+The attitude's length is kept by an increment too. What rounding does to that part is along the
+attitude: it changes its length, which the next step mends, and never its direction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from derive.flows.attitude_stages import norm_squared
+from derive.flows.compensated import compensated_add
+from derive.flows.system import System
+from derive.program import Quantity
+from derive.trace import Number, sqrt
+
+Row = list[Number]
+
+
+def remainder(states: Sequence[Quantity]) -> Quantity:
+    """Return the quantity that carries what rounding left of earlier steps: zeros at the start."""
+    parts = tuple(f"remainder_{c}" for q in states for c in q.components)
+    says = "what rounding left of earlier steps, zeros at the start"
+    return Quantity("remainder", parts, (len(parts),), "", "", Fraction(0), Fraction(0), says)
+
+
+def carried_on(system: System, start: Row, increments: Row, remainders: Row) -> tuple[Row, Row]:
+    """Return the state after its increments, and what rounding leaves of them."""
+    gains, attitude = list(increments), system.place("attitude")
+    if attitude is not None:
+        gains[attitude] = on_the_sphere(start[attitude], increments[attitude])
+    sums = [compensated_add(*each) for each in zip(start, gains, remainders, strict=True)]
+    return [after for after, _ in sums], [rest for _, rest in sums]
+
+
+def on_the_sphere(q: Row, increment: Row) -> Row:
+    """Return an increment of a quaternion (4) after which it is of length one.
+
+    d + (q + d) (s - 1),  s = 1 / |q + d|: s - 1 from e = |q + d|^2 - 1 without cancellation.
+    """
+    along = sum((x * d for x, d in zip(q[1:], increment[1:], strict=True)), q[0] * increment[0])
+    excess = (norm_squared(q) - 1) + (2 * along + norm_squared(increment))
+    length = sqrt(1 + excess)
+    less = -excess / (length * (1 + length))
+    return [d + (x + d) * less for x, d in zip(q, increment, strict=True)]

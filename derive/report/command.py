@@ -1,0 +1,103 @@
+"""What `derive report` does: run, write the page and the JSON, or print a part as a table."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import Progress
+from rich.table import Table
+
+from derive.files import require_writable, write
+from derive.report.case_run import Found
+from derive.report.page import figure, page
+from derive.report.record import Report, data, text
+from derive.report.run import Ask, made
+
+PAGE, DATA = "report.html", "report.json"
+NEEDS = "the report needs matplotlib and SciPy: `pip install 'derive[bench]'`"
+SHOWN = {
+    "hard_cases": ("name", "naive", "naive_found", "ours", "ours_found", "holds"),
+    "orders": ("method", "case", "claimed", "measured", "points", "agrees"),
+    "step_and_jacobian": ("author", "flops", "instructions", "missing"),
+    "gyroscopic_term": ("form", "precision", "asphericity", "median", "largest"),
+    "functions": ("scene", "name", "flops", "divisions", "instructions", "median", "largest"),
+    "targets": ("says", "limit", "measured", "reached"),
+}
+
+
+def report(
+    out: Path, kind: str, only: Sequence[str], console: Console, progress: Progress
+) -> int:
+    """Run the report; write it to ``out``, or print the parts named by ``only``. Return 0.
+
+    Raises ImportError with a sentence where the extra is not installed.
+    """
+    _require_extra()
+    if not only:
+        out.mkdir(parents=True, exist_ok=True)
+        require_writable(out / PAGE)
+    with progress as shown:
+        task = shown.add_task("report")
+        found = made(Ask(kind, out, only, lambda what: shown.update(task, description=what)))
+        if not only:
+            shown.update(task, description="drawing")
+            write(out, {PAGE: page(found), DATA: text(found)})
+    if only:
+        _print(found, console)
+    else:
+        _print_targets(found, console)
+        console.print(f"{out / PAGE}, {out / DATA}")
+    return 0
+
+
+def _require_extra() -> None:
+    try:
+        import matplotlib as mpl
+        import scipy
+    except ImportError as absent:
+        raise ImportError(f"{NEEDS} ({absent})") from absent
+    del mpl, scipy
+
+
+def _print(found: Report, console: Console) -> None:
+    for one in found.found:
+        console.print(points(one))
+        for n in one.not_run:
+            console.print(f"not run: {n.method} {n.precision}: {n.reason}", highlight=False)
+    whole = data(found)
+    for name, columns in SHOWN.items():
+        if whole[name]:
+            table = Table(*columns, box=None, title=name.replace("_", " "))
+            for row in whole[name]:
+                table.add_row(*(_cell(row[c]) for c in columns))
+            console.print(table)
+
+
+def _print_targets(found: Report, console: Console) -> None:
+    table = Table("target", "limit", "measured", "", box=None)
+    for t in found.targets:
+        verdict = {None: "not measured", True: "reached", False: "NOT REACHED"}[t.reached]
+        table.add_row(t.says, t.limit, t.measured, verdict)
+    console.print(table)
+
+
+def points(found: Found) -> Table:
+    """Return the points of a case as a table."""
+    names = ("method", "scene", "in", "step or tolerance", "passes", "Ir", "microseconds")
+    errors = ("omega", "attitude", "energy", "momentum")
+    table = Table(*names, *errors, box=None, title=f"{found.case.name}: {found.case.says}")
+    for p in found.points:
+        wrong = (p.wrong.omega, p.wrong.attitude, p.wrong.energy, p.wrong.momentum)
+        cost = "" if p.instructions is None else f"{p.instructions:.0f}"
+        setting = figure(p.value) if p.setting else ""
+        passed = (p.method, p.scene, p.precision, setting, str(p.passes), cost)
+        table.add_row(*passed, f"{p.seconds * 1e6:.4g}", *map(figure, wrong))
+    return table
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, dict):
+        return ", ".join(f"{k}: {_cell(v)}" for k, v in value.items())
+    if isinstance(value, list):
+        return " / ".join(_cell(v) for v in value)
+    return figure(value) if isinstance(value, float) else str(value)

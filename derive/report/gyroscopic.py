@@ -1,0 +1,76 @@
+"""The gyroscopic term omega x I omega beside its exact value, from a rod to nearly a sphere."""
+
+import math
+import random
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from statistics import median
+
+from derive.bench.motion.ours import emission
+from derive.bench.motion.wrong import ROUNDOFF
+from derive.check.call import Function
+from derive.report.hard_formulas import callable_by_precision, rounded
+
+SCENES = {"fast": "gyroscopic", "accurate": "gyroscopic_accurate"}
+SAMPLES = 300
+ASPHERICITIES = tuple(10.0**-n for n in range(13))
+Row = Sequence[float]
+
+
+@dataclass(frozen=True)
+class Gyroscopic:
+    """Errors of the gyroscopic term in u of its norm: median and largest of the samples.
+
+    form : of the scene, "fast" or "accurate"
+    """
+
+    form: str
+    precision: str
+    asphericity: float
+    median: float
+    largest: float
+
+
+def gyroscopic(folder: Path) -> Iterator[Gyroscopic]:
+    """Yield the errors at every asphericity, in both forms and precisions."""
+    for form, scene in SCENES.items():
+        for precision, own in callable_by_precision(emission(scene), folder).items():
+            for asphericity in ASPHERICITIES:
+                errors = _errors(own, precision, asphericity)
+                yield Gyroscopic(form, precision, asphericity, median(errors), max(errors))
+
+
+def _errors(own: Mapping[str, Function], precision: str, asphericity: float) -> list[float]:
+    """Return the errors of all samples that are no spheres once they are rounded."""
+    dice = random.Random(f"{asphericity}")
+    found = []
+    for _ in range(SAMPLES):
+        parts = [1 + asphericity * dice.uniform(-0.3, 0.3) for _ in range(3)]
+        parts += [asphericity * dice.uniform(-0.1, 0.1) for _ in range(3)]
+        inertia = rounded(parts, precision)
+        omega = rounded([dice.uniform(-10, 10) for _ in range(3)], precision)
+        true = _exact(inertia, omega)
+        if any(true):
+            names = ("I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
+            made = own["setup"]({n: [x] for n, x in zip(names, inertia, strict=True)})
+            given = {"constants": made["constants"], "omega": omega, "omega_dot": [0.0] * 3}
+            found.append(_distance(own["moment"](given)["moment"], true) / ROUNDOFF[precision])
+    return found or [0.0]
+
+
+def _exact(inertia: Row, omega: Row) -> list[Fraction]:
+    xx, yy, zz, xy, xz, yz = (Fraction(x) for x in inertia)
+    w = [Fraction(x) for x in omega]
+    turning = [
+        xx * w[0] - xy * w[1] - xz * w[2],
+        -xy * w[0] + yy * w[1] - yz * w[2],
+        -xz * w[0] - yz * w[1] + zz * w[2],
+    ]
+    return [w[n - 2] * turning[n - 1] - w[n - 1] * turning[n - 2] for n in range(3)]
+
+
+def _distance(found: Row, true: Sequence[Fraction]) -> float:
+    apart = [float(Fraction(a) - b) for a, b in zip(found, true, strict=True)]
+    return math.hypot(*apart) / math.hypot(*map(float, true))

@@ -1,0 +1,102 @@
+"""A run of the report: programs are made, then cases are moved one by one, then the rest."""
+
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TypeVar
+
+from derive.bench.motion.case import Case, cases
+from derive.bench.motion.ours import SCENES, emission
+from derive.bench.motion.step_jacobian import SCENE, entries
+from derive.report.case_run import Workshop, case_run
+from derive.report.functions import functions
+from derive.report.gyroscopic import gyroscopic
+from derive.report.hard import Hard, long_run, motions, scaled
+from derive.report.hard_formulas import formulas
+from derive.report.hard_moment import cancelling
+from derive.report.orders import orders
+from derive.report.point import FULL, SMALL
+from derive.report.record import Report
+from derive.report.targets import Evidence, targets
+from derive.report.workshop import workshop
+from derive.scene import SceneError
+
+LIMITS = {"small": SMALL, "full": FULL}
+LONG_RUN, WORKERS = 1_000_000, 3
+CASES = "cases"
+PARTS = ("hard", "orders", "tools", "gyroscopic", "functions")
+Tell = Callable[[str], None]
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Ask:
+    """What a run is to do.
+
+    kind : "small" or "full"    generated : folder of the scenes whose functions are counted
+    only : names of cases and of ``PARTS``, all if empty      tell : is told what is being done
+    """
+
+    kind: str
+    generated: Path
+    only: Sequence[str]
+    tell: Tell
+
+
+def made(ask: Ask) -> Report:
+    """Run what is asked for and return the report. Raises SceneError for an unknown name."""
+    every = cases()
+    known = {CASES, *PARTS, *every}
+    for name in ask.only:
+        if name not in known:
+            raise SceneError(f"--only needs one of {', '.join(sorted(known))}, not '{name}'")
+    with TemporaryDirectory() as folder:
+        return _made(ask, every, Path(folder))
+
+
+def _made(ask: Ask, every: dict[str, Case], folder: Path) -> Report:
+    ask.tell("emitting and compiling steppers; counting what peers, tools and functions take")
+    with ThreadPoolExecutor(WORKERS) as pool:  # nothing here is timed
+        ready = pool.submit(workshop, SCENES, LIMITS[ask.kind], folder)
+        counted = pool.submit(_part, ask, "functions", lambda: functions(ask.generated, folder))
+        tools = pool.submit(_part, ask, "tools", lambda: entries(emission(SCENE), folder / "tools"))
+        shop = ready.result()
+        turning = _part(ask, "gyroscopic", lambda: gyroscopic(folder))
+    found = []
+    for case in every.values():
+        if _wanted(ask, case.name, CASES):
+            ask.tell(f"case {case.name}")
+            found.append(case_run(case, shop))
+    ask.tell("hard cases and orders")
+    hard = _part(ask, "hard", lambda: _hard(every, shop))
+    evidence = Evidence(
+        {f.case.name: f for f in found}, hard, tools.result(), turning, folder
+    )
+    return Report(
+        ask.kind,
+        tuple(found),
+        hard,
+        _part(ask, "orders", lambda: orders(every, shop)),
+        tools.result(),
+        turning,
+        counted.result(),
+        tuple(targets(evidence)),
+    )
+
+
+def _hard(every: dict[str, Case], shop: Workshop) -> Iterable[Hard]:
+    yield from motions(every, shop)
+    yield from scaled(every, shop)
+    yield from long_run(every, shop, LONG_RUN)
+    yield from formulas(shop.folder)
+    yield from cancelling(shop.folder)
+
+
+def _part(ask: Ask, name: str, make: Callable[[], Iterable[T]]) -> tuple[T, ...]:
+    return tuple(make()) if _wanted(ask, name) else ()
+
+
+def _wanted(ask: Ask, *names: str) -> bool:
+    return not ask.only or any(name in ask.only for name in names)
