@@ -115,7 +115,8 @@ def _top_level(document: dict[str, object]) -> None:
         raise SceneError("the file needs 'wanted', above its first [table]")
     if "body" not in document and attitudes_only(document["wanted"]):
         document["body"] = {"kind": "spherical", "moment": 1}  # nothing asks about it
-    optional = (*(name for name in TABLES if name != "body"), "wheels", "title", "form", "emission")
+    said = ("title", "source", "form", "emission")
+    optional = (*(name for name in TABLES if name != "body"), "wheels", *said)
     keys(Table("the file", document), ("wanted", "body"), optional)
 
 

@@ -160,3 +160,15 @@ ARM = Case(
 
 CASES = (EDGE, CONE, DISK, PORT, THREE, DISC, BLADES, SKEW, ROD, TOP, SLEEP, GYRO, WHEELS, FREE,
          EARTH, ARM)  # fmt: skip
+
+_handle = DATA["t_handle_flip"]["data"]
+HANDLE_START = (
+    dict(zip(("I_xx", "I_yy", "I_zz"), _handle["I"], strict=True))
+    | dict(zip(("omega_x", "omega_y", "omega_z"), _handle["w0"], strict=True))
+    | {"attitude_w": 1.0, "attitude_x": 0.0, "attitude_y": 0.0, "attitude_z": 0.0}
+)
+HANDLE_TIMES = {"t2": 2.0, "t5": 5.0, "t60": 60.0}
+
+
+def handle_expected(name: str) -> float:
+    return float(DATA["t_handle_flip"]["expected"][name])
