@@ -18,7 +18,7 @@ from derive import __version__
 from derive.check import check as checks
 from derive.check.compiler import CompilerError
 from derive.files import OutputError, differences, require_writable, write
-from derive.generation import Made, all_made, lecture_made
+from derive.generation import Made, all_made, gallery_of, lecture_made
 from derive.lecture import LECTURE
 from derive.notation import expression_text
 from derive.prove import ProofError
@@ -169,6 +169,8 @@ def generate(options: argparse.Namespace) -> int:
     """Write, or with --check compare, the files of scenes."""
     results = _made(options.scenes, () if options.scenes else (lecture_made,))
     texts = {name: text for result in results for name, text in result.texts.items()}
+    if not options.scenes:
+        texts |= gallery_of(results)
     if options.check:
         return _compare(options, texts)
     write(options.out, texts)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import isfinite
 
 from derive.files import scene_files
+from derive.gallery.card import Card, card, gallery
 from derive.library import Library, library
 from derive.measure import figures
 from derive.motion_error import moving_figures
@@ -16,6 +17,7 @@ from derive.saving import Saving, savings
 from derive.scene import SceneError, load
 
 LECTURE_PAGE = "lecture.html"
+GALLERY_PAGE = "index.html"
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,7 @@ class Made:
     warnings: tuple[str, ...]
     costs: tuple[CostRow, ...]
     savings: tuple[Saving, ...] = ()
+    card: Card | None = None
 
 
 def made(source: str) -> Made:
@@ -48,7 +51,7 @@ def made(source: str) -> Made:
     _finite(scene.name, measured)
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in scene.warnings)
     costs, spared = cost_rows(programs, measured), tuple(savings(programs))
-    return Made(scene_files(programs, measured), warnings, costs, spared)
+    return Made(scene_files(programs, measured), warnings, costs, spared, card(programs))
 
 
 def _finite(scene: str, measured: Sequence[Measurement]) -> None:
@@ -64,6 +67,11 @@ def _finite(scene: str, measured: Sequence[Measurement]) -> None:
 def lecture_made() -> Made:
     """Return the lecture's page."""
     return Made({LECTURE_PAGE: lecture_page()}, (), ())
+
+
+def gallery_of(results: Sequence[Made]) -> dict[str, str]:
+    """Return the gallery of all scenes that were made."""
+    return {GALLERY_PAGE: gallery([r.card for r in results if r.card is not None])}
 
 
 def cost_rows(programs: Library, measured: Sequence[Measurement]) -> tuple[CostRow, ...]:

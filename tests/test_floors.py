@@ -35,7 +35,7 @@ FLOORS = (
         "convergence",
         "differences",
     ),
-    ("cloud",),
+    ("cloud", "gallery"),
     ("files", "generation", "check", "bench", "report", "solve"),
     ("cli", "__main__"),
 )

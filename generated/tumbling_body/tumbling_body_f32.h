@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest term of the sum that an output is. Body of these files: sha256 57bdd67814d6bb4b.
+ * float, times the largest term of the sum that an output is. Body of these files: sha256 1856dc25a4e08966.
  */
 #ifndef TUMBLING_BODY_F32_H
 #define TUMBLING_BODY_F32_H
@@ -149,7 +149,7 @@ void tumbling_body_flow_exact_f32(const tumbling_body_constants_f32 *constants,
  * Returned:  plan[13]  what a motion without torque and a length of step keep
  * Error: median 0.36, largest 3.4 u of the largest component, by rounding alone (sampled: 42
  *            points, worst at plan, point 9).
- * Cost: 43 add, 21 sub, 101 mul, 6 div, 1 splitter.
+ * Cost: 43 add, 21 sub, 101 mul, 6 div, 1 abs, 1 less, 1 select, 1 splitter.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -167,7 +167,7 @@ void tumbling_body_plan_dmv_f32(const tumbling_body_constants_f32 *constants, co
  *            remainder_next[7]  what rounding left of earlier steps, zeros at the start, next
  * Error: median 0.18, largest 0.79 u of the largest component, by rounding alone (sampled: 42
  *            points, worst at omega_next, point 39).
- * Cost: 447 add, 141 sub, 828 mul, 46 div, 1 neg, 42 sqrt, 40 abs, 40 at_most.
+ * Cost: 207 add, 69 sub, 372 mul, 22 div, 1 neg, 18 sqrt, 16 abs, 16 at_most.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
