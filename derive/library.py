@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 from sympy import Symbol
 
@@ -89,7 +90,9 @@ def library(scene: Scene | Machine) -> Library:
         else _with_jacobian(graph, constants, known, wanted[_base(name)], (leaves, name))
         for name in (*asked, *hidden)
     }
-    moving = Moving(known, graph, leaves, every, _moment(graph, constants, known, leaves))
+    moment = _moment(graph, constants, known, leaves)
+    body = cast(Specialised, known)  # a machine wants no motion, and nothing is read from it
+    moving = Moving(body, graph, leaves, every, moment)
     moves = motions(moving)
     taken = {name: _parameter(graph, value) for value, name in constants.names.items()}
     traced_part, renaming = traced(moving, taken)

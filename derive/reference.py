@@ -14,7 +14,7 @@ from typing import Any
 from flint import arb, arb_mat, ctx
 
 from derive.equations import Equations, Part, Sum
-from derive.valuation import Arithmetic, Atom, value
+from derive.valuation import Arithmetic, Atom, raised, value
 
 BITS = 300
 SPARE_BITS = 100  # a ball must be this much narrower than its largest term
@@ -113,7 +113,7 @@ def _summed(
         product, size = coefficients[part.coefficient]
         for atom, power in part.factors:
             factor = known[atom]
-            product = product * (factor.value if power == 1 else factor.value**power)
+            product = product * raised(factor.value, power)
             size *= _power_scale(factor, power, arithmetic)
         total, largest = total + product, max(largest, size)
         for place, (atom, _) in enumerate(part.factors):
@@ -141,7 +141,7 @@ def _partial(
         if other == place and power != 1:
             product, size = product * power, size * abs(power)
         if left:
-            product = product * (factor.value if left == 1 else factor.value**left)
+            product = product * raised(factor.value, left)
             size *= factor.scale**left
     return product, size
 

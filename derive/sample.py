@@ -14,7 +14,7 @@ from random import Random
 from derive.arithmetic import rounded
 from derive.body_sample import BODIES, Hard, admissible, bodies_taken, hard_body, solvable
 from derive.c_text import Precision
-from derive.machine.mechanism import Known, Mechanism
+from derive.machine.mechanism import Known, Mechanism, single
 from derive.program import Quantity
 
 Values = dict[str, float]
@@ -83,7 +83,7 @@ def samples(known: Known, precision: Precision, ordinary: int, corners: int) -> 
 
 
 def _with_hard_body(of: Source, hard: Hard) -> Values:
-    return _ordinary(of) | hard_body(of.known, hard, of.dice, of.precision)
+    return _ordinary(of) | hard_body(single(of.known), hard, of.dice, of.precision)
 
 
 def _ordinary(of: Source) -> Values:
@@ -92,7 +92,9 @@ def _ordinary(of: Source) -> Values:
         values = {
             name: of.held(uniform(of.dice, q)) for q in words.parameters for name in q.components
         }
-        if admissible(of.known, values) or (tries > PATIENCE and solvable(of.known, values)):
+        if admissible(of.known, values):
+            return values | _motion(of)
+        if tries > PATIENCE and solvable(single(of.known), values):
             return values | _motion(of)
     raise ArithmeticError(
         f"scene '{of.known.scene.name}': the ranges of its parameters must hold a body, "

@@ -1,4 +1,4 @@
-"""What choosing balances saves: the same answers body by body, about mass centres, nothing left out."""
+"""What choosing balances saves: the same answers body by body, about mass centres."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -25,8 +25,8 @@ from derive.check.motion import orders, step_slopes
 from derive.check.particles import clouds
 from derive.check.verdict import JUDGED, Verdict
 from derive.library import Library, library
-from derive.motion_error import with_motion
 from derive.machine.mechanism import Mechanism
+from derive.motion_error import with_motion
 from derive.prove import ProofError, prove
 from derive.sample import Sample, samples
 from derive.scene import load

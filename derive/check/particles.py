@@ -22,8 +22,16 @@ from derive.scene.machine import Result
 from derive.scene.machine_file import written_out
 
 AGREE = mpf(10) ** -25
+AGREE_QUATERNIONS = mpf(10) ** -13  # those of a sample have norm 1 only to double precision
 AGREE_SLOPES = mpf(10) ** -12
-PLAIN = ("kinetic_energy", "angular_momentum_x", "angular_momentum_y", "angular_momentum_z")
+PLAIN = (
+    "kinetic_energy",
+    "potential_energy",
+    "energy",
+    "angular_momentum_x",
+    "angular_momentum_y",
+    "angular_momentum_z",
+)
 
 
 def clouds(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
@@ -42,6 +50,8 @@ def clouds(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
             else:
                 names = [c for q in fact.outputs for c in q.components]
                 gaps = _gaps(known.scene, sample, names, true)
+            if any(frame.quaternion for frame in known.scene.frames):
+                limit = max(limit, AGREE_QUATERNIONS)
             worst, count = max([worst, *gaps]), count + len(gaps)
         if not count:
             says = "the cloud has no such number at these points"
@@ -82,8 +92,9 @@ def _of_cloud(machine: Machine, cloud: Answers, name: str) -> Any:
 
 
 def _of_matrices(machine: Machine, result: Result) -> bool:
-    barred = (*MATRICES, "potential_energy", "energy")
-    return any(s.startswith(barred) for s in symbols(written_out(result.formula, machine.results)))
+    return any(
+        s.startswith(tuple(MATRICES)) for s in symbols(written_out(result.formula, machine.results))
+    )
 
 
 def digits(ball: Any) -> Any:

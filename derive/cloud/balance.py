@@ -88,3 +88,20 @@ def _spring(history: History, load: Spring) -> Iterator[Acting]:
     yield load.on, values(start), force, 0 * d
     if load.against:
         yield load.against, values(end), -force, 0 * d
+
+
+def potential_energy(history: History) -> Any:
+    """Return the energy of particles in their weights, and that of springs."""
+    total = mpf(0)
+    for load in history.machine.loads:
+        if isinstance(load, Weight):
+            g = _along(history, load.along, load.gravity)
+            for body in load.on:
+                particles = history.particles(body)
+                total -= mp.fsum(m * (g @ values(place)) for m, place in particles)
+        elif isinstance(load, Spring):
+            ends = ((load.frame, load.at), (load.to_frame, load.to))
+            start, end = (values(history.place(f, at)) for f, at in ends)
+            k, rest = (history.value(f).value for f in (load.stiffness, load.length))
+            total += k * (mp.sqrt((end - start) @ (end - start)) - rest) ** 2 / 2
+    return total

@@ -98,6 +98,18 @@ class History:
                           for i in range(3)], dtype=object)  # fmt: skip
         return R
 
+    def _carried_on(self, rate: tuple[Formula, ...]) -> Array:
+        """Return the turn of a ball in its frame: R_dot = [w]x R, from where it is."""
+        x, y, z = self.column(rate)
+        zero = series(0)
+        skew = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]], dtype=object)
+        R = turn("x", zero)
+        for _ in range(2):
+            moved = skew @ R
+            R = np.array([[moved[i, k].integral(R[i, k].value) for k in range(3)]
+                          for i in range(3)], dtype=object)  # fmt: skip
+        return R
+
     def _start(self, frame: Frame) -> Array:
         if not frame.quaternion:
             return np.array([[mpf(i == k) for k in range(3)] for i in range(3)], dtype=object)
@@ -131,10 +143,12 @@ class History:
         """Return the velocity of an origin: given, or such that the particle in contact rests."""
         R = self.rotations[frame.name]
         if frame.velocity is not None:
-            return R @ self.column(frame.velocity)
+            given: Array = R @ self.column(frame.velocity)
+            return given
         assert frame.rolls is not None  # noqa: S101
         Q = self.body(frame.rolls.body)
-        return -(each(lambda v: v.rate(), Q) @ Q.T) @ R @ self.column(frame.rolls.at)
+        found: Array = -(each(lambda v: v.rate(), Q) @ Q.T) @ R @ self.column(frame.rolls.at)
+        return found
 
     def body(self, name: str) -> Array:
         """Return the axes fixed in a body, to those of N: it spins in its frame's turned axes."""
@@ -142,6 +156,8 @@ class History:
         R = self.rotations[member.frame]
         for one in member.turned:
             R = R @ turn(one.axis, self.value(one.angle))
+        if member.angular_velocity is not None:
+            return R @ self._carried_on(member.angular_velocity)
         if member.axis is None or (member.spin is None and member.axial_speed is None):
             return R
         if member.spin is not None:
@@ -165,7 +181,8 @@ class History:
 
     def place(self, frame: str, at: tuple[Formula, ...]) -> Array:
         """Return where a point given in a frame is."""
-        return self.origins[frame] + self.rotations[frame] @ self.column(at)
+        found: Array = self.origins[frame] + self.rotations[frame] @ self.column(at)
+        return found
 
     def mass(self, name: str) -> Any:
         """Return the mass of a body."""

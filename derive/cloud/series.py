@@ -67,7 +67,7 @@ class Series:
 
     def rate(self) -> Series:
         """Return the series of its rate; the last coefficient is lost."""
-        return Series(tuple((n + 1) * c for n, c in enumerate(self.parts[1:])) + (mpf(0),))
+        return Series((*((n + 1) * c for n, c in enumerate(self.parts[1:])), mpf(0)))
 
     def integral(self, start: Any) -> Series:
         """Return the series that begins at ``start`` and has this rate."""
@@ -129,7 +129,8 @@ ARITHMETIC: Arithmetic = {
 
 def each(function: Callable[[Series], Any], array: Array) -> Array:
     """Return an array with a function taken of every entry."""
-    return np.vectorize(function, otypes=[object])(array)
+    found: Array = np.vectorize(function, otypes=[object])(array)
+    return found
 
 
 def turn(axis: str, angle: Series) -> Array:

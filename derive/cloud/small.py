@@ -5,8 +5,8 @@ from typing import Any
 
 from mpmath import matrix, mp, mpf
 
-from derive.cloud.solution import Answers, answers
 from derive.cloud.series import DIGITS
+from derive.cloud.solution import Answers, answers
 from derive.scene import Input, Machine
 
 STEP = mpf(10) ** -15  # a central difference of 50 digits keeps twenty

@@ -7,7 +7,7 @@ from typing import Any
 
 from mpmath import mp, mpf
 
-from derive.cloud.balance import left_over, values
+from derive.cloud.balance import left_over, potential_energy, values
 from derive.cloud.history import History
 from derive.cloud.series import DIGITS, crossed, each, series
 from derive.formula import Formula
@@ -31,7 +31,9 @@ class Answers:
         return (*(u.name for u in self.machine.unknowns), *free)
 
     def _history(self, found: Mapping[str, Any]) -> History:
-        history = History(self.machine, dict(self.given) | dict.fromkeys(self.names, mpf(0)) | found)
+        history = History(
+            self.machine, dict(self.given) | dict.fromkeys(self.names, mpf(0)) | dict(found)
+        )
         for u in self.machine.unknowns:
             history.scalars[u.name] = series(history.values[u.name])
         return history
@@ -84,7 +86,7 @@ class Answers:
 
     @cached_property
     def momenta(self) -> dict[str, Any]:
-        """Return kinetic energy and angular momentum, summed over the particles."""
+        """Return energies and angular momentum, summed over the particles."""
         with mp.workdps(DIGITS):
             history, place = self._history({}), self.machine.momentum
             about = values(history.place(place.frame, place.at))
@@ -97,7 +99,10 @@ class Answers:
                         momentum = momentum + m * crossed(values(at) - about, v)
             along = values(history.rotations[place.frame]).T @ momentum
             names = (f"angular_momentum_{axis}" for axis in "xyz")
-            return {"kinetic_energy": energy} | dict(zip(names, along, strict=True))
+            height = potential_energy(history)
+            energies = {"kinetic_energy": energy, "potential_energy": height}
+            energies["energy"] = energy + height
+            return energies | dict(zip(names, along, strict=True))
 
     def result(self, formula: Formula) -> Any:
         """Return the value of a formula of answers."""

@@ -15,7 +15,7 @@ from derive.cloud.balance import values
 from derive.cloud.history import History
 from derive.cloud.series import DIGITS
 from derive.formula import FLOATS, ZERO, evaluate
-from derive.scene import Machine, Scene
+from derive.scene import Input, Machine, Scene
 from derive.scene.machine import INERTIAL, Force
 
 WIDTH, HEIGHT, MARGIN = 260, 180, 18
@@ -43,9 +43,11 @@ def drawing(scene: Scene | Machine) -> str:
 
 def well_inside(machine: Machine) -> dict[str, Any]:
     """Return every argument of a machine at seven tenths of its range, accelerations at zero."""
-    entries = [*machine.parameters, *machine.moving]
-    entries += [i for m in machine.moving for i in (m.rate, m.acceleration) if hasattr(i, "low")]
-    ends = {e.name: (3 * e.low + 7 * e.high) / 10 for e in entries}
+    ends = {p.name: (3 * p.low + 7 * p.high) / 10 for p in machine.parameters}
+    for m in machine.moving:
+        ends[m.name] = (3 * m.low + 7 * m.high) / 10
+        each = (i for i in (m.rate, m.acceleration) if isinstance(i, Input))
+        ends |= {i.name: (3 * i.low + 7 * i.high) / 10 for i in each}
     found = {name: mpf(x.numerator) / x.denominator for name, x in ends.items()}
     found |= {m.unknown: mpf(0) for m in machine.moving if m.free}
     found |= {u.name: mpf(0) for u in machine.unknowns}
@@ -96,7 +98,7 @@ def _around(centre: Any, semi: Sequence[Any], name: str) -> Iterator[Line]:
 
 def _of_body(scene: Scene) -> Iterator[Line]:
     """Return the principal ellipses of a single body about its axes, from its moments."""
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
     known = {p.name: float((p.low + p.high) / 2) for p in scene.parameters}
     xx, yy, zz = (mpf(evaluate(f, known, FLOATS)) for f in scene.body.inertia[:3])

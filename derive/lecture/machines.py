@@ -5,7 +5,6 @@ is the moment of the mass centre's own acceleration.
 """
 
 # fmt: off
-# ruff: noqa: I001
 
 from derive.lecture.letters import F, F_i, M, a_G, dm, m, rho_G
 from derive.lecture.rigid_body import I_G, xi

@@ -1,4 +1,4 @@
-"""What each wanted answer is made of: unknowns, energies, momenta, results, small and steady motion."""
+"""What each wanted answer is made of: unknowns, energies, momenta, results, small motion."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -48,7 +48,9 @@ class Answers:
             return self._steady(base)
         parts = {q: e for name in names for q, e in self._answer(name).items()}
         quantities = tuple(parts)
-        answers = {s: e for q, own in parts.items() for s, e in zip(self._symbols(q), own, strict=True)}
+        answers = {
+            s: e for q, own in parts.items() for s, e in zip(self._symbols(q), own, strict=True)
+        }
         steps = tuple(s for name in names for s in _STEPS.get(name, ()))
         return self._asked(base, quantities, answers, steps)
 

@@ -125,21 +125,33 @@ class Balances:
         axes = self._axes(bodies, valued[0])
         forces = [v.force(bodies) for v in valued]
         for frame, axis in axes:
-            yield self._row(bodies, "force", None, "", frame, axis, valued, forces)
+            yield self._row(Balance(bodies, "force", None, "", frame, axis), valued, forces)
         for spot, place in self._points(bodies, valued[0]):
             moments = [v.moment(bodies, place) for v in valued]
+            central = self._central(bodies, place, valued[0])
             for frame, axis in axes:
-                yield self._row(bodies, "moment", place, spot, frame, axis, valued, moments)
+                balance = Balance(bodies, "moment", place, spot, frame, axis, central)
+                yield self._row(balance, valued, moments)
 
-    def _row(self, bodies: tuple[str, ...], kind: Any, place: Point | None, spot: str,
-             frame: str, axis: str, valued: Sequence["Valued"], vectors: Sequence[Array]) -> Row:  # fmt: skip
-        k = "xyz".index(axis)
-        values = tuple(v.rotation(frame)[:, k] @ vector
-                       for v, vector in zip(valued, vectors, strict=True))  # fmt: skip
+    def _row(
+        self,
+        balance: Balance,
+        valued: Sequence["Valued"],
+        vectors: Sequence[Array],
+    ) -> Row:
+        k = "xyz".index(balance.axis)
+        values = tuple(
+            v.rotation(balance.frame)[:, k] @ vector
+            for v, vector in zip(valued, vectors, strict=True)
+        )
+        return Row(balance, values)
+
+    def _central(self, bodies: tuple[str, ...], place: Point, valued: "Valued") -> bool:
+        """Tell whether a point is the mass centre of the one body, whatever it is called."""
         centre = self.efforts[bodies[0]].centre
-        central = place is not None and max(
-            abs(valued[0].place(centre) - valued[0].place(place))) < NOTHING  # fmt: skip
-        return Row(Balance(bodies, kind, place, spot, frame, axis, central), values)
+        if len(bodies) > 1 or not self._reachable(centre[0], bodies):
+            return False
+        return bool(max(abs(valued.place(centre) - valued.place(place))) < NOTHING)
 
     def _frames_of(self, bodies: tuple[str, ...]) -> list[str]:
         """Return the frames whose axes and origins are near at hand for these bodies."""
@@ -164,14 +176,12 @@ class Balances:
 
     def _points(self, bodies: tuple[str, ...], valued: "Valued") -> list[tuple[str, Point]]:
         """Return the points that moments of these bodies may be taken about."""
-        near: list[tuple[str, Point]] = []
-        for frame in self._frames_of(bodies):
-            near.append((f"the origin of {frame}", (frame, ZERO)))
-        for b in bodies:
-            near.append((f"the mass centre of {b}", self.efforts[b].centre))
-        for w in self.wrenches:
-            if w.body in bodies and w.force != ZERO:
-                near.append((f"the point of {w.load}", w.point))
+        acting = [w for w in self.wrenches if w.body in bodies and w.force != ZERO]
+        near: list[tuple[str, Point]] = [
+            *((f"the origin of {frame}", (frame, ZERO)) for frame in self._frames_of(bodies)),
+            *((f"the mass centre of {b}", self.efforts[b].centre) for b in bodies),
+            *((f"the point of {w.load}", w.point) for w in acting),
+        ]
         found: list[tuple[str, Point]] = []
         seen: list[Array] = []
         for spot, place in near:
@@ -277,12 +287,15 @@ class Valued:
             table[i, 0] = self.probe.value(rest)
             for u, slope in slopes.items():
                 table[i, 1 + self.balances.unknowns.index(u)] = self.probe.value(slope)
-        return self.rotation(frame) @ table
+        turned: Array = self.rotation(frame) @ table
+        return turned
 
     def parts(self, vector: Parts) -> Array:
         """Return a vector that is a sum of parts along several frames."""
-        nothing = self.linear(ZERO, INERTIAL)
-        return sum((self.linear(part, name) for name, part in vector.items()), nothing)
+        total = self.linear(ZERO, INERTIAL)
+        for name, part in vector.items():
+            total = total + self.linear(part, name)
+        return total
 
     def place(self, place: Point) -> Array:
         """Return where a point is from the origin of the topmost frame that it is placed in."""
@@ -300,8 +313,12 @@ class Valued:
     def force(self, bodies: tuple[str, ...]) -> Array:
         """Return mass times acceleration less the forces."""
         b = self.balances
-        total = sum(self.parts(b.efforts[n].force) for n in bodies)
-        return total - sum((self._acting(k)[0] for k in self._on(bodies)), 0 * total)
+        total = self.linear(ZERO, INERTIAL)
+        for n in bodies:
+            total = total + self.parts(b.efforts[n].force)
+        for k in self._on(bodies):
+            total = total - self._acting(k)[0]
+        return total
 
     def moment(self, bodies: tuple[str, ...], place: Point) -> Array:
         """Return the rate of angular momentum less the moments, about a point."""

@@ -92,7 +92,11 @@ def moment_about(frames: Frames, body: str, at: Matrix) -> Matrix:
 
 
 def _moment(
-    frames: Frames, body: str, label: str, I: Matrix, about: Mapping[str, Any]  # noqa: E741
+    frames: Frames,
+    body: str,
+    label: str,
+    I: Matrix,  # noqa: E741
+    about: Mapping[str, Any],
 ) -> Matrix:
     sheet, Omega = frames.sheet, frames.Omega[frames.own(body)]
     omega = sheet.column(f"{body}.omega", frames.turning_of_body(body))
@@ -102,10 +106,10 @@ def _moment(
     known["omega_dot"] = sheet.column(f"{body}.omega_dot", sheet.rate_of_column(omega))
     step = "moving_point_form" if about else "general_form"
     if omega != Omega:
-        return sheet.column(f"{label}.M", stated(step, known | about))
+        return sheet.column(f"{label}.M", stated(step, known | dict(about)))
     still = known | {"omega": ZERO, "Omega": ZERO}
     gyroscopic = stated("body_axes_form", known | {"I": aspherical(I), "omega_dot": ZERO})
-    return sheet.column(f"{label}.M", stated(step, still | about) + gyroscopic)
+    return sheet.column(f"{label}.M", stated(step, still | dict(about)) + gyroscopic)
 
 
 def aspherical(I: Matrix) -> Matrix:  # noqa: E741
@@ -116,11 +120,13 @@ def aspherical(I: Matrix) -> Matrix:  # noqa: E741
 
 
 def carries(frames: Frames, body: str, place: Point) -> bool:
-    """Tell whether a point moves with a body: fixed in its own axes, and on the axis it spins on."""
+    """Tell whether a point moves with a body: fixed in its axes, and on the axis it spins on."""
     own, G = centre(frames, body)
     if place[0] != own or frames.sheet.rate_of_column(place[1]) != ZERO:
         return False
     member = frames.machine.body(body)
+    if member.angular_velocity is not None:
+        return bool(place[1] == G)
     if member.spin is None and member.axial_speed is None:
         return True
     return all(

@@ -31,7 +31,7 @@ def chosen(balances: Balances, wanted: frozenset[int]) -> Chosen:
             balances.carried_vectors(row.balance),
         ),
     )
-    for unknowns in _sets(rows, wanted, len(balances.unknowns)):
+    for unknowns in _sets(rows, wanted):
         within = [row for row in rows if row.holds <= unknowns]
         covered = frozenset(k for row in within for k in row.holds)
         if len(within) < len(unknowns) or covered != unknowns:
@@ -44,7 +44,7 @@ def chosen(balances: Balances, wanted: frozenset[int]) -> Chosen:
     raise SceneError(undetermined(balances, wanted))
 
 
-def _sets(rows: Sequence[Row], wanted: frozenset[int], count: int) -> Iterator[frozenset[int]]:
+def _sets(rows: Sequence[Row], wanted: frozenset[int]) -> Iterator[frozenset[int]]:
     """Yield sets of unknowns that hold the wanted ones, small ones first."""
     others = sorted(frozenset(k for row in rows for k in row.holds) - wanted)
     tried = 0
@@ -74,9 +74,11 @@ def undetermined(balances: Balances, wanted: frozenset[int]) -> str:
         joint = _joint(balances, k)
         if joint:
             also = " and ".join(f"'{names[n]}'" for n in (k, *joint))
-            here = [str(row.balance) for row in holding if k in row.holds][:3]
-            return (f"unknowns {also} cannot be told apart: every balance that holds "
-                    f"'{names[k]}' holds the others too, in one combination ({'; '.join(here)})")  # fmt: skip
+            told = [str(row.balance) for row in holding if k in row.holds][:3]
+            return (
+                f"unknowns {also} cannot be told apart: every balance that holds '{names[k]}' "
+                f"holds the others too, in one combination ({'; '.join(told)})"
+            )
     found = ", ".join(f"'{names[k]}'" for k in sorted(wanted))
     return f"the balances do not determine {found}"
 
@@ -113,5 +115,3 @@ def contradiction(balances: Balances) -> str:
         return ""
     return (f"the {rows[0].balance} does not vanish and holds no unknown: "
             "declare a load with an unknown there, or leave a motion free")  # fmt: skip
-
-

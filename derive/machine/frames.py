@@ -176,6 +176,8 @@ class Frames:
         """Return the angular velocity of a body, along its own axes."""
         member = self.machine.body(body)
         Omega = self.Omega[self.own(body)]
+        if member.angular_velocity is not None:
+            return Omega + self.words.column(member.angular_velocity)
         if member.axis is None:
             return Omega
         e = unit_vector(member.axis)
@@ -224,15 +226,21 @@ class Frames:
     def linked(self, first: str, second: str) -> bool:
         """Tell whether vectors can be carried from one frame to the other."""
         top = self.common(first, second)
-        names = [n for end in (first, second) for n in self.chain(end)[: self.chain(end).index(top)]]
+        names = [
+            n for end in (first, second) for n in self.chain(end)[: self.chain(end).index(top)]
+        ]
         return all(self.rotations[n] is not None for n in names)
 
     def placed(self, first: str, second: str) -> bool:
         """Tell whether the origin of one frame is known from that of the other."""
         top = self.common(first, second)
-        names = [n for end in (first, second) for n in self.chain(end)[: self.chain(end).index(top)]]
+        names = [
+            n for end in (first, second) for n in self.chain(end)[: self.chain(end).index(top)]
+        ]
         frames = [self.each[n] for n in names]
-        return all(f.velocity is None and f.acceleration is None and f.rolls is None for f in frames)
+        return all(
+            f.velocity is None and f.acceleration is None and f.rolls is None for f in frames
+        )
 
     def apart(self, start: Point, end: Point, along: str) -> Matrix:
         """Return the vector from one point to another, along the axes of a frame."""

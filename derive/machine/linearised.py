@@ -106,7 +106,9 @@ class _Table:
         self.forces: list[Expr] = []
         if self.reactions:
             right = Matrix([-self.rests[n].value for n in self.pivots])
-            self.forces = list(self.held.extract(self.pivots, range(len(self.reactions))).LUsolve(right))
+            self.forces = list(
+                self.held.extract(self.pivots, range(len(self.reactions))).LUsolve(right)
+            )
 
     def _pivots(self) -> list[int]:
         probe = point(self.balances.frames.words, 0)

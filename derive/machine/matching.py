@@ -1,4 +1,4 @@
-"""The order in which balances are solved: a maximum matching, then the strongly connected blocks."""
+"""The order in which balances are solved: a maximum matching, then strongly connected blocks."""
 
 from collections.abc import Mapping, Sequence
 

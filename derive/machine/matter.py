@@ -33,17 +33,15 @@ def lean(question: Question, words: Words) -> Lean:
 
     Raises SceneError if an answer depends on data that the user left out.
     """
-    sheet, base = words.sheet, None
     for number in range(POINTS):
-        base = _answers(question, words, number, {})
-        if base is None:
+        if _answers(question, words, number, {}) is None:
             raise SceneError(f"'{question.name}' has no answer at a trial point: "
                              "its balances are singular there")  # fmt: skip
     idle = [s for s in sorted(question.arguments(), key=str) if not _matters(question, words, s)]
     for symbol, what in words.hidden.items():
         if symbol in question.arguments() and symbol not in idle:
             raise SceneError(f"'{question.name}' depends on {what}, which is not given")
-    current, taken = question, dict[Symbol, Expr]()
+    taken: dict[Symbol, Expr] = {}
     for symbol in idle:
         for number in STAND_INS:
             if _stands_in(question, words, taken | {symbol: Integer(number)}):
@@ -69,7 +67,9 @@ def _answers(
 def _same(first: list[Any] | None, second: list[Any] | None) -> bool:
     if first is None or second is None:
         return False
-    return all(abs(a - b) <= NOTHING * max(abs(a), abs(b)) for a, b in zip(first, second, strict=True))
+    return all(
+        abs(a - b) <= NOTHING * max(abs(a), abs(b)) for a, b in zip(first, second, strict=True)
+    )
 
 
 def _matters(question: Question, words: Words, symbol: Symbol) -> bool:

@@ -20,7 +20,6 @@ from derive.specialise import Specialised
 from derive.truth import Truth
 from derive.vocabulary import Vocabulary
 
-
 MANY_TERMS = 10  # a named quantity of more terms is not multiplied out by its users
 
 
@@ -54,6 +53,16 @@ class Mechanism:
 
 Known = Specialised | Mechanism
 """A scene in the lecture's terms: of a single body, or of a machine."""
+
+
+def single(known: Known) -> Specialised:
+    """Return the terms of a single body, where a machine cannot be asked.
+
+    Raises TypeError for a machine.
+    """
+    if isinstance(known, Mechanism):
+        raise TypeError(f"scene '{known.scene.name}' is a machine, not a single body")
+    return known
 
 
 def mechanism(machine: Machine) -> Mechanism:
@@ -125,9 +134,9 @@ def _terms(e: Expr, sizes: Mapping[Symbol, int]) -> int:
     if isinstance(e, Add):
         return sum(_terms(part, sizes) for part in e.args)
     if isinstance(e, Mul):
-        return prod(_terms(part, sizes) for part in e.args)
+        return int(prod(_terms(part, sizes) for part in e.args))
     if isinstance(e, Pow) and e.exp.is_Integer and e.exp > 0:
-        return _terms(e.base, sizes) ** min(int(e.exp), 4)
+        return int(_terms(e.base, sizes) ** min(int(e.exp), 4))
     return sizes.get(e, 1)
 
 

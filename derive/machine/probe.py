@@ -65,7 +65,8 @@ class Probe:
 
     def with_(self, changed: Mapping[Symbol, Any], definitions: Mapping[Symbol, Expr]) -> "Probe":
         """Return another point, at which a few values differ."""
-        other = Probe({s: v for s, v in self.values.items() if s not in definitions} | changed)
+        kept = {s: v for s, v in self.values.items() if s not in definitions}
+        other = Probe(kept | dict(changed))
         other.define(definitions)
         return other
 

@@ -33,7 +33,9 @@ class Question:
 
     def arguments(self) -> frozenset[Symbol]:
         """Return every symbol that is given: not named, not unknown, no output."""
-        used = {s for e in (*self.expressions(), *self.definitions.values()) for s in e.free_symbols}
+        used = {
+            s for e in (*self.expressions(), *self.definitions.values()) for s in e.free_symbols
+        }
         return frozenset(used - set(self.definitions) - set(self.unknowns) - set(self.answers))
 
 

@@ -104,4 +104,4 @@ class Sheet:
 
 
 def _plain(value: Expr) -> bool:
-    return value.is_Symbol or value.is_Number or (-value).is_Symbol
+    return bool(value.is_Symbol or value.is_Number or (-value).is_Symbol)

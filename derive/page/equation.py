@@ -9,8 +9,8 @@ from sympy import Add, Expr, Symbol
 
 from derive.lecture import LECTURE
 from derive.library import Library
-from derive.notation import equation_mathml, sympy_equation_mathml
 from derive.machine.mechanism import Mechanism
+from derive.notation import equation_mathml, sympy_equation_mathml
 from derive.page import machine
 from derive.page.passage import Line, Passage
 from derive.program import Quantity

@@ -36,7 +36,9 @@ def _frame(frame: Frame) -> str:
     if any(f != ZERO for f in frame.origin):
         start += f"; its origin lies at {_column(frame.origin)}"
     if frame.rolls is not None:
-        start += f"; it moves so that {frame.rolls.body} rolls on its point {_column(frame.rolls.at)}"
+        start += (
+            f"; it moves so that {frame.rolls.body} rolls on its point {_column(frame.rolls.at)}"
+        )
     for name, value in (("velocity", frame.velocity), ("acceleration", frame.acceleration)):
         if value is not None:
             start += f"; its origin has the {name} {_column(value)}"
@@ -61,12 +63,16 @@ def _load(load: Load) -> str:
                  if any(f != ZERO for f in value)]  # fmt: skip
         against = f", and the opposite on {load.against}" if load.against else ""
         where = f" at {_column(load.at)} of {load.frame}"
-        return f"Load {load.name}: {' and '.join(parts)} along {load.along}{where}, on {load.on}{against}."
+        says = f"{' and '.join(parts)} along {load.along}{where}"
+        return f"Load {load.name}: {says}, on {load.on}{against}."
     if isinstance(load, Spring):
-        return f"Load {load.name}: a spring {load.stiffness} with damper {load.damping} on {load.on}."
+        return (
+            f"Load {load.name}: a spring {load.stiffness} with damper {load.damping} on {load.on}."
+        )
     if isinstance(load, Gradient):
         return f"Load {load.name}: the gravity gradient {load.strength} on {', '.join(load.on)}."
-    return f"Load {load.name}: gravity {_column(load.gravity)} along {load.along}, on {', '.join(load.on)}."
+    where = f"along {load.along}, on {', '.join(load.on)}"
+    return f"Load {load.name}: gravity {_column(load.gravity)} {where}."
 
 
 def notes(known: Mechanism, base: str) -> list[str]:
@@ -76,7 +82,9 @@ def notes(known: Mechanism, base: str) -> list[str]:
     if balances:
         found.append(f"Balances: {'; '.join(map(str, balances))}.")
     if parts["unknowns left out"] and balances:
-        found.append(f"Chosen so that these unknowns do not enter: {', '.join(parts['unknowns left out'])}.")
+        found.append(
+            f"Chosen so that these unknowns do not enter: {', '.join(parts['unknowns left out'])}."
+        )
     if parts["cancels"]:
         found.append("Stands in the equations, but no answer changes with it: "
                      f"{', '.join(parts['cancels'])}.")  # fmt: skip

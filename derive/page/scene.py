@@ -9,8 +9,8 @@ from derive.comment import cost
 from derive.emit import TEMPLATES, first_line
 from derive.lecture import LECTURE
 from derive.library import JACOBIAN, Library
-from derive.notation import name_mathml
 from derive.machine.mechanism import Mechanism
+from derive.notation import name_mathml
 from derive.page.code import listing
 from derive.page.equation import letter, passages, taken_names
 from derive.page.machine import notes

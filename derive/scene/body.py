@@ -116,7 +116,8 @@ def _three_moments(given: Table, scope: Scope) -> Sextuple:
 def _products(given: Table, scope: Scope) -> Triple:
     value = given.entries["products"]
     if not isinstance(value, list) or len(value) != 3:
-        raise SceneError(f"{given.label}.products must be a list of 3 (xy, xz, yz), not {shown(value)}")
+        rule = "must be a list of 3 (xy, xz, yz)"
+        raise SceneError(f"{given.label}.products {rule}, not {shown(value)}")
     xy, xz, yz = (
         formula(part, f"{given.label}.products.{name}", scope, INERTIA)
         for part, name in zip(value, ("xy", "xz", "yz"), strict=True)

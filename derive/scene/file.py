@@ -110,7 +110,8 @@ def read_scene(document: dict[str, object], name: str, source: str) -> Scene:
 def _top_level(document: dict[str, object]) -> None:
     for key in document:
         if key in LATER:
-            raise SceneError(f"table '{key}' is for machines: a file that has it needs bodies, not a body")
+            rule = "is for machines: a file that has it needs bodies, not a body"
+            raise SceneError(f"table '{key}' {rule}")
     if "wanted" not in document:
         raise SceneError("the file needs 'wanted', above its first [table]")
     if "body" not in document and attitudes_only(document["wanted"]):

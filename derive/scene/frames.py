@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from derive.formula import ZERO
 from derive.scene.declaration import SceneError
 from derive.scene.machine import INERTIAL, Frame, Rolling
-from derive.scene.scalars import Scalars, known, motions, places, turnings
 from derive.scene.names import label
+from derive.scene.scalars import Scalars, known, motions, places, turnings
 from derive.scene.table import Table, keys, nearest, table, triple, word
 from derive.unit import ACCELERATION, ANGULAR_VELOCITY, LENGTH, VELOCITY
 

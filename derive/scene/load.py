@@ -19,8 +19,8 @@ from derive.scene.machine import (
     Unknown,
     Weight,
 )
-from derive.scene.scalars import Scalars, known, places
 from derive.scene.names import identifier, label
+from derive.scene.scalars import Scalars, known, places
 from derive.scene.table import Scope, Table, formula, keys, shown, table, triple, word
 from derive.unit import ACCELERATION, FORCE, LENGTH, MOMENT, NONE, Dimension, dimension
 

@@ -1,6 +1,6 @@
 """What a machine declares, as plain values: frames, bodies, loads, and the answers wanted.
 
-Formulas are exact trees and units SI. Triples lie along the axes of the frame that stands with them.
+Formulas are exact trees, units SI. Triples lie along the axes of the frame that stands with them.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class Frame:
 class Member:
     """A rigid body in a frame: inertia (xx, yy, zz, xy, xz, yz) about its mass centre, own axes.
 
-    None stands for data that the user does not know. ``look`` is the shape, for pictures and clouds.
+    None stands for data that the user does not know. ``look`` is the shape, for people.
     """
 
     name: str
@@ -89,6 +89,7 @@ class Member:
     turned: tuple[Turning, ...]
     spin: Formula | None
     axial_speed: Formula | None
+    angular_velocity: Triple | None
     look: str
     lengths: Mapping[str, Formula]
 

@@ -5,14 +5,26 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from derive.formula import ZERO, Formula, substitute
+from derive.grammar import parse
 from derive.scene.declaration import Input, SceneError
 from derive.scene.frames import read_frames
 from derive.scene.load import MARK, read_loads, unknown_units
 from derive.scene.machine import INERTIAL, Frame, Machine, Member, Place, Result, Steady, Unknown
 from derive.scene.member import read_member
-from derive.scene.scalars import PER_SECOND, Scalars, known, places, read_scalars, unknown_rates
 from derive.scene.names import distinct, identifier, label
-from derive.scene.table import Scope, Table, formula, keys, nearest, shown, table, text, triple, word
+from derive.scene.scalars import PER_SECOND, Scalars, known, places, read_scalars, unknown_rates
+from derive.scene.table import (
+    Scope,
+    Table,
+    formula,
+    keys,
+    nearest,
+    shown,
+    table,
+    text,
+    triple,
+    word,
+)
 from derive.unit import LENGTH, NONE, Dimension, dimension, dimension_of, spelled
 
 if TYPE_CHECKING:
@@ -111,9 +123,7 @@ def _entries(scalars: Scalars) -> dict[str, Dimension]:
     return found
 
 
-def _results(
-    given: Table, scalars: Scalars, unknowns: tuple[Unknown, ...]
-) -> tuple[Result, ...]:
+def _results(given: Table, scalars: Scalars, unknowns: tuple[Unknown, ...]) -> tuple[Result, ...]:
     answers, found = _answers(scalars, unknowns), list[Result]()
     scope = known(scalars)
     for key, value in given.entries.items():
@@ -135,17 +145,15 @@ def _of_any_unit(value: object, label: str, scope: Scope) -> tuple[Formula, Dime
     try:
         read = formula(plain, label, scope, NONE)
     except SceneError as error:
-        unit = _unit_found(str(error), plain, label, scope)
+        unit = _unit_found(str(error), plain, scope)
         if unit is None:
             raise
         return formula(plain, label, scope, unit), unit
     return read, dimension_of(read, scope.dimensions) or NONE
 
 
-def _unit_found(sentence: str, value: object, label: str, scope: Scope) -> Dimension | None:
+def _unit_found(sentence: str, value: object, scope: Scope) -> Dimension | None:
     """Return the dimension of a formula that was refused for not being a plain number."""
-    from derive.grammar import parse  # noqa: PLC0415
-
     if " is in " not in sentence or not isinstance(value, str):
         return None
     return dimension_of(parse(value), scope.dimensions)
@@ -183,7 +191,9 @@ def _wanted(
         answers = tuple(p.strip() for p in parts.split(",")) if colon else (base,)
         for answer in answers:
             if answer not in known_:
-                raise SceneError(f"wanted has '{answer}', which is no answer{nearest(answer, known_)}")
+                raise SceneError(
+                    f"wanted has '{answer}', which is no answer{nearest(answer, known_)}"
+                )
         if name in asked:
             raise SceneError(f"wanted has '{name}' twice")
         asked[identifier(name, "a wanted function")] = answers

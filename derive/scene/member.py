@@ -13,8 +13,8 @@ from derive.formula import ZERO, Formula, number
 from derive.scene.body import AXES, KINDS, read_body
 from derive.scene.declaration import Axis, SceneError, Sextuple, Triple
 from derive.scene.machine import Entries, Frame, Member, Turning
-from derive.scene.scalars import Scalars, motions, places, turnings
 from derive.scene.numbers import positive
+from derive.scene.scalars import Scalars, motions, places, turnings
 from derive.scene.shape import CONE_CENTRE, SHAPES, about_axis, box, diagonal, moved
 from derive.scene.symbols import Symbols, constants
 from derive.scene.table import Scope, Table, formula, keys, shown, triple, word
@@ -23,7 +23,7 @@ from derive.unit import ANGULAR_VELOCITY, INERTIA, LENGTH, MASS, Dimension
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-OWN = ("frame", "turned", "spin", "axial_speed", "about", "centre")
+OWN = ("frame", "turned", "spin", "axial_speed", "angular_velocity", "about", "centre")
 MORE_SHAPES: Mapping[str, tuple[str, ...]] = {
     "point": (),
     "plate": ("lengths", "axis"),
@@ -71,6 +71,7 @@ def read_member(name: str, given: Table, frames: tuple[Frame, ...], scalars: Sca
     if spins and made.axis is None:
         rule = "turns about its own axis, so it must be axisymmetric and name its axis"
         raise SceneError(f"{given.label} {rule}; or give the angle by turned")
+    relative = _angular_velocity(given, centre, made, scalars)
     lengths = {
         key: formula(entries[key], f"{given.label}.{key}", scope, LENGTH)
         for key in LENGTHS
@@ -79,8 +80,25 @@ def read_member(name: str, given: Table, frames: tuple[Frame, ...], scalars: Sca
     lengths |= _listed_lengths(given, scope)
     return Member(
         name, frame, made.mass, made.inertia, centre, made.axis, turned,
-        spins.get("spin"), spins.get("axial_speed"), made.look, lengths,
+        spins.get("spin"), spins.get("axial_speed"), relative, made.look, lengths,
     )  # fmt: skip
+
+
+def _angular_velocity(
+    given: Table, centre: Triple, made: _Substance, scalars: Scalars
+) -> Triple | None:
+    """Return how a ball turns in its frame; any other body would not look the same."""
+    if "angular_velocity" not in given.entries:
+        return None
+    xx, yy, zz, *products = made.inertia
+    alike = xx == yy == zz and all(f == ZERO for f in (*products, *centre))
+    if not alike or "turned" in given.entries:
+        rule = "needs three equal moments and its mass centre at the frame's origin"
+        raise SceneError(
+            f"{given.label}: angular_velocity {rule}; or carry it by a frame of its own"
+        )
+    label = f"{given.label}.angular_velocity"
+    return triple(given.entries["angular_velocity"], label, motions(scalars), ANGULAR_VELOCITY)
 
 
 def _listed_lengths(given: Table, scope: Scope) -> dict[str, Formula]:
@@ -96,7 +114,7 @@ def _listed_lengths(given: Table, scope: Scope) -> dict[str, Formula]:
 def _about(
     given: Table, centre: Triple, made: _Substance, fixed: Symbols
 ) -> tuple[Triple, _Substance]:
-    """Return the mass centre, and the inertia about it, as ``about`` says what they are given by."""
+    """Return the mass centre and the inertia about it; ``about`` says what they are given by."""
     about = word(given.entries.get("about", "centre"), f"{given.label}.about",
                  ("centre", "origin", "apex"))  # fmt: skip
     if about == "apex":
@@ -131,7 +149,11 @@ def _substance(given: Table, fixed: Symbols) -> _Substance:
             return _axisymmetric(given, fixed)
         return _of_one_body(given, fixed, "")
     keys(given, (), (*OWN, "mass", "axis"))
-    axis = cast("Axis", word(entries["axis"], f"{given.label}.axis", AXES)) if "axis" in entries else None
+    axis = (
+        cast("Axis", word(entries["axis"], f"{given.label}.axis", AXES))
+        if "axis" in entries
+        else None
+    )
     return _Substance(_mass(given, fixed), _unknown(axis), axis, "")
 
 
@@ -167,9 +189,7 @@ def _axisymmetric(given: Table, fixed: Symbols) -> _Substance:
         for key in ("axial", "transverse")
         if key in given.entries
     }
-    first, second, third = (
-        moments.get("axial" if name == axis else "transverse") for name in AXES
-    )
+    first, second, third = (moments.get("axial" if name == axis else "transverse") for name in AXES)
     inertia: Entries = (first, second, third, ZERO, ZERO, ZERO)
     return _Substance(_mass(given, fixed), inertia, axis, "")
 
@@ -209,7 +229,9 @@ def _blades(given: Table, axis: Axis, mass: Formula, fixed: Symbols) -> _Substan
     """Return slender blades from the hub: a rod for one and two, else as good as a disc."""
     count = given.entries["number"]
     if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= 99:
-        raise SceneError(f"{given.label}.number must be a whole number of blades, not {shown(count)}")
+        raise SceneError(
+            f"{given.label}.number must be a whole number of blades, not {shown(count)}"
+        )
     length = _positive(given, "length", LENGTH, fixed)
     one = mass * length**2
     first = NEXT[axis]

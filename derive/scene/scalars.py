@@ -42,9 +42,7 @@ def read_scalars(part: Mapping[str, Table]) -> Scalars:
     empty = Table("", {})
     parameters = read_symbols(part["parameters"], empty, empty).parameters
     fixed = {p.name: dimension(p.unit) for p in parameters}
-    speeds = tuple(
-        _speed(name, given) for name, given in _entries(part["speeds"], "speed")
-    )
+    speeds = tuple(_speed(name, given) for name, given in _entries(part["speeds"], "speed"))
     for s in speeds:
         fixed[s.name] = dimension(s.unit)
     scope = Scope(fixed, {}, "")
@@ -102,7 +100,9 @@ def _coordinate(name: str, given: Table, scope: Scope) -> Moving:
         made = _given_rate(name, given, "rate", bounds, "dot", own)
     else:
         if rate is None:
-            raise SceneError(f"{given.label} needs rate = {{ range = [low, high] }}, 0 or a formula")
+            raise SceneError(
+                f"{given.label} needs rate = {{ range = [low, high] }}, 0 or a formula"
+            )
         made = _rate(name, given, rate, scope, own)
         if isinstance(made, Input):
             second = _second(name, given, PER_SECOND[own])
@@ -127,9 +127,7 @@ def _second(name: str, given: Table, unit: str) -> Input | Formula:
     raise SceneError(f"{given.label} {rule}" + ("" if value is None else f", not {shown(value)}"))
 
 
-def _given_rate(
-    name: str, given: Table, key: str, value: object, dots: str, unit: str
-) -> Input:
+def _given_rate(name: str, given: Table, key: str, value: object, dots: str, unit: str) -> Input:
     inner = table(value, f"{given.label}: {key}")
     keys(inner, ("range",), ("meaning",))
     low, high = interval(inner.entries["range"], f"{inner.label}: range")
@@ -178,7 +176,9 @@ def motions(scalars: Scalars) -> Scope:
     known |= rates(scalars)
     known |= {s.name: dimension(s.unit) for s in scalars.speeds}
     others = {m.name: "an input, whose rate is not known" for m in scalars.inputs}
-    return Scope(known, others, "only parameters, coordinates, their rates and speeds may stand here")
+    return Scope(
+        known, others, "only parameters, coordinates, their rates and speeds may stand here"
+    )
 
 
 def rates(scalars: Scalars) -> dict[str, Dimension]:

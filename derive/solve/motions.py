@@ -38,9 +38,9 @@ def roots(found: Instrument, given: Mapping[str, float]) -> list[dict[str, float
     kept: list[NDArray[Any]] = []
     for start in _starts(found, names, residual):
         root = np.array(finder(x0=start)["x"]).ravel()
-        if _is_root(residual, root, start) and _within(found, names, root):
-            if not any(np.allclose(root, other, rtol=SAME, atol=0) for other in kept):
-                kept.append(root)
+        known = any(np.allclose(root, other, rtol=SAME, atol=0) for other in kept)
+        if not known and _is_root(residual, root, start) and _within(found, names, root):
+            kept.append(root)
     return [dict(zip(names, map(float, root), strict=True)) for root in sorted(kept, key=tuple)]
 
 
@@ -95,8 +95,7 @@ def frequencies(found: Instrument, given: Mapping[str, float]) -> list[float]:
     """Return the circular frequencies of small motion, rising, in rad/s."""
     every = eigenvalues(found.answer("linearised", given))
     size = max(abs(every), default=0.0)
-    turning = sorted(float(v.imag) for v in every if v.imag > UNSTABLE * size)
-    return turning
+    return sorted(float(v.imag) for v in every if v.imag > UNSTABLE * size)
 
 
 def growth(found: Instrument, given: Mapping[str, float]) -> float:
@@ -110,11 +109,8 @@ def limits(found: Instrument, given: Mapping[str, float], name: str) -> list[flo
     """Return the values of one quantity, in its declared range, at which stability changes."""
     grid = np.linspace(*_bounds(found, name), STARTS)
     stable = [growth(found, dict(given) | {name: float(v)}) == 0 for v in grid]
-    ends = []
-    for k in range(STARTS - 1):
-        if stable[k] != stable[k + 1]:
-            ends.append(_halved(found, given, name, (float(grid[k]), float(grid[k + 1]))))
-    return ends
+    changes = [k for k in range(STARTS - 1) if stable[k] != stable[k + 1]]
+    return [_halved(found, given, name, (float(grid[k]), float(grid[k + 1]))) for k in changes]
 
 
 def _halved(

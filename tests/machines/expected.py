@@ -7,7 +7,9 @@ from math import atan, pi, radians, tan
 from pathlib import Path
 from typing import Any
 
-SCENES = json.loads((Path(__file__).parents[1] / "data" / "scenes.json").read_text(encoding="utf-8"))
+SCENES = json.loads(
+    (Path(__file__).parents[1] / "data" / "scenes.json").read_text(encoding="utf-8")
+)
 DATA: Mapping[str, Any] = {scene["name"]: scene for scene in SCENES}
 RPM = 2 * pi / 60
 
@@ -52,7 +54,9 @@ def each(*names: str) -> tuple[Answer, ...]:
 def data(name: str, *left_out: str) -> Values:
     """Return the data that are plain numbers, but those left out."""
     found = DATA[name]["data"]
-    return {k: float(v) for k, v in found.items() if isinstance(v, int | float) and k not in left_out}
+    return {
+        k: float(v) for k, v in found.items() if isinstance(v, int | float) and k not in left_out
+    }
 
 
 EDGE = Case("edge_runner_flat", data("edge_runner_flat"),
@@ -113,14 +117,15 @@ TOP = Case("top_steady_precession",
             "n": _top["omega3"], "g": _top["g"]}, ())  # fmt: skip
 
 _sleep = DATA["sleeping_top"]
-SLEEP = Case("sleeping_top",
-             data("sleeping_top") | {"n": 1.5 * float(_sleep["expected"]["n_crit"])}, ())  # fmt: skip
+_spin = 1.5 * float(_sleep["expected"]["n_crit"])
+SLEEP = Case("sleeping_top", data("sleeping_top") | {"n": _spin}, ())
 
 _gyro = DATA["gyrocompass"]["data"]
 GYRO = Case("gyrocompass",
             {"m": _gyro["m"], "r": _gyro["r"], "w3": _gyro["rpm_omega3"] * RPM,
              "lat": radians(_gyro["latitude_deg"]), "we": _gyro["earth_rate"], "alpha": 0.3},
-            (*each("period_s"), Answer("alpha_acc_at_0p3", "alpha_ddot", "alpha_ddot")))  # fmt: skip
+            (*each("period_s"),
+             Answer("alpha_acc_at_0p3", "alpha_ddot", "alpha_ddot")))  # fmt: skip
 
 _sat = DATA["reaction_wheel_satellite"]["data"]
 _J = _sat["J_total_locked"]

@@ -53,7 +53,10 @@ def test_the_attitude_after_five_seconds_is_the_expected_one() -> None:
 
 def test_it_flips_after_the_expected_interval() -> None:
     t = casadi.SX.sym("t")
-    rule = {"x": t, "g": instrument().answer("flow_exact", HANDLE_START | {"time": t})["omega_y_next"]}
+    rule = {
+        "x": t,
+        "g": instrument().answer("flow_exact", HANDLE_START | {"time": t})["omega_y_next"],
+    }
     finder = casadi.rootfinder("zero", "newton", rule)
     first, second = (float(finder(x0=start)["x"]) for start in (3.5, 9.7))
     assert close(second - first, "flip_interval")
@@ -85,7 +88,9 @@ def test_compiled_c_gives_the_expected_rates(precision: str, tmp_path: Path) -> 
     one = next(e for e in each if e.precision.name == precision)
     names = [c for q in made["flow_exact"].outputs for c in q.components]
     for when, time in HANDLE_TIMES.items():
-        held = {n: float(one.precision.dtype(x)) for n, x in (HANDLE_START | {"time": time}).items()}
+        held = {
+            n: float(one.precision.dtype(x)) for n, x in (HANDLE_START | {"time": time}).items()
+        }
         results = one.results(made["flow_exact"], Sample(0, "data", held))
         found = dict(zip(names, results, strict=True))
         allowed = DOUBLE if precision == "f64" else FAR
