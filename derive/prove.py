@@ -147,9 +147,11 @@ def _prove_at(library: Library, asked: Mapping[str, Equations], at: Point) -> No
 
 
 def lectured(library: Library) -> Program:
-    """Return the part of set-up that the functions of the lecture read."""
+    """Return the part of set-up that the functions which are proved read."""
     setup = library.setup
-    used = {name for f in (*library.functions, *library.rates) for name in read_by(f)}
+    every = (*library.functions, *library.rates)
+    proved = [f for f in every if f.name.removesuffix(JACOBIAN) in library.truths]
+    used = {name for f in proved for name in read_by(f)}
     names = component_names(setup)
     kept = [(c, r) for c, r in zip(names, setup.results, strict=True) if c in used]
     outputs = tuple(replace(q, components=tuple(c for c, _ in kept)) for q in setup.outputs)

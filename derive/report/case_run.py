@@ -212,7 +212,7 @@ def _peer(case: Case, peer: Peer, shop: Workshop) -> Iterator[Point]:
     if peer.setting == "step":
         values = [time / n for n in steps(case, shop.limits)]
     else:
-        values = tolerances("f64", shop.limits.ratio**6.6)
+        values = tolerances("package", shop.limits.ratio**6.6)
     for value in values:
         done = timed(peer.prepare(case, value))
         each = shop.per_pass.get((peer.name, value), shop.per_pass.get((peer.name, ANY)))

@@ -21,9 +21,10 @@ Row = Sequence[float]
 
 @dataclass(frozen=True)
 class Gyroscopic:
-    """Errors of the gyroscopic term in u of its norm: median and largest of the samples.
+    """Errors of the gyroscopic term: median and largest of the samples, in u of its norm.
 
-    form : of the scene, "fast" or "accurate"
+    form : of the scene, "fast" or "accurate"      of_terms : the largest in u of the norm of the
+        largest terms that it is the sum of
     """
 
     form: str
@@ -31,6 +32,7 @@ class Gyroscopic:
     asphericity: float
     median: float
     largest: float
+    of_terms: float
 
 
 def gyroscopic(folder: Path) -> Iterator[Gyroscopic]:
@@ -39,10 +41,14 @@ def gyroscopic(folder: Path) -> Iterator[Gyroscopic]:
         for precision, own in callable_by_precision(emission(scene), folder).items():
             for asphericity in ASPHERICITIES:
                 errors = _errors(own, precision, asphericity)
-                yield Gyroscopic(form, precision, asphericity, median(errors), max(errors))
+                norms, terms = [e for e, _ in errors], [e for _, e in errors]
+                yield Gyroscopic(form, precision, asphericity, median(norms), max(norms),
+                                 max(terms))  # fmt: skip
 
 
-def _errors(own: Mapping[str, Function], precision: str, asphericity: float) -> list[float]:
+def _errors(
+    own: Mapping[str, Function], precision: str, asphericity: float
+) -> list[tuple[float, float]]:
     """Return the errors of all samples that are no spheres once they are rounded."""
     dice = random.Random(f"{asphericity}")
     found = []
@@ -56,8 +62,9 @@ def _errors(own: Mapping[str, Function], precision: str, asphericity: float) -> 
             names = ("I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
             made = own["setup"]({n: [x] for n, x in zip(names, inertia, strict=True)})
             given = {"constants": made["constants"], "omega": omega, "omega_dot": [0.0] * 3}
-            found.append(_distance(own["moment"](given)["moment"], true) / ROUNDOFF[precision])
-    return found or [0.0]
+            apart = _distance(own["moment"](given)["moment"], true) / ROUNDOFF[precision]
+            found.append((apart / _norm(true), apart / _norm(_terms(inertia, omega))))
+    return found or [(0.0, 0.0)]
 
 
 def _exact(inertia: Row, omega: Row) -> list[Fraction]:
@@ -72,5 +79,20 @@ def _exact(inertia: Row, omega: Row) -> list[Fraction]:
 
 
 def _distance(found: Row, true: Sequence[Fraction]) -> float:
-    apart = [float(Fraction(a) - b) for a, b in zip(found, true, strict=True)]
-    return math.hypot(*apart) / math.hypot(*map(float, true))
+    return _norm([Fraction(a) - b for a, b in zip(found, true, strict=True)])
+
+
+def _norm(a: Sequence[Fraction]) -> float:
+    return math.hypot(*map(float, a))
+
+
+def _terms(inertia: Row, omega: Row) -> list[Fraction]:
+    """Return the largest term of each component in the form with differences of moments."""
+    xx, yy, zz, xy, xz, yz = (Fraction(x) for x in inertia)
+    x, y, z = (Fraction(w) for w in omega)
+    rows = (
+        ((yy - zz) * y * z, yz * (z - y) * (z + y), xy * x * z, xz * x * y),
+        ((zz - xx) * z * x, xz * (x - z) * (x + z), yz * y * x, xy * y * z),
+        ((xx - yy) * x * y, xy * (y - x) * (y + x), xz * z * y, yz * z * x),
+    )
+    return [max(map(abs, row)) for row in rows]

@@ -148,7 +148,7 @@ def drift(
 
     place : 0 energy, 1 |l|
     """
-    mover, given = program(case, method, precision, shop)
+    mover, given = program(case, method, shop, precision)
     job = Job(method, 0.01, count, every=max(1, count // 1000))
     (motion,) = moved(mover, case, given, [job])
     start = invariants(case, case.omega0)
@@ -162,7 +162,7 @@ def drift(
 
 
 def program(
-    case: Case, method: str, precision: str, shop: Workshop
+    case: Case, method: str, shop: Workshop, precision: str
 ) -> tuple[Mover, Sequence[float]]:
     """Return the program that holds a method for a case, and the numbers it takes.
 
@@ -191,7 +191,7 @@ def best(case: Case, method: str, shop: Workshop, precision: str) -> tuple[float
     """Return the errors of omega and attitude with the best of the steps that are tried."""
     if method == ELLIPTIC:
         return elliptic(case, precision), math.nan
-    mover, given = program(case, method, precision, shop)
+    mover, given = program(case, method, shop, precision)
     if method.startswith("flow_"):
         jobs = [Job(method, float(case.time), 1)]
     else:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,14 +13,17 @@ from derive.emit import TEMPLATES
 from derive.report.case_run import PRECISIONS, Found, attainable
 from derive.report.look import look
 from derive.report.plots import panels, svg
-from derive.report.recommend import ERRORS, Overall, advice, overall, sentence
-from derive.report.record import PACKAGES, RULES, TOOLS, Report, best, data
+from derive.report.recommend import ERRORS, Overall, advice, one_each, overall, sentence
+from derive.report.record import PACKAGES, RULES, TOOLS, Report, best, data, kinds
 
 SAYS = {"f64": "double", "f32": "float"}
 STATE = ("error at the end",)
 SEPARATE = ("omega, relative", "attitude, rad", "energy, relative", "momentum, relative")
+WORKERS = 2
 CHOICE = 3  # steppers that are named for an error
 ALIKE = 1.005  # costs that differ by less are the same
+PLAIN = 100.0  # larger ratios are written without decimals
+SMALLEST, LARGEST = 1e-2, 1e4  # numbers outside are written with an exponent
 
 
 @dataclass(frozen=True)
@@ -38,7 +42,7 @@ def page(report: Report) -> str:
     return TEMPLATES.get_template("report.html.jinja").render(
         version=__version__,
         report=report,
-        sections=[_section(f) for f in report.found],
+        sections=_sections(report.found),
         overall=_overall(report),
         conditions=[_condition(f) for f in report.found],
         machine=figures["machine"],
@@ -50,6 +54,14 @@ def page(report: Report) -> str:
         figures=_figures,
         number=_number,
     )
+
+
+def _sections(found: Sequence[Found]) -> list[Section]:
+    """Return the sections of all cases; drawing takes longest, so two are drawn at a time."""
+    if len(found) == 1:
+        return [_section(found[0])]
+    with ProcessPoolExecutor(WORKERS) as pool:
+        return list(pool.map(_section, found))
 
 
 def _section(found: Found) -> Section:
@@ -74,11 +86,10 @@ def _section(found: Found) -> Section:
 def _overall(report: Report) -> list[dict[str, Any]]:
     """Return, for every kind of motion, precision and error, the steppers to choose from."""
     rows = []
-    for kind, torqued in (("without torque", False), ("with torque", True)):
-        own = [f.points for f in report.found if f.case.torqued == torqued]
-        for precision in PRECISIONS if own else ():
+    for kind, own in kinds(report.found).items():
+        for precision in PRECISIONS:
             for error in ERRORS[precision]:
-                choice = overall(kind, own, precision, error)[:CHOICE]
+                choice = one_each(overall(kind, own, precision, error))[:CHOICE]
                 rows.append({"kind": kind, "precision": SAYS[precision], "error": figure(error),
                              "choice": [_choice(c) for c in choice]})  # fmt: skip
     return rows
@@ -86,11 +97,11 @@ def _overall(report: Report) -> list[dict[str, Any]]:
 
 def _choice(row: Overall) -> str:
     step = "" if math.isnan(row.radians) else f" with steps of {row.radians:.2g} rad"
-    every = row.reached == row.asked
-    where = "in every case" if every else f"in {row.reached} of {row.asked} cases"
-    times = f"at most {row.worst:.3g} times the cheapest"
-    cost = "the cheapest there" if row.worst < ALIKE else times
-    return f"{look(row.method).label}{step}: {where}, {cost}"
+    step += "" if math.isnan(row.tolerance) else f" to {figure(row.tolerance)}"
+    where = "every case" if row.reached == row.asked else f"{row.reached} of {row.asked} cases"
+    times = f"at most {_number(row.worst) if row.worst > PLAIN else format(row.worst, '.2g')} times"
+    cost = "" if row.worst < ALIKE else f", {times} the cheapest"
+    return f"{look(row.method).label}{step}: {where}{cost}"
 
 
 def _condition(found: Found) -> dict[str, Any]:
@@ -108,26 +119,29 @@ def _condition(found: Found) -> dict[str, Any]:
             "dmv": _units(errors.get("step_dmv"), floor),
             "taylor": _units(errors.get("step_taylor"), floor),
             "best": known.get(winner),
-            "method": winner,
+            "method": look(winner).label,
         }
     return {"case": found.case, **rows}
 
 
 def _units(error: float | None, floor: float | None) -> str:
-    return "" if error is None or not floor else f"{error / floor:.2g}"
+    return "" if error is None or not floor else figure(error / floor)
 
 
 def figure(x: float | None) -> str:
     """Return a number as people write it.
 
-    >>> figure(1e-12), figure(0.25), figure(None), figure(3.2e-9)
-    ('1e-12', '0.25', '', '3.2e-09')
+    >>> figure(1e-12), figure(0.25), figure(None), figure(3.2e-9), figure(660.2)
+    ('1e-12', '0.25', '', '3.2e-9', '660')
     """
     if x is None:
         return ""
     if math.isnan(x):
         return "NaN"
-    return f"{x:.2g}"
+    if x == 0 or SMALLEST <= abs(x) < LARGEST:
+        return f"{x:.2g}" if abs(x) < LARGEST / 100 else f"{x:.0f}"
+    digits, exponent = f"{x:.1e}".split("e")
+    return f"{digits.removesuffix('.0')}e{int(exponent)}"
 
 
 def _figures(values: Mapping[str, Sequence[float]], precision: str) -> str:

@@ -5,13 +5,13 @@ Text stays text; there is no date, no path, no random name: the same points give
 
 import io
 import math
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from derive.report.look import COMPENSATED, Look, look, rank
 from derive.report.point import Point
+from derive.report.slim import slim
 
 INK, SOFT, GRID, GOLD = "#1a1c20", "#5b626d", "#e6e8ec", "#b8860b"
 WIDTH, HEIGHT = 8.4, 3.5  # inch
@@ -37,6 +37,7 @@ class Panel:
     """One pair of axes: which cost, which error, and what is said at its sides.
 
     judged : whether the attainable error is one of this kind
+    marked : whether points have markers; many small panels do without
     """
 
     cost: Callable[[Point], float | None]
@@ -44,6 +45,7 @@ class Panel:
     across: str
     up: str
     judged: bool
+    marked: bool
 
 
 INSTRUCTIONS = ("instructions (Ir)", lambda p: p.instructions)
@@ -58,11 +60,12 @@ ERRORS: Mapping[str, Callable[[Point], float]] = {
 INVARIANTS = ("energy, relative", "momentum, relative")
 
 
-def panels(errors: Iterable[str]) -> list[list[Panel]]:
+def panels(errors: Sequence[str]) -> list[list[Panel]]:
     """Return rows of two panels, against instructions and against time, a row an error."""
+    marked = len(errors) == 1
     return [
         [
-            Panel(cost, ERRORS[name], label, name, name not in INVARIANTS)
+            Panel(cost, ERRORS[name], label, name, name not in INVARIANTS, marked)
             for label, cost in (INSTRUCTIONS, MICROSECONDS)
         ]
         for name in errors
@@ -81,11 +84,11 @@ def figure(rows: Sequence[Sequence[Panel]], points: Sequence[Point], floor: floa
         axes = drawn.subplots(len(rows), 2, squeeze=False, sharey="row")
         for row, line in zip(rows, axes, strict=True):
             for panel, ax in zip(row, line, strict=True):
-                _draw(ax, panel, points, floor)
+                _draw(ax, panel, floor if panel.judged else None)
+                _curves(ax, panel, points)
             line[0].set_ylabel(row[0].up)
-            if floor and row[0].judged:
-                _say_floor(line[0], floor)
-            _name(line[1], [_curve(own, row[1]) for own in grouped(points)])
+            curves = [_curve(own, row[1]) for own in grouped(points)]
+            _name(line[1], [*curves, *_attainable(line[1], row[1], floor)])
         return drawn
 
 
@@ -98,36 +101,6 @@ def svg(rows: Sequence[Sequence[Panel]], points: Sequence[Point], floor: float |
         nothing = {"Date": None, "Creator": None, "Format": None, "Type": None}
         figure(rows, points, floor).savefig(out, format="svg", metadata=nothing)
     return slim(out.getvalue())
-
-
-def slim(text: str) -> str:
-    """Return an svg element without prologue, metadata, needless names, digits and styles.
-
-    Names that only count would stand twice on a page of several plots; those that are referred to
-    are made of what they name.
-    """
-    text = text[text.index("<svg") :]
-    text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", text, flags=re.DOTALL)
-    text = re.sub(r"<defs>\s*<style.*?</style>\s*</defs>", "", text, flags=re.DOTALL)
-    text = re.sub(r' id="[a-z0-9.]+_\d+"', "", text)
-    text = re.sub(r" font-family: [^;]*;| transform=\"rotate\(-0 [^)]*\)\"", "", text)
-    text = re.sub(r"(\d+\.\d)\d+", r"\1", text)
-    text = re.sub(r"\s*\n\s*", "\n", text)
-    text = MARKS.sub(_styled_once, text)
-    return re.sub(r"<g>\n((?:<(?:use|path|text)[^\n]*\n)?)</g>\n", r"\1", text).strip()
-
-
-MARKS = re.compile(r'<g( clip-path="[^"]*")?>\n((?:<use [^>]*/>\n)+)</g>')
-STYLED = re.compile(r' style="[^"]*"')
-
-
-def _styled_once(found: re.Match[str]) -> str:
-    """Return markers of one style with the style at their group."""
-    clip, uses = found.group(1) or "", found.group(2)
-    styles = set(STYLED.findall(uses))
-    if len(styles) != 1:
-        return found.group()
-    return f"<g{clip}{styles.pop()}>\n{STYLED.sub('', uses)}</g>"
 
 
 def grouped(points: Iterable[Point]) -> list[list[Point]]:
@@ -156,7 +129,7 @@ def _curve(points: Sequence[Point], panel: Panel) -> Series:
     return look(points[0].method), [c for c, _ in kept], [e for _, e in kept]
 
 
-def _draw(ax: Any, panel: Panel, points: Sequence[Point], floor: float | None) -> None:
+def _draw(ax: Any, panel: Panel, floor: float | None) -> None:
     from matplotlib.ticker import FuncFormatter
 
     ax.set_xscale("log")
@@ -168,15 +141,18 @@ def _draw(ax: Any, panel: Panel, points: Sequence[Point], floor: float | None) -
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
     ax.tick_params(length=2.5, labelsize=8)
-    if floor and panel.judged:
+    if floor:
         ax.axhline(floor, color=GOLD, linewidth=1.2, zorder=1)
+    ax.set_xlabel(panel.across)
+
+
+def _curves(ax: Any, panel: Panel, points: Sequence[Point]) -> None:
     for own in grouped(points):
         shown, x, y = _curve(own, panel)
-        thin = shown.line == ":"
-        ax.plot(x, y, color=shown.colour, marker=shown.marker, linestyle=shown.line,
-                linewidth=0.8 if thin else 1.3, markersize=9 if shown.marker == "*" else 4,
-                alpha=0.95)  # fmt: skip
-    ax.set_xlabel(panel.across)
+        single = len(x) == 1
+        ax.plot(x, y, color=shown.colour, marker=shown.marker if panel.marked or single else "",
+                linestyle=shown.line, linewidth=0.8 if shown.line == ":" else 1.3,
+                markersize=9 if shown.marker == "*" else 4)  # fmt: skip
 
 
 def power(x: float, _: int = 0) -> str:
@@ -191,17 +167,17 @@ def power(x: float, _: int = 0) -> str:
     return f"10{'⁻' if exponent < 0 else ''}{raised}"
 
 
-def _say_floor(ax: Any, floor: float) -> None:
-    says = "κu: what the rounding of the inputs allows"
-    behind = {"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.8}
-    ax.annotate(says, xy=(0.015, floor), xycoords=("axes fraction", "data"), xytext=(0, 2.5),
-                textcoords="offset points", color=GOLD, fontsize=7.5, zorder=5,
-                bbox=behind)  # fmt: skip
+def _attainable(ax: Any, panel: Panel, floor: float | None) -> list[Series]:
+    """Return the golden line as something to be named at the right edge of the axes."""
+    if floor is None or not panel.judged:
+        return []
+    return [(Look("κu, attainable", GOLD, "", "-"), [ax.get_xlim()[1]], [floor])]
 
 
 def _name(ax: Any, curves: Sequence[Series]) -> None:
     """Write each curve's name to the right of the axes, near its end and clear of the others."""
     low, high = (math.log(v) for v in ax.get_ylim())
+    ax.set_xlim(ax.get_xlim())
     ends = [(shown, (math.log(y[-1]) - low) / (high - low), x[-1], y[-1])
             for shown, x, y in curves if y]  # fmt: skip
     ends.sort(key=lambda e: e[1])

@@ -55,5 +55,5 @@ class Limits:
     rounds: int
 
 
-SMALL = Limits(finest=2.0**-9, longest=0.08, ratio=2.0, rounds=3)
+SMALL = Limits(finest=2.0**-8, longest=0.05, ratio=2.0, rounds=2)
 FULL = Limits(finest=2.0**-13, longest=20.0, ratio=2.0**0.5, rounds=5)

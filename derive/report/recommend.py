@@ -5,7 +5,7 @@ a lucky crossing is no reason.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from derive.report.point import Point
@@ -27,9 +27,9 @@ class Advice:
 class Overall:
     """A stepper that keeps to an error in most cases of a kind, and what it costs there.
 
-    reached, asked : cases in which it keeps to the error, and all    radians : its largest step
-        that does in all of those, NaN for one without a step         worst : its cost over that of
-        the cheapest stepper of the case, the largest of such ratios
+    reached, asked : cases in which it keeps to the error, and those in which any of ours does
+    radians, tolerance : the largest with which it does in all of those, NaN where it has none
+    worst : its cost over that of the cheapest stepper of the case, the largest of such ratios
     """
 
     kind: str
@@ -39,6 +39,7 @@ class Overall:
     reached: int
     asked: int
     radians: float
+    tolerance: float
     worst: float
 
 
@@ -90,10 +91,8 @@ def overall(
             known = best.setdefault(p.method, {})
             if n not in known or cost(p) < cost(known[n]):
                 known[n] = p
-    cheapest = [
-        min((cost(own[n]) for own in best.values() if n in own), default=math.nan)
-        for n in range(len(cases))
-    ]
+    served = {n for own in best.values() for n in own}
+    cheapest = {n: min(cost(own[n]) for own in best.values() if n in own) for n in served}
     rows = [_overall(kind, precision, error, m, own, cheapest) for m, own in best.items()]
     return sorted(rows, key=lambda r: (-r.reached, r.worst))
 
@@ -103,10 +102,19 @@ def _overall(
     precision: str,
     error: float,
     method: str,
-    own: dict[int, Point],
-    cheapest: Sequence[float],
+    own: Mapping[int, Point],
+    cheapest: Mapping[int, float],
 ) -> Overall:
-    steps = [p.radians for p in own.values() if p.setting == "step"]
+    radians = min((p.radians for p in own.values() if p.setting == "step"), default=math.nan)
+    tolerance = min((p.value for p in own.values() if p.setting == "tolerance"), default=math.nan)
     worst = max(cost(p) / cheapest[n] for n, p in own.items())
-    radians = min(steps, default=math.nan)
-    return Overall(kind, precision, error, method, len(own), len(cheapest), radians, worst)
+    return Overall(kind, precision, error, method, len(own), len(cheapest), radians, tolerance,
+                   worst)  # fmt: skip
+
+
+def one_each(rows: Iterable[Overall]) -> list[Overall]:
+    """Return rows without further variants of a stepper that stands before."""
+    found: dict[str, Overall] = {}
+    for row in rows:
+        found.setdefault("_".join(row.method.split("_")[:2]), row)
+    return list(found.values())

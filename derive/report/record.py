@@ -3,6 +3,7 @@
 import json
 import math
 import platform
+import re
 import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -31,6 +32,7 @@ RULES = {
     " pass of a whole run of one case times passes; set-up of a body is not counted",
     "time": "fastest of several runs of the whole motion, without set-up or compilation",
 }
+FLAT = re.compile(r"\{[^{}\[\]]*\}")  # what holds only numbers and words goes on one line
 TOOLS = ("gcc", "valgrind")
 PACKAGES = ("numpy", *(peer.package for peer in PEERS), "symforce", "sympy")
 
@@ -74,22 +76,31 @@ def data(report: Report) -> dict[str, Any]:
 
 def text(report: Report) -> str:
     """Return ``report.json``."""
-    return json.dumps(data(report), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    written = json.dumps(data(report), indent=1, ensure_ascii=False, allow_nan=False)
+    return FLAT.sub(lambda found: re.sub(r"\s*\n\s*", " ", found.group()), written) + "\n"
+
+
+def kinds(found: Sequence[Found]) -> dict[str, list[list[Point]]]:
+    """Return the points of each case by the kinds of motion that advice is given for."""
+    free = [f for f in found if not f.case.torqued]
+    at_once = [[p for p in f.points if not p.setting] for f in free]
+    every = {
+        "without torque, at any time at once": at_once,
+        "without torque, step by step": [[p for p in f.points if p.setting] for f in free],
+        "with torque": [list(f.points) for f in found if f.case.torqued],
+    }
+    return {kind: own for kind, own in every.items() if own}
 
 
 def recommendations(found: Sequence[Found]) -> dict[str, Any]:
     """Return advice for every error, overall and for each case."""
-    kinds = {
-        "torque-free": [f for f in found if not f.case.torqued],
-        "with torque": [f for f in found if f.case.torqued],
-    }
     return {
         "overall": [
             asdict(row)
-            for kind, own in kinds.items()
+            for kind, own in kinds(found).items()
             for precision in PRECISIONS
             for error in ERRORS[precision]
-            for row in overall(kind, [f.points for f in own], precision, error)
+            for row in overall(kind, own, precision, error)
         ],
         "by_case": [
             {"case": f.case.name, "precision": precision, "error": error,

@@ -14,6 +14,7 @@ from derive.report.case_run import Workshop, case_run
 from derive.report.functions import functions
 from derive.report.gyroscopic import gyroscopic
 from derive.report.hard import Hard, long_run, motions, scaled
+from derive.report.hard_euler import near_lock
 from derive.report.hard_formulas import formulas
 from derive.report.hard_moment import cancelling
 from derive.report.orders import orders
@@ -90,6 +91,7 @@ def _hard(every: dict[str, Case], shop: Workshop) -> Iterable[Hard]:
     yield from motions(every, shop)
     yield from scaled(every, shop)
     yield from long_run(every, shop, LONG_RUN)
+    yield from near_lock(shop)
     yield from formulas(shop.folder)
     yield from cancelling(shop.folder)
 

@@ -10,7 +10,7 @@ from derive.bench.motion.case import Case
 from derive.report.point import Limits, Point
 
 COARSEST = 4.0  # rad
-TOLERANCES = {"f64": (1e-15, 1e-3), "f32": (1e-7, 1e-2)}
+TOLERANCES = {"f64": (1e-15, 1e-3), "f32": (1e-7, 1e-2), "package": (1e-13, 1e-3)}
 USELESS = 0.1  # an error above which nothing is said of rounding
 GAIN = 0.7  # a finer step that leaves more of the error than this gains nothing
 PATIENCE = 3
@@ -44,13 +44,13 @@ def _admissible(case: Case, wanted: float) -> int:
     return min(counts, key=lambda n: abs(math.log(n / wanted)))
 
 
-def tolerances(precision: str, ratio: float) -> list[float]:
-    """Return tolerances from coarse to fine.
+def tolerances(kind: str, ratio: float) -> list[float]:
+    """Return tolerances from coarse to fine; packages are not asked for less than 1e-13.
 
     >>> tolerances("f32", 100.0)
     [0.01, 0.0001, 1e-06]
     """
-    low, high = TOLERANCES[precision]
+    low, high = TOLERANCES[kind]
     count = int(math.log(high / low) / math.log(ratio) + 1e-9) + 1
     return [float(f"{high / ratio**n:.2e}") for n in range(count)]
 

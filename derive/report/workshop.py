@@ -1,7 +1,9 @@
 """Programs for all cases, made before anything is timed: scenes compiled, peers' passes counted."""
 
+import math
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 from pathlib import Path
 
 from derive.bench.build import BuildError
@@ -51,15 +53,32 @@ def _programs(scene: str, folder: Path) -> tuple[Emission | None, Mapping[str, M
 def per_pass(peer: Peer, limits: Limits, folder: Path) -> dict[tuple[str, float], float]:
     """Return the instructions of a peer's pass at each of its settings, by callgrind.
 
-    A tolerance changes the pass of a Taylor series only; a step changes none.
+    A tolerance changes the pass of a Taylor series only, whose order is linear in its logarithm, so
+    three tolerances tell those between; a step changes none.
     """
-    settings = tolerances("f64", limits.ratio**6.6) if peer.setting == "tolerance" else []
-    asked = settings if peer.package == "heyoka" else [settings[2] if settings else 2.0**-6]
+    settings = tolerances("package", limits.ratio**6.6)
+    places = (0, len(settings) // 2, -1) if peer.package == "heyoka" else (2,)
+    asked = [settings[n] for n in places] if peer.setting == "tolerance" else [2.0**-6]
     case = SHORT_CASE if peer.package in SLOW else COUNTED_CASE
     jobs = [(case, value) for value in (asked[0], *asked)]  # the first one warms up
     try:
         found = counted(peer, jobs, folder / peer.package)
     except (FileNotFoundError, BuildError):
         return {}
-    every = len(asked) > 1
-    return {(peer.name, v if every else ANY): found[case, v] for v in asked}
+    counts = [found[case, value] for value in asked]
+    if len(asked) == 1:
+        return {(peer.name, ANY): counts[0]}
+    return {(peer.name, v): between(v, asked, counts) for v in settings}
+
+
+def between(value: float, asked: Sequence[float], counts: Sequence[float]) -> float:
+    """Return a count between those that are known, by straight lines over the logarithm.
+
+    >>> between(1e-4, [1e-2, 1e-6], [100.0, 200.0])
+    150.0
+    """
+    pairs = list(zip(asked, counts, strict=True))
+    for (a, m), (b, n) in pairwise(pairs):
+        if b <= value <= a:
+            return m + (n - m) * math.log(a / value) / math.log(a / b)
+    return counts[-1]

@@ -65,6 +65,3 @@ def _needs_kicks(scene: Scene, name: str) -> None:
     rates = [s for f in formulas for s in symbols(f) if s in ("omega_x", "omega_y", "omega_z")]
     if rates:
         raise SceneError(f"'{name}' needs a moment that does not depend on '{rates[0]}'")
-    if SPLITTINGS[step_of(name)] > 4 and not _torque_free(scene):
-        rule = "is of order 6 for a torque-free motion only: say known.moment = [0, 0, 0]"
-        raise SceneError(f"'{name}' {rule}")

@@ -77,7 +77,7 @@ def test_a_sign_turned_in_a_step_is_noticed_unless_it_is_below_the_order(step: s
     found = {k: order(_with(whole, program, k), step, true) for k in turned}
     passed = [k for k, one in found.items() if one.holds]
     assert [k for k in passed if found[k].errors[0] > 2 * own.errors[0]] == []
-    assert len(passed) < len(turned) / 2
+    assert len(turned) - len(passed) >= 5
 
 
 def test_a_sign_turned_in_the_exact_flow_is_noticed() -> None:

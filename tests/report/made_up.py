@@ -61,7 +61,7 @@ def report() -> Report:
         (Hard("a rod", "omega / attitude", "naive", figures, "step_dmv", figures, bound, "why"),),
         (Order("step_rk4", CASE, 4, 4.01, 5), Order("step_dmv", CASE, 10, math.nan, 1)),
         (Entry("ours", Flops(add=1), {"O2": 10.0}, 0.0), Entry("SymForce", None, {}, 0.0, "no")),
-        (Gyroscopic("fast", "f64", 1e-3, 0.5, 3.0),),
+        (Gyroscopic("fast", "f64", 1e-3, 0.5, 3.0, 2.0),),
         (Function("s", "f", 12, 1, dict(both(30.0)), dict(both(0.5)), dict(both(3.0))),),
         (
             Target("what", "1", "2", reached=False, only="hard"),

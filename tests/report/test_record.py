@@ -24,7 +24,7 @@ SECTIONS = {
                    "holds", "command"},
     "orders": {"method", "case", "claimed", "measured", "points", "agrees"},
     "step_and_jacobian": {"author", "flops", "instructions", "apart", "missing"},
-    "gyroscopic_term": {"form", "precision", "asphericity", "median", "largest"},
+    "gyroscopic_term": {"form", "precision", "asphericity", "median", "largest", "of_terms"},
     "functions": {"scene", "name", "flops", "divisions", "instructions", "median", "largest"},
 }  # fmt: skip
 POINT = {"method", "scene", "precision", "setting", "value", "passes", "radians", "instructions",
