@@ -61,7 +61,7 @@ class Order:
 
 def rate_of(library: Library, values: Mapping[str, Any]) -> Rate:
     """Return the rate of the state as the lecture's equations give it, other inputs held."""
-    fact = truth(single(library.known), "state_rate")
+    fact = library.truths.get("state_rate") or truth(single(library.known), "state_rate")
     asked: Equations = equations(library.known, fact)
     states = _states(library)
     rates = [c for q in fact.outputs for c in q.components]

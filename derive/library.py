@@ -37,6 +37,7 @@ from derive.truth import Truth, truth
 from derive.wording import formula
 
 JACOBIAN = "_jacobian"
+STEP, RATE = "step_rk4", "state_rate"  # what moves a machine in time, and what it rests on
 SENSITIVITY = "_sensitivity"
 INVERSE = re.compile("J_[xyz][xyz]")
 
@@ -122,7 +123,9 @@ def library(scene: Scene | Machine) -> Library:
 def _asked(scene: Scene | Machine) -> tuple[list[str], list[str]]:
     """Return the functions that satisfy equations, and those that only motions rest on."""
     if isinstance(scene, Machine):
-        return list(scene.wanted), []
+        asked = [name for name in scene.wanted if name != STEP]
+        rests = [RATE] if STEP in scene.wanted and RATE not in asked else []
+        return asked, rests
     asked = [name for name in scene.wanted if _base(name) in EQUATIONS]
     return asked, [name for name in needs(scene) if name not in asked]
 

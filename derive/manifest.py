@@ -136,6 +136,8 @@ def _choice(library: Library, program: Program) -> dict[str, Any]:
     if not isinstance(library.known, Mechanism):
         return {}
     base = program.name.removesuffix(JACOBIAN)
+    if base not in library.truths:
+        return {}
     found = dropped(library.known, base)
     return {
         "depends_on": list(depends_on(library.known, base)),

@@ -43,7 +43,8 @@ class Answers:
 
     def question(self, base: str) -> Question:
         """Return a wanted function as a question."""
-        names = self.machine.asked.get(base) or self.machine.asked[base + JACOBIAN]
+        asked = self.machine.asked
+        names = asked.get(base) or asked.get(base + JACOBIAN) or (base,)
         if names == ("steady",):
             return self._steady(base)
         parts = {q: e for name in names for q, e in self._answer(name).items()}
@@ -97,6 +98,8 @@ class Answers:
         if name == "accelerations":
             free = [m.unknown for m in (*self.machine.coordinates, *self.machine.speeds) if m.free]
             return {self._quantity(n): self._symbols(self._quantity(n)) for n in free}
+        if name == "state_rate":
+            return {self._quantity(f"{q.name}_rate"): self._rates(q) for q in self._states}
         if name == "linearised":
             return {self._quantity(n): self.matrices[n] for n in MATRICES}
         q = self._quantity(name)
@@ -108,6 +111,22 @@ class Answers:
         if result is not None:
             return {q: [self.expression(result.formula)]}
         return {q: list(self._symbols(q))}
+
+    @property
+    def _states(self) -> tuple[Quantity, ...]:
+        return self.frames.words.vocabulary.states
+
+    def _rates(self, q: Quantity) -> list[Expr]:
+        """Return the rates of a state: of a quaternion by the lecture, of others by their names."""
+        sheet = self.frames.sheet
+        if q.shape != (4,):
+            return [sheet.rate(s) for s in self._symbols(q)]
+        frame = self.machine.frame(q.name.removeprefix("attitude_"))
+        assert frame.angular_velocity is not None  # noqa: S101
+        w, *v = self._symbols(q)
+        omega = self.frames.words.column(frame.angular_velocity)
+        known = {"q_w": w, "q_v": Matrix(v), "omega": omega}
+        return [stated("quaternion_rate_scalar", known), *stated("quaternion_rate_vector", known)]
 
     def expression(self, formula: Formula) -> Expr:
         """Return a formula of answers, with every result in it written out."""

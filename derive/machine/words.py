@@ -121,6 +121,10 @@ def _outputs(machine: Machine) -> Iterator[Quantity]:
             unit = PER_SECOND[m.unit]
             unit = PER_SECOND[unit] if m.kind == "coordinate" else unit
             yield _scalar(m.unknown, unit, None, None, f"acceleration of {m.name}")
+    for q in _states(machine):
+        own, parts = f"{q.name}_rate", tuple(f"{c}_rate" for c in q.components)
+        unit = PER_SECOND.get(q.unit, f"{q.unit}/s").replace("rad/s^2/s", "rad/s^3")
+        yield Quantity(own, parts, q.shape, unit, "", None, None, f"rate of {q.name}")
     for name in ENERGIES:
         yield _scalar(name, "J", None, None, name.replace("_", " "))
     says = f"angular momentum along {machine.momentum.frame}"

@@ -118,7 +118,9 @@ def _section(
 
 def _notes(library: Library, program: Program) -> list[str]:
     known = library.known
-    return notes(known, _base(program)) if isinstance(known, Mechanism) else []
+    if not isinstance(known, Mechanism) or _base(program) not in library.truths:
+        return []
+    return notes(known, _base(program))
 
 
 def _arguments(library: Library, program: Program) -> tuple[Argument, ...]:

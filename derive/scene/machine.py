@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from derive.formula import Formula
-from derive.scene.declaration import Axis, Input, Parameter, Triple
+from derive.scene.declaration import Axis, Given, Input, Parameter, Triple
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -208,7 +208,9 @@ class Machine:
     asked: Mapping[str, tuple[str, ...]]
     wanted: tuple[str, ...]
     form: Literal["fast", "accurate"]
+    time_step: Given
     warnings: tuple[str, ...]
+    emission: str = "fast"
 
     @property
     def moving(self) -> tuple[Moving, ...]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from derive.formula import ZERO, Formula, substitute
 from derive.grammar import parse
-from derive.scene.declaration import Input, SceneError
+from derive.scene.declaration import Given, Input, SceneError
 from derive.scene.frames import read_frames
 from derive.scene.load import MARK, read_loads, unknown_units
 from derive.scene.machine import INERTIAL, Frame, Machine, Member, Place, Result, Steady, Unknown
@@ -17,6 +18,7 @@ from derive.scene.table import (
     Scope,
     Table,
     formula,
+    interval,
     keys,
     nearest,
     shown,
@@ -32,11 +34,14 @@ if TYPE_CHECKING:
 
 TABLES = (
     "parameters", "coordinates", "speeds", "inputs", "frames", "bodies", "loads", "results",
-    "angular_momentum", "linearised", "steady",
+    "angular_momentum", "linearised", "steady", "motion",
 )  # fmt: skip
 OF_ONE_BODY = ("body", "axes", "wheels", "point", "known", "position")
 ENERGIES = ("kinetic_energy", "potential_energy", "energy")
-FUNCTIONS = (*ENERGIES, "angular_momentum", "accelerations", "linearised", "steady")
+FUNCTIONS = (
+    *ENERGIES,
+    *("angular_momentum", "accelerations", "state_rate", "step_rk4", "linearised", "steady"),
+)
 JACOBIAN = "_jacobian"
 AXES = ("x", "y", "z")
 
@@ -85,6 +90,7 @@ def read_machine(document: Mapping[str, object], name: str, source: str) -> Mach
         wanted=tuple(asked),
         form="accurate" if word(document.get("form", "fast"), "form", ("fast", "accurate"))
         == "accurate" else "fast",
+        time_step=_time_step(part["motion"]),
         warnings=(),
     )  # fmt: skip
 
@@ -205,6 +211,16 @@ def _groups(unknowns: tuple[Unknown, ...]) -> tuple[str, ...]:
     names = {u.name for u in unknowns}
     firsts = [n.removesuffix("_x") for n in names if n.endswith("_x")]
     return tuple(sorted(f for f in firsts if {f"{f}_{a}" for a in AXES} <= names))
+
+
+def _time_step(given: Table) -> Given:
+    """Return the range of the length of a step."""
+    keys(given, (), ("time_step",))
+    if "time_step" not in given.entries:
+        return Given(Fraction(0), Fraction(1, 100), None)
+    inner = table(given.entries["time_step"], "motion.time_step")
+    keys(inner, ("range",), ())
+    return Given(*interval(inner.entries["range"], "motion.time_step.range"), None)
 
 
 def _momentum(

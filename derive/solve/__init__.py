@@ -9,5 +9,9 @@
 
 from derive.solve.instrument import Instrument, opened
 from derive.solve.motions import frequencies, growth, limits, roots
+from derive.solve.simulation import Simulation, plot, simulated
 
-__all__ = ["Instrument", "frequencies", "growth", "limits", "opened", "roots"]
+__all__ = [
+    *("Instrument", "Simulation", "frequencies", "growth", "limits", "opened", "plot"),
+    *("roots", "simulated"),
+]

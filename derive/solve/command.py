@@ -3,11 +3,13 @@
 import argparse
 from collections.abc import Iterator, Sequence
 from math import pi
+from pathlib import Path
 
 from derive.scene import Machine, SceneError
 from derive.scene.table import nearest
 from derive.solve.instrument import Instrument, opened
 from derive.solve.motions import frequencies, growth, limits, roots
+from derive.solve.simulation import plot, simulated
 
 Row = tuple[str, str, str, str]
 FACTORS = {"deg": pi / 180, "rpm": 2 * pi / 60}
@@ -32,12 +34,32 @@ def options(command: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="find the values of NAME, in its range, at which stability changes",
     )
+    command.add_argument(
+        "--until", type=float, metavar="SECONDS", help="move in time by the scene's step_rk4"
+    )
+    command.add_argument(
+        "--step", type=float, default=1e-3, metavar="SECONDS", help="length of a step (0.001)"
+    )
+    command.add_argument(
+        "--plot", type=Path, metavar="FILE", help="write the motion as SVG (with --until)"
+    )
+
+
+def _moved(given: argparse.Namespace, found: Instrument, values: dict[str, float]) -> list[Row]:
+    """Return the state at the end of a motion, its plot written if a file is named."""
+    motion = simulated(found, values, given.until, given.step)
+    if given.plot is not None:
+        given.plot.write_text(plot(motion), encoding="utf-8")
+    at = f"at {motion.times[-1]:.6g} s"
+    return [(at, n, f"{v[-1]:.12g}", motion.units[n]) for n, v in motion.states.items()]
 
 
 def solved(given: argparse.Namespace) -> list[Row]:
     """Return rows of what, where from, value and unit."""
     found = opened(given.scene)
     values = settings(found, [text for group in given.set for text in group])
+    if given.until is not None:
+        return _moved(given, found, values)
     if given.limit:
         unit = {c: q.unit for q in found.quantities() for c in q.components}
         return [

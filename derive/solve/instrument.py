@@ -36,7 +36,7 @@ class Instrument:
     def needed(self, function: str) -> tuple[str, ...]:
         """Return the components that a function changes with."""
         known = self.library.known
-        if isinstance(known, Mechanism):
+        if isinstance(known, Mechanism) and function in self.library.truths:
             return depends_on(known, function)
         program = self.library[function]
         own = [c for q in program.inputs if q.name != "constants" for c in q.components]
