@@ -1,7 +1,7 @@
 """The derivatives of steps beside differences of the steps themselves, in balls of 500 bits.
 
-A central difference over 2^-130 is wrong by 2^-260 of the third derivative: a slope that differs from
-it is wrong. Errors of attitude turn the quaternion from the right, before and after.
+A central difference over 2^-130 is wrong by 2^-260 of the third derivative: a slope that differs
+from it is wrong. Errors of attitude turn the quaternion from the right, before and after.
 """
 
 from collections.abc import Iterator, Mapping
@@ -43,9 +43,7 @@ def slopes(library: Library, program: Program, values: Mapping[str, float]) -> I
         entries = dict(zip(pattern.places(), (here[c] for c in quantity.components), strict=True))
         for k, column in enumerate(pattern.columns):
             ends = [_results(library, program, _shifted(given, column, s)) for s in (1, -1)]
-            rises = [
-                _difference(here, ends[0], ends[1], row) / (2 * SHIFT) for row in pattern.rows
-            ]
+            rises = [_difference(here, ends[0], ends[1], row) / (2 * SHIFT) for row in pattern.rows]
             size = max(1.0, *(abs(float(rise)) for rise in rises))
             for i, row in enumerate(pattern.rows):
                 found = entries.get((i, k), arb(0))

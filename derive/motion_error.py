@@ -89,9 +89,7 @@ def with_motion(
     fresh = [q for q in given.values() if not known & set(q.components) and q.name != PLAN]
     dice = source(library.known, precision, "motion")
     own = [(c, q) for q in fresh for c in q.components]
-    drawn = [
-        replace(s, values=s.values | {c: uniform(dice.dice, q) for c, q in own}) for s in each
-    ]
+    drawn = [replace(s, values=s.values | {c: uniform(dice.dice, q) for c, q in own}) for s in each]
     rates = _omega_rates(library, drawn, precision)
     kept = tuple(
         replace(s, values={c: dice.held(x) for c, x in _in_reach(s.values, fast).items()})

@@ -129,9 +129,7 @@ def _taylor(moving: Moving, order: int) -> Program:
     words, rate = moving.known.words, moving.rates["state_rate"]
     step = _time(moving.known.scene, "time_step")
     series = taylor_step(rate, words.states, words.inputs, order, step)
-    return replace(
-        series.signature, loops=series, assumptions=rate.assumptions
-    )
+    return replace(series.signature, loops=series, assumptions=rate.assumptions)
 
 
 _STEP_PROGRAMS: Mapping[str, Callable[[System], Program]] = {
@@ -253,7 +251,9 @@ def _split(moving: Moving, name: str) -> Program:
     outputs = [next_of(attitude), next_of(omega)]
     says = "One step of the rotation by splitting it into turns about two axes"
     if name.endswith(COMPENSATION):
-        moved = step_split_compensated(tape, body, order, *given, _inputs(tape, rest))
+        moved: tuple[list[Number], ...] = step_split_compensated(
+            tape, body, order, *given, _inputs(tape, rest)
+        )
         inputs, outputs = (*inputs, rest), [*outputs, next_of(rest)]
         says += f" (order {order}), carrying what rounding leaves."
     else:

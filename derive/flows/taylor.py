@@ -1,17 +1,13 @@
 """From a rate to its Taylor step: the state's terms up to an order, their sum, the next step."""
 
-from dataclasses import replace
 from fractions import Fraction
 
 from derive.flows.proposal import PROPOSED, proposal
 from derive.flows.recurrences import record
 from derive.flows.series import Series
+from derive.flows.system import TIME_STEP, next_of
 from derive.flows.terms import Draft
 from derive.program import Op, Operand, Program, Quantity
-
-TIME_STEP = Quantity(
-    "time_step", ("time_step",), (), "s", "", Fraction(0), Fraction(1), "length of the step"
-)
 
 
 def taylor_step(
@@ -48,7 +44,7 @@ def taylor_step(
         name="step_taylor" if order == 20 else f"step_taylor{order}",
         says=f"One step by a Taylor series of order {order}.",
         inputs=tuple(used),
-        outputs=(*map(_next, states), PROPOSED),
+        outputs=(*map(next_of, states), PROPOSED),
         order=order,
         start=tuple(draft.start),
         products=tuple(draft.products),
@@ -74,10 +70,6 @@ def _joining(rate: Program) -> frozenset[str]:
                 readers.setdefault(operand, []).append(kind)
     return frozenset(str(value) for value, kinds in readers.items() if kinds == ["add"])
 
-
-def _next(q: Quantity) -> Quantity:
-    parts = tuple(f"{c}_next" for c in q.components)
-    return replace(q, name=f"{q.name}_next", components=parts, meaning=f"{q.meaning}, next")
 
 
 def _refuse_clashes(series: Series) -> None:

@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from itertools import permutations
 
 from derive.program import Program, Quantity
 from derive.rotations import euler, matrix, quaternion, rodrigues
+from derive.scene.wanted import SEQUENCES
 from derive.trace import Number, Tape, needed
 
 Formula = Callable[..., list[Number]]
@@ -16,15 +16,6 @@ PARTS = ("w", "x", "y", "z")
 ENTRIES = ("xx", "yx", "zx", "xy", "yy", "zy", "xz", "yz", "zz")
 HALF_TURN = Fraction("3.14159")
 """Samples of angles are taken up to here; the functions take any."""
-
-SEQUENCES = tuple(
-    first + middle + last
-    for first, middle in permutations("xyz", 2)
-    for last in "xyz"
-    if last != middle
-)
-"""Proper sequences (the first axis is also the third) and Tait-Bryan ones, twelve in all."""
-
 
 @dataclass(frozen=True)
 class AttitudeFunction:

@@ -6,7 +6,7 @@ import flint
 import numpy as np
 import pytest
 
-from derive.rotations.functions import SEQUENCES
+from derive.scene.wanted import SEQUENCES
 from tests.rotations import cases, truth
 from tests.rotations.measured import PRECISIONS, UNIT, Rows, called, error, errors, promise
 from tests.rotations.truth import plain
