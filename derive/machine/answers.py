@@ -15,10 +15,10 @@ from derive.machine.linearised import linearised
 from derive.machine.loads import potential_energy
 from derive.machine.matter import without_factors
 from derive.machine.probe import POINTS, independent
-from derive.machine.question import Question
+from derive.machine.question import Question, substituted
 from derive.machine.words import MATRICES
 from derive.program import Quantity
-from derive.scene import Machine, SceneError
+from derive.scene import Input, Machine, SceneError
 from derive.scene.machine_file import JACOBIAN, written_out
 from derive.specialise import stated
 
@@ -182,24 +182,35 @@ class Answers:
         if steady.vanishes is not None:
             values: list[Expr] = [self.expression(steady.vanishes)]
             return self._asked(base, (q,), dict(zip(self._symbols(q), values, strict=True)), ())
-        rows = self._without_unknowns(len(steady.unknown))
-        written = [self.balances.written(row) for row in rows]
+        rows = self._at_rest(len(steady.unknown))
+        split = self.frames.sheet.split
+        written = [split(self.balances.written(row))[0] for row in rows]
         answers = dict(zip(self._symbols(q), written, strict=True))
         held = tuple(row.balance for row in rows)
         found = self._asked(base, (q,), answers, balance_steps(held))
         found = replace(found, balances=held)
-        return without_factors(found, self.frames.words)
+        still = substituted(found, dict.fromkeys(self._velocities, Integer(0)))
+        return without_factors(still, self.frames.words)
 
-    def _without_unknowns(self, count: int) -> list[Row]:
-        """Return so many independent balances without an unknown that move with the rates."""
-        rows = unbalanced(self.balances)
-        independent_ = independent(
-            ({p: row.values[p][0] for p in range(POINTS)} for row in rows), count
-        )
-        if len(independent_) < count:
-            raise SceneError(f"'steady' needs {count} balances that hold no unknown and do not "
-                             f"vanish by themselves, found {len(independent_)}")  # fmt: skip
-        return [rows[k] for k in independent_]
+    @property
+    def _velocities(self) -> list[Symbol]:
+        """Return the rates of free coordinates, which are zero while motion is steady."""
+        rates = [c.rate for c in self.machine.coordinates if c.free]
+        return [self.frames.sheet.symbols[r.name] for r in rates if isinstance(r, Input)]
+
+    def _at_rest(self, count: int) -> list[Row]:
+        """Return so many independent balances that no reaction enters and that do not vanish."""
+        free = [m.unknown for m in (*self.machine.coordinates, *self.machine.speeds) if m.free]
+        every, symbols = self.balances.unknowns, self.frames.sheet.symbols
+        still = frozenset(every.index(symbols[n]) for n in free if symbols[n] in every)
+        rows = unbalanced(self.balances, still)
+        kept = independent(({p: row.values[p][0] for p in range(POINTS)} for row in rows), count)
+        if len(kept) < count:
+            raise SceneError(
+                f"'steady' needs {count} balances that no reaction enters and that do not vanish "
+                f"by themselves, found {len(kept)}"
+            )
+        return [rows[k] for k in kept]
 
 
 @dataclass(frozen=True)

@@ -20,10 +20,11 @@ from derive.machine.frames import ZERO, Frames, Parts, Point
 from derive.machine.loads import Wrench, wrenches
 from derive.machine.probe import DIGITS, NOTHING, POINTS, Probe, at_rest, point
 from derive.motion import unit_vector
-from derive.scene.machine import INERTIAL
+from derive.scene.machine import INERTIAL, Force, Spring
 from derive.specialise import stated
 
 MOST_TOGETHER = 6
+FEW = 2  # bodies that are cut free together though no load joins them
 Array = NDArray[Any]
 
 
@@ -116,10 +117,23 @@ class Balances:
         valued = [Valued(self, probe) for probe in self.probes]
         names = list(self.efforts)
         for size in range(1, min(len(names), MOST_TOGETHER) + 1):
-            for bodies in combinations(names, size):
+            for bodies in filter(self._joined, combinations(names, size)):
                 if all(self.frames.linked(self.efforts[bodies[0]].frame, self.efforts[b].frame)
                        for b in bodies):  # fmt: skip
                     yield from self._on(bodies, valued)
+
+    def _joined(self, bodies: tuple[str, ...]) -> bool:
+        """Tell whether bodies hang together by loads between them, or are few or all."""
+        if len(bodies) <= FEW or len(bodies) == len(self.efforts):
+            return True
+        pairs = [load for load in self.frames.machine.loads if isinstance(load, Force | Spring)]
+        reached = {bodies[0]}
+        for _ in bodies:
+            for load in pairs:
+                ends = {load.on, load.against}
+                if ends & reached and ends <= set(bodies):
+                    reached |= ends
+        return reached == set(bodies)
 
     def _on(self, bodies: tuple[str, ...], valued: Sequence["Valued"]) -> Iterator[Row]:
         axes = self._axes(bodies, valued[0])
@@ -177,10 +191,12 @@ class Balances:
     def _points(self, bodies: tuple[str, ...], valued: "Valued") -> list[tuple[str, Point]]:
         """Return the points that moments of these bodies may be taken about."""
         acting = [w for w in self.wrenches if w.body in bodies and w.force != ZERO]
+        inner = {w.load for w in acting if sum(v.load == w.load for v in acting) > 1}
+        alone = bodies if len(bodies) == 1 else ()
         near: list[tuple[str, Point]] = [
             *((f"the origin of {frame}", (frame, ZERO)) for frame in self._frames_of(bodies)),
-            *((f"the mass centre of {b}", self.efforts[b].centre) for b in bodies),
-            *((f"the point of {w.load}", w.point) for w in acting),
+            *((f"the mass centre of {b}", self.efforts[b].centre) for b in alone),
+            *((f"the point of {w.load}", w.point) for w in acting if w.load not in inner),
         ]
         found: list[tuple[str, Point]] = []
         seen: list[Array] = []

@@ -7,7 +7,7 @@ from typing import Any
 from mpmath import mp
 
 from derive.machine.balances import Balances, Row
-from derive.machine.probe import DIGITS, independent, independent_at_all
+from derive.machine.probe import DIGITS, NOTHING, POINTS, independent, independent_at_all
 from derive.scene import SceneError
 
 MOST_EXTRA = 5  # unknowns that are solved along without being asked for, before all are
@@ -97,15 +97,25 @@ def _joint(balances: Balances, k: int) -> list[int]:
     return []
 
 
-def unbalanced(balances: Balances) -> tuple[Row, ...]:
-    """Return the balances that hold no unknown and yet do not vanish, plainest first."""
-    found = [row for row in balances.rows if not row.holds]
+def unbalanced(
+    balances: Balances, still: frozenset[int] = frozenset()
+) -> tuple[Row, ...]:
+    """Return the balances that hold no unknown but ``still`` ones and yet do not vanish."""
+    found = [row for row in balances.rows if row.holds <= still and _leaves_something(row)]
     return tuple(
         sorted(
             found,
-            key=lambda row: (len(row.balance.bodies), balances.carried_vectors(row.balance)),
+            key=lambda row: (
+                len(row.balance.bodies),
+                len(row.holds),
+                balances.carried_vectors(row.balance),
+            ),
         )
     )
+
+
+def _leaves_something(row: Row) -> bool:
+    return all(abs(values[0]) > NOTHING * max(map(abs, values)) for values in row.values[:POINTS])
 
 
 def contradiction(balances: Balances) -> str:

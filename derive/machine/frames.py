@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from sympy import Expr, Integer, Matrix, eye, zeros
+from sympy import Expr, Integer, Matrix, eye, expand_trig, zeros
 
 from derive.machine.sheet import Sheet
 from derive.machine.words import Words, attitude
@@ -50,7 +50,7 @@ class Frames:
             return None
         R = eye(3)
         for turn in frame.turned:
-            R = R * turn_matrix(turn.axis, self.words.expression(turn.angle))
+            R = R * self._one_turn(turn)[0]
         return R
 
     @cached_property
@@ -81,7 +81,8 @@ class Frames:
 
     def _one_turn(self, turn: Turning) -> tuple[Matrix, Expr]:
         angle = self.words.expression(turn.angle)
-        return turn_matrix(turn.axis, angle), self.sheet.rate(angle)
+        R = turn_matrix(turn.axis, angle).applyfunc(expand_trig)
+        return R, self.sheet.rate(angle)
 
     @cached_property
     def Omega_dot(self) -> Mapping[str, Matrix]:

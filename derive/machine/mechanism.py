@@ -98,13 +98,14 @@ def arrange(known: Mechanism, fact: Truth) -> tuple[Arrangement, ...]:
 def plain_arrangement(known: Mechanism, question: Question) -> Arrangement:
     """Return the stages of a question: named quantities, solved balances, answers."""
     question = with_parameters_put_in(question, known.words)
-    stages = staged(question)
+    named = dict(question.definitions)
     if question.rows:
         probe = point(known.made, 0)
         probe.define(question.definitions)
-        stages += solved(question.rows, question.unknowns, known.made.sheet.split, probe).stages
+        found = solved(question.rows, question.unknowns, known.made.sheet.split, probe)
+        named |= {stage.symbol: stage.value for stage in found.stages}
     outputs = tuple(question.answers.values())
-    return Arrangement(tuple(stages), outputs)
+    return Arrangement(tuple(staged(named)), outputs)
 
 
 def with_parameters_put_in(question: Question, words: Vocabulary) -> Question:
@@ -118,11 +119,11 @@ def with_parameters_put_in(question: Question, words: Vocabulary) -> Question:
     return substituted(question, known)
 
 
-def staged(question: Question) -> list[Stage]:
+def staged(named: Mapping[Symbol, Expr]) -> list[Stage]:
     """Return the named quantities as stages; one that would multiply out to much is cut off."""
     sizes: dict[Symbol, int] = {}
     stages = []
-    for symbol, value in question.definitions.items():
+    for symbol, value in named.items():
         size = _terms(value, sizes)
         sizes[symbol] = 1 if size > MANY_TERMS else size
         stages.append(Stage("cut" if size > MANY_TERMS else "let", symbol, value))

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from sympy import Expr, Integer, Matrix, Symbol
+from sympy import Expr, Integer, Matrix, Symbol, cos, expand_trig, sin, tan
 
 from derive.formula import Formula
 from derive.machine.sheet import Sheet
@@ -31,8 +31,12 @@ class Words:
     hidden: Mapping[Symbol, str]
 
     def expression(self, formula: Formula) -> Expr:
-        """Return a formula in the symbols of the scene."""
-        return self.vocabulary.expression(formula)
+        """Return a formula in the symbols of the scene, sines and cosines of sums written out.
+
+        Only so are sin(2 x) and sin(x) known to belong together when programs are proved.
+        """
+        written = self.vocabulary.expression(formula)
+        return expand_trig(written) if written.has(sin, cos, tan) else written
 
     def column(self, formulas: tuple[Formula, Formula, Formula]) -> Matrix:
         """Return three formulas as a column."""
