@@ -1,10 +1,10 @@
 """A machine in the lecture's terms: its words, its equations, and the ways to compute answers."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import prod
 
-from sympy import Add, Expr, Integer, Mul, Pow, Symbol
+from sympy import Add, Expr, Integer, Mul, Pow, Symbol, sin
 
 from derive.draft import Arrangement, Stage
 from derive.machine.answers import Answers
@@ -13,13 +13,16 @@ from derive.machine.frames import Frames
 from derive.machine.matter import Lean, lean
 from derive.machine.probe import point
 from derive.machine.question import Question, substituted
+from derive.machine.sheet import Sheet
 from derive.machine.solve import solved
 from derive.machine.words import Words, words
+from derive.motion import reduced
 from derive.scene import Machine, SceneError
 from derive.specialise import Specialised
 from derive.truth import Truth
 from derive.vocabulary import Vocabulary
 
+LONGEST_TIDIED = 150  # operations of a term in which squares of sines are looked for
 MANY_TERMS = 10  # a named quantity of more terms is not multiplied out by its users
 
 
@@ -97,7 +100,7 @@ def arrange(known: Mechanism, fact: Truth) -> tuple[Arrangement, ...]:
 
 def plain_arrangement(known: Mechanism, question: Question) -> Arrangement:
     """Return the stages of a question: named quantities, solved balances, answers."""
-    question = with_parameters_put_in(question, known.words)
+    question = tidied(with_parameters_put_in(question, known.words), known.made.sheet)
     named = dict(question.definitions)
     if question.rows:
         probe = point(known.made, 0)
@@ -117,6 +120,28 @@ def with_parameters_put_in(question: Question, words: Vocabulary) -> Question:
         if made.free_symbols <= fixed and _terms(made, {}) <= MANY_TERMS:
             known[symbol] = made
     return substituted(question, known)
+
+
+def tidied(question: Question, sheet: Sheet) -> Question:
+    """Return the question with sin^2 + cos^2 = 1 used wherever it makes a term shorter."""
+    rows = []
+    for row in question.rows:
+        rest, slopes = sheet.split(row)
+        rows.append(_shorter(rest) + sum(_shorter(c) * u for u, c in slopes.items()))
+    return replace(
+        question,
+        definitions={s: _shorter(e) for s, e in question.definitions.items()},
+        rows=tuple(rows),
+        answers={s: _shorter(e) for s, e in question.answers.items()},
+    )
+
+
+def _shorter(e: Expr) -> Expr:
+    squares = any(p.exp == 2 and isinstance(p.base, sin) for p in e.atoms(Pow))
+    if not squares or e.count_ops() > LONGEST_TIDIED:
+        return e
+    other = reduced(e)
+    return other if other.count_ops() < e.count_ops() else e
 
 
 def staged(named: Mapping[Symbol, Expr]) -> list[Stage]:
