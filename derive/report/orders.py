@@ -1,20 +1,19 @@
 """The order at which a stepper converges, measured on what was emitted and compared with its claim.
 
-The slope of log(error) over log(step) is fitted where the error is neither rounding nor so large
-that the step is outside the stepper's range of convergence.
+One step is compared with ``PARTS`` steps of the same stepper over the same time, whose error is
+smaller by PARTS^order; the slope of log(difference) over log(step) is the order plus one. One step
+gathers no rounding, so steps may be short enough to see the order itself.
 """
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from derive.bench.motion.case import Case
 from derive.bench.motion.ours import parameters, scenes_for
 from derive.bench.motion.runner import Job, Mover, moved
-from derive.bench.motion.wrong import ROUNDOFF, wrong
+from derive.bench.motion.wrong import ROUNDOFF
 from derive.report.case_run import Workshop, adaptive
-from derive.report.point import SMALL
-from derive.report.settings import steps
 
 CLAIMED = {
     "step_rk4": 4, "step_lie": 4, "step_split2": 2, "step_split": 4, "step_split6": 6,
@@ -22,12 +21,13 @@ CLAIMED = {
 }  # fmt: skip
 CLAIMED |= {f"step_taylor{n}": n for n in range(12, 20)}
 CASES = ("asym_ii_generic", "heavy_top_asymmetric")
-FLOOR = 30.0  # errors below this many times the attainable one are rounding
-LARGEST = 1e-3  # errors above it are outside the range of convergence
-RATIO = 2.0**0.25  # between steps
-MOST_STEPS = 300_000
+FLOOR = 200 * ROUNDOFF["f64"]  # differences below may be rounding
+LARGEST = 1e-4  # differences above are outside the range of convergence
+FALL = 4.0  # of the difference, from one step to the next finer one
+COARSEST, PARTS = 2.0, 16  # rad a step; steps that one step is compared with
 LEAST, MOST = 3, 6  # points that make a slope
-SLACK = 0.07  # of the order, for terms of higher order that are still seen
+TRIES = 60
+SLACK = 0.05  # of the order, for terms of higher order that are still seen
 
 
 @dataclass(frozen=True)
@@ -61,10 +61,9 @@ def slope(steps: Sequence[float], errors: Sequence[float]) -> float:
 
 
 def measured(method: str, case: Case, found: Sequence[tuple[float, float]]) -> Order:
-    """Return the order from (step, error) pairs, coarse to fine: the finest that are in range."""
-    low = FLOOR * (case.kappa or 1.0) * ROUNDOFF["f64"]
-    inside = [(h, e) for h, e in found if low <= e <= LARGEST][-MOST:]
-    order = slope([h for h, _ in inside], [e for _, e in inside])
+    """Return the order from (step, difference) pairs, coarse to fine: the finest in range."""
+    inside = [(h, e) for h, e in found if FLOOR <= e <= LARGEST][-MOST:]
+    order = slope([h for h, _ in inside], [e for _, e in inside]) - 1
     return Order(method, case.name, CLAIMED[base(method)], order, len(inside))
 
 
@@ -92,15 +91,22 @@ def orders(every: Mapping[str, Case], shop: Workshop) -> Iterator[Order]:
 def _errors(
     mover: Mover, case: Case, given: Sequence[float], method: str
 ) -> Iterator[tuple[float, float]]:
-    low = FLOOR * (case.kappa or 1.0) * ROUNDOFF["f64"]
-    for count in steps(case, replace(SMALL, ratio=RATIO, finest=2.0**-12)):
-        if count > MOST_STEPS:
+    """Yield (step, difference), coarse to fine, until differences may be rounding."""
+    step, ratio = COARSEST / case.rate, FALL ** (1 / (CLAIMED[base(method)] + 1))
+    for _ in range(TRIES):
+        jobs = [Job(method, step, 1), Job(method, step / PARTS, PARTS)]
+        one, many = moved(mover, case, given, jobs)
+        if one is None or many is None:
             return
-        step = float(case.time) / count
-        (motion,) = moved(mover, case, given, [Job(method, step, count)])
-        if motion is None:
-            return
-        error = wrong(case, motion.states[-1]).state
-        yield step, error
-        if error < low:
-            return
+        found = _apart(one.states[-1], many.states[-1], case.rate)
+        if math.isfinite(found):
+            yield step, found
+            if found < FLOOR:
+                return
+        step /= ratio
+
+
+def _apart(a: Sequence[float], b: Sequence[float], rate: float) -> float:
+    """Return the difference of two states: attitudes and relative omegas together."""
+    scales = (*[1.0] * 4, *[rate] * 3)
+    return math.hypot(*((x - y) / s for x, y, s in zip(a, b, scales, strict=True)))

@@ -13,7 +13,7 @@ from derive.emit import TEMPLATES
 from derive.report.case_run import PRECISIONS, Found, attainable
 from derive.report.look import look
 from derive.report.plots import panels, svg
-from derive.report.recommend import ERRORS, Overall, advice, one_each, overall, sentence
+from derive.report.recommend import ERRORS, Overall, advice, choice, overall, sentence
 from derive.report.record import PACKAGES, RULES, TOOLS, Report, best, data, kinds
 
 SAYS = {"f64": "double", "f32": "float"}
@@ -89,9 +89,9 @@ def _overall(report: Report) -> list[dict[str, Any]]:
     for kind, own in kinds(report.found).items():
         for precision in PRECISIONS:
             for error in ERRORS[precision]:
-                choice = one_each(overall(kind, own, precision, error))[:CHOICE]
+                named = choice(overall(kind, own, precision, error))[:CHOICE]
                 rows.append({"kind": kind, "precision": SAYS[precision], "error": figure(error),
-                             "choice": [_choice(c) for c in choice]})  # fmt: skip
+                             "choice": [_choice(c) for c in named]})  # fmt: skip
     return rows
 
 
@@ -99,9 +99,12 @@ def _choice(row: Overall) -> str:
     step = "" if math.isnan(row.radians) else f" with steps of {row.radians:.2g} rad"
     step += "" if math.isnan(row.tolerance) else f" to {figure(row.tolerance)}"
     where = "every case" if row.reached == row.asked else f"{row.reached} of {row.asked} cases"
-    times = f"at most {_number(row.worst) if row.worst > PLAIN else format(row.worst, '.2g')} times"
-    cost = "" if row.worst < ALIKE else f", {times} the cheapest"
+    cost = "" if row.worst < ALIKE else f", {_times(row.usual)} the least cost"
     return f"{look(row.method).label}{step}: {where}{cost}"
+
+
+def _times(ratio: float) -> str:
+    return f"{_number(ratio) if ratio > PLAIN else format(ratio, '.2g')} times"
 
 
 def _condition(found: Found) -> dict[str, Any]:

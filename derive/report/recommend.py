@@ -7,6 +7,7 @@ a lucky crossing is no reason.
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from statistics import median
 
 from derive.report.point import Point
 
@@ -29,7 +30,8 @@ class Overall:
 
     reached, asked : cases in which it keeps to the error, and those in which any of ours does
     radians, tolerance : the largest with which it does in all of those, NaN where it has none
-    worst : its cost over that of the cheapest stepper of the case, the largest of such ratios
+    worst, usual : its cost over that of the cheapest stepper of the case, the largest and the
+        median of such ratios
     """
 
     kind: str
@@ -41,6 +43,7 @@ class Overall:
     radians: float
     tolerance: float
     worst: float
+    usual: float
 
 
 def cost(point: Point) -> float:
@@ -107,9 +110,9 @@ def _overall(
 ) -> Overall:
     radians = min((p.radians for p in own.values() if p.setting == "step"), default=math.nan)
     tolerance = min((p.value for p in own.values() if p.setting == "tolerance"), default=math.nan)
-    worst = max(cost(p) / cheapest[n] for n, p in own.items())
+    ratios = [cost(p) / cheapest[n] for n, p in own.items()]
     return Overall(kind, precision, error, method, len(own), len(cheapest), radians, tolerance,
-                   worst)  # fmt: skip
+                   max(ratios), median(ratios))  # fmt: skip
 
 
 def one_each(rows: Iterable[Overall]) -> list[Overall]:
@@ -118,3 +121,15 @@ def one_each(rows: Iterable[Overall]) -> list[Overall]:
     for row in rows:
         found.setdefault("_".join(row.method.split("_")[:2]), row)
     return list(found.values())
+
+
+def choice(rows: Sequence[Overall]) -> list[Overall]:
+    """Return what to choose from: what serves most cases, and what is cheap as a rule.
+
+    Cheap as a rule is the least usual cost among those that serve more than half of the cases.
+    """
+    if not rows:
+        return []
+    many = [row for row in rows if 2 * row.reached > row.asked]
+    cheap = min(many, key=lambda row: row.usual, default=rows[0])
+    return one_each([cheap, *rows])

@@ -57,6 +57,7 @@ def targets(given: Evidence) -> Iterator[Target]:
     yield from _taylor(given)
     yield from _gyroscopic(given)
     yield from _derivatives(given)
+    yield from _special()
 
 
 def _exact(given: Evidence) -> Iterator[Target]:
@@ -252,3 +253,17 @@ def code_size(made: Emission, folder: Path) -> int | None:
     symbol = functions["step_rk4_jacobian"]["symbols"]["f32"]
     rows = [line.split() for line in said.splitlines() if line.startswith((".text", ".rodata"))]
     return sum(int(r[1]) for r in rows if r[0] == ".text" + f".{symbol}" or "rodata" in r[0])
+
+
+def _special() -> Iterator[Target]:
+    """Yield whether what is known of a body makes its steppers smaller."""
+    scenes = ("principal", "axisymmetric", "spherical")
+    flops = {s: {f["name"]: f["cost"].get("flops") for f in emission(s).manifest["functions"]}
+             for s in scenes}  # fmt: skip
+    for name in (EXACT, DMV, "step_split6", "step_rk4", TAYLOR):
+        counts = [flops[scene].get(name) for scene in scenes]
+        known = [c for c in counts if c is not None]
+        falls = len(known) == len(scenes) and known[0] > known[1] >= known[2]
+        shown = " > ".join("none" if c is None else str(c) for c in counts)
+        yield Target(f"{name}: operations for a principal, axisymmetric, spherical body", "falling",
+                     shown, falls, "functions")  # fmt: skip

@@ -1,8 +1,8 @@
 """One RK4 step of a principal body and its quaternion, with its 7x7 Jacobian, by several tools.
 
 Every tool is given the step in its own ordinary way and asked for the derivatives by the state; the
-moment is a parameter, the length of the step an input. Nobody normalises the quaternion but where
-a tool's own step does.
+moment is a parameter, the length of the step an input. Ours normalises the quaternion and has the
+derivatives of that; the others do not.
 """
 
 import random
@@ -48,7 +48,7 @@ PROBLEM = Problem(
 class Entry:
     """What one tool's step and Jacobian cost; ``missing`` says why something was not run.
 
-    apart : largest difference from the first author's answers
+    apart : largest difference from the first author's new state
     """
 
     author: str
@@ -83,8 +83,8 @@ def entries(made: Emission | None, folder: Path) -> Iterator[Entry]:
 
 
 def _apart(found: Sequence[Row], first: Sequence[Row]) -> float:
-    pairs = zip(found, first, strict=True)
-    return max(abs(a - b) for x, y in pairs for a, b in zip(x, y, strict=True))
+    states = ((x[: len(AFTER)], y[: len(AFTER)]) for x, y in zip(found, first, strict=True))
+    return max(abs(a - b) for x, y in states for a, b in zip(x, y, strict=True))
 
 
 def _rows() -> list[Row]:
