@@ -97,9 +97,7 @@ def _joint(balances: Balances, k: int) -> list[int]:
     return []
 
 
-def unbalanced(
-    balances: Balances, still: frozenset[int] = frozenset()
-) -> tuple[Row, ...]:
+def unbalanced(balances: Balances, still: frozenset[int] = frozenset()) -> tuple[Row, ...]:
     """Return the balances that hold no unknown but ``still`` ones and yet do not vanish."""
     found = [row for row in balances.rows if row.holds <= still and _leaves_something(row)]
     return tuple(

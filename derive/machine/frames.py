@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from sympy import Expr, Integer, Matrix, eye, expand_trig, zeros
+from sympy import Expr, Integer, Matrix, expand_trig, eye, zeros
 
 from derive.machine.sheet import Sheet
 from derive.machine.words import Words, attitude

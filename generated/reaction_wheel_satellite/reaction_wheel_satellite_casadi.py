@@ -11,7 +11,7 @@ numbers agree with double C to the last bit. Derivatives by CasADi are exact and
 import casadi as ca
 
 PARAMETERS = ['J_xx', 'J_yy', 'J_zz', 'J_xy', 'J_xz', 'J_yz', 'I_w']
-CONSTANTS = ['I_w', 'J_xy', 'J_yz', 'J_xx_minus_J_yy', 'J_xz', 'k1', 'J_yy_minus_J_zz', 'k2', 'k3', 'k4', 'k5', 'k6', 'one_over_I_w']
+CONSTANTS = ['I_w', 'J_xy', 'J_yz', 'J_xx_minus_J_yy', 'J_xz', 'k1', 'J_yy_minus_J_zz', 'k2', 'k3', 'minus_inverse_det', 'k4', 'k5', 'k6', 'inverse_det', 'one_over_I_w']
 
 
 def _built(build):
@@ -126,82 +126,77 @@ def setup():
 def _setup():
     parameters = ca.SX.sym("parameters", 7)
     s0 = _sub((parameters[0], 0.0), (parameters[1], 0.0))
-    s1 = _mul((parameters[6], 0.0), (parameters[6], 0.0))
-    s2 = _mul((parameters[6], 0.0), s1)
-    s3 = _mul((parameters[5], 0.0), (parameters[5], 0.0))
-    s4 = _mul((parameters[0], 0.0), s3)
-    s5 = _add(s2, s4)
-    s6 = _mul((parameters[4], 0.0), (parameters[4], 0.0))
-    s7 = _mul((parameters[1], 0.0), s6)
-    s8 = _add(s5, s7)
-    s9 = _mul((parameters[3], 0.0), (parameters[3], 0.0))
-    s10 = _mul((parameters[2], 0.0), s9)
-    s11 = _add(s8, s10)
-    s12 = _mul((parameters[6], 0.0), (parameters[0], 0.0))
-    s13 = _mul((parameters[1], 0.0), s12)
-    s14 = _add(s11, s13)
-    s15 = _mul((parameters[2], 0.0), s12)
-    s16 = _add(s14, s15)
-    s17 = _mul((parameters[1], 0.0), (parameters[2], 0.0))
-    s18 = _mul((parameters[6], 0.0), s17)
-    s19 = _add(s16, s18)
-    s20 = _mul((parameters[3], 0.0), (parameters[5], 0.0))
-    s21 = _mul((parameters[4], 0.0), s20)
-    s22 = _add(s19, s21)
-    s23 = _add(s22, s21)
-    s24 = _mul((parameters[0], 0.0), s1)
-    s25 = _sub(s23, s24)
-    s26 = _mul((parameters[1], 0.0), s1)
-    s27 = _sub(s25, s26)
-    s28 = _mul((parameters[2], 0.0), s1)
-    s29 = _sub(s27, s28)
-    s30 = _mul((parameters[6], 0.0), s9)
-    s31 = _sub(s29, s30)
-    s32 = _mul((parameters[6], 0.0), s6)
-    s33 = _sub(s31, s32)
-    s34 = _mul((parameters[6], 0.0), s3)
-    s35 = _sub(s33, s34)
-    s36 = _mul((parameters[0], 0.0), s17)
-    s37 = _sub(s35, s36)
-    s38 = _div((1.0, 0.0), s37)
-    s39 = _mul((parameters[6], 0.0), (parameters[4], 0.0))
-    s40 = _sub(s39, s20)
-    s41 = _mul((parameters[1], 0.0), (parameters[4], 0.0))
-    s42 = _sub(s40, s41)
-    s43 = _mul(s38, s42)
-    s44 = _sub((parameters[1], 0.0), (parameters[2], 0.0))
-    s45 = _mul((parameters[6], 0.0), (parameters[3], 0.0))
-    s46 = _mul((parameters[3], 0.0), (parameters[2], 0.0))
+    s1 = _mul((parameters[6], 0.0), (parameters[4], 0.0))
+    s2 = _mul((parameters[3], 0.0), (parameters[5], 0.0))
+    s3 = _sub(s1, s2)
+    s4 = _mul((parameters[1], 0.0), (parameters[4], 0.0))
+    s5 = _sub(s3, s4)
+    s6 = _sub((parameters[1], 0.0), (parameters[2], 0.0))
+    s7 = _mul((parameters[6], 0.0), (parameters[3], 0.0))
+    s8 = _mul((parameters[3], 0.0), (parameters[2], 0.0))
+    s9 = _sub(s7, s8)
+    s10 = _mul((parameters[5], 0.0), (parameters[4], 0.0))
+    s11 = _sub(s9, s10)
+    s12 = _mul((parameters[5], 0.0), (parameters[5], 0.0))
+    s13 = _mul((parameters[6], 0.0), (parameters[2], 0.0))
+    s14 = _add(s12, s13)
+    s15 = _mul((parameters[1], 0.0), (parameters[2], 0.0))
+    s16 = _sub(s14, s15)
+    s17 = _mul((parameters[6], 0.0), (parameters[6], 0.0))
+    s18 = _mul((parameters[6], 0.0), (parameters[1], 0.0))
+    s19 = _sub(s17, s18)
+    s20 = _sub(s16, s19)
+    s21 = _mul((parameters[6], 0.0), s17)
+    s22 = _mul((parameters[0], 0.0), s12)
+    s23 = _add(s21, s22)
+    s24 = _mul((parameters[4], 0.0), (parameters[4], 0.0))
+    s25 = _mul((parameters[1], 0.0), s24)
+    s26 = _add(s23, s25)
+    s27 = _mul((parameters[3], 0.0), (parameters[3], 0.0))
+    s28 = _mul((parameters[2], 0.0), s27)
+    s29 = _add(s26, s28)
+    s30 = _mul((parameters[6], 0.0), (parameters[0], 0.0))
+    s31 = _mul((parameters[1], 0.0), s30)
+    s32 = _add(s29, s31)
+    s33 = _mul((parameters[2], 0.0), s30)
+    s34 = _add(s32, s33)
+    s35 = _mul((parameters[6], 0.0), s15)
+    s36 = _add(s34, s35)
+    s37 = _mul((parameters[4], 0.0), s2)
+    s38 = _add(s36, s37)
+    s39 = _add(s38, s37)
+    s40 = _mul((parameters[0], 0.0), s17)
+    s41 = _sub(s39, s40)
+    s42 = _mul((parameters[1], 0.0), s17)
+    s43 = _sub(s41, s42)
+    s44 = _mul((parameters[2], 0.0), s17)
+    s45 = _sub(s43, s44)
+    s46 = _mul((parameters[6], 0.0), s27)
     s47 = _sub(s45, s46)
-    s48 = _mul((parameters[5], 0.0), (parameters[4], 0.0))
+    s48 = _mul((parameters[6], 0.0), s24)
     s49 = _sub(s47, s48)
-    s50 = _mul(s38, s49)
-    s51 = _mul((parameters[6], 0.0), (parameters[2], 0.0))
-    s52 = _add(s3, s51)
-    s53 = _sub(s52, s17)
-    s54 = _mul((parameters[6], 0.0), (parameters[1], 0.0))
-    s55 = _sub(s1, s54)
-    s56 = _sub(s53, s55)
-    s57 = _mul(s38, s56)
-    s58 = _mul((parameters[6], 0.0), (parameters[5], 0.0))
-    s59 = _mul((parameters[3], 0.0), (parameters[4], 0.0))
+    s50 = _mul((parameters[6], 0.0), s12)
+    s51 = _sub(s49, s50)
+    s52 = _mul((parameters[0], 0.0), s15)
+    s53 = _sub(s51, s52)
+    s54 = _div((1.0, 0.0), s53)
+    s55 = _neg(s54)
+    s56 = _mul((parameters[6], 0.0), (parameters[5], 0.0))
+    s57 = _mul((parameters[3], 0.0), (parameters[4], 0.0))
+    s58 = _sub(s56, s57)
+    s59 = _mul((parameters[5], 0.0), (parameters[0], 0.0))
     s60 = _sub(s58, s59)
-    s61 = _mul((parameters[5], 0.0), (parameters[0], 0.0))
-    s62 = _sub(s60, s61)
-    s63 = _mul(s38, s62)
-    s64 = _add(s6, s51)
-    s65 = _add(s64, s12)
-    s66 = _sub(s65, s1)
-    s67 = _mul((parameters[0], 0.0), (parameters[2], 0.0))
+    s61 = _add(s24, s13)
+    s62 = _add(s61, s30)
+    s63 = _sub(s62, s17)
+    s64 = _mul((parameters[0], 0.0), (parameters[2], 0.0))
+    s65 = _sub(s63, s64)
+    s66 = _add(s27, s30)
+    s67 = _mul((parameters[0], 0.0), (parameters[1], 0.0))
     s68 = _sub(s66, s67)
-    s69 = _mul(s38, s68)
-    s70 = _add(s9, s12)
-    s71 = _mul((parameters[0], 0.0), (parameters[1], 0.0))
-    s72 = _sub(s70, s71)
-    s73 = _sub(s72, s55)
-    s74 = _mul(s38, s73)
-    s75 = _div((1.0, 0.0), (parameters[6], 0.0))
-    constants = ca.vertcat(parameters[6], parameters[3], parameters[5], s0[0], parameters[4], s43[0], s44[0], s50[0], s57[0], s63[0], s69[0], s74[0], s75[0])
+    s69 = _sub(s68, s19)
+    s70 = _div((1.0, 0.0), (parameters[6], 0.0))
+    constants = ca.vertcat(parameters[6], parameters[3], parameters[5], s0[0], parameters[4], s5[0], s6[0], s11[0], s20[0], s55[0], s60[0], s65[0], s69[0], s54[0], s70[0])
     return ca.Function("reaction_wheel_satellite_setup", [parameters], [constants], ["parameters"], ["constants"])
 
 
@@ -224,7 +219,7 @@ def body_hot():
 
 
 def _body():
-    constants = ca.SX.sym("constants", 13)
+    constants = ca.SX.sym("constants", 15)
     w_x = ca.SX.sym("w_x", 1)
     w_y = ca.SX.sym("w_y", 1)
     w_z = ca.SX.sym("w_z", 1)
@@ -282,19 +277,19 @@ def _body():
     t45 = t43 - t44
     t46 = t45 * constants[8]
     t47 = t37 + t46
-    t48 = -t47
-    t49 = t19 * constants[9]
-    t50 = t35 * constants[10]
+    t48 = t47 * constants[9]
+    t49 = t19 * constants[10]
+    t50 = t35 * constants[11]
     t51 = t49 + t50
     t52 = t45 * constants[7]
     t53 = t51 + t52
-    t54 = -t53
-    t55 = t19 * constants[11]
-    t56 = t35 * constants[9]
+    t54 = t53 * constants[9]
+    t55 = t19 * constants[12]
+    t56 = t35 * constants[10]
     t57 = t55 + t56
     t58 = t45 * constants[5]
     t59 = t57 + t58
-    t60 = -t59
+    t60 = t59 * constants[9]
     return ca.Function(
         "reaction_wheel_satellite_body_hot",
         [constants, w_x, w_y, w_z, s_1, s_2, s_3, u_1, u_2, u_3],
@@ -319,7 +314,7 @@ def wheels_hot():
 
 
 def _wheels():
-    constants = ca.SX.sym("constants", 13)
+    constants = ca.SX.sym("constants", 15)
     w_x = ca.SX.sym("w_x", 1)
     w_y = ca.SX.sym("w_y", 1)
     w_z = ca.SX.sym("w_z", 1)
@@ -377,29 +372,32 @@ def _wheels():
     t45 = t43 - t44
     t46 = t45 * constants[8]
     t47 = t37 + t46
-    t48 = u_1[0] * constants[12]
-    t49 = t47 + t48
-    t50 = t19 * constants[9]
-    t51 = t35 * constants[10]
-    t52 = t50 + t51
-    t53 = t45 * constants[7]
-    t54 = t52 + t53
-    t55 = u_2[0] * constants[12]
-    t56 = t54 + t55
-    t57 = t19 * constants[11]
-    t58 = t35 * constants[9]
-    t59 = t57 + t58
-    t60 = t45 * constants[5]
+    t48 = t47 * constants[13]
+    t49 = u_1[0] * constants[14]
+    t50 = t48 + t49
+    t51 = t19 * constants[10]
+    t52 = t35 * constants[11]
+    t53 = t51 + t52
+    t54 = t45 * constants[7]
+    t55 = t53 + t54
+    t56 = t55 * constants[13]
+    t57 = u_2[0] * constants[14]
+    t58 = t56 + t57
+    t59 = t19 * constants[12]
+    t60 = t35 * constants[10]
     t61 = t59 + t60
-    t62 = u_3[0] * constants[12]
+    t62 = t45 * constants[5]
     t63 = t61 + t62
+    t64 = t63 * constants[13]
+    t65 = u_3[0] * constants[14]
+    t66 = t64 + t65
     return ca.Function(
         "reaction_wheel_satellite_wheels_hot",
         [constants, w_x, w_y, w_z, s_1, s_2, s_3, u_1, u_2, u_3],
         [
-            ca.vertcat(t49),
-            ca.vertcat(t56),
-            ca.vertcat(t63),
+            ca.vertcat(t50),
+            ca.vertcat(t58),
+            ca.vertcat(t66),
         ],
         ['constants', 'w_x', 'w_y', 'w_z', 's_1', 's_2', 's_3', 'u_1', 'u_2', 'u_3'],
         ['s_1_dot', 's_2_dot', 's_3_dot'],

@@ -10,7 +10,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest term of the sum that an output is. Body of these files: sha256 de26a6ae86ddd5ee.
+ * float, times the largest term of the sum that an output is. Body of these files: sha256 3f798a7267463bfe.
  */
 #ifndef REACTION_WHEEL_SATELLITE_F32_H
 #define REACTION_WHEEL_SATELLITE_F32_H
@@ -26,13 +26,15 @@ typedef struct {
     float J_yz; /* yz of the inverse inertia tensor */
     float J_xx_minus_J_yy; /* J_xx - J_yy */
     float J_xz; /* xz of the inverse inertia tensor */
-    float k1; /* inverse_det*(J_xz*I_w - J_xy*J_yz - J_yy*J_xz) */
+    float k1; /* J_xz*I_w - J_xy*J_yz - J_yy*J_xz */
     float J_yy_minus_J_zz; /* J_yy - J_zz */
-    float k2; /* inverse_det*(J_xy*I_w - J_zz*J_xy - J_xz*J_yz) */
-    float k3; /* inverse_det*(J_yz^2 - I_w^2 + J_yy*I_w + J_zz*I_w - J_yy*J_zz) */
-    float k4; /* inverse_det*(J_yz*I_w - J_xy*J_xz - J_xx*J_yz) */
-    float k5; /* inverse_det*(J_xz^2 - I_w^2 + J_zz*I_w + J_xx*I_w - J_xx*J_zz) */
-    float k6; /* inverse_det*(J_xy^2 - I_w^2 + J_yy*I_w + J_xx*I_w - J_xx*J_yy) */
+    float k2; /* J_xy*I_w - J_zz*J_xy - J_xz*J_yz */
+    float k3; /* J_yz^2 - I_w^2 + J_yy*I_w + J_zz*I_w - J_yy*J_zz */
+    float minus_inverse_det; /* -inverse_det */
+    float k4; /* J_yz*I_w - J_xy*J_xz - J_xx*J_yz */
+    float k5; /* J_xz^2 - I_w^2 + J_zz*I_w + J_xx*I_w - J_xx*J_zz */
+    float k6; /* J_xy^2 - I_w^2 + J_yy*I_w + J_xx*I_w - J_xx*J_yy */
+    float inverse_det; /* inverse_det */
     float one_over_I_w; /* 1/I_w */
 } reaction_wheel_satellite_constants_f32;
 
@@ -46,7 +48,7 @@ typedef struct {
  *            I_w  kg m^2  0.001 .. 0.003  axial moment of a wheel
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
- * Cost: once; 76 operations on pairs.
+ * Cost: once; 70 operations on pairs.
  */
 void reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float J_xy, float J_xz,
     float J_yz, float I_w, reaction_wheel_satellite_constants_f32 *constants);
@@ -72,9 +74,9 @@ void reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, floa
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 1.1, largest 8 u of the largest term (sampled: 105 points, worst at w_z_dot, point
- *            71).
- * Cost: 18 add, 8 sub, 32 mul, 3 neg.
+ * Error: median 1.1, largest 5 u of the largest term (sampled: 105 points, worst at w_y_dot, point
+ *            4).
+ * Cost: 18 add, 8 sub, 35 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -104,9 +106,9 @@ void reaction_wheel_satellite_body_f32(const reaction_wheel_satellite_constants_
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.52, largest 4.5 u of the largest term (sampled: 105 points, worst at s_2_dot,
+ * Error: median 0.52, largest 2.3 u of the largest term (sampled: 105 points, worst at s_2_dot,
  *            point 98).
- * Cost: 21 add, 8 sub, 35 mul.
+ * Cost: 21 add, 8 sub, 38 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -10,7 +10,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is. Body of these files: sha256 01f38efd785e8567.
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 5cc310f75fbe24e8.
  */
 #ifndef REACTION_WHEEL_SATELLITE_F64_H
 #define REACTION_WHEEL_SATELLITE_F64_H
@@ -26,13 +26,15 @@ typedef struct {
     double J_yz; /* yz of the inverse inertia tensor */
     double J_xx_minus_J_yy; /* J_xx - J_yy */
     double J_xz; /* xz of the inverse inertia tensor */
-    double k1; /* inverse_det*(J_xz*I_w - J_xy*J_yz - J_yy*J_xz) */
+    double k1; /* J_xz*I_w - J_xy*J_yz - J_yy*J_xz */
     double J_yy_minus_J_zz; /* J_yy - J_zz */
-    double k2; /* inverse_det*(J_xy*I_w - J_zz*J_xy - J_xz*J_yz) */
-    double k3; /* inverse_det*(J_yz^2 - I_w^2 + J_yy*I_w + J_zz*I_w - J_yy*J_zz) */
-    double k4; /* inverse_det*(J_yz*I_w - J_xy*J_xz - J_xx*J_yz) */
-    double k5; /* inverse_det*(J_xz^2 - I_w^2 + J_zz*I_w + J_xx*I_w - J_xx*J_zz) */
-    double k6; /* inverse_det*(J_xy^2 - I_w^2 + J_yy*I_w + J_xx*I_w - J_xx*J_yy) */
+    double k2; /* J_xy*I_w - J_zz*J_xy - J_xz*J_yz */
+    double k3; /* J_yz^2 - I_w^2 + J_yy*I_w + J_zz*I_w - J_yy*J_zz */
+    double minus_inverse_det; /* -inverse_det */
+    double k4; /* J_yz*I_w - J_xy*J_xz - J_xx*J_yz */
+    double k5; /* J_xz^2 - I_w^2 + J_zz*I_w + J_xx*I_w - J_xx*J_zz */
+    double k6; /* J_xy^2 - I_w^2 + J_yy*I_w + J_xx*I_w - J_xx*J_yy */
+    double inverse_det; /* inverse_det */
     double one_over_I_w; /* 1/I_w */
 } reaction_wheel_satellite_constants_f64;
 
@@ -46,7 +48,7 @@ typedef struct {
  *            I_w  kg m^2  0.001 .. 0.003  axial moment of a wheel
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
- * Cost: once; 76 operations on pairs.
+ * Cost: once; 70 operations on pairs.
  */
 void reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, double J_xy,
     double J_xz, double J_yz, double I_w, reaction_wheel_satellite_constants_f64 *constants);
@@ -72,9 +74,9 @@ void reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, d
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 1.1, largest 6 u of the largest term (sampled: 105 points, worst at w_x_dot, point
- *            104).
- * Cost: 18 add, 8 sub, 32 mul, 3 neg.
+ * Error: median 1.3, largest 5.9 u of the largest term (sampled: 105 points, worst at w_y_dot,
+ *            point 19).
+ * Cost: 18 add, 8 sub, 35 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -104,9 +106,9 @@ void reaction_wheel_satellite_body_f64(const reaction_wheel_satellite_constants_
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.52, largest 2.6 u of the largest term (sampled: 105 points, worst at s_3_dot,
+ * Error: median 0.51, largest 3 u of the largest term (sampled: 105 points, worst at s_1_dot,
  *            point 98).
- * Cost: 21 add, 8 sub, 35 mul.
+ * Cost: 21 add, 8 sub, 38 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

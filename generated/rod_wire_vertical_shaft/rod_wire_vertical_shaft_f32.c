@@ -103,34 +103,27 @@ static rod_wire_vertical_shaft_pair_f32 rod_wire_vertical_shaft_cos_f32(rod_wire
 void rod_wire_vertical_shaft_setup_f32(float W, float L, float beta, float w, float g,
     rod_wire_vertical_shaft_constants_f32 *constants)
 {
-    const rod_wire_vertical_shaft_pair_f32 s0 = rod_wire_vertical_shaft_sin_f32((rod_wire_vertical_shaft_pair_f32){beta, 0.0F});
-    const rod_wire_vertical_shaft_pair_f32 s1 = rod_wire_vertical_shaft_div_f32((rod_wire_vertical_shaft_pair_f32){1.0F, 0.0F}, s0);
-    const rod_wire_vertical_shaft_pair_f32 s2 = rod_wire_vertical_shaft_cos_f32((rod_wire_vertical_shaft_pair_f32){beta, 0.0F});
-    const rod_wire_vertical_shaft_pair_f32 s3 = rod_wire_vertical_shaft_mul_f32((rod_wire_vertical_shaft_pair_f32){L, 0.0F}, s2);
-    const rod_wire_vertical_shaft_pair_f32 s4 = rod_wire_vertical_shaft_mul_f32(s3, s2);
-    const rod_wire_vertical_shaft_pair_f32 s5 = rod_wire_vertical_shaft_mul_f32(s0, (rod_wire_vertical_shaft_pair_f32){L, 0.0F});
-    const rod_wire_vertical_shaft_pair_f32 s6 = rod_wire_vertical_shaft_mul_f32(s0, s5);
-    const rod_wire_vertical_shaft_pair_f32 s7 = rod_wire_vertical_shaft_add_f32(s4, s6);
-    const rod_wire_vertical_shaft_pair_f32 s8 = rod_wire_vertical_shaft_div_f32((rod_wire_vertical_shaft_pair_f32){1.0F, 0.0F}, s7);
-    const rod_wire_vertical_shaft_pair_f32 s9 = rod_wire_vertical_shaft_mul_f32(s1, s8);
-    const rod_wire_vertical_shaft_pair_f32 s10 = rod_wire_vertical_shaft_mul_f32(s2, (rod_wire_vertical_shaft_pair_f32){W, 0.0F});
-    const rod_wire_vertical_shaft_pair_f32 s11 = rod_wire_vertical_shaft_mul_f32(s7, s10);
-    const rod_wire_vertical_shaft_pair_f32 s12 = rod_wire_vertical_shaft_mul_f32((rod_wire_vertical_shaft_pair_f32){w, 0.0F}, (rod_wire_vertical_shaft_pair_f32){w, 0.0F});
-    const rod_wire_vertical_shaft_pair_f32 s13 = rod_wire_vertical_shaft_div_f32(s5, (rod_wire_vertical_shaft_pair_f32){g, 0.0F});
-    const rod_wire_vertical_shaft_pair_f32 s14 = rod_wire_vertical_shaft_mul_f32(s12, s13);
-    const rod_wire_vertical_shaft_pair_f32 s15 = rod_wire_vertical_shaft_mul_f32(s11, s14);
-    const rod_wire_vertical_shaft_pair_f32 s16 = rod_wire_vertical_shaft_mul_f32(s15, (rod_wire_vertical_shaft_pair_f32){0.25F, 0.0F});
-    const rod_wire_vertical_shaft_pair_f32 s17 = rod_wire_vertical_shaft_mul_f32(s11, (rod_wire_vertical_shaft_pair_f32){0.5F, 0.0F});
-    const rod_wire_vertical_shaft_pair_f32 s18 = rod_wire_vertical_shaft_mul_f32((rod_wire_vertical_shaft_pair_f32){L, 0.0F}, s10);
-    const rod_wire_vertical_shaft_pair_f32 s19 = rod_wire_vertical_shaft_mul_f32(s18, s14);
-    const rod_wire_vertical_shaft_pair_f32 s20 = rod_wire_vertical_shaft_mul_f32(s19, (rod_wire_vertical_shaft_pair_f32){0.0833333358F, (-2.48352694e-09F)});
-    const rod_wire_vertical_shaft_pair_f32 s21 = rod_wire_vertical_shaft_add_f32(s17, s20);
-    const rod_wire_vertical_shaft_pair_f32 s22 = rod_wire_vertical_shaft_add_f32(s16, s21);
-    const rod_wire_vertical_shaft_pair_f32 s23 = rod_wire_vertical_shaft_mul_f32(s9, s22);
-    const rod_wire_vertical_shaft_pair_f32 s24 = rod_wire_vertical_shaft_sub_f32(s21, s16);
-    const rod_wire_vertical_shaft_pair_f32 s25 = rod_wire_vertical_shaft_mul_f32(s9, s24);
-    constants->s0008 = s23.high;
-    constants->s0005 = s25.high;
+    const rod_wire_vertical_shaft_pair_f32 s0 = rod_wire_vertical_shaft_div_f32((rod_wire_vertical_shaft_pair_f32){1.0F, 0.0F}, (rod_wire_vertical_shaft_pair_f32){L, 0.0F});
+    const rod_wire_vertical_shaft_pair_f32 s1 = rod_wire_vertical_shaft_sin_f32((rod_wire_vertical_shaft_pair_f32){beta, 0.0F});
+    const rod_wire_vertical_shaft_pair_f32 s2 = rod_wire_vertical_shaft_div_f32((rod_wire_vertical_shaft_pair_f32){1.0F, 0.0F}, s1);
+    const rod_wire_vertical_shaft_pair_f32 s3 = rod_wire_vertical_shaft_mul_f32(s0, s2);
+    const rod_wire_vertical_shaft_pair_f32 s4 = rod_wire_vertical_shaft_cos_f32((rod_wire_vertical_shaft_pair_f32){beta, 0.0F});
+    const rod_wire_vertical_shaft_pair_f32 s5 = rod_wire_vertical_shaft_mul_f32((rod_wire_vertical_shaft_pair_f32){L, 0.0F}, (rod_wire_vertical_shaft_pair_f32){W, 0.0F});
+    const rod_wire_vertical_shaft_pair_f32 s6 = rod_wire_vertical_shaft_mul_f32(s4, s5);
+    const rod_wire_vertical_shaft_pair_f32 s7 = rod_wire_vertical_shaft_mul_f32(s6, (rod_wire_vertical_shaft_pair_f32){0.5F, 0.0F});
+    const rod_wire_vertical_shaft_pair_f32 s8 = rod_wire_vertical_shaft_div_f32(s6, (rod_wire_vertical_shaft_pair_f32){g, 0.0F});
+    const rod_wire_vertical_shaft_pair_f32 s9 = rod_wire_vertical_shaft_mul_f32((rod_wire_vertical_shaft_pair_f32){L, 0.0F}, s1);
+    const rod_wire_vertical_shaft_pair_f32 s10 = rod_wire_vertical_shaft_mul_f32((rod_wire_vertical_shaft_pair_f32){w, 0.0F}, (rod_wire_vertical_shaft_pair_f32){w, 0.0F});
+    const rod_wire_vertical_shaft_pair_f32 s11 = rod_wire_vertical_shaft_mul_f32(s9, s10);
+    const rod_wire_vertical_shaft_pair_f32 s12 = rod_wire_vertical_shaft_mul_f32(s8, s11);
+    const rod_wire_vertical_shaft_pair_f32 s13 = rod_wire_vertical_shaft_mul_f32(s12, (rod_wire_vertical_shaft_pair_f32){0.166666672F, (-4.96705388e-09F)});
+    const rod_wire_vertical_shaft_pair_f32 s14 = rod_wire_vertical_shaft_add_f32(s7, s13);
+    const rod_wire_vertical_shaft_pair_f32 s15 = rod_wire_vertical_shaft_add_f32(s14, s13);
+    const rod_wire_vertical_shaft_pair_f32 s16 = rod_wire_vertical_shaft_mul_f32(s3, s15);
+    const rod_wire_vertical_shaft_pair_f32 s17 = rod_wire_vertical_shaft_sub_f32(s7, s13);
+    const rod_wire_vertical_shaft_pair_f32 s18 = rod_wire_vertical_shaft_mul_f32(s3, s17);
+    constants->s0008 = s16.high;
+    constants->s0005 = s18.high;
     constants->W = W;
 }
 

@@ -105,17 +105,10 @@ void skewed_disc_setup_f32(float m, float r, float skew, float b,
     const skewed_disc_pair_f32 s4 = skewed_disc_mul_f32(s2, s3);
     const skewed_disc_pair_f32 s5 = skewed_disc_mul_f32(s1, s4);
     const skewed_disc_pair_f32 s6 = skewed_disc_mul_f32(s5, (skewed_disc_pair_f32){0.25F, 0.0F});
-    const skewed_disc_pair_f32 s7 = skewed_disc_mul_f32(s2, s2);
-    const skewed_disc_pair_f32 s8 = skewed_disc_mul_f32(s0, s0);
-    const skewed_disc_pair_f32 s9 = skewed_disc_add_f32(s7, s8);
-    const skewed_disc_pair_f32 s10 = skewed_disc_div_f32(s6, s9);
-    const skewed_disc_pair_f32 s11 = skewed_disc_mul_f32(s5, (skewed_disc_pair_f32){0.125F, 0.0F});
-    const skewed_disc_pair_f32 s12 = skewed_disc_mul_f32(s7, (skewed_disc_pair_f32){b, 0.0F});
-    const skewed_disc_pair_f32 s13 = skewed_disc_mul_f32(s8, (skewed_disc_pair_f32){b, 0.0F});
-    const skewed_disc_pair_f32 s14 = skewed_disc_add_f32(s12, s13);
-    const skewed_disc_pair_f32 s15 = skewed_disc_div_f32(s11, s14);
-    constants->k1 = s10.high;
-    constants->k2 = s15.high;
+    const skewed_disc_pair_f32 s7 = skewed_disc_mul_f32(s5, (skewed_disc_pair_f32){0.125F, 0.0F});
+    const skewed_disc_pair_f32 s8 = skewed_disc_div_f32(s7, (skewed_disc_pair_f32){b, 0.0F});
+    constants->k1 = s6.high;
+    constants->k2 = s8.high;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target
