@@ -4,28 +4,26 @@ Whole vectors are valued at trial points in common axes, so that thousands of ba
 looked at; only those that are chosen are written out.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from typing import Any, Literal
+from typing import Literal
 
-import numpy as np
 from mpmath import mp
-from numpy.typing import NDArray
 from sympy import Expr, Integer, Matrix, Symbol
 
-from derive.machine.bodies import Effort, carries, effort, moment_about
-from derive.machine.frames import ZERO, Frames, Parts, Point
-from derive.machine.loads import Wrench, wrenches
-from derive.machine.probe import DIGITS, NOTHING, POINTS, Probe, at_rest, point
+from derive.machine.bodies import Effort, carries, moment_about
+from derive.machine.frames import ZERO, Frames, Point
+from derive.machine.loads import Wrench
+from derive.machine.probe import DIGITS, NOTHING, POINTS
+from derive.machine.valued import Array, Sides, Valued
 from derive.motion import unit_vector
-from derive.scene.machine import INERTIAL, Force, Spring
+from derive.scene.machine import Force, Spring
 from derive.specialise import stated
 
 MOST_TOGETHER = 6
 FEW = 2  # bodies that are cut free together though no load joins them
-Array = NDArray[Any]
 
 
 @dataclass(frozen=True)
@@ -77,35 +75,24 @@ class Balances:
     frames: Frames
 
     @cached_property
-    def efforts(self) -> dict[str, Effort]:
+    def sides(self) -> Sides:
+        """Return what the motion of the bodies needs and what acts on them."""
+        return Sides(self.frames)
+
+    @cached_property
+    def efforts(self) -> Mapping[str, Effort]:
         """Return what each body's motion needs."""
-        return {b.name: effort(self.frames, b.name) for b in self.frames.machine.bodies}
+        return self.sides.efforts
 
     @cached_property
     def wrenches(self) -> tuple[Wrench, ...]:
         """Return all loads."""
-        return wrenches(self.frames)
+        return self.sides.wrenches
 
     @cached_property
     def unknowns(self) -> tuple[Symbol, ...]:
         """Return the unknowns in order of their names' places."""
-        used: set[Symbol] = set()
-        for e in self.efforts.values():
-            used |= e.moment.free_symbols
-            used |= {s for part in e.force.values() for s in part.free_symbols}
-        for w in self.wrenches:
-            used |= w.force.free_symbols | w.couple.free_symbols
-        return tuple(sorted(used & self.frames.sheet.unknowns, key=str))
-
-    @cached_property
-    def probes(self) -> tuple[Probe, ...]:
-        """Return the trial points, every named quantity valued."""
-        self.efforts, self.wrenches  # noqa: B018 - they name quantities on the sheet
-        words = self.frames.words
-        found = (*(point(words, n) for n in range(POINTS)), at_rest(words))
-        for probe in found:
-            probe.define(self.frames.sheet.definitions)
-        return found
+        return self.sides.unknowns
 
     @cached_property
     def rows(self) -> tuple[Row, ...]:
@@ -114,7 +101,7 @@ class Balances:
             return tuple(row for row in self._every() if not row.empty)
 
     def _every(self) -> Iterator[Row]:
-        valued = [Valued(self, probe) for probe in self.probes]
+        valued = [Valued(self.sides, probe) for probe in self.sides.probes]
         names = list(self.efforts)
         for size in range(1, min(len(names), MOST_TOGETHER) + 1):
             for bodies in filter(self._joined, combinations(names, size)):
@@ -135,7 +122,7 @@ class Balances:
                     reached |= ends
         return reached == set(bodies)
 
-    def _on(self, bodies: tuple[str, ...], valued: Sequence["Valued"]) -> Iterator[Row]:
+    def _on(self, bodies: tuple[str, ...], valued: Sequence[Valued]) -> Iterator[Row]:
         axes = self._axes(bodies, valued[0])
         forces = [v.force(bodies) for v in valued]
         for frame, axis in axes:
@@ -150,7 +137,7 @@ class Balances:
     def _row(
         self,
         balance: Balance,
-        valued: Sequence["Valued"],
+        valued: Sequence[Valued],
         vectors: Sequence[Array],
     ) -> Row:
         k = "xyz".index(balance.axis)
@@ -160,7 +147,7 @@ class Balances:
         )
         return Row(balance, values)
 
-    def _central(self, bodies: tuple[str, ...], place: Point, valued: "Valued") -> bool:
+    def _central(self, bodies: tuple[str, ...], place: Point, valued: Valued) -> bool:
         """Tell whether a point is the mass centre of the one body, whatever it is called."""
         centre = self.efforts[bodies[0]].centre
         if len(bodies) > 1 or not self._reachable(centre[0], bodies):
@@ -177,7 +164,7 @@ class Balances:
             found |= dict.fromkeys(self.frames.chain(name))
         return [name for name in found if self.frames.linked(own[0], name)]
 
-    def _axes(self, bodies: tuple[str, ...], valued: "Valued") -> list[tuple[str, str]]:
+    def _axes(self, bodies: tuple[str, ...], valued: Valued) -> list[tuple[str, str]]:
         found: list[tuple[str, str]] = []
         seen: list[Array] = []
         for frame in self._frames_of(bodies):
@@ -188,7 +175,7 @@ class Balances:
                     seen.append(e)
         return found
 
-    def _points(self, bodies: tuple[str, ...], valued: "Valued") -> list[tuple[str, Point]]:
+    def _points(self, bodies: tuple[str, ...], valued: Valued) -> list[tuple[str, Point]]:
         """Return the points that moments of these bodies may be taken about."""
         acting = [w for w in self.wrenches if w.body in bodies and w.force != ZERO]
         inner = {w.load for w in acting if sum(v.load == w.load for v in acting) > 1}
@@ -262,109 +249,3 @@ class Balances:
         return self.frames.carried(w.couple, w.along, balance.frame) + self._shift(
             balance, w.point, force
         )
-
-
-@dataclass
-class Valued:
-    """Vectors of a machine at one trial point, along the axes of the topmost linked frame."""
-
-    balances: Balances
-    probe: Probe
-
-    def __post_init__(self) -> None:
-        """Begin with nothing remembered."""
-        self._turned: dict[str, Array] = {}
-        self._wrenches: dict[int, tuple[Array, Array]] = {}
-
-    def rotation(self, name: str) -> Array:
-        """Return R from a frame to the topmost one that it is linked with."""
-        frames = self.balances.frames
-        if name not in self._turned:
-            R = frames.rotations[name] if name != INERTIAL else None
-            if R is None:
-                self._turned[name] = np.array([[mp.mpf(i == k) for k in range(3)]
-                                               for i in range(3)])  # fmt: skip
-            else:
-                own = self.array(R)
-                self._turned[name] = self.rotation(frames.each[name].parent) @ own
-        return self._turned[name]
-
-    def array(self, matrix: Matrix) -> Array:
-        """Return the values of a matrix."""
-        rows, columns = matrix.shape
-        return np.array([[self.probe.value(matrix[i, k]) for k in range(columns)]
-                         for i in range(rows)])  # fmt: skip
-
-    def linear(self, vector: Matrix, frame: str) -> Array:
-        """Return a vector's rest and its coefficients of each unknown, (3, 1 + unknowns)."""
-        table = np.array([[mp.mpf(0)] * (1 + len(self.balances.unknowns)) for _ in range(3)])
-        for i in range(3):
-            rest, slopes = self.balances.frames.sheet.split(vector[i])
-            table[i, 0] = self.probe.value(rest)
-            for u, slope in slopes.items():
-                table[i, 1 + self.balances.unknowns.index(u)] = self.probe.value(slope)
-        turned: Array = self.rotation(frame) @ table
-        return turned
-
-    def parts(self, vector: Parts) -> Array:
-        """Return a vector that is a sum of parts along several frames."""
-        total = self.linear(ZERO, INERTIAL)
-        for name, part in vector.items():
-            total = total + self.linear(part, name)
-        return total
-
-    def place(self, place: Point) -> Array:
-        """Return where a point is from the origin of the topmost frame that it is placed in."""
-        frames = self.balances.frames
-        name, at = place[0], self.rotation(place[0]) @ self.array(place[1])[:, 0]
-        while name != INERTIAL:
-            parent = frames.each[name].parent
-            if not (frames.placed(name, parent) and frames.linked(name, parent)):
-                break
-            own = self.array(frames.words.column(frames.each[name].origin))[:, 0]
-            at = at + self.rotation(parent) @ own
-            name = parent
-        return at
-
-    def force(self, bodies: tuple[str, ...]) -> Array:
-        """Return mass times acceleration less the forces."""
-        b = self.balances
-        total = self.linear(ZERO, INERTIAL)
-        for n in bodies:
-            total = total + self.parts(b.efforts[n].force)
-        for k in self._on(bodies):
-            total = total - self._acting(k)[0]
-        return total
-
-    def moment(self, bodies: tuple[str, ...], place: Point) -> Array:
-        """Return the rate of angular momentum less the moments, about a point."""
-        b, here = self.balances, self.place(place)
-        total = 0 * self.linear(ZERO, INERTIAL)
-        for n in bodies:
-            own = b.efforts[n]
-            arm = self.place(own.centre) - here
-            total = total + self.linear(own.moment, own.frame)
-            total = total + _crossed(arm, self.parts(own.force))
-        for k in self._on(bodies):
-            force, couple = self._acting(k)
-            total = total - couple - self._crossed_at(k, here, force)
-        return total
-
-    def _crossed_at(self, k: int, here: Array, force: Array) -> Array:
-        w = self.balances.wrenches[k]
-        return 0 * force if w.force == ZERO else _crossed(self.place(w.point) - here, force)
-
-    def _on(self, bodies: tuple[str, ...]) -> list[int]:
-        return [k for k, w in enumerate(self.balances.wrenches) if w.body in bodies]
-
-    def _acting(self, k: int) -> tuple[Array, Array]:
-        if k not in self._wrenches:
-            w = self.balances.wrenches[k]
-            self._wrenches[k] = (self.linear(w.force, w.along), self.linear(w.couple, w.along))
-        return self._wrenches[k]
-
-
-def _crossed(arm: Array, table: Array) -> Array:
-    x, y, z = arm
-    return np.array([y * table[2] - z * table[1], z * table[0] - x * table[2],
-                     x * table[1] - y * table[0]])  # fmt: skip

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from sympy import Expr, Integer, Matrix, expand_trig, eye, zeros
+from sympy import Expr, Matrix, expand_trig, eye, zeros
 
 from derive.machine.sheet import Sheet
 from derive.machine.words import Words, attitude
@@ -283,6 +283,3 @@ def _bodies_own(machine: Machine) -> tuple[Frame, ...]:
         for b in machine.bodies
         if b.turned
     )
-
-
-NOTHING: Expr = Integer(0)

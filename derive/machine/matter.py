@@ -13,7 +13,6 @@ from sympy import Expr, Integer, Symbol
 
 from derive.machine.probe import DIGITS, NOTHING, POINTS, another, point
 from derive.machine.question import Question, answered, substituted
-from derive.machine.sheet import Sheet
 from derive.machine.words import Words
 from derive.scene import SceneError
 
@@ -113,8 +112,3 @@ def _is_factor(question: Question, words: Words, symbol: Symbol) -> bool:
         left = [a * d for a, d in zip(here, twice, strict=True)]
         right = [b * c for b, c in zip(there, once, strict=True)]
     return _same(left, right)
-
-
-def names(sheet: Sheet, symbols: tuple[Symbol, ...]) -> tuple[str, ...]:
-    """Return what symbols are called."""
-    return tuple(sheet.label(s) for s in symbols)

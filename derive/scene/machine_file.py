@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -91,7 +93,7 @@ def read_machine(document: Mapping[str, object], name: str, source: str) -> Mach
         form="accurate" if word(document.get("form", "fast"), "form", ("fast", "accurate"))
         == "accurate" else "fast",
         time_step=_time_step(part["motion"]),
-        warnings=(),
+        warnings=_unused(scalars, source),
     )  # fmt: skip
 
 
@@ -211,6 +213,18 @@ def _groups(unknowns: tuple[Unknown, ...]) -> tuple[str, ...]:
     names = {u.name for u in unknowns}
     firsts = [n.removesuffix("_x") for n in names if n.endswith("_x")]
     return tuple(sorted(f for f in firsts if {f"{f}_{a}" for a in AXES} <= names))
+
+
+def _unused(scalars: Scalars, source: str) -> tuple[str, ...]:
+    """Return a sentence for every scalar whose name, or rate, the file never mentions again."""
+    words = Counter(re.findall(r"[A-Za-z][A-Za-z0-9_]*", source))
+    entries = [("parameter", p.name) for p in scalars.parameters]
+    entries += [(m.kind, m.name) for m in scalars.moving]
+    return tuple(
+        f"{kind} '{name}' is not used"
+        for kind, name in entries
+        if words[name] == 1 and not words[f"{name}_dot"] + words[f"{name}_ddot"]
+    )
 
 
 def _time_step(given: Table) -> Given:

@@ -12,6 +12,13 @@ from derive.solve.motions import frequencies, growth, limits, roots
 from derive.solve.simulation import Simulation, plot, simulated
 
 __all__ = [
-    *("Instrument", "Simulation", "frequencies", "growth", "limits", "opened", "plot"),
-    *("roots", "simulated"),
+    "Instrument",
+    "Simulation",
+    "frequencies",
+    "growth",
+    "limits",
+    "opened",
+    "plot",
+    "roots",
+    "simulated",
 ]

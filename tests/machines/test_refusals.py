@@ -19,3 +19,9 @@ def test_an_edit_that_breaks_a_rule_is_refused_by_its_sentence(edit: dict[str, s
     with pytest.raises(SceneError) as refusal:
         library(parse_scene(text, "edge_runner_flat"))
     assert str(refusal.value).startswith(f"scene 'edge_runner_flat': {edit['says']}")
+
+
+def test_a_parameter_that_nothing_uses_is_a_warning() -> None:
+    text = EDGE.replace("[speeds]", 'idle = { unit = "m", range = [1, 2] }\n\n[speeds]')
+    assert parse_scene(text, "edge").warnings == ("parameter 'idle' is not used",)
+    assert parse_scene(EDGE, "edge").warnings == ()
