@@ -21,7 +21,7 @@ from derive.motions import Moving, motions, needs, traced, with_names
 from derive.program import Program, Quantity, Sparsity, read_by
 from derive.scene import Machine, Scene, SceneError
 from derive.scene.wanted import EQUATIONS, SPLITTINGS, step_of
-from derive.specialise import Specialised, specialise
+from derive.specialise import Specialised
 from derive.stage import (
     Constant,
     Constants,
@@ -33,7 +33,7 @@ from derive.stage import (
     used_inputs,
     with_low_parts,
 )
-from derive.truth import Truth, truth
+from derive.truth import Truth
 from derive.wording import formula
 
 JACOBIAN = "_jacobian"
@@ -78,12 +78,13 @@ class Wanted:
 
 def library(scene: Scene | Machine) -> Library:
     """Return the programs that ``scene`` asks for."""
-    known = machines.mechanism(scene) if isinstance(scene, Machine) else specialise(scene)
+    known = machines.in_terms(scene)
     graph = Graph()
     leaves = _leaves(graph, known)
     constants = Constants(graph)
     asked, hidden = _asked(scene)
-    truths = {base: _truth(known, base) for base in dict.fromkeys(map(_base, (*asked, *hidden)))}
+    bases = dict.fromkeys(map(_base, (*asked, *hidden)))
+    truths = {base: machines.truth_of(known, base) for base in bases}
     wanted = {base: _wanted(graph, known, fact, leaves) for base, fact in truths.items()}
     every = {
         name: _values_only(graph, constants, known, wanted[name])
@@ -153,10 +154,6 @@ def _parameter(graph: Graph, value: Value) -> str:
     coefficient, node = value
     kind, *rest = graph.nodes[node]
     return str(rest[0]) if kind == "input" and coefficient == 1 else ""
-
-
-def _truth(known: Known, base: str) -> Truth:
-    return machines.truth(known, base) if isinstance(known, Mechanism) else truth(known, base)
 
 
 def _ways(known: Known, fact: Truth) -> tuple[Arrangement, ...]:

@@ -17,9 +17,10 @@ from derive.machine.sheet import Sheet
 from derive.machine.solve import solved
 from derive.machine.words import Words, words
 from derive.motion import reduced
-from derive.scene import Machine, SceneError
-from derive.specialise import Specialised
+from derive.scene import Machine, Scene, SceneError
+from derive.specialise import Specialised, specialise
 from derive.truth import Truth
+from derive.truth import truth as of_one_body
 from derive.vocabulary import Vocabulary
 
 LONGEST_TIDIED = 150  # operations of a term in which squares of sines are looked for
@@ -66,6 +67,16 @@ def single(known: Known) -> Specialised:
     if isinstance(known, Mechanism):
         raise TypeError(f"scene '{known.scene.name}' is a machine, not a single body")
     return known
+
+
+def in_terms(scene: Scene | Machine) -> Known:
+    """Return a scene in the lecture's terms, of whichever kind it is."""
+    return mechanism(scene) if isinstance(scene, Machine) else specialise(scene)
+
+
+def truth_of(known: Known, base: str) -> Truth:
+    """Return what the lecture says of a wanted function, of whichever kind the scene is."""
+    return truth(known, base) if isinstance(known, Mechanism) else of_one_body(known, base)
 
 
 def mechanism(machine: Machine) -> Mechanism:

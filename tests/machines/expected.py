@@ -156,8 +156,8 @@ _arm = DATA["centrifuge_gondola"]["data"]
 ARM = Case(
     "centrifuge_gondola",
     {"m": _arm["m"], "I_xx": _arm["J_G"][0][0], "I_yy": _arm["J_G"][1][1],
-     "I_zz": _arm["J_G"][2][2], "I_xz": -_arm["J_G"][0][2], "x": _arm["r_PG"][0],
-     "z": _arm["r_PG"][2], "a_x": _arm["a_P"][0], "a_y": _arm["a_P"][1]}
+     "I_zz": _arm["J_G"][2][2], "I_xz": -_arm["J_G"][0][2], "e_x": _arm["r_PG"][0],
+     "e_z": _arm["r_PG"][2], "a_x": _arm["a_P"][0], "a_y": _arm["a_P"][1]}
     | {f"{name}{dots}": value for name in ("yaw", "pitch", "spin")
        for dots, value in zip(("", "_dot", "_ddot"), _arm[name], strict=True)},
     (*plain("F", "F_x", "F_y", "F_z"), *plain("M", "M_x", "M_y", "M_z")),
