@@ -20,7 +20,7 @@ def elliptic(case: Case, precision: str) -> float:
     with np.errstate(all="ignore"):
         found = [float(x) for x in _omega(case, real)]
     true = [float(x) for x in case.omega_T]
-    size = math.sqrt(sum(x * x for x in true))
+    size = math.sqrt(sum(x * x for x in true)) or 1.0
     error = math.sqrt(sum((a - b) ** 2 for a, b in zip(found, true, strict=True))) / size
     return error if math.isfinite(error) else math.nan
 

@@ -94,9 +94,9 @@ def motions(every: Mapping[str, Case], shop: Workshop) -> Iterator[Hard]:
                 asked.says,
                 "omega / attitude",
                 asked.naive,
-                _by_precision(partial(best, case, asked.naive, shop)),
+                by_precision(partial(best, case, asked.naive, shop)),
                 asked.ours,
-                _by_precision(partial(best, case, asked.ours, shop)),
+                by_precision(partial(best, case, asked.ours, shop)),
                 dict(zip(PRECISIONS, asked.bound, strict=True))
                 if asked.bound
                 else {p: KAPPAS * kappa * ROUNDOFF[p] for p in PRECISIONS},
@@ -120,9 +120,9 @@ def scaled(every: Mapping[str, Case], shop: Workshop) -> Iterator[Hard]:
                 f"inertia times {says}",
                 "omega / attitude",
                 PUBLISHED,
-                _by_precision(partial(_best_of, cases, PUBLISHED, shop)),
+                by_precision(partial(_best_of, cases, PUBLISHED, shop)),
                 ours,
-                _by_precision(partial(_best_of, cases, ours, shop)),
+                by_precision(partial(_best_of, cases, ours, shop)),
                 {p: 4 * kappa * ROUNDOFF[p] for p in PRECISIONS},
                 "4 kappa u, as without the scale: powers of two are exact",
             )
@@ -143,9 +143,9 @@ def long_run(every: Mapping[str, Case], shop: Workshop, count: int) -> Iterator[
             f"{count:.0e} steps of 0.01 s: {what}",
             f"largest drift of {what}",
             RK4,
-            _by_precision(partial(drift, case, RK4, shop, count, place)),
+            by_precision(partial(drift, case, RK4, shop, count, place)),
             "step_dmv",
-            _by_precision(partial(drift, case, "step_dmv", shop, count, place)),
+            by_precision(partial(drift, case, "step_dmv", shop, count, place)),
             bound,
             "the target: rounding adds up like a random walk when it is carried along",
         )
@@ -218,7 +218,8 @@ def _tried(case: Case, counts: Sequence[int]) -> Sequence[int]:
     return counts[:1] if case.name == "spin_1e4" else counts
 
 
-def _by_precision(found: Callable[[str], tuple[float, ...]]) -> Figures:
+def by_precision(found: Callable[[str], tuple[float, ...]]) -> Figures:
+    """Return what is found in each precision; nothing where a program or package is missing."""
     figures = {}
     for precision in PRECISIONS:
         try:

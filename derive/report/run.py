@@ -17,6 +17,7 @@ from derive.report.hard import Hard, long_run, motions, scaled
 from derive.report.hard_euler import near_lock
 from derive.report.hard_formulas import formulas
 from derive.report.hard_moment import cancelling
+from derive.report.hard_spin import spins
 from derive.report.orders import orders
 from derive.report.point import FULL, SMALL
 from derive.report.record import Report
@@ -90,6 +91,7 @@ def _made(ask: Ask, every: dict[str, Case], folder: Path) -> Report:
 def _hard(every: dict[str, Case], shop: Workshop) -> Iterable[Hard]:
     yield from motions(every, shop)
     yield from scaled(every, shop)
+    yield from spins(every["asym_ii_generic"], shop)
     yield from long_run(every, shop, LONG_RUN)
     yield from near_lock(shop)
     yield from formulas(shop.folder)

@@ -89,7 +89,7 @@ def _units(found: Found, point: Point, units: float) -> float:
 
 
 def _scales(given: Evidence) -> Iterator[Target]:
-    for row in (h for h in given.hard if h.name.startswith("inertia times")):
+    for row in (h for h in given.hard if h.name.startswith(("inertia", "pure", "zero"))):
         if row.ours == EXACT:
             finite = all(math.isfinite(x) for own in row.ours_found.values() for x in own)
             both = row.ours_found and all(row.holds(p) for p in row.ours_found)
