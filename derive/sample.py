@@ -137,6 +137,9 @@ def _changed(of: Source, change: Callable[[Quantity, float], float]) -> Values:
 
 
 def _large_spin(of: Source, _: int) -> Values | None:
+    moves = any(wanted.startswith("step_") for wanted in of.known.scene.wanted)
+    if isinstance(of.known, Mechanism) and moves:
+        return None  # a step would turn angles by many radians, and their sines magnify rounding
     fast = [q for q in varying(of.known) if q.unit == "rad/s"]
 
     def change(q: Quantity, x: float) -> float:

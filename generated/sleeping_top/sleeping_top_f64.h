@@ -58,7 +58,7 @@ void sleeping_top_setup_f64(double m, double r, double l, double n, double g,
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
  *            step moving_point_form]
  * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
- * Error: median 0.003, largest 0.99 u of the largest term (sampled: 108 points, worst at
+ * Error: median 0.003, largest 0.99 u of the largest term (sampled: 105 points, worst at
  *            mass_matrix, point 83).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -82,7 +82,7 @@ void sleeping_top_linearised_f64(const sleeping_top_constants_f64 *constants, do
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.75, largest 4.4 u of the largest term (sampled: 108 points, worst at alpha_ddot,
+ * Error: median 0.74, largest 4.4 u of the largest term (sampled: 105 points, worst at alpha_ddot,
  *            point 72).
  * Cost: 4 sub, 9 mul, 1 div, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -103,7 +103,7 @@ void sleeping_top_accelerations_f64(const sleeping_top_constants_f64 *constants,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.56, largest 4.1 u of the largest term (sampled: 108 points, worst at energy,
+ * Error: median 0.54, largest 4.1 u of the largest term (sampled: 105 points, worst at energy,
  *            point 67).
  * Cost: 3 add, 6 mul, 2 cos.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -130,8 +130,8 @@ void sleeping_top_energy_f64(const sleeping_top_constants_f64 *constants, double
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.52, largest 2.6e+04 u of the largest term (sampled: 32 points, worst at
- *            beta_dot_next, point 24).
+ * Error: median 0.52, largest 6.3 u of the largest term (sampled: 30 points, worst at
+ *            alpha_dot_next, point 26).
  * Cost: 28 add, 16 sub, 64 mul, 4 div, 8 sin, 8 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
