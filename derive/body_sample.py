@@ -13,6 +13,7 @@ from random import Random
 from derive.arithmetic import rounded
 from derive.c_text import Precision
 from derive.formula import FLOATS, Formula, evaluate
+from derive.machine.mechanism import Known, Mechanism
 from derive.specialise import Specialised
 
 Triple = tuple[float, float, float]
@@ -52,8 +53,10 @@ BODIES = (
 )
 
 
-def bodies_taken(known: Specialised) -> tuple[Hard, ...]:
+def bodies_taken(known: Known) -> tuple[Hard, ...]:
     """Return the kinds of hard bodies that a scene's parameters can describe."""
+    if isinstance(known, Mechanism):
+        return ()
     body = known.scene.body
     entered = [_entered(known, f) for f in body.inertia]
     if body.kind == "principal" and all(entered[:3]) and len(set(entered[:3])) == 3:
@@ -65,7 +68,7 @@ def bodies_taken(known: Specialised) -> tuple[Hard, ...]:
     return ()
 
 
-def _entered(known: Specialised, formula: Formula) -> str | None:
+def _entered(known: Known, formula: Formula) -> str | None:
     free = {q.name for q in known.words.parameters}
     named = formula.operator == "symbol" and formula.name in free
     return formula.name if named else None
@@ -109,8 +112,10 @@ def _turned(moments: Triple, turn: Sequence[float]) -> tuple[float, ...]:
     return tuple(own)
 
 
-def admissible(known: Specialised, values: Mapping[str, float]) -> bool:
+def admissible(known: Known, values: Mapping[str, float]) -> bool:
     """Tell whether a scene's parameters describe a body, wheels included."""
+    if isinstance(known, Mechanism):
+        return True
     tensor = _tensor(known, values)
     half = (tensor[0][0] + tensor[1][1] + tensor[2][2]) / 2
     second = [[half * (i == k) - tensor[i][k] for k in range(3)] for i in range(3)]

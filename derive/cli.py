@@ -18,11 +18,14 @@ from derive import __version__
 from derive.check import check as checks
 from derive.check.compiler import CompilerError
 from derive.files import OutputError, differences, require_writable, write
-from derive.generation import Made, all_made, lecture_made
+from derive.generation import Made, all_made, gallery_of, lecture_made
 from derive.lecture import LECTURE
 from derive.notation import expression_text
 from derive.prove import ProofError
+from derive.saving import Saving
 from derive.scene import SceneError, catalogue, load
+from derive.solve.command import options as solve_options
+from derive.solve.command import solved
 from derive.step import first_fall, verify
 
 OUT = Path("generated")
@@ -72,6 +75,9 @@ def parser() -> argparse.ArgumentParser:
     _bench_options(
         commands.add_parser("bench", help="compare cost and error with peers, in one run")
     )
+    answers = commands.add_parser("solve", help="evaluate the answers of a scene, roots included")
+    solve_options(answers)
+    answers.set_defaults(run=solve)
     scenes = commands.add_parser("scenes", help="list the catalogue")
     scenes.set_defaults(run=list_scenes)
     return top
@@ -144,6 +150,15 @@ def list_scenes(_: argparse.Namespace) -> int:
     return 0
 
 
+def solve(options: argparse.Namespace) -> int:
+    """Print the answers of a scene with their units."""
+    table = Table("function", "answer", "value", "unit", box=None)
+    for row in solved(options):
+        table.add_row(*row)
+    console.print(table)
+    return 0
+
+
 def progress() -> Progress:
     """Return a progress line that vanishes when it is done."""
     columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
@@ -154,6 +169,8 @@ def generate(options: argparse.Namespace) -> int:
     """Write, or with --check compare, the files of scenes."""
     results = _made(options.scenes, () if options.scenes else (lecture_made,))
     texts = {name: text for result in results for name, text in result.texts.items()}
+    if not options.scenes:
+        texts |= gallery_of(results)
     if options.check:
         return _compare(options, texts)
     write(options.out, texts)
@@ -214,6 +231,20 @@ def _print_costs(results: Sequence[Made]) -> None:
         table.add_row(row.scene, row.function, str(row.flops), str(row.divisions), *row.errors)
     console.print(table)
     console.print("Errors in u (2^-24 float, 2^-53 double) of the largest term, sampled.")
+    _print_savings([saving for result in results for saving in result.savings])
+
+
+def _print_savings(savings: Sequence[Saving]) -> None:
+    """Print what each answer of a machine was found not to need, and the operations it saves."""
+    if not savings:
+        return
+    columns = ("unknowns left out", "cancels", "never enters", "+ - * /", "body by body")
+    table = Table("scene", "function", *columns, box=None)
+    for s in savings:
+        plain = "" if s.plain is None else str(s.plain)
+        lists = [" ".join(names) for names in (s.unknowns, s.cancels, s.absent)]
+        table.add_row(s.scene, s.function, *lists, str(s.operations), plain)
+    console.print(table)
 
 
 def _compare(options: argparse.Namespace, texts: dict[str, str]) -> int:

@@ -14,6 +14,7 @@ from flint import arb, ctx
 
 from derive.equations import Equations, equations
 from derive.library import Library
+from derive.machine.mechanism import single
 from derive.motion_error import LONG_FLOATS
 from derive.program import Program, component_names, run
 from derive.reference import BALLS, solution
@@ -60,7 +61,7 @@ class Order:
 
 def rate_of(library: Library, values: Mapping[str, Any]) -> Rate:
     """Return the rate of the state as the lecture's equations give it, other inputs held."""
-    fact = truth(library.known, "state_rate")
+    fact = library.truths.get("state_rate") or truth(single(library.known), "state_rate")
     asked: Equations = equations(library.known, fact)
     states = _states(library)
     rates = [c for q in fact.outputs for c in q.components]

@@ -8,7 +8,7 @@ from pathlib import Path
 import jinja2
 
 from derive import __version__
-from derive.arithmetic import splitter
+from derive.arithmetic import PI, rounded, splitter
 from derive.c_text import (
     MATH,
     PRECISIONS,
@@ -174,6 +174,7 @@ def _uses_math(library: Library) -> bool:
 
 def _pair_function(name: str, names: Names, precision: Precision) -> str:
     bits = precision.bits
+    pi = Fraction(float(rounded(PI, precision.dtype)))
     return (
         TEMPLATES.get_template(f"pair/{name}.c.jinja")
         .render(
@@ -185,6 +186,8 @@ def _pair_function(name: str, names: Names, precision: Precision) -> str:
             split=literal(Fraction(splitter(bits)), precision),
             top=literal(Fraction(2 ** (bits - 1) + 1), precision),
             one_less=literal(1 - Fraction(1, 2**bits), precision),
+            pi_high=literal(pi, precision),
+            pi_low=literal(Fraction(float(rounded(PI - pi, precision.dtype))), precision),
             **precision.functions,
         )
         .rstrip()

@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 from derive.blocks import in_order
-from derive.specialise import Specialised
+from derive.machine.mechanism import Known
 from derive.truth import Truth
 from derive.valuation import Atom, Atoms, Monomial, Polynomial, terms
 
@@ -66,7 +66,7 @@ class _Splitter:
     def block(self, rows: Sequence[Polynomial], unknowns: Sequence[int], later: set[int]) -> Block:
         matrix, right = [], []
         for row in rows:
-            rest = {m: -c for m, c in row.items() if not later & {a for a, _ in m}}
+            rest = {m: -c for m, c in row.items() if not later & self.atoms.within(m)}
             matrix.append(tuple(self.sum(_coefficient_of(row, u)) for u in unknowns))
             right.append(self.sum(rest))
         return Block(tuple(unknowns), tuple(matrix), tuple(right))
@@ -78,7 +78,7 @@ def _coefficient_of(row: Polynomial, unknown: int) -> Polynomial:
     }
 
 
-def equations(known: Specialised, fact: Truth) -> Equations:
+def equations(known: Known, fact: Truth) -> Equations:
     """Return the equations of ``fact``, multiplied out and in an order to solve them in."""
     words, atoms = known.words, Atoms()
     rows = [atoms.polynomial(residual) for residual in fact.residuals]
@@ -86,7 +86,7 @@ def equations(known: Specialised, fact: Truth) -> Equations:
     parameters = {words.symbols[c] for q in words.parameters for c in q.components}
     splitter = _Splitter(atoms, _fixed(atoms, parameters), {})
     blocks, later = [], set(unknowns)
-    for places, solved in in_order([_uses(row, unknowns) for row in rows]):
+    for places, solved in in_order([_uses(atoms, row, unknowns) for row in rows]):
         own = [unknowns[u] for u in solved]
         blocks.append(splitter.block([rows[r] for r in places], own, later))
         later -= set(own)
@@ -97,8 +97,8 @@ def equations(known: Specialised, fact: Truth) -> Equations:
     )
 
 
-def _uses(row: Polynomial, unknowns: Sequence[int]) -> set[int]:
-    present = {atom for monomial in row for atom, _ in monomial}
+def _uses(atoms: Atoms, row: Polynomial, unknowns: Sequence[int]) -> set[int]:
+    present = {atom for monomial in row for atom in atoms.within(monomial)}
     return {place for place, atom in enumerate(unknowns) if atom in present}
 
 

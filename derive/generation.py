@@ -6,15 +6,18 @@ from dataclasses import dataclass
 from math import isfinite
 
 from derive.files import scene_files
+from derive.gallery.card import Card, card, gallery
 from derive.library import Library, library
 from derive.measure import figures
 from derive.motion_error import moving_figures
 from derive.page import lecture_page
 from derive.program import Measurement
 from derive.prove import ProofError, prove
+from derive.saving import Saving, savings
 from derive.scene import SceneError, load
 
 LECTURE_PAGE = "lecture.html"
+GALLERY_PAGE = "index.html"
 
 
 @dataclass(frozen=True)
@@ -35,6 +38,8 @@ class Made:
     texts: dict[str, str]
     warnings: tuple[str, ...]
     costs: tuple[CostRow, ...]
+    savings: tuple[Saving, ...] = ()
+    card: Card | None = None
 
 
 def made(source: str) -> Made:
@@ -51,7 +56,8 @@ def made(source: str) -> Made:
         raise SceneError(f"scene '{scene.name}': {rule}, but {error}") from None
     _finite(scene.name, measured)
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in scene.warnings)
-    return Made(scene_files(programs, measured), warnings, cost_rows(programs, measured))
+    costs, spared = cost_rows(programs, measured), tuple(savings(programs))
+    return Made(scene_files(programs, measured), warnings, costs, spared, card(programs))
 
 
 def _finite(scene: str, measured: Sequence[Measurement]) -> None:
@@ -67,6 +73,11 @@ def _finite(scene: str, measured: Sequence[Measurement]) -> None:
 def lecture_made() -> Made:
     """Return the lecture's page."""
     return Made({LECTURE_PAGE: lecture_page()}, (), ())
+
+
+def gallery_of(results: Sequence[Made]) -> dict[str, str]:
+    """Return the gallery of all scenes that were made."""
+    return {GALLERY_PAGE: gallery([r.card for r in results if r.card is not None])}
 
 
 def cost_rows(programs: Library, measured: Sequence[Measurement]) -> tuple[CostRow, ...]:

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 from sympy import Symbol
 
@@ -14,11 +15,13 @@ from derive.forms import Block, best_values, best_with_jacobian, cost
 from derive.graph import Graph, Value
 from derive.lecture import LECTURE
 from derive.lower import lower, value_of
+from derive.machine import mechanism as machines
+from derive.machine.mechanism import Known, Mechanism
 from derive.motions import Moving, motions, needs, traced, with_names
 from derive.program import Program, Quantity, Sparsity, read_by
-from derive.scene import Scene, SceneError
+from derive.scene import Machine, Scene, SceneError
 from derive.scene.wanted import EQUATIONS, SPLITTINGS, step_of
-from derive.specialise import Specialised, specialise
+from derive.specialise import Specialised
 from derive.stage import (
     Constant,
     Constants,
@@ -30,10 +33,11 @@ from derive.stage import (
     used_inputs,
     with_low_parts,
 )
-from derive.truth import Truth, truth
+from derive.truth import Truth
 from derive.wording import formula
 
 JACOBIAN = "_jacobian"
+STEP, RATE = "step_rk4", "state_rate"  # what moves a machine in time, and what it rests on
 SENSITIVITY = "_sensitivity"
 INVERSE = re.compile("J_[xyz][xyz]")
 
@@ -47,7 +51,7 @@ class Library:
     motions   : what moves the state in time, and formulas for attitudes
     """
 
-    known: Specialised
+    known: Known
     setup: Program
     functions: tuple[Program, ...]
     constants: tuple[Constant, ...]
@@ -72,15 +76,15 @@ class Wanted:
     positive: tuple[Value, ...]
 
 
-def library(scene: Scene) -> Library:
+def library(scene: Scene | Machine) -> Library:
     """Return the programs that ``scene`` asks for."""
-    known = specialise(scene)
+    known = machines.in_terms(scene)
     graph = Graph()
     leaves = _leaves(graph, known)
     constants = Constants(graph)
-    asked = [name for name in scene.wanted if _base(name) in EQUATIONS]
-    hidden = [name for name in needs(scene) if name not in asked]
-    truths = {base: truth(known, base) for base in dict.fromkeys(map(_base, (*asked, *hidden)))}
+    asked, hidden = _asked(scene)
+    bases = dict.fromkeys(map(_base, (*asked, *hidden)))
+    truths = {base: machines.truth_of(known, base) for base in bases}
     wanted = {base: _wanted(graph, known, fact, leaves) for base, fact in truths.items()}
     every = {
         name: _values_only(graph, constants, known, wanted[name])
@@ -88,7 +92,9 @@ def library(scene: Scene) -> Library:
         else _with_jacobian(graph, constants, known, wanted[_base(name)], (leaves, name))
         for name in (*asked, *hidden)
     }
-    moving = Moving(known, graph, leaves, every, _moment(graph, constants, known, leaves))
+    moment = _moment(graph, constants, known, leaves)
+    body = cast(Specialised, known)  # a machine wants no motion, and nothing is read from it
+    moving = Moving(body, graph, leaves, every, moment)
     moves = motions(moving)
     taken = {name: _parameter(graph, value) for value, name in constants.names.items()}
     traced_part, renaming = traced(moving, taken)
@@ -118,10 +124,22 @@ def library(scene: Scene) -> Library:
     return Library(known, made, shown, named, truths, rates, moves)
 
 
+def _asked(scene: Scene | Machine) -> tuple[list[str], list[str]]:
+    """Return the functions that satisfy equations, and those that only motions rest on."""
+    if isinstance(scene, Machine):
+        asked = [name for name in scene.wanted if name != STEP]
+        rests = [RATE] if STEP in scene.wanted and RATE not in asked else []
+        return asked, rests
+    asked = [name for name in scene.wanted if _base(name) in EQUATIONS]
+    return asked, [name for name in needs(scene) if name not in asked]
+
+
 def _moment(
-    graph: Graph, constants: Constants, known: Specialised, leaves: Mapping[str, Value]
+    graph: Graph, constants: Constants, known: Known, leaves: Mapping[str, Value]
 ) -> Program | None:
     """Return the program of the moment along the axes, for steps that kick; None if it is zero."""
+    if isinstance(known, Mechanism):
+        return None
     if not any(step_of(name) in SPLITTINGS for name in known.scene.wanted):
         return None
     by_symbol = {known.words.symbols[c]: value for c, value in leaves.items()}
@@ -141,6 +159,10 @@ def _parameter(graph: Graph, value: Value) -> str:
     return str(rest[0]) if kind == "input" and coefficient == 1 else ""
 
 
+def _ways(known: Known, fact: Truth) -> tuple[Arrangement, ...]:
+    return machines.arrange(known, fact) if isinstance(known, Mechanism) else arrange(known, fact)
+
+
 def _meaning(graph: Graph, value: Value) -> str:
     text = formula(graph, value)
     return f"{text[2:]} of the inverse inertia tensor" if INVERSE.fullmatch(text) else text
@@ -150,16 +172,16 @@ def _base(name: str) -> str:
     return name.removesuffix(JACOBIAN).removesuffix(SENSITIVITY)
 
 
-def _leaves(graph: Graph, known: Specialised) -> dict[str, Value]:
+def _leaves(graph: Graph, known: Known) -> dict[str, Value]:
     words = known.words
     leaves = {c: graph.parameter(c) for q in words.parameters for c in q.components}
     varying = [c for q in (*words.states, *words.inputs) for c in q.components]
     return leaves | {c: graph.variable(c) for c in varying}
 
 
-def _wanted(graph: Graph, known: Specialised, fact: Truth, leaves: Mapping[str, Value]) -> Wanted:
+def _wanted(graph: Graph, known: Known, fact: Truth, leaves: Mapping[str, Value]) -> Wanted:
     by_symbol = {known.words.symbols[c]: value for c, value in leaves.items()}
-    ways = [_lowered(graph, fact, way, by_symbol) for way in arrange(known, fact)]
+    ways = [_lowered(graph, fact, way, by_symbol) for way in _ways(known, fact)]
     return min(ways, key=lambda way: cost(graph, _best(graph, way))) if len(ways) > 1 else ways[0]
 
 
@@ -178,14 +200,14 @@ def _best(graph: Graph, wanted: Wanted) -> list[Value]:
     return best_values(graph, [Block(output, ()) for output in wanted.outputs])
 
 
-def _values_only(graph: Graph, constants: Constants, known: Specialised, wanted: Wanted) -> Program:
+def _values_only(graph: Graph, constants: Constants, known: Known, wanted: Wanted) -> Program:
     return _program(graph, constants, known, wanted.fact, _best(graph, wanted))
 
 
 def _with_jacobian(
     graph: Graph,
     constants: Constants,
-    known: Specialised,
+    known: Known,
     wanted: Wanted,
     by: tuple[Mapping[str, Value], str],
 ) -> Program:
@@ -225,7 +247,7 @@ def _jacobian_quantity(pattern: Sparsity) -> Quantity:
     return Quantity("jacobian", parts, (len(parts),), "", "", None, None, says)
 
 
-def _columns(graph: Graph, known: Specialised, wanted: Wanted) -> tuple[Quantity, ...]:
+def _columns(graph: Graph, known: Known, wanted: Wanted) -> tuple[Quantity, ...]:
     """Return what the Jacobian is taken by: every state of a state rate, and all that is used."""
     words = known.words
     used = _inputs_below(graph, [v for output in wanted.outputs for v in output])
@@ -251,7 +273,7 @@ def _inputs_below(graph: Graph, values: Iterable[Value]) -> set[str]:
 
 
 def _program(
-    graph: Graph, constants: Constants, known: Specialised, fact: Truth, values: Sequence[Value]
+    graph: Graph, constants: Constants, known: Known, fact: Truth, values: Sequence[Value]
 ) -> Program:
     ops, results = hot(graph, constants, values)
     inputs = used_inputs((*known.words.states, *known.words.inputs), ops, results)

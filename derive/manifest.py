@@ -10,7 +10,8 @@ from derive.c_text import F32, F64, PRECISIONS, pair_functions
 from derive.comment import of_what
 from derive.emit import JACOBIAN_DENSE
 from derive.lecture import LECTURE
-from derive.library import Library
+from derive.library import JACOBIAN, Library
+from derive.machine.mechanism import Mechanism, depends_on, dropped
 from derive.notation import equation_text
 from derive.program import Measurement, Program, Quantity, Sparsity
 from derive.signature import Names, dense
@@ -127,6 +128,21 @@ def _function(library: Library, program: Program, figures: Sequence[Measurement]
             {"step": s, "equation": equation_text(LECTURE[s])} for s in program.steps
         ],
         "assumptions": list(program.assumptions),
+    } | _choice(library, program)
+
+
+def _choice(library: Library, program: Program) -> dict[str, Any]:
+    """Return what a function of a machine depends on, and what it was found not to need."""
+    if not isinstance(library.known, Mechanism):
+        return {}
+    base = program.name.removesuffix(JACOBIAN)
+    if base not in library.truths:
+        return {}
+    found = dropped(library.known, base)
+    return {
+        "depends_on": list(depends_on(library.known, base)),
+        "balances": [str(b) for b in library.known.question(base).balances],
+        "not_needed": {why: list(names) for why, names in found.items()},
     }
 
 

@@ -20,6 +20,7 @@ from derive.reference import BALLS, Known, solution
 from derive.trace import needed
 
 POINTS = 2
+TRIES = 50
 SEED = "derive: proof by exact values"
 BITS = 4000
 SPAN = 9973  # numerators up to this, denominators up to its hundredth
@@ -91,7 +92,24 @@ def prove(library: Library) -> None:
             _prove_at(library, asked, point(library, number))
         except IrrationalError:
             with ctx.workprec(BITS):
-                _prove_at(library, asked, ball_point(library, number))
+                _prove_in_balls(library, asked, number)
+
+
+def _prove_in_balls(library: Library, asked: Mapping[str, Equations], number: int) -> None:
+    """Prove at the first point at which every root exists."""
+    for tries in range(TRIES):
+        at = ball_point(library, number + POINTS * tries)
+        if all(_exists(question, at) for question in asked.values()):
+            _prove_at(library, asked, at)
+            return
+    raise ProofError(
+        f"scene '{library.known.scene.name}': no random point was found at which all roots exist"
+    )
+
+
+def _exists(question: Equations, at: Point) -> bool:
+    true = solution(question, at.values, (), at.arithmetic)
+    return all(known.value.is_finite() for known in true.values())
 
 
 def point(library: Library, number: int) -> Point:

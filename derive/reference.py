@@ -14,7 +14,7 @@ from typing import Any
 from flint import arb, arb_mat, ctx
 
 from derive.equations import Equations, Part, Sum
-from derive.valuation import Arithmetic, Atom, value
+from derive.valuation import Arithmetic, Atom, raised, value
 
 BITS = 300
 SPARE_BITS = 100  # a ball must be this much narrower than its largest term
@@ -38,7 +38,8 @@ def solution(
     asked: Equations, given: Mapping[str, Any], columns: Iterable[str], arithmetic: Arithmetic
 ) -> dict[str, Known]:
     """Return every unknown by its component's name, with its slopes by the ``columns``."""
-    known = _atoms_known(asked, given, set(columns), arithmetic)
+    known = _given(asked, given, set(columns), arithmetic)
+    _apply(asked, known, arithmetic)
     fixed = {place: known[place].value for place in asked.fixed}
     values = [value(c, fixed, arithmetic) for c in asked.coefficients]
     coefficients = [(v, arithmetic["size"](v)) for v in values]
@@ -50,22 +51,28 @@ def solution(
         right = [_summed(s, known, coefficients, arithmetic) for s in block.right]
         for atom, solved in zip(block.unknowns, _solved(matrix, right, arithmetic), strict=True):
             known[atom] = found[asked.names[atom]] = solved
+        _apply(asked, known, arithmetic)
     return found
 
 
-def _atoms_known(
+def _given(
     asked: Equations, given: Mapping[str, Any], columns: set[str], arithmetic: Arithmetic
 ) -> dict[int, Known]:
     known: dict[int, Known] = {}
     one = arithmetic["number"](Fraction(1))
-    for place, atom in enumerate(asked.atoms):
-        name = asked.names.get(place)
-        if name is None:
-            known[place] = _applied(atom, known, arithmetic)
-        elif name in given:
+    for place, name in asked.names.items():
+        if name in given:
             slopes: Slopes = {name: (one, 1.0)} if name in columns else {}
             known[place] = Known(given[name], arithmetic["size"](given[name]), slopes)
     return known
+
+
+def _apply(asked: Equations, known: dict[int, Known], arithmetic: Arithmetic) -> None:
+    """Add the functions that are made of what is known by now."""
+    for place, atom in enumerate(asked.atoms):
+        made_of = {a for monomial, _ in atom.inner for a, _ in monomial}
+        if place not in known and place not in asked.names and made_of <= known.keys():
+            known[place] = _applied(atom, known, arithmetic)
 
 
 def _applied(atom: Atom, known: Mapping[int, Known], arithmetic: Arithmetic) -> Known:
@@ -106,14 +113,22 @@ def _summed(
         product, size = coefficients[part.coefficient]
         for atom, power in part.factors:
             factor = known[atom]
-            product = product * (factor.value if power == 1 else factor.value**power)
-            size *= factor.scale**power
+            product = product * raised(factor.value, power)
+            size *= _power_scale(factor, power, arithmetic)
         total, largest = total + product, max(largest, size)
         for place, (atom, _) in enumerate(part.factors):
             if known[atom].slopes:
                 partial = _partial(part, place, known, coefficients)
                 _add_slopes(slopes, known[atom].slopes, *partial)
     return Known(total, largest, slopes)
+
+
+def _power_scale(factor: Known, power: int, arithmetic: Arithmetic) -> float:
+    """Return the size of a power; a quotient magnifies what its divisor has lost."""
+    if power > 0:
+        return factor.scale**power
+    size = arithmetic["size"](factor.value) or factor.scale
+    return float(size ** (power - 1) * factor.scale)
 
 
 def _partial(
@@ -126,7 +141,7 @@ def _partial(
         if other == place and power != 1:
             product, size = product * power, size * abs(power)
         if left:
-            product = product * (factor.value if left == 1 else factor.value**left)
+            product = product * raised(factor.value, left)
             size *= factor.scale**left
     return product, size
 

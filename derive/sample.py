@@ -14,8 +14,8 @@ from random import Random
 from derive.arithmetic import rounded
 from derive.body_sample import BODIES, Hard, admissible, bodies_taken, hard_body, solvable
 from derive.c_text import Precision
+from derive.machine.mechanism import Known, Mechanism, single
 from derive.program import Quantity
-from derive.specialise import Specialised
 
 Values = dict[str, float]
 LARGE_SPIN = 1e4
@@ -46,7 +46,7 @@ class Samples:
 class Source:
     """Where samples come from: a scene, a precision, and dice for one kind of sample."""
 
-    known: Specialised
+    known: Known
     precision: Precision
     dice: Random
 
@@ -55,13 +55,13 @@ class Source:
         return float(rounded(Fraction(x), self.precision.dtype))
 
 
-def source(known: Specialised, precision: Precision, kind: str) -> Source:
+def source(known: Known, precision: Precision, kind: str) -> Source:
     """Return the source of one kind of sample."""
     seed = f"derive: {known.scene.name} {precision.name} {kind}"
     return Source(known, precision, Random(seed))  # noqa: S311 - samples, no secret
 
 
-def samples(known: Specialised, precision: Precision, ordinary: int, corners: int) -> Samples:
+def samples(known: Known, precision: Precision, ordinary: int, corners: int) -> Samples:
     """Return ``ordinary`` samples on the declared ranges, and ``corners`` of each hard kind."""
     plain = source(known, precision, "ordinary")
     found = [("ordinary", _ordinary(plain)) for _ in range(ordinary)]
@@ -83,7 +83,7 @@ def samples(known: Specialised, precision: Precision, ordinary: int, corners: in
 
 
 def _with_hard_body(of: Source, hard: Hard) -> Values:
-    return _ordinary(of) | hard_body(of.known, hard, of.dice, of.precision)
+    return _ordinary(of) | hard_body(single(of.known), hard, of.dice, of.precision)
 
 
 def _ordinary(of: Source) -> Values:
@@ -92,7 +92,9 @@ def _ordinary(of: Source) -> Values:
         values = {
             name: of.held(uniform(of.dice, q)) for q in words.parameters for name in q.components
         }
-        if admissible(of.known, values) or (tries > PATIENCE and solvable(of.known, values)):
+        if admissible(of.known, values):
+            return values | _motion(of)
+        if tries > PATIENCE and solvable(single(of.known), values):
             return values | _motion(of)
     raise ArithmeticError(
         f"scene '{of.known.scene.name}': the ranges of its parameters must hold a body, "
@@ -104,12 +106,12 @@ def _motion(of: Source) -> Values:
     values: Values = {}
     for q in varying(of.known):
         own = [uniform(of.dice, q) for _ in q.components]
-        own = _unit(own) if q.name == "attitude" else own
+        own = _unit(own) if _is_attitude(q) else own
         values |= {name: of.held(x) for name, x in zip(q.components, own, strict=True)}
     return values
 
 
-def varying(known: Specialised) -> tuple[Quantity, ...]:
+def varying(known: Known) -> tuple[Quantity, ...]:
     """Return all quantities that vary with time and enter from outside."""
     return (*known.words.states, *known.words.inputs)
 
@@ -135,6 +137,9 @@ def _changed(of: Source, change: Callable[[Quantity, float], float]) -> Values:
 
 
 def _large_spin(of: Source, _: int) -> Values | None:
+    moves = any(wanted.startswith("step_") for wanted in of.known.scene.wanted)
+    if isinstance(of.known, Mechanism) and moves:
+        return None  # a step would turn angles by many radians, and their sines magnify rounding
     fast = [q for q in varying(of.known) if q.unit == "rad/s"]
 
     def change(q: Quantity, x: float) -> float:
@@ -149,13 +154,19 @@ def _at_rest(of: Source, _: int) -> Values | None:
 
 
 def _denormal(of: Source, _: int) -> Values | None:
+    if isinstance(of.known, Mechanism):
+        return None  # chains of products fall below the smallest float one after another
     tiny = DENORMAL[of.precision.name]
     return _changed(of, lambda q, x: x * tiny if _may_vanish(q) else x)
 
 
+def _is_attitude(q: Quantity) -> bool:
+    return q.name.startswith("attitude") and q.shape == (4,)
+
+
 def _may_vanish(q: Quantity) -> bool:
     within = (q.low or 0) <= 0 <= (q.high or 0)
-    return q.name != "attitude" and within
+    return not _is_attitude(q) and within
 
 
 def _half_turn(of: Source, number: int) -> Values | None:
@@ -180,7 +191,7 @@ def _extremes(of: Source, _: int) -> Values | None:
     """Return a sample with every varying value at an end of its range."""
 
     def change(q: Quantity, x: float) -> float:
-        return x if q.name == "attitude" else _end(of, q, of.dice.randrange(2))
+        return x if _is_attitude(q) else _end(of, q, of.dice.randrange(2))
 
     return _changed(of, change)
 

@@ -47,6 +47,15 @@ class Atoms:
         """Return where a symbol stands."""
         return self.place(Atom("symbol", symbol, ()))
 
+    def within(self, monomial: Monomial) -> set[int]:
+        """Return the atoms of a monomial, and those that its functions are made of."""
+        found: set[int] = set()
+        for atom, _ in monomial:
+            found.add(atom)
+            for inner, _ in self.each[atom].inner:
+                found |= self.within(inner)
+        return found
+
     def power(self, kind: str, inner: Polynomial, power: int) -> Polynomial:
         """Return a power of a function of a polynomial."""
         atom = Atom(kind, None, tuple(sorted(inner.items())))
@@ -122,6 +131,16 @@ def _joined(a: Monomial, b: Monomial) -> Monomial:
     return tuple(sorted((atom, power) for atom, power in powers.items() if power))
 
 
+def raised(x: Any, power: int) -> Any:
+    """Return a whole power by products: a ball's own power is undefined where it holds zero."""
+    if power < 0:
+        return 1 / raised(x, -power)
+    product = x
+    for _ in range(power - 1):
+        product = product * x
+    return product
+
+
 @dataclass(frozen=True)
 class Term:
     """A coefficient made of parameters, times powers of atoms that vary."""
@@ -150,6 +169,6 @@ def value(
     for monomial, number in polynomial:
         product = arithmetic["number"](number)
         for atom, power in monomial:
-            product = product * (atoms[atom] if power == 1 else atoms[atom] ** power)
+            product = product * raised(atoms[atom], power)
         summed = summed + product
     return summed

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-from sympy import Expr, Matrix, Rational, Symbol, cos, sin, sqrt, tan
+from sympy import Expr, Matrix, Rational, Symbol, cos, pi, sin, sqrt, tan
 
 from derive.formula import Formula
 from derive.program import Quantity
@@ -46,6 +46,8 @@ class Vocabulary:
 
     def expression(self, formula: Formula) -> Expr:
         """Return a scene's formula in these symbols."""
+        if formula.operator == "symbol" and formula.name == "pi":
+            return pi
         if formula.operator == "symbol":
             number = self.numbers.get(formula.name)
             return self.symbols[formula.name] if number is None else rational(number)

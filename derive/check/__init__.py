@@ -22,8 +22,10 @@ from derive.check.compiler import Compiler, CompilerError, find_compiler
 from derive.check.emitted import Emitted, Files, casadi_module, files, is_double, loaded
 from derive.check.invariants import power_balance, turned_axes
 from derive.check.motion import orders, step_slopes
+from derive.check.particles import clouds
 from derive.check.verdict import JUDGED, Verdict
 from derive.library import Library, library
+from derive.machine.mechanism import Mechanism
 from derive.motion_error import with_motion
 from derive.prove import ProofError, prove
 from derive.sample import Sample, samples
@@ -114,8 +116,11 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
         yield from step_slopes(one.library, each)
         yield from casadi_bits(one, casadi_module(one.library, found, workshop), each)
         plain = [s for s in each if s.kind == "ordinary"][: FEW * FEW]
-        yield from power_balance(one, plain)
-        yield from turned_axes(one, plain)
+        if isinstance(one.library.known, Mechanism):
+            yield from clouds(one.library, plain[:FEW])
+        else:
+            yield from power_balance(one, plain)
+            yield from turned_axes(one, plain)
     if drawn.skipped:
         kinds = ", ".join(drawn.skipped)
         name = one.library.known.scene.name

@@ -12,6 +12,7 @@ from derive.check.emitted import Emitted
 from derive.check.turning import Turning, turnings
 from derive.check.verdict import JUDGED, Outcome, Verdict
 from derive.formula import FLOATS, Formula, evaluate
+from derive.machine.mechanism import single
 from derive.program import Quantity
 from derive.sample import Sample, Values, varying
 from derive.specialise import Specialised
@@ -40,7 +41,7 @@ def power_balance(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]
 
 
 def _no_balance(emitted: Emitted) -> str:
-    known = emitted.library.known
+    known = single(emitted.library.known)
     if "kinetic_energy" not in emitted.functions:
         return "the scene does not ask for the kinetic energy"
     if not {"acceleration", "state_rate"} & set(emitted.functions):
@@ -67,7 +68,7 @@ def _power_gap(emitted: Emitted, sample: Sample) -> float:
         _energy(emitted, sample, {c: sample.values[c] + h * rates[c] for c in names})
         for h in (step, -step)
     )
-    powers = _powers(emitted.library.known, sample.values)
+    powers = _powers(single(emitted.library.known), sample.values)
     allowed = ROUNDING * ((abs(ahead) + abs(behind)) / (2 * step) + sum(map(abs, powers)))
     gap = abs((ahead - behind) / (2 * step) - sum(powers))
     return gap / allowed if allowed else 0.0
@@ -141,7 +142,7 @@ class _Compared:
 
 def turned_axes(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether every function commutes with a turn of the axes, and with x -> y -> z -> x."""
-    for check, turning, reason in turnings(emitted.library.known):
+    for check, turning, reason in turnings(single(emitted.library.known)):
         if turning is None:
             yield _verdict(emitted, "all", check, "skipped", reason)
             continue

@@ -6,6 +6,7 @@ from derive.lecture import (
     attitude,
     general_form,
     gyrostat,
+    machines,
     momentum,
     moving_axes,
     particles,
@@ -33,6 +34,7 @@ CHAPTERS = (
     Chapter("The general form", general_form.__doc__ or "", general_form.STEPS),
     Chapter("The gyrostat", gyrostat.__doc__ or "", gyrostat.STEPS),
     Chapter("Attitude", attitude.__doc__ or "", attitude.STEPS),
+    Chapter("Machines", machines.__doc__ or "", machines.STEPS),
 )
 LECTURE = Derivation(
     "From the sum over particles to Euler's equations",

@@ -4,15 +4,16 @@ Every line is one residual of a truth, arranged so that what it determines stand
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from sympy import Add, Expr, Symbol
 
 from derive.lecture import LECTURE
 from derive.library import Library
+from derive.machine.mechanism import Mechanism
 from derive.notation import equation_mathml, sympy_equation_mathml
+from derive.page import machine
+from derive.page.passage import Line, Passage
 from derive.program import Quantity
-from derive.step import Step
 from derive.truth import Truth
 
 # Letters of the lecture for the quantities that every scene calls by a word.
@@ -34,24 +35,6 @@ _STEPS = {
     "rate_absolute": ("transport_theorem",),
     "position_rate": (),
 }
-
-
-@dataclass(frozen=True)
-class Line:
-    """One equation of the scene, what it determines, and the place to link to."""
-
-    place: str
-    unknown: str
-    mathml: str
-
-
-@dataclass(frozen=True)
-class Passage:
-    """Lines of a scene that come from the same lecture steps."""
-
-    steps: tuple[Step, ...]
-    general: tuple[str, ...]
-    lines: tuple[Line, ...]
 
 
 def letter(quantity: str, taken: frozenset[str]) -> str:
@@ -83,6 +66,8 @@ def taken_names(library: Library) -> frozenset[str]:
 
 def passages(library: Library, fact: Truth) -> tuple[Passage, ...]:
     """Return the equations of a wanted function, each group with the lecture steps behind it."""
+    if isinstance(library.known, Mechanism):
+        return machine.passages(library.known, fact)
     names = written_names(library)
     components = {symbol: c for c, symbol in library.known.words.symbols.items()}
     owners = _owners(library)

@@ -9,9 +9,12 @@ from derive.comment import cost
 from derive.emit import TEMPLATES, first_line
 from derive.lecture import LECTURE
 from derive.library import JACOBIAN, Library
+from derive.machine.mechanism import Mechanism
 from derive.notation import name_mathml
 from derive.page.code import listing
-from derive.page.equation import Passage, letter, passages, taken_names
+from derive.page.equation import letter, passages, taken_names
+from derive.page.machine import notes
+from derive.page.passage import Passage
 from derive.page.pattern import pattern
 from derive.page.prose import prose
 from derive.page.words import given
@@ -53,6 +56,7 @@ class Section:
     accuracy: tuple[Accuracy, ...]
     code: Markup
     pattern: Markup
+    notes: list[str]
 
 
 def scene_page(library: Library, figures: Sequence[Measurement]) -> str:
@@ -108,7 +112,15 @@ def _section(
         _accuracy(program, figures),
         listing(program, library.known.scene.name, links),
         pattern(sparsity, says) if sparsity else Markup(""),
+        _notes(library, program),
     )
+
+
+def _notes(library: Library, program: Program) -> list[str]:
+    known = library.known
+    if not isinstance(known, Mechanism) or _base(program) not in library.truths:
+        return []
+    return notes(known, _base(program))
 
 
 def _arguments(library: Library, program: Program) -> tuple[Argument, ...]:

@@ -1,7 +1,8 @@
 """What a scene says, in sentences: the body, the point, the axes, what acts, what is wanted."""
 
 from derive.formula import Formula
-from derive.scene import Given, Scene, Turn
+from derive.page import machine
+from derive.scene import Given, Machine, Scene, Turn
 
 _BODIES = {
     "general": "a rigid body with a full inertia tensor",
@@ -17,8 +18,10 @@ _POINTS = {
 }
 
 
-def given(scene: Scene) -> list[str]:
+def given(scene: Scene | Machine) -> list[str]:
     """Return what the scene gives, one sentence each."""
+    if isinstance(scene, Machine):
+        return machine.given(scene)
     sentences = [f"The body is {_BODIES[scene.body.kind].format(axis=scene.body.axis)}."]
     sentences += [_wheels(scene)] if scene.wheels else []
     sentences += [_POINTS[scene.point.kind], _axes(scene), *_turning(scene), *_loads(scene)]

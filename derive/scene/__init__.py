@@ -26,6 +26,8 @@ from derive.scene.declaration import (
     Wheel,
 )
 from derive.scene.file import read_scene
+from derive.scene.machine import Machine
+from derive.scene.machine_file import is_machine, read_machine
 from derive.scene.names import identifier
 from derive.scene.rules import check, warnings
 from derive.scene.table import nearest, shown, table
@@ -36,6 +38,7 @@ __all__ = [
     "Coordinate",
     "Given",
     "Input",
+    "Machine",
     "Parameter",
     "Point",
     "Scene",
@@ -61,7 +64,7 @@ def catalogue() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in CATALOGUE.glob("*.toml")))
 
 
-def load(source: str | Path) -> Scene:
+def load(source: str | Path) -> Scene | Machine:
     """Return the scene of a catalogue name or of a file, named by the file's stem.
 
     Raises SceneError with one sentence if there is no such scene or it breaks a rule.
@@ -96,7 +99,7 @@ def _contents(path: Path) -> str:
         raise SceneError(f"{start} is not UTF-8 (byte {error.start})") from None
 
 
-def parse_scene(text: str, name: str) -> Scene:
+def parse_scene(text: str, name: str) -> Scene | Machine:
     """Return the scene that a TOML text declares, with warnings about what seems unlikely.
 
     Raises SceneError; its sentence names the scene, the quantity, the rule and the value found.
@@ -104,6 +107,8 @@ def parse_scene(text: str, name: str) -> Scene:
     try:
         identifier(name, "the file")
         document = _document(text)
+        if is_machine(document):
+            return read_machine(document, name, text)
         scene = read_scene(document, name, text)
         said = tuple(table(document.get("known", {}), "known").entries)
         check(scene, said)

@@ -63,7 +63,7 @@ def read_body(given: Table, point: str, symbols: Symbols) -> Body:
 
 
 def _positive(given: Table, key: str, expected: Dimension, symbols: Symbols) -> Formula:
-    label = f"body.{key}"
+    label = f"{given.label}.{key}"
     found = formula(given.entries[key], label, constants(symbols), expected)
     return positive(found, label, symbols.parameters)
 
@@ -71,19 +71,19 @@ def _positive(given: Table, key: str, expected: Dimension, symbols: Symbols) -> 
 def _centre(given: Table, scope: Scope) -> Triple | None:
     if "centre" not in given.entries:
         return None
-    return triple(given.entries["centre"], "body.centre", scope, LENGTH)
+    return triple(given.entries["centre"], f"{given.label}.centre", scope, LENGTH)
 
 
 def _axis(given: Table) -> Axis:
-    return cast("Axis", word(given.entries["axis"], "body.axis", AXES))
+    return cast("Axis", word(given.entries["axis"], f"{given.label}.axis", AXES))
 
 
 def _moment(given: Table, key: str, scope: Scope) -> Formula:
-    return formula(given.entries[key], f"body.{key}", scope, INERTIA)
+    return formula(given.entries[key], f"{given.label}.{key}", scope, INERTIA)
 
 
 def _of_kind(given: Table, symbols: Symbols) -> Part:
-    kind, scope = word(given.entries["kind"], "body.kind", KINDS), constants(symbols)
+    kind, scope = word(given.entries["kind"], f"{given.label}.kind", KINDS), constants(symbols)
     three = ("moments", "second_moments") if kind in ("general", "principal") else ()
     keys(given, ("kind", *KINDS[kind]), (*three, *COMMON))
     centre = _centre(given, scope)
@@ -102,9 +102,9 @@ def _of_kind(given: Table, symbols: Symbols) -> Part:
 
 def _three_moments(given: Table, scope: Scope) -> Sextuple:
     if ("moments" in given.entries) == ("second_moments" in given.entries):
-        raise SceneError("body needs either moments or second_moments")
+        raise SceneError(f"{given.label} needs either moments or second_moments")
     key = "moments" if "moments" in given.entries else "second_moments"
-    first, second, third = triple(given.entries[key], f"body.{key}", scope, INERTIA)
+    first, second, third = triple(given.entries[key], f"{given.label}.{key}", scope, INERTIA)
     if key == "second_moments":
         first, second, third = second + third, first + third, first + second
     if "products" not in given.entries:
@@ -116,23 +116,24 @@ def _three_moments(given: Table, scope: Scope) -> Sextuple:
 def _products(given: Table, scope: Scope) -> Triple:
     value = given.entries["products"]
     if not isinstance(value, list) or len(value) != 3:
-        raise SceneError(f"body.products must be a list of 3 (xy, xz, yz), not {shown(value)}")
+        rule = "must be a list of 3 (xy, xz, yz)"
+        raise SceneError(f"{given.label}.products {rule}, not {shown(value)}")
     xy, xz, yz = (
-        formula(part, f"body.products.{name}", scope, INERTIA)
+        formula(part, f"{given.label}.products.{name}", scope, INERTIA)
         for part, name in zip(value, ("xy", "xz", "yz"), strict=True)
     )
     return xy, xz, yz
 
 
 def _shaped(given: Table, point: str, symbols: Symbols) -> Part:
-    name = word(given.entries["shape"], "body.shape", SHAPES)
+    name = word(given.entries["shape"], f"{given.label}.shape", SHAPES)
     scope = constants(symbols)
     if name == "box":
         keys(given, ("shape", "mass", "lengths"), COMMON)
         mass = _positive(given, "mass", MASS, symbols)
-        lengths = triple(given.entries["lengths"], "body.lengths", scope, LENGTH)
+        lengths = triple(given.entries["lengths"], f"{given.label}.lengths", scope, LENGTH)
         for length, label in zip(lengths, "xyz", strict=True):
-            positive(length, f"body.lengths.{label}", symbols.parameters)
+            positive(length, f"{given.label}.lengths.{label}", symbols.parameters)
         return _at_point("principal", box(mass, lengths), mass, _centre(given, scope), None, point)
     return _round(given, name, point, symbols)
 

@@ -110,12 +110,14 @@ def read_scene(document: dict[str, object], name: str, source: str) -> Scene:
 def _top_level(document: dict[str, object]) -> None:
     for key in document:
         if key in LATER:
-            raise SceneError(f"table '{key}' is reserved for a later version; use body and axes")
+            rule = "is for machines: a file that has it needs bodies, not a body"
+            raise SceneError(f"table '{key}' {rule}")
     if "wanted" not in document:
         raise SceneError("the file needs 'wanted', above its first [table]")
     if "body" not in document and attitudes_only(document["wanted"]):
         document["body"] = {"kind": "spherical", "moment": 1}  # nothing asks about it
-    optional = (*(name for name in TABLES if name != "body"), "wheels", "title", "form", "emission")
+    said = ("title", "source", "form", "emission")
+    optional = (*(name for name in TABLES if name != "body"), "wheels", *said)
     keys(Table("the file", document), ("wanted", "body"), optional)
 
 

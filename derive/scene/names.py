@@ -49,6 +49,14 @@ GENERATED: Mapping[str, str] = {
     "rate_in_axes": "the rate of the angular momentum in the axes",
     "rate_absolute": "the absolute rate of the angular momentum",
     "kinetic_energy": "the kinetic energy",
+    "potential_energy": "the potential energy",
+    "energy": "the energy",
+    "accelerations": "the accelerations",
+    "mass_matrix": "the mass matrix of small motion",
+    "damping_matrix": "the damping matrix of small motion",
+    "stiffness_matrix": "the stiffness matrix of small motion",
+    "linearised": "small motion",
+    "steady": "steady motion",
     "coordinate_rates": "the rates of the coordinates",
     "wheel_speeds": "the speeds of the wheels",
     "wheel_accelerations": "the accelerations of the wheels",
@@ -68,13 +76,18 @@ GENERATED: Mapping[str, str] = {
 _COMPONENT = re.compile(r"(_[wxyz])?(_next)?(_in)?$")
 
 
-def identifier(name: str, label: str) -> str:
+def identifier(name: str, what: str) -> str:
     """Return a name that is an identifier in C and Python and not a word of either."""
+    if label(name, what) in _WORDS:
+        raise SceneError(f"{what} has the name '{name}', which is a word of C or Python")
+    return name
+
+
+def label(name: str, what: str) -> str:
+    """Return a name of a frame, body or load, which no code carries: any that can be read."""
     if not _IDENTIFIER.fullmatch(name) or len(name) > LONGEST_NAME:
         rule = f"letters, digits and single underscores, a letter first, at most {LONGEST_NAME}"
-        raise SceneError(f"{label} has the name {name[:60]!r}; a name is {rule}")
-    if name in _WORDS:
-        raise SceneError(f"{label} has the name '{name}', which is a word of C or Python")
+        raise SceneError(f"{what} has the name {name[:60]!r}; a name is {rule}")
     return name
 
 

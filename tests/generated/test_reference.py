@@ -10,26 +10,27 @@ from flint import arb, ctx
 
 from derive.c_text import F64
 from derive.equations import equations
-from derive.library import JACOBIAN
+from derive.library import JACOBIAN, STEP
+from derive.machine.mechanism import Known, Mechanism, in_terms, truth_of
 from derive.reference import BALLS, Known, reference, solution
 from derive.sample import Sample, samples
 from derive.scene import catalogue, load
 from derive.scene.wanted import EQUATIONS
-from derive.specialise import Specialised, specialise
-from derive.truth import Truth, truth
+from derive.truth import Truth
 
 STEP_BITS = 200  # central differences with a step of 2^-200, at 800 bits: 400 bits right
 BITS = 800
 
 
 @cache
-def scene(name: str) -> Specialised:
-    return specialise(load(name))
+def scene(name: str) -> Known:
+    return in_terms(load(name))
 
 
-def truths(known: Specialised) -> list[Truth]:
+def truths(known: Known) -> list[Truth]:
     bases = dict.fromkeys(w.removesuffix(JACOBIAN) for w in known.scene.wanted)
-    return [truth(known, base) for base in bases if base in EQUATIONS]
+    stated = [b for b in bases if b in EQUATIONS or isinstance(known, Mechanism) and b != STEP]
+    return [truth_of(known, base) for base in stated]
 
 
 def valued(e: Any, values: Mapping[Any, Any]) -> Any:
@@ -46,12 +47,16 @@ def valued(e: Any, values: Mapping[Any, Any]) -> Any:
         for part in parts[1:]:
             product = product * part
         return product
+    if e.is_Pow and e.exp.q == 2:
+        return parts[0].sqrt() ** int(e.exp.p)
     if e.is_Pow:
         return parts[0] ** int(e.exp)
+    if e is sympy.pi:
+        return arb.pi()
     return parts[0].sin() if isinstance(e, sympy.sin) else parts[0].cos()
 
 
-def ordinary(known: Specialised) -> Sample:
+def ordinary(known: Known) -> Sample:
     return samples(known, F64, 1, 0).each[0]
 
 
@@ -91,7 +96,7 @@ def test_slopes_are_central_differences_of_the_reference_itself(name: str) -> No
 def found(name: str, wanted: str, values: Mapping[str, float]) -> dict[str, Known]:
     known = scene(name)
     given = dict(ordinary(known).values) | values
-    return reference(equations(known, truth(known, wanted)), given, ())
+    return reference(equations(known, truth_of(known, wanted)), given, ())
 
 
 def test_near_a_sphere_the_largest_term_is_the_small_difference() -> None:

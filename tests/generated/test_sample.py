@@ -8,13 +8,13 @@ import pytest
 
 from derive.body_sample import BODIES, TURN, admissible, bodies_taken
 from derive.c_text import F32, F64, PRECISIONS, Precision
+from derive.machine.mechanism import Known, in_terms
 from derive.sample import CORNERS, LARGE_SPIN, Samples, samples, varying
 from derive.scene import catalogue, load
-from derive.specialise import Specialised, specialise
 
 
-def scene(name: str) -> Specialised:
-    return specialise(load(name))
+def scene(name: str) -> Known:
+    return in_terms(load(name))
 
 
 def drawn(name: str, precision: Precision) -> Samples:

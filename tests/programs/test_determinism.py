@@ -64,6 +64,8 @@ def test_other_names_give_the_same_operations(name):
         + [s.name for s in scene.speeds]
     )
     other = {old: f"Zz{len(given) - i}{old[::-1].strip('_')}" for i, old in enumerate(given)}
+    other |= {f"{old}_{dots}": f"{new}_{dots}" for old, new in other.items()
+              for dots in ("dot", "ddot")}  # fmt: skip
     disguised = parse_scene(renamed(scene.text, other), name)
     first, second = library(scene), library(disguised)
     for one, two in zip(

@@ -6,7 +6,7 @@ import pytest
 
 from derive.formula import ZERO, symbol
 from derive.grammar import parse
-from derive.scene import CATALOGUE, Scene, SceneError, Turn, catalogue, load
+from derive.scene import CATALOGUE, Machine, Scene, SceneError, Turn, catalogue, load
 from derive.scene.names import distinct
 from derive.vocabulary import vocabulary
 
@@ -113,6 +113,8 @@ def test_numbers_of_a_file_are_exact() -> None:
 def test_no_name_of_a_user_can_meet_a_name_of_the_emitted_code(name: str) -> None:
     """Every quantity that is not the user's own must be refused as the name of a parameter."""
     scene = load(name)
+    if isinstance(scene, Machine):
+        return
     own = {entry.name for entry in (*scene.parameters, *scene.coordinates, *scene.speeds)}
     words = vocabulary(scene)
     names = {part for q in words.every() for part in (q.name, *q.components)} - own

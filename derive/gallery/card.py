@@ -1,0 +1,99 @@
+"""A card of the gallery: drawing, question, equation, answer and cost of a scene."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from markupsafe import Markup
+from sympy import Expr
+
+from derive.arithmetic import extended, paired, working
+from derive.emit import TEMPLATES
+from derive.gallery.drawing import drawing
+from derive.lecture import LECTURE
+from derive.library import JACOBIAN, Library
+from derive.machine.mechanism import Mechanism, arrange
+from derive.notation import equation_mathml, sympy_equation_mathml
+from derive.page.machine import written_names
+from derive.program import Program, run
+
+LONGEST_EQUATION = 45  # operations of a closed form that a card still shows
+
+
+@dataclass(frozen=True)
+class Card:
+    """What the gallery shows of one scene."""
+
+    name: str
+    title: str
+    source: str
+    drawing: Markup
+    equation: Markup
+    answer: str
+    cost: str
+
+
+def card(library: Library) -> Card:
+    """Return the card of a scene."""
+    scene, program = library.known.scene, (*library.functions, *library.motions)[0]
+    return Card(
+        scene.name,
+        scene.title,
+        getattr(scene, "source", ""),
+        Markup(drawing(scene)),  # noqa: S704 (numbers and checked names)
+        Markup(_equation(library, program)),  # noqa: S704 (MathML of checked names)
+        _answer(library, program),
+        _cost(library),
+    )
+
+
+def gallery(cards: Sequence[Card]) -> str:
+    """Return the text of ``index.html``."""
+    return TEMPLATES.get_template("gallery.html.jinja").render(cards=cards)
+
+
+def _cost(library: Library) -> str:
+    each = [f"{p.name} {p.flops()}" for p in library.functions if not p.name.endswith(JACOBIAN)]
+    return ", ".join(each)
+
+
+def _equation(library: Library, program: Program) -> str:
+    """Return the closed form of the first answer, or the lecture step that it comes from."""
+    known = library.known
+    if not isinstance(known, Mechanism):
+        return equation_mathml(LECTURE[program.steps[0]]) if program.steps else ""
+    fact = library.truths[program.name.removesuffix(JACOBIAN)]
+    (way,) = arrange(known, fact)
+    values: dict[Expr, Expr] = {}
+    for stage in way.stages:
+        values[stage.symbol] = stage.value.xreplace(values)
+    question, names = known.question(fact.name), written_names(known)
+    each = [e.xreplace(values) for e in way.outputs]
+    place = next((k for k, e in enumerate(each) if e != 0), 0)
+    symbol, answer = list(question.answers)[place], each[place]
+    if answer.count_ops() <= LONGEST_EQUATION:
+        return sympy_equation_mathml(symbol, answer, names)
+    step = next(iter(question.steps), "")
+    return equation_mathml(LECTURE[step]) if step else ""
+
+
+def _answer(library: Library, program: Program) -> str:
+    """Return the first function's results at seven tenths of all ranges."""
+    middle = {
+        c: float((3 * (q.low or 0) + 7 * (q.high or 0)) / 10)
+        for q in (*library.setup.inputs, *program.inputs)
+        if q.name != "constants"
+        for c in q.components
+    }
+    middle |= {c: 1.0 for c in middle if c.startswith("attitude") and c.endswith("_w")}
+    given = [middle[c] for q in library.setup.inputs for c in q.components]
+    table, pairs = working(np.float64), extended(np.float64)
+    made = run(library.setup, pairs, paired(np.array(given))) if given else []
+    names = [c for q in library.setup.outputs for c in q.components]
+    known = middle | {n: r[0] for n, r in zip(names, made, strict=True)}
+    if program.arithmetic == "pairs" or program.loops is not None:
+        return ""
+    results = run(program, table, [known[c] for q in program.inputs for c in q.components])
+    outputs = [(c, q.unit) for q in program.outputs for c in q.components][:3]
+    return ", ".join(f"{c} = {float(r):.4g} {u}".strip()
+                     for (c, u), r in zip(outputs, results, strict=False))  # fmt: skip

@@ -1,0 +1,125 @@
+"""Which balances to use: the fewest unknowns beside those wanted, then the plainest equations."""
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from typing import Any
+
+from mpmath import mp
+
+from derive.machine.balances import Balances, Row
+from derive.machine.probe import DIGITS, NOTHING, POINTS, independent, independent_at_all
+from derive.scene import SceneError
+
+MOST_EXTRA = 5  # unknowns that are solved along without being asked for, before all are
+MOST_SETS = 20_000
+
+Chosen = tuple[tuple[Row, ...], frozenset[int]]
+
+
+def chosen(balances: Balances, wanted: frozenset[int]) -> Chosen:
+    """Return balances for the ``wanted`` unknowns, and all unknowns that these balances hold.
+
+    Raises SceneError, naming unknowns and balances, if the wanted ones cannot be told.
+    """
+    if not wanted:
+        return (), frozenset()
+    rows = sorted(
+        (row for row in balances.rows if row.holds),
+        key=lambda row: (
+            len(row.holds),
+            len(row.balance.bodies),
+            balances.carried_vectors(row.balance),
+        ),
+    )
+    for unknowns in _sets(rows, wanted):
+        within = [row for row in rows if row.holds <= unknowns]
+        covered = frozenset(k for row in within for k in row.holds)
+        if len(within) < len(unknowns) or covered != unknowns:
+            continue
+        for tables in ((0, -1), (0,)):
+            each = [[_coefficients(row, point) for row in within] for point in tables]
+            kept = independent_at_all(each, len(unknowns))
+            if len(kept) == len(unknowns):
+                return tuple(within[k] for k in kept), unknowns
+    raise SceneError(undetermined(balances, wanted))
+
+
+def _sets(rows: Sequence[Row], wanted: frozenset[int]) -> Iterator[frozenset[int]]:
+    """Yield sets of unknowns that hold the wanted ones, small ones first."""
+    others = sorted(frozenset(k for row in rows for k in row.holds) - wanted)
+    tried = 0
+    for extra in range(min(MOST_EXTRA, len(others)) + 1):
+        for more in combinations(others, extra):
+            tried += 1
+            if tried > MOST_SETS:
+                break
+            yield wanted | frozenset(more)
+    yield wanted | frozenset(others)
+
+
+def _coefficients(row: Row, point: int = 0) -> dict[int, Any]:
+    return {k: row.values[point][1 + k] for k in sorted(row.holds)}
+
+
+def undetermined(balances: Balances, wanted: frozenset[int]) -> str:
+    """Return a sentence on unknowns that the balances cannot tell apart."""
+    label = balances.frames.sheet.label
+    names = [label(u) for u in balances.unknowns]
+    holding = [row for row in balances.rows if row.holds]
+    for k in sorted(wanted):
+        here = [row for row in holding if k in row.holds]
+        if not here:
+            return f"no balance holds '{names[k]}', so it cannot be found"
+    for k in sorted(wanted):
+        joint = _joint(balances, k)
+        if joint:
+            also = " and ".join(f"'{names[n]}'" for n in (k, *joint))
+            told = [str(row.balance) for row in holding if k in row.holds][:3]
+            return (
+                f"unknowns {also} cannot be told apart: every balance that holds '{names[k]}' "
+                f"holds the others too, in one combination ({'; '.join(told)})"
+            )
+    found = ", ".join(f"'{names[k]}'" for k in sorted(wanted))
+    return f"the balances do not determine {found}"
+
+
+def _joint(balances: Balances, k: int) -> list[int]:
+    """Return the unknowns without which ``k`` would be determined."""
+    with mp.workdps(DIGITS):
+        table = [_coefficients(row) for row in balances.rows if row.holds]
+        count = len(balances.unknowns)
+        for size in (1, 2, 3):
+            for left in combinations([n for n in range(count) if n != k], size):
+                fewer = [{n: v for n, v in row.items() if n not in left} for row in table]
+                rest = [{n: v for n, v in row.items() if n != k} for row in fewer]
+                if len(independent(fewer, count)) > len(independent(rest, count)):
+                    return list(left)
+    return []
+
+
+def unbalanced(balances: Balances, still: frozenset[int] = frozenset()) -> tuple[Row, ...]:
+    """Return the balances that hold no unknown but ``still`` ones and yet do not vanish."""
+    found = [row for row in balances.rows if row.holds <= still and _leaves_something(row)]
+    return tuple(
+        sorted(
+            found,
+            key=lambda row: (
+                len(row.balance.bodies),
+                len(row.holds),
+                balances.carried_vectors(row.balance),
+            ),
+        )
+    )
+
+
+def _leaves_something(row: Row) -> bool:
+    return all(abs(values[0]) > NOTHING * max(map(abs, values)) for values in row.values[:POINTS])
+
+
+def contradiction(balances: Balances) -> str:
+    """Return a sentence on balances that nothing can satisfy, or nothing if there are none."""
+    rows = unbalanced(balances)
+    if not rows:
+        return ""
+    return (f"the {rows[0].balance} does not vanish and holds no unknown: "
+            "declare a load with an unknown there, or leave a motion free")  # fmt: skip

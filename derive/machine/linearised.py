@@ -1,0 +1,148 @@
+"""Small motion about a given one: mass, damping with gyroscopic terms, and stiffness matrices.
+
+Every named quantity is carried along with its first derivatives by displacements and velocities,
+valued at the given motion as it goes, so that the expressions stay as small as their results.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from sympy import Expr, Integer, Matrix, Symbol, zeros
+
+from derive.machine.balances import Balances
+from derive.machine.choice import chosen
+from derive.machine.probe import independent, point
+from derive.scene import Input, Machine, SceneError
+
+
+@dataclass(frozen=True)
+class Small:
+    """A value at the given motion and its derivatives by each small variable."""
+
+    value: Expr
+    slopes: Mapping[Symbol, Expr]
+
+
+def linearised(machine: Machine, balances: Balances) -> dict[str, Matrix]:
+    """Return the three matrices, (n, n), of the free coordinates and speeds in order."""
+    free = [m for m in (*machine.coordinates, *machine.speeds) if m.free]
+    sheet = balances.frames.sheet
+    if not free:
+        raise SceneError("'linearised' needs a free coordinate or speed")
+    accelerations = [sheet.symbols[m.unknown] for m in free]
+    every = balances.unknowns
+    missing = [a for a in accelerations if a not in every]
+    if missing:
+        raise SceneError(f"no balance holds '{sheet.label(missing[0])}'; "
+                         "nothing that has mass moves with it")  # fmt: skip
+    rows, held = chosen(balances, frozenset(every.index(a) for a in accelerations))
+    written = [balances.written(row) for row in rows]
+    reactions = [every[k] for k in sorted(held) if every[k] not in accelerations]
+    base = {sheet.symbols[n]: balances.frames.words.expression(f) for n, f in machine.about.items()}
+    velocities = [sheet.symbols[m.rate.name] if isinstance(m.rate, Input) else
+                  sheet.symbols[m.name] for m in free]  # fmt: skip
+    places = [sheet.symbols[m.name] if m.kind == "coordinate" else None for m in free]
+    small = _Expansion(base, [*velocities, *(p for p in places if p is not None)])
+    small.define(sheet.needed(written))
+    table = _Table(balances, small, written, reactions)
+    columns = {
+        "mass_matrix": table.coefficients(accelerations),
+        "damping_matrix": table.slopes(velocities),
+        "stiffness_matrix": table.slopes(places),
+    }
+    return {name: table.reduced(column) for name, column in columns.items()}
+
+
+@dataclass
+class _Expansion:
+    """Values and first derivatives of named quantities at the given motion."""
+
+    base: Mapping[Symbol, Expr]
+    variables: Sequence[Symbol]
+
+    def __post_init__(self) -> None:
+        """Begin with the variables themselves."""
+        one = Integer(1)
+        self.known = {s: Small(v, {s: one} if s in self.variables else {})
+                      for s, v in self.base.items()}  # fmt: skip
+
+    def define(self, definitions: Mapping[Symbol, Expr]) -> None:
+        """Expand named quantities, in order."""
+        for symbol, value in definitions.items():
+            self.known[symbol] = self.expanded(value)
+
+    def expanded(self, e: Expr) -> Small:
+        """Return an expression's value and derivatives at the given motion."""
+        values = {s: self.known[s].value for s in e.free_symbols if s in self.known}
+        slopes: dict[Symbol, Expr] = {}
+        for s in sorted(values, key=str):
+            if self.known[s].slopes:
+                partial = e.diff(s).xreplace(values)
+                for v, slope in self.known[s].slopes.items():
+                    slopes[v] = slopes.get(v, Integer(0)) + partial * slope
+        return Small(e.xreplace(values), {v: s for v, s in slopes.items() if s != 0})
+
+
+@dataclass
+class _Table:
+    """Balances expanded at the given motion, and the reactions that are eliminated from them."""
+
+    balances: Balances
+    small: _Expansion
+    rows: Sequence[Expr]
+    reactions: Sequence[Symbol]
+
+    def __post_init__(self) -> None:
+        """Expand rests and coefficients; find the reactions of the given motion."""
+        split = self.balances.frames.sheet.split
+        parts = [split(row) for row in self.rows]
+        self.rests = [self.small.expanded(rest) for rest, _ in parts]
+        self.by = [{u: self.small.expanded(c) for u, c in slopes.items()} for _, slopes in parts]
+        nothing = Small(Integer(0), {})
+        self.held = Matrix(len(self.rows), len(self.reactions), lambda i, k:
+                           self.by[i].get(self.reactions[k], nothing).value)  # fmt: skip
+        self.pivots = self._pivots()
+        self.others = [n for n in range(len(self.rows)) if n not in self.pivots]
+        self.forces: list[Expr] = []
+        if self.reactions:
+            right = Matrix([-self.rests[n].value for n in self.pivots])
+            self.forces = list(
+                self.held.extract(self.pivots, range(len(self.reactions))).LUsolve(right)
+            )
+
+    def _pivots(self) -> list[int]:
+        probe = point(self.balances.frames.words, 0)
+        table = [{k: probe.value(self.held[n, k]) for k in range(len(self.reactions))
+                  if self.held[n, k] != 0} for n in range(len(self.rows))]  # fmt: skip
+        return independent(table, len(self.reactions))
+
+    def coefficients(self, unknowns: Sequence[Symbol]) -> Matrix:
+        """Return the coefficients of the accelerations."""
+        nothing = Small(Integer(0), {})
+        return Matrix(len(self.rows), len(unknowns),
+                      lambda i, k: self.by[i].get(unknowns[k], nothing).value)  # fmt: skip
+
+    def slopes(self, variables: Sequence[Symbol | None]) -> Matrix:
+        """Return the derivatives of the rows by small variables, reactions held."""
+        found = zeros(len(self.rows), len(variables))
+        for i, rest in enumerate(self.rests):
+            for k, v in enumerate(variables):
+                if v is not None:
+                    found[i, k] = rest.slopes.get(v, Integer(0)) + self._by_reactions(i, v)
+        return found
+
+    def _by_reactions(self, i: int, v: Symbol) -> Expr:
+        total: Expr = Integer(0)
+        for u, force in zip(self.reactions, self.forces, strict=True):
+            if u in self.by[i]:
+                total += self.by[i][u].slopes.get(v, Integer(0)) * force
+        return total
+
+    def reduced(self, columns: Matrix) -> Matrix:
+        """Return the rows that are left when changes of the reactions are eliminated."""
+        if not self.reactions:
+            return columns
+        every, across = range(columns.shape[1]), range(len(self.reactions))
+        own = self.held.extract(self.pivots, across)
+        change = own.LUsolve(columns.extract(self.pivots, every))
+        return columns.extract(self.others, every) - self.held.extract(self.others, across) * change

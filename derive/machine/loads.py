@@ -1,0 +1,113 @@
+"""What acts on the bodies of a machine: every load as a force and a couple at a point."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from sympy import Expr, Integer, Matrix, Rational, sqrt
+
+from derive.machine.bodies import centre, mass, tensor
+from derive.machine.frames import ZERO, Frames, Point
+from derive.scene import SceneError
+from derive.scene.machine import INERTIAL, Force, Gradient, Load, Spring, Weight
+from derive.specialise import stated
+
+
+@dataclass(frozen=True)
+class Wrench:
+    """A force at a point of a body and a couple on it, both along the axes of a frame."""
+
+    load: str
+    body: str
+    point: Point
+    along: str
+    force: Matrix
+    couple: Matrix
+
+
+def wrenches(frames: Frames) -> tuple[Wrench, ...]:
+    """Return all that acts on the bodies."""
+    return tuple(w for load in frames.machine.loads for w in _of(frames, load))
+
+
+def _of(frames: Frames, load: Load) -> Iterator[Wrench]:
+    match load:
+        case Force():
+            yield from _force(frames, load)
+        case Weight():
+            yield from _weight(frames, load)
+        case Gradient():
+            yield from _gradient(frames, load)
+        case Spring():
+            yield from _spring(frames, load)
+
+
+def _force(frames: Frames, load: Force) -> Iterator[Wrench]:
+    point = (load.frame, frames.words.column(load.at))
+    force, couple = frames.words.column(load.force), frames.words.column(load.couple)
+    yield Wrench(load.name, load.on, point, load.along, force, couple)
+    if load.against:
+        yield Wrench(load.name, load.against, point, load.along, -force, -couple)
+
+
+def _weight(frames: Frames, load: Weight) -> Iterator[Wrench]:
+    g = frames.words.column(load.gravity)
+    for body in load.on:
+        force = mass(frames, body) * g
+        yield Wrench(load.name, body, centre(frames, body), load.along, force, ZERO)
+
+
+def _gradient(frames: Frames, load: Gradient) -> Iterator[Wrench]:
+    strength = frames.words.expression(load.strength)
+    for body in load.on:
+        own = frames.own(body)
+        c = frames.carried(frames.words.column(load.towards), load.along, own)
+        c = frames.sheet.column(f"{body}.towards", c)
+        known = {"k": strength * Rational(1, 3), "c": c, "I_G": tensor(frames, body)}
+        couple = stated("gravity_gradient", known)
+        yield Wrench(load.name, body, centre(frames, body), own, ZERO, couple)
+
+
+def stretched(frames: Frames, load: Spring) -> tuple[Matrix, str]:
+    """Return the vector from the spring's point on ``on`` to its other end, and its axes."""
+    start = (load.frame, frames.words.column(load.at))
+    end = (load.to_frame, frames.words.column(load.to))
+    top = frames.common(load.frame, load.to_frame)
+    if not frames.placed(load.frame, load.to_frame):
+        raise SceneError(f"load '{load.name}': the place of '{load.frame}' is not known in "
+                         f"'{load.to_frame}', so the spring has no length")  # fmt: skip
+    return frames.sheet.column(f"{load.name}.d", frames.apart(start, end, top)), top
+
+
+def _spring(frames: Frames, load: Spring) -> Iterator[Wrench]:
+    words, sheet = frames.words, frames.sheet
+    d, top = stretched(frames, load)
+    k, c, rest = (words.expression(f) for f in (load.stiffness, load.damping, load.length))
+    force: Matrix = k * d
+    if rest != 0 or c != 0:
+        size = sheet.named(f"{load.name}.length", sqrt((d.T * d)[0]))
+        force = force - (k * rest / size) * d
+        opening = sum((x * v for x, v in zip(d, sheet.rate_of_column(d), strict=True)), Integer(0))
+        force = force + (c * opening / size**2) * d
+    force = sheet.column(f"{load.name}.force", force)
+    yield Wrench(load.name, load.on, (load.frame, words.column(load.at)), top, force, ZERO)
+    if load.against:
+        yield Wrench(load.name, load.against, (load.to_frame, words.column(load.to)), top,
+                     -force, ZERO)  # fmt: skip
+
+
+def potential_energy(frames: Frames) -> Expr:
+    """Return the energy of weights and springs; a weight's is zero at the inertial origin."""
+    total: Expr = Integer(0)
+    for load in frames.machine.loads:
+        if isinstance(load, Weight):
+            for body in load.on:
+                at = frames.apart((INERTIAL, ZERO), centre(frames, body), INERTIAL)
+                g = frames.carried(frames.words.column(load.gravity), load.along, INERTIAL)
+                total -= mass(frames, body) * (g.T * at)[0]
+        elif isinstance(load, Spring):
+            d, _ = stretched(frames, load)
+            k, rest = (frames.words.expression(f) for f in (load.stiffness, load.length))
+            square = (d.T * d)[0]
+            size = sqrt(square) if rest != 0 else Integer(0)
+            total += Rational(1, 2) * k * (square - 2 * rest * size + rest**2)
+    return total

@@ -1,0 +1,45 @@
+"""The order in which balances are solved: a maximum matching, then strongly connected blocks."""
+
+from collections.abc import Mapping, Sequence
+
+import networkx as nx
+
+Group = tuple[tuple[int, ...], tuple[int, ...]]
+
+
+def blocks(holds: Sequence[frozenset[int]]) -> list[Group]:
+    """Return (equations, unknowns) of each block, earlier ones first.
+
+    holds : the unknowns of each equation
+
+    >>> blocks([frozenset({0, 1}), frozenset({0}), frozenset({1, 2, 3}), frozenset({2, 3})])
+    [((1,), (0,)), ((0,), (1,)), ((2, 3), (2, 3))]
+    """
+    owner = matched(holds)
+    graph = nx.DiGraph()
+    graph.add_nodes_from(range(len(holds)))
+    graph.add_edges_from(
+        (owner[k], row) for row, own in enumerate(holds) for k in own if owner[k] != row
+    )
+    whole = nx.condensation(graph)
+    order = nx.lexicographical_topological_sort(whole, key=lambda n: min(whole.nodes[n]["members"]))
+    found = []
+    for node in order:
+        rows = tuple(sorted(whole.nodes[node]["members"]))
+        found.append((rows, tuple(sorted(k for k, row in owner.items() if row in rows))))
+    return found
+
+
+def matched(holds: Sequence[frozenset[int]]) -> Mapping[int, int]:
+    """Return for each unknown the equation that yields it.
+
+    Raises ArithmeticError if some equation yields none.
+    """
+    graph = nx.Graph()
+    graph.add_nodes_from(("row", n) for n in range(len(holds)))
+    graph.add_edges_from((("row", n), ("unknown", k)) for n, own in enumerate(holds) for k in own)
+    rows = [("row", n) for n in range(len(holds))]
+    pairs = nx.bipartite.hopcroft_karp_matching(graph, rows)
+    if any(row not in pairs for row in rows):
+        raise ArithmeticError("an equation fixes no unknown that others leave open")
+    return {pairs[row][1]: row[1] for row in rows}

@@ -1,0 +1,107 @@
+"""The working sheet of a machine: named quantities in order, and how each changes in time.
+
+What moves has a rate; the rate of a named quantity follows from its definition by the chain rule.
+Accelerations that are to be found, and reactions, enter every expression linearly.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from sympy import Expr, Integer, Matrix, Symbol
+
+from derive.scene import SceneError
+
+AXES = "xyz"
+
+
+@dataclass
+class Sheet:
+    """Symbols by name, definitions in order, rates of what moves, and the unknowns."""
+
+    symbols: dict[str, Symbol]
+    rates: dict[Symbol, Expr]
+    unknowns: frozenset[Symbol]
+    rateless: Mapping[Symbol, str]
+    definitions: dict[Symbol, Expr] = field(default_factory=dict)
+    labels: dict[Expr, Symbol] = field(default_factory=dict)
+
+    def symbol(self, name: str) -> Symbol:
+        """Return the symbol of a name, a new one if there is none yet."""
+        if name not in self.symbols:
+            self.symbols[name] = Symbol(f"s{len(self.symbols):04d}")
+        return self.symbols[name]
+
+    def named(self, label: str, value: Expr) -> Expr:
+        """Return a symbol for ``value``, unless it is plain already or holds an unknown."""
+        if _plain(value) or value.free_symbols & self.unknowns:
+            return value
+        if value not in self.labels:
+            name, place = label, 1
+            while name in self.symbols:
+                name, place = f"{label}#{place + 1}", place + 1
+            self.labels[value] = self.symbol(name)
+            self.definitions[self.labels[value]] = value
+        return self.labels[value]
+
+    def linear(self, label: str, value: Expr) -> Expr:
+        """Return ``value`` with its rest and every coefficient of an unknown named."""
+        rest, slopes = self.split(value)
+        total = self.named(label, rest)
+        for unknown, slope in slopes.items():
+            total += self.named(f"{label}.by.{self.label(unknown)}", slope) * unknown
+        return total
+
+    def column(self, label: str, values: Matrix) -> Matrix:
+        """Return a column with every component named, unknowns kept outside."""
+        return Matrix([self.linear(f"{label}.{a}", v) for a, v in zip(AXES, values, strict=True)])
+
+    def label(self, symbol: Symbol) -> str:
+        """Return the name of a symbol."""
+        return next(name for name, own in self.symbols.items() if own == symbol)
+
+    def split(self, value: Expr) -> tuple[Expr, dict[Symbol, Expr]]:
+        """Return the part of ``value`` without unknowns, and each unknown's coefficient."""
+        found = sorted(value.free_symbols & self.unknowns, key=str)
+        slopes = {u: value.diff(u) for u in found}
+        if any(slope.free_symbols & self.unknowns for slope in slopes.values()):
+            names = ", ".join(self.label(u) for u in found)
+            raise SceneError(f"unknowns must enter a load linearly, but {names} are multiplied")
+        rest = value.xreplace(dict.fromkeys(found, Integer(0)))
+        return rest, {u: slope for u, slope in slopes.items() if slope != 0}
+
+    def rate(self, value: Expr) -> Expr:
+        """Return the time derivative of ``value`` by the chain rule."""
+        total: Expr = Integer(0)
+        for symbol in sorted(value.free_symbols, key=str):
+            dot = self._rate_of(symbol)
+            if dot != 0:
+                total += value.diff(symbol) * dot
+        return total
+
+    def rate_of_column(self, values: Matrix) -> Matrix:
+        """Return the rates of a column's components."""
+        return values.applyfunc(self.rate)
+
+    def _rate_of(self, symbol: Symbol) -> Expr:
+        if symbol in self.rateless:
+            raise SceneError(f"{self.rateless[symbol]}, so it cannot say how anything moves")
+        if symbol not in self.rates:
+            own = self.definitions.get(symbol)
+            label = f"{self.label(symbol)}.dot" if own is not None else ""
+            self.rates[symbol] = Integer(0) if own is None else self.linear(label, self.rate(own))
+        return self.rates[symbol]
+
+    def needed(self, values: Iterable[Expr]) -> dict[Symbol, Expr]:
+        """Return the definitions that ``values`` stand on, each after those it is made of."""
+        wanted: set[Symbol] = set()
+        waiting = [s for value in values for s in value.free_symbols]
+        while waiting:
+            symbol = waiting.pop()
+            if symbol in self.definitions and symbol not in wanted:
+                wanted.add(symbol)
+                waiting += self.definitions[symbol].free_symbols
+        return {s: value for s, value in self.definitions.items() if s in wanted}
+
+
+def _plain(value: Expr) -> bool:
+    return bool(value.is_Symbol or value.is_Number or (-value).is_Symbol)

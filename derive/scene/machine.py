@@ -1,0 +1,226 @@
+"""What a machine declares, as plain values: frames, bodies, loads, and the answers wanted.
+
+Formulas are exact trees, units SI. Triples lie along the axes of the frame that stands with them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from derive.formula import Formula
+from derive.scene.declaration import Axis, Given, Input, Parameter, Triple
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from fractions import Fraction
+
+INERTIAL = "inertial"
+Entries = tuple[Formula | None, ...]
+
+
+@dataclass(frozen=True)
+class Moving:
+    """A coordinate, speed or input; a rate is an input, a formula, or None where it is unknown.
+
+    Of an input no rate is known, of a free coordinate or speed the last rate is an unknown.
+    """
+
+    name: str
+    unit: str
+    low: Fraction
+    high: Fraction
+    meaning: str
+    kind: Literal["coordinate", "speed", "input"]
+    free: bool
+    rate: Input | Formula | None
+    acceleration: Input | Formula | None
+
+    @property
+    def unknown(self) -> str:
+        """Return the name of its highest rate: x_ddot of a coordinate, u_dot of a speed."""
+        return f"{self.name}_{'ddot' if self.kind == 'coordinate' else 'dot'}"
+
+
+@dataclass(frozen=True)
+class Turning:
+    """One turn about an axis of the axes so far, through a formula."""
+
+    axis: Axis
+    angle: Formula
+
+
+@dataclass(frozen=True)
+class Rolling:
+    """The particle of a body that is at rest, as seen from the frame's origin."""
+
+    body: str
+    at: Triple
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Axes carried by a parent: how they turn in it, and where their origin is or how it moves."""
+
+    name: str
+    parent: str
+    turned: tuple[Turning, ...]
+    angular_velocity: Triple | None
+    quaternion: bool
+    origin: Triple
+    velocity: Triple | None = None
+    acceleration: Triple | None = None
+    rolls: Rolling | None = None
+
+
+@dataclass(frozen=True)
+class Member:
+    """A rigid body in a frame: inertia (xx, yy, zz, xy, xz, yz) about its mass centre, own axes.
+
+    None stands for data that the user does not know. ``look`` is the shape, for people.
+    """
+
+    name: str
+    frame: str
+    mass: Formula | None
+    inertia: Entries
+    centre: Triple
+    axis: Axis | None
+    turned: tuple[Turning, ...]
+    spin: Formula | None
+    axial_speed: Formula | None
+    angular_velocity: Triple | None
+    look: str
+    lengths: Mapping[str, Formula]
+
+
+@dataclass(frozen=True)
+class Force:
+    """A force and a couple at a point of a frame, on a body and, opposite, against another."""
+
+    name: str
+    on: str
+    against: str
+    frame: str
+    at: Triple
+    along: str
+    force: Triple
+    couple: Triple
+
+
+@dataclass(frozen=True)
+class Weight:
+    """Gravity on bodies, along the axes of a frame."""
+
+    name: str
+    on: tuple[str, ...]
+    along: str
+    gravity: Triple
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A spring or damper between two points, each at a place of a frame."""
+
+    name: str
+    on: str
+    against: str
+    frame: str
+    at: Triple
+    to_frame: str
+    to: Triple
+    stiffness: Formula
+    damping: Formula
+    length: Formula
+
+
+@dataclass(frozen=True)
+class Gradient:
+    """The couple of a central gravity field: strength times e x I e."""
+
+    name: str
+    on: tuple[str, ...]
+    along: str
+    towards: Triple
+    strength: Formula
+
+
+Load = Force | Weight | Spring | Gradient
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A component of a load that the balances are to find."""
+
+    name: str
+    unit: str
+    load: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Result:
+    """A formula of answers, parameters and the motion."""
+
+    name: str
+    unit: str
+    formula: Formula
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Place:
+    """A point fixed in a frame, and the bodies that are spoken of."""
+
+    frame: str
+    at: Triple
+    of: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Steady:
+    """The unknown rates of a steady motion; what vanishes in it, if that is not a balance."""
+
+    unknown: tuple[str, ...]
+    vanishes: Formula | None
+
+
+@dataclass(frozen=True)
+class Machine:
+    """Everything the user declared of a machine, checked; ``text`` is the file as it was read."""
+
+    name: str
+    title: str
+    source: str
+    text: str
+    parameters: tuple[Parameter, ...]
+    coordinates: tuple[Moving, ...]
+    speeds: tuple[Moving, ...]
+    inputs: tuple[Moving, ...]
+    frames: tuple[Frame, ...]
+    bodies: tuple[Member, ...]
+    loads: tuple[Load, ...]
+    unknowns: tuple[Unknown, ...]
+    results: tuple[Result, ...]
+    momentum: Place
+    about: Mapping[str, Formula]
+    steady: Steady | None
+    asked: Mapping[str, tuple[str, ...]]
+    wanted: tuple[str, ...]
+    form: Literal["fast", "accurate"]
+    time_step: Given
+    warnings: tuple[str, ...]
+    emission: str = "fast"
+
+    @property
+    def moving(self) -> tuple[Moving, ...]:
+        """Return coordinates, speeds and inputs, in this order."""
+        return (*self.coordinates, *self.speeds, *self.inputs)
+
+    def body(self, name: str) -> Member:
+        """Return the body of a name."""
+        return next(b for b in self.bodies if b.name == name)
+
+    def frame(self, name: str) -> Frame:
+        """Return the frame of a name."""
+        return next(f for f in self.frames if f.name == name)

@@ -1,0 +1,82 @@
+"""A scene as something to read numbers from: its emitted CasADi functions, called by name."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+import casadi
+
+from derive.casadi_text import casadi_file
+from derive.library import Library, library
+from derive.machine.mechanism import Mechanism, depends_on
+from derive.program import Program, Quantity
+from derive.scene import SceneError, load
+
+Values = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Instrument:
+    """A scene's programs and the CasADi functions that were printed from them."""
+
+    library: Library
+    module: ModuleType
+
+    @property
+    def name(self) -> str:
+        """Return the scene's name."""
+        return self.library.known.scene.name
+
+    def quantities(self) -> tuple[Quantity, ...]:
+        """Return everything that may be set."""
+        words = self.library.known.words
+        return (*words.parameters, *words.states, *words.inputs)
+
+    def needed(self, function: str) -> tuple[str, ...]:
+        """Return the components that a function changes with."""
+        known = self.library.known
+        if isinstance(known, Mechanism) and function in self.library.truths:
+            return depends_on(known, function)
+        program = self.library[function]
+        own = [c for q in program.inputs if q.name != "constants" for c in q.components]
+        return (*(c for q in self.library.setup.inputs for c in q.components), *own)
+
+    def answer(self, function: str, given: Values) -> dict[str, Any]:
+        """Return the components of a function's results; a value may be a number or CasADi's SX.
+
+        Raises SceneError if something that the function needs is not given.
+        """
+        program = self.library[function]
+        missing = [c for c in self.needed(function) if c not in given]
+        if missing:
+            raise SceneError(f"scene '{self.name}': '{function}' needs {', '.join(missing)}")
+        found = self._called(program, given)
+        return dict(zip([c for q in program.outputs for c in q.components], found, strict=True))
+
+    def _called(self, program: Program, given: Values) -> list[Any]:
+        built = getattr(self.module, program.name)()
+        arguments = [self._column(q, given) for q in program.inputs if q.name != "constants"]
+        if any(q.name == "constants" for q in program.inputs):
+            of_setup = [self._value(q, q.name, given) for q in self.library.setup.inputs]
+            arguments.insert(0, casadi.vertcat(*of_setup))
+        results = built.call(arguments)
+        if all(isinstance(r, casadi.DM) for r in results):
+            return [float(x) for r in results for x in r.elements()]
+        return [x for r in results for x in casadi.vertsplit(r)]
+
+    def _column(self, q: Quantity, given: Values) -> Any:
+        return casadi.vertcat(*(self._value(q, c, given) for c in q.components))
+
+    def _value(self, q: Quantity, component: str, given: Values) -> Any:
+        """Return a value; what does not matter to the function but stands beside it, in range."""
+        middle = float(((q.low or 0) + (q.high or 0)) / 2)
+        return given.get(component, middle)
+
+
+def opened(source: str) -> Instrument:
+    """Return the instrument of a catalogue name or of a file."""
+    made = library(load(source))
+    module = ModuleType(f"{made.known.scene.name}_casadi")
+    exec(compile(casadi_file(made), module.__name__, "exec"), module.__dict__)  # noqa: S102
+    return Instrument(made, module)

@@ -1,0 +1,127 @@
+"""Steady and small motions of a machine: roots by CasADi, frequencies by an eigenvalue routine."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+from typing import Any
+
+import casadi
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.scene import Machine, SceneError
+from derive.solve.instrument import Instrument
+
+STARTS = 200  # of one unknown; of several, so many in all
+SAME = 1e-7  # relative distance of two roots that are one
+UNSTABLE = 1e-6  # growth beside the largest eigenvalue that is more than rounding
+HALVINGS = 60
+
+
+def _steady(found: Instrument) -> tuple[str, ...]:
+    scene = found.library.known.scene
+    if not isinstance(scene, Machine) or scene.steady is None:
+        raise SceneError(f"scene '{found.name}': roots need [steady]")
+    return scene.steady.unknown
+
+
+def roots(found: Instrument, given: Mapping[str, float]) -> list[dict[str, float]]:
+    """Return the unknowns of every steady motion in the declared ranges, by CasADi's root finder.
+
+    given : all that the residual needs but its unknowns
+    """
+    names = _steady(found)
+    x = casadi.SX.sym("x", len(names))
+    left = found.answer("steady", dict(given) | {n: x[k] for k, n in enumerate(names)})
+    residual = casadi.Function("residual", [x], [casadi.vertcat(*left.values())])
+    rule = {"x": x, "g": casadi.vertcat(*left.values())}
+    finder = casadi.rootfinder("finder", "newton", rule, {"error_on_fail": False})
+    kept: list[NDArray[Any]] = []
+    for start in _starts(found, names, residual):
+        root = np.array(finder(x0=start)["x"]).ravel()
+        known = any(np.allclose(root, other, rtol=SAME, atol=0) for other in kept)
+        if not known and _is_root(residual, root, start) and _within(found, names, root):
+            kept.append(root)
+    return [dict(zip(names, map(float, root), strict=True)) for root in sorted(kept, key=tuple)]
+
+
+def _bounds(found: Instrument, name: str) -> tuple[float, float]:
+    q = next(q for q in found.quantities() if name in q.components)
+    return float(q.low or 0), float(q.high or 0)
+
+
+def _starts(found: Instrument, names: Sequence[str], residual: Any) -> Iterator[NDArray[Any]]:
+    """Yield starts: where one residual changes sign, or a grid of several unknowns."""
+    count = STARTS if len(names) == 1 else max(3, round(STARTS ** (1 / len(names))))
+    axes = [np.linspace(*_bounds(found, name), count) for name in names]
+    if len(names) > 1:
+        yield from (np.array(start) for start in product(*axes))
+        return
+    values = [float(residual(v)) for v in axes[0]]
+    for k in range(count - 1):
+        if values[k] * values[k + 1] <= 0:
+            slope = values[k + 1] - values[k]
+            part = -values[k] / slope if slope else 0.5
+            yield np.array([axes[0][k] + part * (axes[0][k + 1] - axes[0][k])])
+
+
+def _is_root(residual: Any, root: NDArray[Any], start: NDArray[Any]) -> bool:
+    if not np.all(np.isfinite(root)):
+        return False
+    here, there = (np.abs(np.array(residual(p))).max() for p in (root, start))
+    return bool(here <= 1e-9 * max(there, 1e-300) or here < 1e-12)
+
+
+def _within(found: Instrument, names: Sequence[str], root: NDArray[Any]) -> bool:
+    ends = [_bounds(found, name) for name in names]
+    return all(low <= x <= high for x, (low, high) in zip(root, ends, strict=True))
+
+
+def eigenvalues(matrices: Mapping[str, float]) -> NDArray[Any]:
+    """Return the eigenvalues of small motion, from the components of the three matrices."""
+    each = []
+    for name in ("mass_matrix", "damping_matrix", "stiffness_matrix"):
+        own = [v for c, v in matrices.items() if c.startswith(f"{name}_")]
+        size = round(len(own) ** 0.5)
+        each.append(np.array(own).reshape(size, size).T)
+    M, D, K = each
+    size = len(M)
+    inverse = np.linalg.inv(M)
+    whole = np.block([[np.zeros((size, size)), np.eye(size)], [-inverse @ K, -inverse @ D]])
+    found: NDArray[Any] = np.linalg.eigvals(whole)
+    return found
+
+
+def frequencies(found: Instrument, given: Mapping[str, float]) -> list[float]:
+    """Return the circular frequencies of small motion, rising, in rad/s."""
+    every = eigenvalues(found.answer("linearised", given))
+    size = max(abs(every), default=0.0)
+    return sorted(float(v.imag) for v in every if v.imag > UNSTABLE * size)
+
+
+def growth(found: Instrument, given: Mapping[str, float]) -> float:
+    """Return the fastest growth of small motion, in 1/s; 0 if it is no more than rounding."""
+    every = eigenvalues(found.answer("linearised", given))
+    fastest = float(max(every.real))
+    return fastest if fastest > UNSTABLE * max(abs(every)) else 0.0
+
+
+def limits(found: Instrument, given: Mapping[str, float], name: str) -> list[float]:
+    """Return the values of one quantity, in its declared range, at which stability changes."""
+    grid = np.linspace(*_bounds(found, name), STARTS)
+    stable = [growth(found, dict(given) | {name: float(v)}) == 0 for v in grid]
+    changes = [k for k in range(STARTS - 1) if stable[k] != stable[k + 1]]
+    return [_halved(found, given, name, (float(grid[k]), float(grid[k + 1]))) for k in changes]
+
+
+def _halved(
+    found: Instrument, given: Mapping[str, float], name: str, ends: tuple[float, float]
+) -> float:
+    low, high = ends
+    first = growth(found, dict(given) | {name: low}) == 0
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        if (growth(found, dict(given) | {name: middle}) == 0) == first:
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2

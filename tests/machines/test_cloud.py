@@ -1,0 +1,102 @@
+"""Every machine of the catalogue agrees with particles of which only positions are known."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.c_text import F64
+from derive.check.particles import clouds
+from derive.cloud import answers
+from derive.equations import equations
+from derive.formula import Formula
+from derive.library import Library, library
+from derive.machine.mechanism import mechanism
+from derive.reference import reference
+from derive.sample import samples
+from derive.scene import Machine, catalogue, load, parse_scene
+from derive.solve import opened, roots
+
+MACHINES = [name for name in catalogue() if isinstance(load(name), Machine)]
+FEW = 3
+
+
+def verdicts(made: Library) -> list[str]:
+    each = samples(made.known, F64, FEW, 0).each
+    return [
+        f"{v.function} {v.outcome}: {v.says}" for v in clouds(made, each) if v.outcome == "FAILS"
+    ]
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_a_machine_agrees_with_its_cloud(name: str) -> None:
+    assert verdicts(library(load(name))) == []
+
+
+STEADY = ("top_steady_precession", "eulers_disk")
+
+
+@pytest.mark.parametrize("name", STEADY)
+def test_at_a_root_and_nowhere_near_it_the_cloud_is_in_balance(name: str) -> None:
+    found = opened(name)
+    middle = {c: float(((q.low or 0) + (q.high or 0)) / 2) for q in found.quantities()
+              for c in q.components}  # fmt: skip
+    machine = load(name)
+    assert isinstance(machine, Machine)
+    every = roots(found, {n: v for n, v in middle.items() if n != "W"})
+    assert every
+    for root in every:
+        near, off = dict(root), {"W": root["W"] * 1.01}
+        assert answers(machine, middle | near).contradiction < 1e-12
+        assert answers(machine, middle | off).contradiction > 1e-6
+
+
+# What textbooks and programmers leave out: an edit, and the answer that it spoils.
+TWO_BLADES = Path(__file__).parent / "scenes" / "two_blade.toml"
+DISC = 'shape  = "disc"\naxis   = "z"\nmass   = "m"\nradius = "r"'
+NO_A = 'kind = "axisymmetric"\naxis = "z"\nmass = "m"\naxial = "m*r^2/2"\ntransverse = 0'
+SHORTCUTS = (
+    ("the gyroscopic term is dropped", "edge_runner_flat", 'spin   = "-W*L/r"', "", "N"),
+    ("two blades are a disc", TWO_BLADES, 'number = 2\naxis = "x"\nmass = "m"',
+     'number = 3\naxis = "x"\nmass = "2/3*m"', "M"),
+    ("C for C - A", "skewed_disc", DISC, NO_A, "M"),
+    ("the spin is the other way", "disc_two_bearings", 'spin   = "w"', 'spin = "-w"', "couple"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("row", SHORTCUTS, ids=[row[0] for row in SHORTCUTS])
+def test_a_usual_shortcut_gives_another_answer_than_the_cloud(
+    row: tuple[str, str | Path, str, str, str],
+) -> None:
+    _, source, old, new, function = row
+    right = load(source)
+    assert isinstance(right, Machine)
+    assert old in right.text
+    wrong = library(parse_scene(right.text.replace(old, new), right.name))
+    (sample,) = samples(mechanism(right), F64, 1, 0).each
+    fact = wrong.truths[function]
+    false = reference(equations(wrong.known, fact), sample.values, ())
+    names = [c for q in fact.outputs for c in q.components]
+    cloud = answers(right, sample.values)
+    true = [
+        float(cloud.unknowns[n] if n in cloud.unknowns else cloud.result(_formula(right, n)))
+        for n in names
+    ]
+    gaps = [abs(float(false[n].value) - t) for n, t in zip(names, true, strict=True)]
+    assert max(gaps) > 1e-3 * max(map(abs, true))
+
+
+def _formula(machine: Machine, name: str) -> Formula:
+    return next(r.formula for r in machine.results if r.name == name)
+
+
+def test_the_slow_rate_of_a_top_is_not_mgl_over_C_n() -> None:
+    machine = load("top_steady_precession")
+    assert isinstance(machine, Machine)
+    values = {"m": 0.5, "r": 0.05, "l": 0.06, "theta": 0.5, "n": 250.0, "g": 9.81, "psi": 0.0}
+    C = values["m"] * values["r"] ** 2 / 2
+    shortcut = values["m"] * values["g"] * values["l"] / (C * values["n"])
+    found = opened("top_steady_precession")
+    slow = roots(found, values)[0]["W"]
+    assert abs(slow / shortcut - 1) > 1e-3
+    assert answers(machine, values | {"W": slow}).contradiction < 1e-12
+    assert answers(machine, values | {"W": shortcut}).contradiction > 1e-6

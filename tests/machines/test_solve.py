@@ -1,0 +1,75 @@
+"""``derive solve`` answers, finds roots and limits, moves in time, and says what it still needs."""
+
+from functools import cache
+from math import pi
+from pathlib import Path
+
+import pytest
+
+from derive.cli import main
+from derive.scene import SceneError
+from derive.solve import Instrument, opened, plot, simulated
+from derive.solve.command import settings
+
+TOP = {"m": 0.5, "r": 0.05, "l": 0.06, "g": 9.81, "n": 120.0}
+START = {"alpha": 0.1, "beta": 0.0, "alpha_dot": 0.0, "beta_dot": 0.0}
+
+
+@cache
+def top() -> Instrument:
+    return opened("sleeping_top")
+
+
+def test_an_answer_is_printed_with_its_unit(capsys: pytest.CaptureFixture[str]) -> None:
+    data = ["m=1200", "r=0.6", "L=0.9", "g=9.81", "W=3.2"]
+    assert main(["solve", "edge_runner_flat", "--set", *data]) == 0
+    text = capsys.readouterr().out
+    assert "15458.4" in text
+    assert " N " in text
+
+
+def test_what_is_missing_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["solve", "edge_runner_flat", "--set", "m=1200"]) == 0
+    assert "needs r, g, W" in capsys.readouterr().out
+
+
+def test_a_name_that_the_scene_does_not_have_is_refused_with_a_hint() -> None:
+    with pytest.raises(SceneError, match=r"has no 'alhpa' to set \(did you mean 'alpha'"):
+        settings(top(), ["alhpa=1"])
+    with pytest.raises(SceneError, match="a value is a number"):
+        settings(top(), ["alpha=much"])
+
+
+def test_degrees_and_turns_a_minute_may_be_set() -> None:
+    found = settings(top(), ["alpha=3deg", "n=60rpm"])
+    assert found == {"alpha": pytest.approx(pi / 60), "n": pytest.approx(2 * pi)}
+
+
+def test_every_root_and_every_limit_is_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    data = ["m=0.5", "r=0.05", "l=0.06", "g=9.81"]
+    assert main(["solve", "top_steady_precession", "--set", *data, "n=250", "theta=30deg"]) == 0
+    text = capsys.readouterr().out
+    assert "1.92699803071" in text
+    assert "83.479846524" in text
+    assert main(["solve", "sleeping_top", "--set", *data, "--limit", "n"]) == 0
+    assert "79.7890819598" in capsys.readouterr().out
+
+
+def test_a_motion_keeps_its_energy_and_is_plotted(tmp_path: Path) -> None:
+    motion = simulated(top(), TOP | START, 1.0, 1e-3)
+    ends = [{name: row[k] for name, row in motion.states.items()} for k in (0, -1)]
+    first, last = (top().answer("energy", TOP | end)["energy"] for end in ends)
+    assert last == pytest.approx(first, rel=1e-8)
+    assert plot(motion).count("<polyline") == len(START)
+    target = tmp_path / "top.svg"
+    data = [f"{name}={value}" for name, value in (TOP | START).items()]
+    command = ["solve", "sleeping_top", "--set", *data, "--until", "0.1", "--plot", str(target)]
+    assert main(command) == 0
+    assert target.read_text(encoding="utf-8").startswith("<svg")
+
+
+def test_a_motion_needs_a_step_and_a_start() -> None:
+    with pytest.raises(SceneError, match="begins at alpha, alpha_dot, beta, beta_dot"):
+        simulated(top(), TOP, 1.0, 1e-3)
+    with pytest.raises(SceneError, match="needs wanted"):
+        simulated(opened("edge_runner_flat"), {}, 1.0, 1e-3)
