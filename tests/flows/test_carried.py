@@ -11,6 +11,8 @@ from derive.program import Program, run
 from tests.flows.systems import CONTEXT, EVERY, Values, at, mpf, start, system, without_slopes
 from tests.flows.test_step_jacobian import CASES, EXACTLY
 
+pytestmark = pytest.mark.long
+
 PAIRS = {"rk4": (step_rk4, step_rk4_compensated), "lie": (step_lie, step_lie_compensated)}
 COUNTS = {"rk4": 1500, "lie": 400}  # numpy takes a second for either
 

@@ -6,10 +6,13 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
+import pytest
 
 from derive.arithmetic import working
 from derive.program import Op, Program, run
 from tests.flows.free import Rows, flow
+
+pytestmark = pytest.mark.long
 
 FLIPPED = {"add": "sub", "sub": "add", "mul": "div", "div": "mul", "sin": "cos", "cos": "sin"}
 FLOATS = working(np.float64) | {"sin": np.sin, "cos": np.cos}  # of numpy: many, and soon done

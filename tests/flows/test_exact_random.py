@@ -1,9 +1,12 @@
 """States that nobody chose, and some next to the separatrix, end where fifty digits say."""
 
 import numpy as np
+import pytest
 
 from tests.flows.free import Case, Rows, cases, flow, share_of
 from tests.flows.integrated import integrated
+
+pytestmark = pytest.mark.long
 
 RANDOM = 4
 EDGES = (1e-3, 1e-6, 1e-9, 1e-13)  # relative distance from the separatrix

@@ -25,6 +25,8 @@ from tests.flows.stepped import (
     measured_order,
 )
 
+pytestmark = pytest.mark.long
+
 PRECISIONS = (np.float64, np.float32)
 # Radians a step: where the method's error is below what rounding of the inputs allows.
 ANGLE = 1 / 32

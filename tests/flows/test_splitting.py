@@ -25,6 +25,8 @@ from tests.flows.stepped import (
     split_compensated,
 )
 
+pytestmark = pytest.mark.long
+
 PRECISIONS = (np.float64, np.float32)
 ORDERS = (2, 4, 6)
 TENSORS = {

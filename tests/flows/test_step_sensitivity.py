@@ -12,6 +12,8 @@ from derive.scene import CATALOGUE, parse_scene
 from tests.flows.systems import PRINCIPAL, SIXTY_DIGITS, Values, at, start
 from tests.flows.test_step_jacobian import EXACTLY, SMALL, entries
 
+pytestmark = pytest.mark.long
+
 WANTED = re.compile(r"wanted *= *\[[^\]]*\]", re.DOTALL)
 ASKED = 'wanted = ["step_rk4", "step_rk4_sensitivity"]'
 SCENES = ("principal", "rigid_body", "gyrostat", "heavy_top")

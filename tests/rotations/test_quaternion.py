@@ -7,6 +7,8 @@ from tests.rotations import cases, truth
 from tests.rotations.measured import PRECISIONS, UNIT, called, error, errors, promise
 from tests.rotations.truth import plain
 
+pytestmark = pytest.mark.long
+
 both = pytest.mark.parametrize("dtype", PRECISIONS)
 
 
