@@ -9,7 +9,7 @@ from derive.scene.declaration import SceneError
 from derive.scene.machine import INERTIAL, Frame, Rolling
 from derive.scene.names import label
 from derive.scene.scalars import Scalars, known, motions, places, turnings
-from derive.scene.table import Table, keys, nearest, table, triple, word
+from derive.scene.table import Table, keys, nearest, table, text, triple, word
 from derive.unit import ACCELERATION, ANGULAR_VELOCITY, LENGTH, VELOCITY
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def read_frames(given: Table, scalars: Scalars, bodies: tuple[str, ...]) -> tupl
     if INERTIAL in waiting:
         raise SceneError(f"frame '{INERTIAL}' is there already")
     while waiting:
-        ready = [n for n, t in waiting.items() if t.entries.get("parent", INERTIAL) in found]
+        ready = [n for n, t in waiting.items() if _parent(t) in found]
         if not ready:
             name, entry = next(iter(waiting.items()))
             parent = str(entry.entries.get("parent"))
@@ -40,6 +40,10 @@ def read_frames(given: Table, scalars: Scalars, bodies: tuple[str, ...]) -> tupl
         for name in ready:
             found[name] = _frame(name, waiting.pop(name), scalars, bodies)
     return tuple(found.values())
+
+
+def _parent(given: Table) -> str:
+    return text(given.entries.get("parent", INERTIAL), f"{given.label}.parent")
 
 
 def _frame(name: str, given: Table, scalars: Scalars, bodies: tuple[str, ...]) -> Frame:
@@ -66,7 +70,7 @@ def _frame(name: str, given: Table, scalars: Scalars, bodies: tuple[str, ...]) -
 
     return Frame(
         name,
-        str(entries.get("parent", INERTIAL)),
+        _parent(given),
         turnings(entries["turned"], f"{label}.turned", places(scalars)) if turned else (),
         three("angular_velocity"),
         "attitude" in entries,
