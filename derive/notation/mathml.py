@@ -53,6 +53,9 @@ def _character(c: str, style: str) -> str:
     return chr(_BOLD_DIGITS + int(c)) if c.isdigit() and style == "tensor" else c
 
 
+THIN = '<mspace width="0.17em"/>'
+
+
 def row(layout: Layout) -> str:
     """Return ``layout`` as the inside of a MathML element."""
     if layout.kind not in _FORMS:
@@ -68,7 +71,9 @@ def _call(layout: Layout) -> str:
 
 def _named(name: str, call: Layout) -> str:
     inside = "<mo>,</mo>".join(map(row, call.parts))
-    return f"<mrow>{name}<mo>&#8289;</mo>{_argument(call, inside)}</mrow>"
+    argument = _argument(call, inside)
+    space = THIN if argument == inside else ""
+    return f"<mrow>{name}<mo>&#8289;</mo>{space}{argument}</mrow>"
 
 
 def _power(layout: Layout) -> str:
@@ -91,7 +96,7 @@ def _product(layout: Layout) -> str:
     text = row(first)
     for factor in rest:
         base = factor.parts[0] if factor.kind == "power" else factor
-        space = '<mspace width="0.17em"/>' if base.kind == "call" else ""
+        space = THIN if base.kind == "call" else ""
         text += f"<mo>&#8290;</mo>{space}{row(factor)}"
     return f"<mrow>{text}</mrow>"
 
