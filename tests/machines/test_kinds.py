@@ -11,6 +11,8 @@ from derive.prove import prove
 from derive.sample import samples
 from derive.scene import load
 
+pytestmark = pytest.mark.long
+
 SCENES = sorted((Path(__file__).parent / "scenes").glob("*.toml"))
 
 

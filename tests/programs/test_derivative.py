@@ -2,11 +2,14 @@
 
 from fractions import Fraction
 
+import pytest
 from hypothesis import given
 
 from derive.derivative import RULES, derivative
 from derive.graph import ZERO, Graph
 from tests.programs.test_graph import built, expressions, graph_with_leaves, plain, points, value_at
+
+pytestmark = pytest.mark.long
 
 
 def slope(tree, point, name: str) -> Fraction:

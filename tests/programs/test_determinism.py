@@ -55,6 +55,7 @@ def renamed(text: str, names: dict[str, str]) -> str:
     return "".join(other)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", [n for n in catalogue() if n not in MOVED_ONLY])
 def test_other_names_give_the_same_operations(name):
     scene = load(name)

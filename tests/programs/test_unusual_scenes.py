@@ -6,6 +6,8 @@ from derive.library import library
 from derive.prove import prove
 from derive.scene import parse_scene
 
+pytestmark = pytest.mark.long
+
 HEAD = """
 title = "Unusual"
 wanted = [{wanted}]
