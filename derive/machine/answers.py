@@ -14,7 +14,7 @@ from derive.machine.frames import ZERO, Frames
 from derive.machine.linearised import linearised
 from derive.machine.loads import potential_energy
 from derive.machine.matter import without_factors
-from derive.machine.probe import POINTS, independent
+from derive.machine.probe import NOTHING, POINTS, independent
 from derive.machine.question import Question, substituted
 from derive.machine.words import MATRICES
 from derive.program import Quantity
@@ -203,14 +203,22 @@ class Answers:
         free = [m.unknown for m in (*self.machine.coordinates, *self.machine.speeds) if m.free]
         every, symbols = self.balances.unknowns, self.frames.sheet.symbols
         still = frozenset(every.index(symbols[n]) for n in free if symbols[n] in every)
-        rows = unbalanced(self.balances, still)
+        found = unbalanced(self.balances, still)
+        rows = [row for row in found if _lasts(row)] or list(found)
         kept = independent(({p: row.values[p][0] for p in range(POINTS)} for row in rows), count)
         if len(kept) < count:
             raise SceneError(
                 f"'steady' needs {count} balances that no reaction enters and that do not vanish "
-                f"by themselves, found {len(kept)}"
+                f"by themselves, found {len(kept)}; say what vanishes instead, "
+                "as steady.vanishes = 'theta_ddot'"
             )
         return [rows[k] for k in kept]
+
+
+def _lasts(row: Row) -> bool:
+    """Tell whether a balance still says something where nothing but the steady motion is left."""
+    rest = row.values[-1]
+    return bool(abs(rest[0]) > NOTHING * max(map(abs, rest)))
 
 
 @dataclass(frozen=True)

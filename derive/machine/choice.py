@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import Any
 
-from mpmath import mp
+from mpmath import mp, mpf
 
 from derive.machine.balances import Balances, Row
 from derive.machine.probe import DIGITS, NOTHING, POINTS, independent, independent_at_all
@@ -12,6 +12,7 @@ from derive.scene import SceneError
 
 MOST_EXTRA = 5  # unknowns that are solved along without being asked for, before all are
 MOST_SETS = 20_000
+CLEAR = mpf(10) ** -25  # of a row of size one: what elimination leaves of 60 digits is far below
 
 Chosen = tuple[tuple[Row, ...], frozenset[int]]
 
@@ -119,7 +120,30 @@ def _leaves_something(row: Row) -> bool:
 def contradiction(balances: Balances) -> str:
     """Return a sentence on balances that nothing can satisfy, or nothing if there are none."""
     rows = unbalanced(balances)
-    if not rows:
+    if rows:
+        return (f"the {rows[0].balance} does not vanish and holds no unknown: "
+                "declare a load with an unknown there, or leave a motion free")  # fmt: skip
+    against = [_contradicted(balances, point) for point in range(POINTS)]
+    if not all(against):
         return ""
-    return (f"the {rows[0].balance} does not vanish and holds no unknown: "
-            "declare a load with an unknown there, or leave a motion free")  # fmt: skip
+    return (f"the {against[0]} contradicts other balances, whatever its unknowns are: "
+            "declare a load with an unknown more, or leave a motion free")  # fmt: skip
+
+
+def _contradicted(balances: Balances, point: int) -> str:
+    """Return the first balance that those before it leave no solution for, at a trial point."""
+    kept: list[tuple[int, list[Any]]] = []
+    with mp.workdps(DIGITS):
+        for row in balances.rows:
+            values = list(row.values[point])
+            size = max(map(abs, values))
+            left = [v / size for v in values]
+            for pivot, other in kept:
+                factor = left[pivot]
+                left = [v - factor * w for v, w in zip(left, other, strict=True)]
+            free = max(range(1, len(left)), key=lambda k: abs(left[k]), default=0)
+            if free and abs(left[free]) > CLEAR:
+                kept.append((free, [v / left[free] for v in left]))
+            elif abs(left[0]) > CLEAR:
+                return str(row.balance)
+    return ""

@@ -33,6 +33,11 @@ def roots(found: Instrument, given: Mapping[str, float]) -> list[dict[str, float
     x = casadi.SX.sym("x", len(names))
     left = found.answer("steady", dict(given) | {n: x[k] for k, n in enumerate(names)})
     residual = casadi.Function("residual", [x], [casadi.vertcat(*left.values())])
+    if casadi.jacobian(casadi.vertcat(*left.values()), x).nnz() < len(names):
+        raise SceneError(
+            f"scene '{found.name}': the steady residual must depend on "
+            f"{' and '.join(names)}, but it does not; say another by steady.vanishes"
+        )
     rule = {"x": x, "g": casadi.vertcat(*left.values())}
     finder = casadi.rootfinder("finder", "newton", rule, {"error_on_fail": False})
     kept: list[NDArray[Any]] = []
