@@ -147,7 +147,7 @@ def write_calls(whole: dict, precision: str, folder: Path) -> None:
     (folder / "calls.h").write_text(text)
     functions = [f for f in whole["functions"] if f["symbols"][precision]]
     bodies = "".join(f"    {{\n{call(f, precision)}    }}\n" for f in functions)
-    held = f"    static {whole['scene']}_constants_{precision} made_once;\n" if whole["constants"] else ""
+    held = f"    static {whole['scene']}_constants_{precision} ready;\n" if whole["constants"] else ""
     (folder / "calls.c").write_text(f"static void calls(void)\n{{\n{held}{bodies}}}\n")
 
 
@@ -157,8 +157,8 @@ def call(function: dict, precision: str) -> str:
     for argument in function["arguments"]:
         name, size = argument["name"], max(len(argument["components"]), *argument["shape"], 1)
         if argument["type"] == "struct":
-            passed.append("&made_once")
-            taken += ["take(&made_once, sizeof made_once);"] if argument["direction"] == "out" else []
+            passed.append("&ready")
+            taken += ["take(&ready, sizeof ready);"] if argument["direction"] == "out" else []
         elif argument["direction"] == "out":
             lines.append(f"scalar {name}[{size}];")
             passed.append(name)
