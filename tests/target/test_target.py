@@ -147,7 +147,8 @@ def write_calls(whole: dict, precision: str, folder: Path) -> None:
     (folder / "calls.h").write_text(text)
     functions = [f for f in whole["functions"] if f["symbols"][precision]]
     bodies = "".join(f"    {{\n{call(f, precision)}    }}\n" for f in functions)
-    held = f"    static {whole['scene']}_constants_{precision} ready;\n" if whole["constants"] else ""
+    struct = f"{whole['scene']}_constants_{precision}"
+    held = f"    static {struct} ready;\n" if whole["constants"] else ""
     (folder / "calls.c").write_text(f"static void calls(void)\n{{\n{held}{bodies}}}\n")
 
 
