@@ -32,6 +32,7 @@ def test_a_step_without_one_of_its_reasons_fails(step: Step) -> None:
     assert [m.how for m in with_fewer_reasons(step) if stands(m)] == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("step", DEDUCED, ids=lambda step: step.name)
 def test_a_step_with_a_wrong_sign_or_without_a_term_fails(step: Step) -> None:
     mutants = list(with_wrong_sides(step))
