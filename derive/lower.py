@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from fractions import Fraction
 
-from sympy import Add, Expr, Mul, Pow, Rational, Symbol, pi, tan
+from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, pi, sin, tan
 
 from derive.draft import Arrangement
 from derive.graph import Graph, Value
@@ -34,7 +34,7 @@ def value_of(graph: Graph, e: Expr, known: Mapping[Symbol, Value]) -> Value:
         case Rational():
             return graph.number(Fraction(int(e.p), int(e.q)))
         case Add():
-            return graph.add([value_of(graph, a, known) for a in e.args])
+            return graph.add([value_of(graph, a, known) for a in without_cancelling(e)])
         case Mul():
             return graph.mul([value_of(graph, a, known) for a in e.args])
         case Pow(exp=n) if n.is_Integer:
@@ -54,3 +54,21 @@ def _called(graph: Graph, e: Expr, known: Mapping[Symbol, Value]) -> Value:
     if name not in ("sin", "cos", "power_of_two"):
         raise NotImplementedError(f"no operator for {e}")
     return graph.call(name, value_of(graph, e.args[0], known))
+
+
+def without_cancelling(e: Add) -> list[Expr]:
+    """Return the terms of a sum, each 1 - cos x as 2 sin^2(x/2), which loses no digits near 0.
+
+    >>> x, y = Symbol("x"), Symbol("y")
+    >>> without_cancelling(y - y * cos(x))
+    [2*y*sin(x/2)**2]
+    """
+    terms = list(e.args)
+    for term in e.args:
+        for cosine in (f for f in Mul.make_args(term) if f.func is cos):
+            other = -term / cosine
+            if term in terms and other in terms:
+                terms.remove(term)
+                terms.remove(other)
+                terms.append(2 * other * sin(cosine.args[0] / 2) ** 2)
+    return terms

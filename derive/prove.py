@@ -2,12 +2,13 @@
 
 Two rational functions that agree at random points of a wide grid are equal but for odds below one
 in a million a point; sine and cosine enter as a pair of rationals with unit norm. Where a scene
-holds a root, balls of 4000 bits stand in for fractions.
+holds a root or half an angle, balls of 4000 bits stand in for fractions.
 """
 
 import operator
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from random import Random
 from typing import Any
 
@@ -15,7 +16,7 @@ from flint import arb, ctx, fmpq, fmpq_mat
 
 from derive.equations import Equations, equations
 from derive.library import JACOBIAN, Library
-from derive.program import Program, component_names, read_by, run
+from derive.program import Op, Program, component_names, read_by, run
 from derive.reference import BALLS, Known, solution
 from derive.trace import needed
 
@@ -33,7 +34,7 @@ class ProofError(ArithmeticError):
 
 
 class IrrationalError(ArithmeticError):
-    """A root that no fraction is."""
+    """A root that no fraction is, or an angle beside its half."""
 
 
 def _root(x: Any) -> Any:
@@ -89,10 +90,19 @@ def prove(library: Library) -> None:
     asked = {name: equations(library.known, fact) for name, fact in library.truths.items()}
     for number in range(POINTS):
         try:
+            if any(map(_halves_angles, (library.setup, *library.functions, *library.rates))):
+                raise IrrationalError
             _prove_at(library, asked, point(library, number))
         except IrrationalError:
             with ctx.workprec(BITS):
                 _prove_in_balls(library, asked, number)
+
+
+def _halves_angles(program: Program) -> bool:
+    """Tell whether a program takes the sine of half an angle, which no pair of rationals knows."""
+    ops = [op for op in program.ops if isinstance(op, Op)]
+    halves = {op.result for op in ops if op.operator == "mul" and Fraction(1, 2) in op.operands}
+    return any(op.operator == "sin" and op.operands[0] in halves for op in ops)
 
 
 def _prove_in_balls(library: Library, asked: Mapping[str, Equations], number: int) -> None:

@@ -18,6 +18,7 @@ from derive.report.hard_euler import near_lock
 from derive.report.hard_formulas import formulas
 from derive.report.hard_moment import cancelling
 from derive.report.hard_spin import spins
+from derive.report.hard_top import tops
 from derive.report.orders import orders
 from derive.report.point import FULL, SMALL
 from derive.report.record import Report
@@ -96,6 +97,7 @@ def _hard(every: dict[str, Case], shop: Workshop) -> Iterable[Hard]:
     yield from near_lock(shop)
     yield from formulas(shop.folder)
     yield from cancelling(shop.folder)
+    yield from tops(shop.folder)
 
 
 def _part(ask: Ask, name: str, make: Callable[[], Iterable[T]]) -> tuple[T, ...]:
