@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
+from typing import TypeVar
 
 from derive.bench.build import BuildError
 from derive.bench.motion.case import Case
@@ -15,12 +16,13 @@ from derive.bench.motion.ours import parameters, scenes_for
 from derive.bench.motion.runner import Job, Mover, moved
 from derive.bench.motion.textbook import PUBLISHED, RK4, published, textbook
 from derive.bench.motion.textbook import parameters as textbook_parameters
-from derive.bench.motion.wrong import ROUNDOFF, Wrong, invariants, wrong
+from derive.bench.motion.wrong import ROUNDOFF, Wrong, wrong
 from derive.report.case_run import PRECISIONS, Workshop
 from derive.report.elliptic import elliptic
 from derive.report.settings import steps
 
 Figures = Mapping[str, tuple[float, ...]]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -132,45 +134,6 @@ def _times(case: Case, factor: Fraction) -> Case:
     return replace(case, inertia=tuple(x * factor for x in case.inertia))
 
 
-def long_run(every: Mapping[str, Case], shop: Workshop, count: int) -> Iterator[Hard]:
-    """Yield the drift of energy and momentum over ``count`` steps of 0.01 s."""
-    case = replace(every["asym_ii_generic"], time=Fraction(count, 100))
-    for place, what, bound in (
-        (0, "energy", {"f64": 1e-14, "f32": 3e-6}),
-        (1, "|l|", {"f64": 5e-15, "f32": 1e-6}),
-    ):
-        yield Hard(
-            f"{count:.0e} steps of 0.01 s: {what}",
-            f"largest drift of {what}",
-            RK4,
-            by_precision(partial(drift, case, RK4, shop, count, place)),
-            "step_dmv",
-            by_precision(partial(drift, case, "step_dmv", shop, count, place)),
-            bound,
-            "the target: rounding adds up like a random walk when it is carried along",
-        )
-
-
-def drift(
-    case: Case, method: str, shop: Workshop, count: int, place: int, precision: str
-) -> tuple[float]:
-    """Return the largest relative drift of energy or |l|, seen a thousand times on the way.
-
-    place : 0 energy, 1 |l|
-    """
-    mover, given = program(case, method, shop, precision)
-    job = Job(method, 0.01, count, every=max(1, count // 1000))
-    (motion,) = moved(mover, case, given, [job])
-    start = invariants(case, case.omega0)
-    worst = 0.0
-    for state in motion.states if motion else ():
-        if not all(map(math.isfinite, state)):
-            return (math.nan,)
-        now = invariants(case, [Fraction(x) for x in state[4:]])
-        worst = max(worst, abs(float(now[place] / start[place] - 1)))
-    return (worst,)
-
-
 def program(
     case: Case, method: str, shop: Workshop, precision: str
 ) -> tuple[Mover, Sequence[float]]:
@@ -218,9 +181,9 @@ def _tried(case: Case, counts: Sequence[int]) -> Sequence[int]:
     return counts[:1] if case.name == "spin_1e4" else counts
 
 
-def by_precision(found: Callable[[str], tuple[float, ...]]) -> Figures:
+def by_precision(found: Callable[[str], T]) -> dict[str, T]:
     """Return what is found in each precision; nothing where a program or package is missing."""
-    figures = {}
+    figures: dict[str, T] = {}
     for precision in PRECISIONS:
         try:
             figures[precision] = found(precision)

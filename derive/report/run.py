@@ -13,9 +13,10 @@ from derive.bench.motion.step_jacobian import SCENE, entries
 from derive.report.case_run import Workshop, case_run
 from derive.report.functions import functions
 from derive.report.gyroscopic import gyroscopic
-from derive.report.hard import Hard, long_run, motions, scaled
+from derive.report.hard import Hard, motions, scaled
 from derive.report.hard_euler import near_lock
 from derive.report.hard_formulas import formulas
+from derive.report.hard_long import long_runs
 from derive.report.hard_moment import cancelling
 from derive.report.hard_spin import spins
 from derive.report.hard_top import tops
@@ -74,9 +75,7 @@ def _made(ask: Ask, every: dict[str, Case], folder: Path) -> Report:
             found.append(case_run(case, shop))
     ask.tell("hard cases and orders")
     hard = _part(ask, "hard", lambda: _hard(every, shop))
-    evidence = Evidence(
-        {f.case.name: f for f in found}, hard, tools.result(), turning, folder
-    )
+    evidence = Evidence({f.case.name: f for f in found}, hard, tools.result(), turning, folder)
     return Report(
         ask.kind,
         tuple(found),
@@ -93,7 +92,7 @@ def _hard(every: dict[str, Case], shop: Workshop) -> Iterable[Hard]:
     yield from motions(every, shop)
     yield from scaled(every, shop)
     yield from spins(every["asym_ii_generic"], shop)
-    yield from long_run(every, shop, LONG_RUN)
+    yield from long_runs(every, shop, LONG_RUN)
     yield from near_lock(shop)
     yield from formulas(shop.folder)
     yield from cancelling(shop.folder)

@@ -14,7 +14,7 @@ from derive.bench.motion.case import Case
 from derive.bench.motion.glue import glue, movers
 from derive.bench.motion.runner import Mover, built, methods_header
 from derive.emit import c_files
-from derive.library import library
+from derive.library import Library, library
 from derive.manifest import manifest
 from derive.scene import load
 
@@ -24,9 +24,10 @@ AXES = ("x", "y", "z")
 
 @dataclass(frozen=True)
 class Emission:
-    """The C of a scene, its manifest as JSON and read, and what could not be made."""
+    """A scene's programs, their C, its manifest as JSON and read, and what could not be made."""
 
     scene: str
+    programs: Library
     texts: Mapping[str, str]
     json: str
     manifest: Mapping[str, Any]
@@ -82,7 +83,8 @@ def emission(scene: str) -> Emission:
         path.write_text(_only(text, without), encoding="utf-8")
         programs = library(load(str(path)))
     described = manifest(programs, ())
-    return Emission(scene, c_files(programs, ()), described, json.loads(described), without)
+    texts = c_files(programs, ())
+    return Emission(scene, programs, texts, described, json.loads(described), without)
 
 
 def _unmade(path: Path) -> dict[str, str]:
