@@ -241,12 +241,17 @@ def _rounded(operand: Operand, names: set[str], precision: Precision) -> str:
     return operand if operand in names else f"{operand}.high"
 
 
-def admissible(program: Program, precision: Precision) -> str:
-    """Return the C condition that set-up's parameters are admissible, empty if they always are."""
-    names = {c for q in program.inputs for c in q.components}
+def admissible(program: Program, precision: Precision) -> list[str]:
+    """Return the C conditions on set-up's parameters, none if they are always admissible.
+
+    What is infinite or no number fails ``x - x >= 0``.
+    """
+    names = [c for q in program.inputs for c in q.components]
     zero = literal(Fraction(0), precision)
-    tests = [f"{_rounded(p, names, precision)} > {zero}" for p in dict.fromkeys(program.positive)]
-    return " && ".join(tests)
+    positive = dict.fromkeys(_rounded(p, set(names), precision) for p in program.positive)
+    tests = [f"{p} > {zero}" for p in positive]
+    finite = [f"{c} - {c} >= {zero}" for c in names]
+    return tests + finite if tests else []
 
 
 RESTS_ON: dict[str, tuple[str, ...]] = {

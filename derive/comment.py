@@ -32,7 +32,8 @@ def _labelled(label: str, text: str) -> list[str]:
 def _setup(program: Program) -> list[str]:
     lines = [program.says, *_arguments(program)]
     if program.positive:
-        lines.append("Returns 0, or 1 if the inertia is not positive definite or not a number.")
+        says = "0, or 1 if the inertia is not positive definite or a parameter is not finite."
+        lines += _labelled("Returns:", says)
     lines += _labelled(
         "Error:", "each constant is rounded once from twice the working precision; at most 1 ulp."
     )

@@ -196,8 +196,9 @@ def _pair_function(name: str, names: Names, precision: Precision) -> str:
 
 def _setup_definition(program: Program, names: Names, precision: Precision) -> str:
     lines = pair_body(program, names.scene, precision)
-    condition = admissible(program, precision)
-    if condition:
+    tests = admissible(program, precision)
+    if tests:
+        condition = "\n        && ".join(tests)
         lines.append(f"return ({condition}) ? 0 : 1;")
     text = "\n".join(f"    {line}" for line in lines)
     return f"{prototype(program, names, precision)}\n{{\n{text}\n}}"

@@ -104,7 +104,7 @@ def _setup(library: Library) -> dict[str, Any]:
         "name": "setup",
         "says": program.says,
         "symbols": _symbols(library, "setup", "setup"),
-        "returns": "int: 0, or 1 if the inertia is not positive definite"
+        "returns": "int: 0, or 1 if the inertia is not positive definite or a parameter not finite"
         if program.positive
         else "void",
         "arguments": given + returned,

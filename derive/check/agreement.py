@@ -8,6 +8,7 @@ import ctypes
 import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import inf, nan
 from typing import Any
 
 import casadi
@@ -252,14 +253,15 @@ def _same_over(function: Any, values: Mapping[str, Any], output: str, over: str)
 
 
 def refusal(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
-    """Yield whether set-up refuses parameters that are no body's, and no others."""
+    """Yield whether set-up refuses parameters that are no body's or not finite, and no others."""
     setup = emitted.library.setup
     if not setup.positive or not emitted.library.constants:
         return
     good = [emitted.constants(s)["status"] == [0.0] for s in each]
-    lost = [_with(s, dict.fromkeys(s.values, float("nan"))) for s in each]
+    names = [c for q in setup.inputs for c in q.components]
+    endless = [_with(s, s.values | {c: x}) for s in each for c in names for x in (inf, -inf, nan)]
     turned = [_with(s, {name: -x for name, x in s.values.items()}) for s in each]
-    bad = [emitted.constants(s)["status"] == [1.0] for s in (*lost, *turned)]
+    bad = [emitted.constants(s)["status"] == [1.0] for s in (*endless, *turned)]
     says = f"{sum(good)} of {len(good)} bodies taken, {sum(bad)} of {len(bad)} others refused"
     outcome = JUDGED[all(good) and all(bad)]
     yield _verdict(emitted, setup, "refuses what is no body", outcome, says)

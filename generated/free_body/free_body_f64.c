@@ -238,7 +238,15 @@ int free_body_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doub
     constants->half_I_zz = s107.high;
     constants->half_I_xx = s108.high;
     constants->half_I_yy = s109.high;
-    return (s10.high > 0.0 && s41.high > 0.0 && s24.high > 0.0) ? 0 : 1;
+    return (s10.high > 0.0
+        && s41.high > 0.0
+        && s24.high > 0.0
+        && I_xx - I_xx >= 0.0
+        && I_yy - I_yy >= 0.0
+        && I_zz - I_zz >= 0.0
+        && I_xy - I_xy >= 0.0
+        && I_xz - I_xz >= 0.0
+        && I_yz - I_yz >= 0.0) ? 0 : 1;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

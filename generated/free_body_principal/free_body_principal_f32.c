@@ -114,7 +114,12 @@ int free_body_principal_setup_f32(float I_xx, float I_yy, float I_zz,
     constants->half_I_xx = s10.high;
     constants->half_I_yy = s11.high;
     constants->half_I_zz = s12.high;
-    return (I_xx > 0.0F && I_yy > 0.0F && I_zz > 0.0F) ? 0 : 1;
+    return (I_xx > 0.0F
+        && I_yy > 0.0F
+        && I_zz > 0.0F
+        && I_xx - I_xx >= 0.0F
+        && I_yy - I_yy >= 0.0F
+        && I_zz - I_zz >= 0.0F) ? 0 : 1;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -226,7 +226,18 @@ int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_x
     constants->I_xx = I_xx;
     constants->I_yy = I_yy;
     constants->I_zz = I_zz;
-    return (s13.high > 0.0F && s46.high > 0.0F && s27.high > 0.0F) ? 0 : 1;
+    return (s13.high > 0.0F
+        && s46.high > 0.0F
+        && s27.high > 0.0F
+        && I_xx - I_xx >= 0.0F
+        && I_yy - I_yy >= 0.0F
+        && I_zz - I_zz >= 0.0F
+        && I_xy - I_xy >= 0.0F
+        && I_xz - I_xz >= 0.0F
+        && I_yz - I_yz >= 0.0F
+        && C_1 - C_1 >= 0.0F
+        && C_2 - C_2 >= 0.0F
+        && C_3 - C_3 >= 0.0F) ? 0 : 1;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -226,7 +226,18 @@ int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doubl
     constants->I_xx = I_xx;
     constants->I_yy = I_yy;
     constants->I_zz = I_zz;
-    return (s13.high > 0.0 && s46.high > 0.0 && s27.high > 0.0) ? 0 : 1;
+    return (s13.high > 0.0
+        && s46.high > 0.0
+        && s27.high > 0.0
+        && I_xx - I_xx >= 0.0
+        && I_yy - I_yy >= 0.0
+        && I_zz - I_zz >= 0.0
+        && I_xy - I_xy >= 0.0
+        && I_xz - I_xz >= 0.0
+        && I_yz - I_yz >= 0.0
+        && C_1 - C_1 >= 0.0
+        && C_2 - C_2 >= 0.0
+        && C_3 - C_3 >= 0.0) ? 0 : 1;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is. Body of these files: sha256 45d7acc840b6a5b8.
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 6b0224e18b186671.
  */
 #ifndef GYROSTAT_F64_H
 #define GYROSTAT_F64_H
@@ -85,7 +85,7 @@ typedef struct {
  *            C_2  kg m^2  0.005 .. 0.02  axial moment of wheel 2
  *            C_3  kg m^2  0.005 .. 0.02  axial moment of wheel 3
  * Returned:  constants  constants made of parameters only, for the functions of this scene
- * Returns 0, or 1 if the inertia is not positive definite or not a number.
+ * Returns: 0, or 1 if the inertia is not positive definite or a parameter is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 72 operations on pairs.
  */

@@ -154,7 +154,13 @@ int heavy_body_setup_f32(float I_xx, float I_yy, float I_zz, float w,
     constants->compliance = p26.high;
     constants->inverse_a = p27.high;
     constants->inverse_c = p28.high;
-    return (I_xx > 0.0F && I_yy > 0.0F && I_zz > 0.0F) ? 0 : 1;
+    return (I_xx > 0.0F
+        && I_yy > 0.0F
+        && I_zz > 0.0F
+        && I_xx - I_xx >= 0.0F
+        && I_yy - I_yy >= 0.0F
+        && I_zz - I_zz >= 0.0F
+        && w - w >= 0.0F) ? 0 : 1;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

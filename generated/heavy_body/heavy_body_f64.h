@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is. Body of these files: sha256 4b9eac782b2ecbfc.
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 f923ee2270cf4ed7.
  */
 #ifndef HEAVY_BODY_F64_H
 #define HEAVY_BODY_F64_H
@@ -48,7 +48,7 @@ typedef struct {
  *            I_zz  kg m^2  1.6 .. 2  principal moment about z, at the fixed point
  *            w  N m  1 .. 3  weight times the mass centre's distance along z
  * Returned:  constants  constants made of parameters only, for the functions of this scene
- * Returns 0, or 1 if the inertia is not positive definite or not a number.
+ * Returns: 0, or 1 if the inertia is not positive definite or a parameter is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 23 operations on pairs.
  */

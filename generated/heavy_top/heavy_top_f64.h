@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is. Body of these files: sha256 337e41f56ee4510d.
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 33398fa514715086.
  */
 #ifndef HEAVY_TOP_F64_H
 #define HEAVY_TOP_F64_H
@@ -37,7 +37,7 @@ typedef struct {
  *            g  m/s^2  9.7 .. 9.9  gravity
  *            l  m  0.02 .. 0.06  distance of the mass centre from the fixed point
  * Returned:  constants  constants made of parameters only, for the functions of this scene
- * Returns 0, or 1 if the inertia is not positive definite or not a number.
+ * Returns: 0, or 1 if the inertia is not positive definite or a parameter is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 7 operations on pairs.
  */

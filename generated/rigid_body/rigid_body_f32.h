@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest term of the sum that an output is. Body of these files: sha256 3840e04ff144f63b.
+ * float, times the largest term of the sum that an output is. Body of these files: sha256 5c8e7c26aec9e47f.
  */
 #ifndef RIGID_BODY_F32_H
 #define RIGID_BODY_F32_H
@@ -71,7 +71,7 @@ typedef struct {
  *            I_xz  kg m^2  -0.2 .. 0.2  product of inertia, +sum x z dm
  *            I_yz  kg m^2  -0.2 .. 0.2  product of inertia, +sum y z dm
  * Returned:  constants  constants made of parameters only, for the functions of this scene
- * Returns 0, or 1 if the inertia is not positive definite or not a number.
+ * Returns: 0, or 1 if the inertia is not positive definite or a parameter is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 112 operations on pairs.
  */

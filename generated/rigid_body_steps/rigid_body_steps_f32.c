@@ -235,7 +235,16 @@ int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, floa
     constants->k16 = s104.high;
     constants->k17 = s106.high;
     constants->k18 = s108.high;
-    return (s11.high > 0.0F && s42.high > 0.0F && s25.high > 0.0F) ? 0 : 1;
+    return (s11.high > 0.0F
+        && s42.high > 0.0F
+        && s25.high > 0.0F
+        && m - m >= 0.0F
+        && I_xx - I_xx >= 0.0F
+        && I_yy - I_yy >= 0.0F
+        && I_zz - I_zz >= 0.0F
+        && I_xy - I_xy >= 0.0F
+        && I_xz - I_xz >= 0.0F
+        && I_yz - I_yz >= 0.0F) ? 0 : 1;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

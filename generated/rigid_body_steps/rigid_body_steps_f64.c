@@ -235,7 +235,16 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
     constants->k16 = s104.high;
     constants->k17 = s106.high;
     constants->k18 = s108.high;
-    return (s11.high > 0.0 && s42.high > 0.0 && s25.high > 0.0) ? 0 : 1;
+    return (s11.high > 0.0
+        && s42.high > 0.0
+        && s25.high > 0.0
+        && m - m >= 0.0
+        && I_xx - I_xx >= 0.0
+        && I_yy - I_yy >= 0.0
+        && I_zz - I_zz >= 0.0
+        && I_xy - I_xy >= 0.0
+        && I_xz - I_xz >= 0.0
+        && I_yz - I_yz >= 0.0) ? 0 : 1;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

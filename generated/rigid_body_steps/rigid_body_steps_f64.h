@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is. Body of these files: sha256 3b9db6b37422402f.
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 ad16dbd063dd6086.
  */
 #ifndef RIGID_BODY_STEPS_F64_H
 #define RIGID_BODY_STEPS_F64_H
@@ -64,7 +64,7 @@ typedef struct {
  *            I_xz  kg m^2  -0.2 .. 0.2  product of inertia, +sum x z dm
  *            I_yz  kg m^2  -0.2 .. 0.2  product of inertia, +sum y z dm
  * Returned:  constants  constants made of parameters only, for the functions of this scene
- * Returns 0, or 1 if the inertia is not positive definite or not a number.
+ * Returns: 0, or 1 if the inertia is not positive definite or a parameter is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 108 operations on pairs.
  */

@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest term of the sum that an output is. Body of these files: sha256 4d69d2302e0f267b.
+ * float, times the largest term of the sum that an output is. Body of these files: sha256 a57d6f9375ce7b5a.
  */
 #ifndef SATELLITE_F32_H
 #define SATELLITE_F32_H
@@ -53,7 +53,7 @@ typedef struct {
  *            I_yy  kg m^2  1.4 .. 1.8  principal moment of inertia about y
  *            I_zz  kg m^2  1.6 .. 2  principal moment of inertia about z
  * Returned:  constants  constants made of parameters only, for the functions of this scene
- * Returns 0, or 1 if the inertia is not positive definite or not a number.
+ * Returns: 0, or 1 if the inertia is not positive definite or a parameter is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 24 operations on pairs.
  */

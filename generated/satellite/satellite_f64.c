@@ -161,7 +161,12 @@ int satellite_setup_f64(double I_xx, double I_yy, double I_zz, satellite_constan
     constants->compliance = p26.high;
     constants->inverse_a = p27.high;
     constants->inverse_c = p28.high;
-    return (I_xx > 0.0 && I_yy > 0.0 && I_zz > 0.0) ? 0 : 1;
+    return (I_xx > 0.0
+        && I_yy > 0.0
+        && I_zz > 0.0
+        && I_xx - I_xx >= 0.0
+        && I_yy - I_yy >= 0.0
+        && I_zz - I_zz >= 0.0) ? 0 : 1;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -607,7 +607,12 @@ int tumbling_body_setup_f32(float I_xx, float I_yy, float I_zz,
     constants->spin_c = p407.high;
     constants->inverse_a = p408.high;
     constants->inverse_c = p409.high;
-    return (I_xx > 0.0F && I_yy > 0.0F && I_zz > 0.0F) ? 0 : 1;
+    return (I_xx > 0.0F
+        && I_yy > 0.0F
+        && I_zz > 0.0F
+        && I_xx - I_xx >= 0.0F
+        && I_yy - I_yy >= 0.0F
+        && I_zz - I_zz >= 0.0F) ? 0 : 1;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

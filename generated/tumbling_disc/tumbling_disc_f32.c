@@ -97,7 +97,10 @@ int tumbling_disc_setup_f32(float A, float C, tumbling_disc_constants_f32 *const
     constants->moment_ratio = p0.high;
     constants->lag = p2.high;
     constants->spin_c = p3.high;
-    return (A > 0.0F && C > 0.0F) ? 0 : 1;
+    return (A > 0.0F
+        && C > 0.0F
+        && A - A >= 0.0F
+        && C - C >= 0.0F) ? 0 : 1;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

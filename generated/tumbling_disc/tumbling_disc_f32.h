@@ -11,7 +11,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest term of the sum that an output is. Body of these files: sha256 8006bba7411c96ad.
+ * float, times the largest term of the sum that an output is. Body of these files: sha256 7210e7364bcd3dc6.
  */
 #ifndef TUMBLING_DISC_F32_H
 #define TUMBLING_DISC_F32_H
@@ -32,7 +32,7 @@ typedef struct {
  * Given:     A  kg m^2  1 .. 2  transverse moment of inertia
  *            C  kg m^2  1.5 .. 1.9  axial moment of inertia
  * Returned:  constants  constants made of parameters only, for the functions of this scene
- * Returns 0, or 1 if the inertia is not positive definite or not a number.
+ * Returns: 0, or 1 if the inertia is not positive definite or a parameter is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 6 operations on pairs.
  */

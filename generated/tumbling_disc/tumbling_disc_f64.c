@@ -97,7 +97,10 @@ int tumbling_disc_setup_f64(double A, double C, tumbling_disc_constants_f64 *con
     constants->moment_ratio = p0.high;
     constants->lag = p2.high;
     constants->spin_c = p3.high;
-    return (A > 0.0 && C > 0.0) ? 0 : 1;
+    return (A > 0.0
+        && C > 0.0
+        && A - A >= 0.0
+        && C - C >= 0.0) ? 0 : 1;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target
