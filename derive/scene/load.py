@@ -20,6 +20,7 @@ from derive.scene.machine import (
     Weight,
 )
 from derive.scene.names import identifier, label
+from derive.scene.numbers import check_unit
 from derive.scene.scalars import Scalars, known, places
 from derive.scene.table import Scope, Table, formula, keys, shown, table, triple, word
 from derive.unit import ACCELERATION, FORCE, LENGTH, MOMENT, NONE, Dimension, dimension
@@ -155,6 +156,8 @@ def _gradient(reader: _Reader, name: str, given: Table) -> Gradient:
     scope = known(reader.scalars)
     along = reader.frame(given, "along", INERTIAL)
     towards = triple(given.entries["towards"], f"{given.label}.towards", scope, NONE)
+    values = dict.fromkeys(scope.dimensions, 0.0) | dict(reader.scalars.middle())
+    check_unit(towards, f"{given.label}.towards", values)
     value = formula(strength, f"{given.label}.gravity_gradient", scope, RATE_SQUARED)
     return Gradient(name, reader.several(given), along, towards, value)
 

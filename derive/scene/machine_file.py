@@ -15,6 +15,7 @@ from derive.scene.load import MARK, read_loads, unknown_units
 from derive.scene.machine import INERTIAL, Frame, Machine, Member, Place, Result, Steady, Unknown
 from derive.scene.member import read_member
 from derive.scene.names import distinct, identifier, label
+from derive.scene.numbers import member_doubts
 from derive.scene.scalars import PER_SECOND, Scalars, known, places, read_scalars, unknown_rates
 from derive.scene.table import (
     Scope,
@@ -32,7 +33,7 @@ from derive.scene.table import (
 from derive.unit import LENGTH, NONE, Dimension, dimension, dimension_of, spelled
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
 TABLES = (
     "parameters", "coordinates", "speeds", "inputs", "frames", "bodies", "loads", "results",
@@ -93,7 +94,7 @@ def read_machine(document: Mapping[str, object], name: str, source: str) -> Mach
         form="accurate" if word(document.get("form", "fast"), "form", ("fast", "accurate"))
         == "accurate" else "fast",
         time_step=_time_step(part["motion"]),
-        warnings=_unused(scalars, source),
+        warnings=(*_unused(scalars, source), *_doubts(bodies, scalars)),
     )  # fmt: skip
 
 
@@ -225,6 +226,12 @@ def _unused(scalars: Scalars, source: str) -> tuple[str, ...]:
         for kind, name in entries
         if words[name] == 1 and not words[f"{name}_dot"] + words[f"{name}_ddot"]
     )
+
+
+def _doubts(bodies: tuple[Member, ...], scalars: Scalars) -> Iterator[str]:
+    """Yield a sentence for every body that no masses can make up."""
+    for body in bodies:
+        yield from member_doubts(f"body '{body.name}'", body.inertia, scalars.parameters)
 
 
 def _time_step(given: Table) -> Given:

@@ -13,7 +13,7 @@ from derive.formula import ZERO, Formula, number
 from derive.scene.body import AXES, KINDS, read_body
 from derive.scene.declaration import Axis, SceneError, Sextuple, Triple
 from derive.scene.machine import Entries, Frame, Member, Turning
-from derive.scene.numbers import positive
+from derive.scene.numbers import check_member, positive
 from derive.scene.scalars import Scalars, motions, places, turnings
 from derive.scene.shape import CONE_CENTRE, SHAPES, about_axis, box, diagonal, moved
 from derive.scene.symbols import Symbols, constants
@@ -58,6 +58,7 @@ def read_member(name: str, given: Table, frames: tuple[Frame, ...], scalars: Sca
     if "centre" in entries:
         centre = triple(entries["centre"], f"{given.label}.centre", scope, LENGTH)
     centre, made = _about(given, centre, made, fixed)
+    check_member(given.label, made.inertia, scalars.parameters)
     turned: tuple[Turning, ...] = ()
     if "turned" in entries:
         turned = turnings(entries["turned"], f"{given.label}.turned", places(scalars))

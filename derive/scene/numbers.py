@@ -11,25 +11,26 @@ from fractions import Fraction
 from itertools import islice, product
 from typing import TYPE_CHECKING
 
-from derive.formula import FLOATS, ONE, Formula, evaluate, symbols
+from derive.formula import FLOATS, ONE, ZERO, Formula, evaluate, symbols
 from derive.scene.declaration import SceneError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from derive.scene.declaration import Body, Coordinate, Parameter, Sextuple, Wheel
+    from derive.scene.declaration import Body, Coordinate, Parameter, Sextuple, Triple, Wheel
+    from derive.scene.machine import Entries, Moving
 
 MOST_ENDS = 256
 """Enough for every combination of the ends of eight ranges."""
 UNIT_LENGTH = 1e-9
-"""How far the length of a wheel's axis may be from 1: nine digits typed by hand."""
+"""How far the length of a unit vector may be from 1: nine digits typed by hand."""
 ROUNDING = 1e-12
 """Slack of the triangle inequality, relative to the trace: a disc obeys it with equality."""
 
 Matrix = tuple[tuple[Fraction, ...], ...]
 
 
-def middle(parameters: Iterable[Parameter]) -> Mapping[str, float]:
+def middle(parameters: Iterable[Parameter | Moving]) -> Mapping[str, float]:
     """Return the middle of every range."""
     return {entry.name: float((entry.low + entry.high) / 2) for entry in parameters}
 
@@ -93,18 +94,29 @@ def triangle(matrix: Matrix) -> bool:
 
     Along principal axes this is the triangle inequality of the three moments.
     """
-    trace = matrix[0][0] + matrix[1][1] + matrix[2][2]
-    slack = abs(trace) * Fraction(ROUNDING)
+    half = _trace(matrix) / 2
     second = tuple(
-        tuple((trace / 2 + slack if i == j else 0) - matrix[i][j] for j in range(3))
-        for i in range(3)
+        tuple((half if i == j else 0) - matrix[i][j] for j in range(3)) for i in range(3)
+    )
+    return semidefinite(second, abs(half) * 2)
+
+
+def semidefinite(matrix: Matrix, size: Fraction) -> bool:
+    """Return whether no principal minor is negative, but for rounding beside ``size``."""
+    slack = size * Fraction(ROUNDING)
+    grown = tuple(
+        tuple(matrix[i][j] + (slack if i == j else 0) for j in range(3)) for i in range(3)
     )
     pairs = ((0, 1), (0, 2), (1, 2))
     return (
-        all(second[i][i] >= 0 for i in range(3))
-        and all(second[i][i] * second[j][j] >= second[i][j] ** 2 for i, j in pairs)
-        and _determinant(second) >= 0
+        all(grown[i][i] >= 0 for i in range(3))
+        and all(grown[i][i] * grown[j][j] >= grown[i][j] ** 2 for i, j in pairs)
+        and _determinant(grown) >= 0
     )
+
+
+def _trace(matrix: Matrix) -> Fraction:
+    return matrix[0][0] + matrix[1][1] + matrix[2][2]
 
 
 def check_inertia(body: Body, parameters: tuple[Parameter, ...]) -> None:
@@ -138,14 +150,67 @@ def doubts(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str]:
             return
 
 
+def check_member(label: str, inertia: Entries, parameters: tuple[Parameter, ...]) -> None:
+    """Refuse a machine's body with a negative moment about some axis, as far as it is known.
+
+    A moment may vanish: rods and points are bodies of machines too.
+    """
+    values = middle(parameters)
+    known = [part for part in inertia if part is not None]
+    found = [None if part is None else value(part, values, f"{label} inertia") for part in inertia]
+    possible = all(x is None or x >= 0 for x in found[:3])
+    whole = _whole(inertia)
+    if possible and whole is not None:
+        matrix = tensor(whole, values, f"{label} inertia")
+        possible = semidefinite(matrix, abs(_trace(matrix)))
+    if not possible:
+        moments, products = (
+            ", ".join("unknown" if x is None else f"{x:g}" for x in part)
+            for part in (found[:3], found[3:])
+        )
+        raise SceneError(
+            f"{label} inertia must be positive definite, not moments {moments} "
+            f"with products {products}{_where(values, known)}"
+        )
+
+
+def _whole(inertia: Entries) -> Sextuple | None:
+    """Return an inertia of which everything is known, None for any other."""
+    xx, yy, zz, xy, xz, yz = inertia
+    if xx is None or yy is None or zz is None or xy is None or xz is None or yz is None:
+        return None
+    return xx, yy, zz, xy, xz, yz
+
+
+def member_doubts(
+    label: str, inertia: Entries, parameters: tuple[Parameter, ...]
+) -> Iterator[str]:
+    """Yield a sentence on the first inertia of a machine's body that no masses can have.
+
+    Nothing is said of a wheel with its axial moment alone: its carrier counts the others.
+    """
+    whole = _whole(inertia)
+    if whole is None or [part == ZERO for part in whole[:3]].count(True) == 2:
+        return
+    used = [name for part in whole for name in symbols(part)]
+    for values in (middle(parameters), *ends(parameters, used)):
+        if not triangle(tensor(whole, values, f"{label} inertia")):
+            yield f"{label} inertia breaks the triangle inequality{_where(values, whole)}"
+            return
+
+
 def check_axis(wheel: Wheel, parameters: tuple[Parameter, ...]) -> None:
     """Refuse a wheel whose axis is zero or not of unit length at the middle of the ranges."""
-    label = f"wheel '{wheel.name}': axis"
-    found = math.hypot(*(value(part, middle(parameters), label) for part in wheel.axis))
+    check_unit(wheel.axis, f"wheel '{wheel.name}': axis", middle(parameters))
+
+
+def check_unit(vector: Triple, label: str, values: Mapping[str, float]) -> None:
+    """Refuse a vector that is zero or not of unit length at these values."""
+    found = math.hypot(*(value(part, values, label) for part in vector))
     if found == 0:
         raise SceneError(f"{label} is zero; it must be a unit vector")
     if abs(found - 1) > UNIT_LENGTH:
-        where = _where(middle(parameters), wheel.axis)
+        where = _where(values, vector)
         raise SceneError(f"{label} must be a unit vector, not of length {found:.10g}{where}")
 
 

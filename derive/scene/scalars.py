@@ -9,6 +9,7 @@ from derive.formula import ZERO, Formula
 from derive.scene.declaration import Axis, Input, Parameter, SceneError
 from derive.scene.machine import Moving, Turning
 from derive.scene.names import identifier
+from derive.scene.numbers import middle
 from derive.scene.symbols import read_symbols
 from derive.scene.table import Scope, Table, formula, interval, keys, shown, table, text, word
 from derive.scene.table import unit as unit_of
@@ -35,6 +36,10 @@ class Scalars:
     def moving(self) -> tuple[Moving, ...]:
         """Return all that moves."""
         return (*self.coordinates, *self.speeds, *self.inputs)
+
+    def middle(self) -> Mapping[str, float]:
+        """Return the middle of every range."""
+        return middle((*self.parameters, *self.moving))
 
 
 def read_scalars(part: Mapping[str, Table]) -> Scalars:
