@@ -7,6 +7,7 @@ valued at the given motion as it goes, so that the expressions stay as small as 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import networkx as nx
 from sympy import Expr, Integer, Matrix, Symbol, zeros
 
 from derive.machine.balances import Balances
@@ -24,7 +25,10 @@ class Small:
 
 
 def linearised(machine: Machine, balances: Balances) -> dict[str, Matrix]:
-    """Return the three matrices, (n, n), of the free coordinates and speeds in order."""
+    """Return the three matrices, (n, n), of the free coordinates and speeds in order.
+
+    Each row is the one in which its own coordinate has the most mass, counted positive.
+    """
     free = [m for m in (*machine.coordinates, *machine.speeds) if m.free]
     sheet = balances.frames.sheet
     if not free:
@@ -50,7 +54,35 @@ def linearised(machine: Machine, balances: Balances) -> dict[str, Matrix]:
         "damping_matrix": table.slopes(velocities),
         "stiffness_matrix": table.slopes(places),
     }
-    return {name: table.reduced(column) for name, column in columns.items()}
+    made = {name: table.reduced(column) for name, column in columns.items()}
+    own = _own_rows(made["mass_matrix"], balances)
+    return {name: _in_order(matrix, own) for name, matrix in made.items()}
+
+
+def _own_rows(mass: Matrix, balances: Balances) -> list[tuple[int, int]]:
+    """Return for each free coordinate the row that is its own, and the sign of its mass there."""
+    probe = point(balances.frames.words, 0)
+    size = mass.shape[0]
+    values = [[float(probe.value(mass[i, k])) for k in range(size)] for i in range(size)]
+    graph = nx.Graph()
+    for i, row in enumerate(values):
+        largest = max(map(abs, row))
+        graph.add_edges_from(
+            (("row", i), ("column", k), {"weight": abs(x) / largest})
+            for k, x in enumerate(row)
+            if x
+        )
+    mates = {}
+    for pair in nx.max_weight_matching(graph, maxcardinality=True):
+        column, row = sorted(pair)
+        mates[column[1]] = row[1]
+    if len(mates) < size:
+        return [(i, 1) for i in range(size)]  # something moves without mass: no row is its own
+    return [(mates[k], 1 if values[mates[k]][k] > 0 else -1) for k in range(size)]
+
+
+def _in_order(matrix: Matrix, own: Sequence[tuple[int, int]]) -> Matrix:
+    return Matrix.vstack(*(matrix.row(i) * sign for i, sign in own))
 
 
 @dataclass
