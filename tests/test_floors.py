@@ -21,7 +21,7 @@ FLOORS = (
     ("saving",),
     (
         *("c_text", "series_text", "compact_text", "definition", "comment", "signature", "example"),
-        *("emit", "casadi_text", "manifest", "page"),
+        *("emit", "casadi_text", "casadi_module", "manifest", "page"),
     ),
     (
         "blocks",
