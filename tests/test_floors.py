@@ -37,6 +37,7 @@ FLOORS = (
     ),
     ("cloud", "gallery"),
     ("files", "generation", "check", "bench", "report", "solve"),
+    ("command",),
     ("cli", "__main__"),
 )
 WITHOUT_SYMPY = (
@@ -110,7 +111,7 @@ def test_sympy_stays_out_of_the_modules_that_must_not_know_it(path: Path) -> Non
 
 def test_an_import_that_goes_up_is_found() -> None:
     assert faults("program", "from derive.cli import main") == [
-        "derive.program (floor 0) imports derive.cli (floor 15)"
+        "derive.program (floor 0) imports derive.cli (floor 16)"
     ]
     assert faults("program", "def f():\n    from derive import emit") != []
 
