@@ -20,12 +20,13 @@ from derive.graph import Graph, Value
 from derive.lecture import LECTURE
 from derive.lower import value_of
 from derive.program import Operand, Program, Quantity, renamed
+from derive.recorded import called, needed
 from derive.rotations.functions import attitude_program
 from derive.scene import Scene, SceneError
 from derive.scene.wanted import ATTITUDES, SPLITTINGS, STEP_DERIVATIVES, TAYLOR, moves, step_of
 from derive.specialise import Specialised
 from derive.stage import Traced, exact_number, used_inputs
-from derive.trace import Number, Tape, called, needed, number
+from derive.trace import Number, Tape, number
 from derive.vocabulary import Vocabulary
 
 LOOPED = ("step_rk4", "step_rk4_jacobian", "step_rk4_sensitivity")

@@ -9,7 +9,10 @@ import pytest
 
 FLOORS = (
     ("vectors", "formula", "grammar", "unit", "scene", "catalogue", "program", "graph"),
-    ("particles", "arithmetic", "trace", "rotations", "tree", "rate", "facts", "relations"),
+    (
+        *("particles", "arithmetic", "trace", "operations", "recorded", "rotations"),
+        *("tree", "rate", "facts", "relations"),
+    ),
     ("expand", "derivative", "table", "share", "write"),
     ("step", "notation", "principal", "vocabulary", "valuation", "wording"),
     ("lecture", "schedule", "motion"),
@@ -47,6 +50,8 @@ WITHOUT_SYMPY = (
         "unit",
         "scene",
         "trace",
+        "operations",
+        "recorded",
         "flows",
         "rotations",
         "scene_[bfnrst]*",
