@@ -18,7 +18,7 @@ FLOORS = (
     ("lecture", "schedule", "motion"),
     ("specialise", "truth", "draft", "staging", "inverse", "attitude", "along_body", "arrange"),
     ("machine",),
-    ("lower", "forms", "stage"),
+    ("lower", "forms", "stage", "function"),
     ("flows",),
     ("motions", "library"),
     ("saving",),

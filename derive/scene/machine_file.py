@@ -29,6 +29,7 @@ from derive.scene.table import (
     triple,
     word,
 )
+from derive.scene.wanted import JACOBIAN
 from derive.unit import LENGTH, NONE, Dimension, dimension, dimension_of, spelled
 
 if TYPE_CHECKING:
@@ -44,7 +45,6 @@ FUNCTIONS = (
     *ENERGIES,
     *("angular_momentum", "accelerations", "state_rate", "step_rk4", "linearised", "steady"),
 )
-JACOBIAN = "_jacobian"
 AXES = ("x", "y", "z")
 
 

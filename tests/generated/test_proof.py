@@ -7,7 +7,8 @@ from functools import cache
 
 import pytest
 
-from derive.library import JACOBIAN, Library, library
+from derive.library import Library, library
+from derive.scene.wanted import JACOBIAN
 from derive.program import Op, Program
 from derive.prove import ProofError, lectured, prove
 from derive.scene import catalogue, load, parse_scene

@@ -10,7 +10,8 @@ from flint import arb, ctx
 
 from derive.c_text import F64
 from derive.equations import equations
-from derive.library import JACOBIAN, STEP
+from derive.library import STEP
+from derive.scene.wanted import JACOBIAN
 from derive.machine.mechanism import Known, Mechanism, in_terms, truth_of
 from derive.reference import BALLS, Known, reference, solution
 from derive.sample import Sample, samples
