@@ -3,27 +3,23 @@
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import cast
 
 from derive.flows.compact import Compact
 from derive.flows.series import Series
 from derive.function import Arranged, Graphed, arranged, function, graphed
 from derive.graph import Graph, Value
-from derive.lower import value_of
-from derive.machine.mechanism import Known, Mechanism, in_terms
-from derive.motions import Moving, motions, needs, traced, with_names
+from derive.machine.mechanism import Known, in_terms
+from derive.motions import motions, needs
+from derive.moving import Moving, applied_moment, traced, with_names
 from derive.program import Program, Quantity, read_by
 from derive.scene import Machine, Scene
-from derive.scene.wanted import EQUATIONS, SPLITTINGS, base_of, step_of
-from derive.specialise import Specialised
+from derive.scene.wanted import EQUATIONS, base_of
 from derive.stage import (
     Constant,
     Traced,
     exact_number,
-    hot,
     in_pairs,
     setup,
-    used_inputs,
     with_low_parts,
 )
 from derive.truth import Truth
@@ -104,42 +100,15 @@ def _asked(scene: Scene | Machine) -> tuple[list[str], list[str]]:
 
 def _moved(scene: Graphed, rates: Mapping[str, Program]) -> Moved:
     """Return what moves the state, its constants beside those that the rates asked for."""
-    moment = _moment(scene)
-    body = cast(Specialised, scene.known)  # a machine wants no motion, and nothing is read from it
-    moving = Moving(body, scene.graph, scene.leaves, rates, moment)
+    moving = Moving(scene, rates, applied_moment(scene))
     programs = motions(moving)
-    taken = {name: _parameter(scene.graph, value) for value, name in scene.constants.names.items()}
-    part, renaming = traced(moving, taken)
+    part, renaming = traced(moving)
     programs = tuple(with_names(program, renaming) for program in programs)
     read = {name for program in programs for name in read_by(program)}
     names = {operand: name for operand, name in part.names.items() if name in read}
     says = {operand: said for operand, (_, said) in moving.tape.names.items()}
     meanings = {name: says[operand] for operand, name in names.items()}
     return Moved(programs, replace(part, names=names), meanings)
-
-
-def _moment(scene: Graphed) -> Program | None:
-    """Return the program of the moment along the axes, for steps that kick; None if it is zero."""
-    known = scene.known
-    if isinstance(known, Mechanism):
-        return None
-    if not any(step_of(name) in SPLITTINGS for name in known.scene.wanted):
-        return None
-    by_symbol = scene.by_symbol()
-    values = [value_of(scene.graph, e, by_symbol) for e in known.bindings["M"]]
-    if not any(coefficient for coefficient, _ in values):
-        return None
-    ops, results = hot(scene.graph, scene.constants, values)
-    inputs = used_inputs((*known.words.states, *known.words.inputs), ops, results)
-    output = known.words["moment"]
-    return Program("applied_moment", "", inputs, (output,), ops, results)
-
-
-def _parameter(graph: Graph, value: Value) -> str:
-    """Return the parameter that a constant is, "" if it is made of several."""
-    coefficient, node = value
-    kind, *rest = graph.nodes[node]
-    return str(rest[0]) if kind == "input" and coefficient == 1 else ""
 
 
 def _set_up(scene: Graphed, wanted: Iterable[Arranged], part: Traced) -> Program:
