@@ -48,7 +48,7 @@ ATTITUDES = (
 """Formulas for attitudes, which need no body."""
 
 JACOBIAN, SENSITIVITY = "_jacobian", "_sensitivity"
-"""What ends the name of a function that comes with its derivatives: by what varies, by all."""
+"""How the name of a function with derivatives ends: by what varies; by state and parameters."""
 
 JACOBIANS = tuple(f"{name}{JACOBIAN}" for name in EQUATIONS)
 WANTED = (*EQUATIONS, *JACOBIANS, *STEPS, *COMPENSATED, *STEP_DERIVATIVES, *ATTITUDES)
