@@ -10,10 +10,11 @@ from derive.c_text import F32, F64, PRECISIONS, pair_functions
 from derive.comment import of_what
 from derive.emit import JACOBIAN_DENSE
 from derive.lecture import LECTURE
-from derive.library import JACOBIAN, Library
+from derive.library import Library
 from derive.machine.mechanism import Mechanism, depends_on, dropped
 from derive.notation import equation_text
 from derive.program import Measurement, Program, Quantity, Sparsity
+from derive.scene.wanted import JACOBIAN
 from derive.signature import Names, dense
 
 

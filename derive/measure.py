@@ -19,10 +19,11 @@ from numpy.typing import NDArray
 from derive.arithmetic import Table, extended, paired, working
 from derive.c_text import PRECISIONS, Precision
 from derive.equations import equations
-from derive.library import JACOBIAN, Library
+from derive.library import Library
 from derive.program import Measurement, Program, component_names, run
 from derive.reference import Known, reference
 from derive.sample import Sample, samples
+from derive.scene.wanted import JACOBIAN
 
 ORDINARY, CORNERS = 96, 3
 DIGITS = 2  # of a printed figure, rounded up

@@ -5,27 +5,27 @@ rates, and become programs. What rests on parameters only is on the tape of set-
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from derive.flows import steps
 from derive.flows.carried import remainder
 from derive.flows.compact import compact
 from derive.flows.exact import flow_exact
-from derive.flows.inertia import Inertia
 from derive.flows.moser_veselov import plan_dmv, step_dmv
 from derive.flows.splitting import step_split, step_split_compensated
 from derive.flows.system import System, next_of
 from derive.flows.taylor import taylor_step
-from derive.graph import Graph, Value
 from derive.lecture import LECTURE
-from derive.lower import value_of
-from derive.program import Operand, Program, Quantity, renamed
+from derive.machine.mechanism import single
+from derive.moving import Moving
+from derive.program import Operand, Program, Quantity
+from derive.recorded import called, needed
 from derive.rotations.functions import attitude_program
 from derive.scene import Scene, SceneError
+from derive.scene.declaration import Given
 from derive.scene.wanted import ATTITUDES, SPLITTINGS, STEP_DERIVATIVES, TAYLOR, moves, step_of
-from derive.specialise import Specialised
-from derive.stage import Traced, exact_number, used_inputs
-from derive.trace import Number, Tape, called, needed, number
+from derive.stage import used_inputs
+from derive.trace import Number, Tape, number
 from derive.vocabulary import Vocabulary
 
 LOOPED = ("step_rk4", "step_rk4_jacobian", "step_rk4_sensitivity")
@@ -49,49 +49,6 @@ SLOPES = {
     "sensitivity": "state_rate_sensitivity",
 }
 """What the derivatives of a step rest on, by kind."""
-
-
-@dataclass
-class Moving:
-    """What the formulas of motion are given: the scene, its rates, its body, the tape of set-up.
-
-    moment : the program of the moment along the axes, None if there is none
-    """
-
-    known: Specialised
-    graph: Graph
-    leaves: Mapping[str, Value]
-    rates: Mapping[str, Program]
-    moment: Program | None
-    tape: Tape = field(default_factory=lambda: Tape("p"))
-    given: dict[str, Value] = field(default_factory=dict)
-
-    def parameter(self, value: Value) -> Number:
-        """Return a parameter-only value of the graph as a number of set-up."""
-        exact = exact_number(self.graph, value)
-        if exact is not None:
-            return number(exact)
-        own = [name for name, leaf in self.leaves.items() if leaf == value]
-        name = own[0] if own else f"given{len(self.given)}"
-        if not own:
-            self.given[name] = value
-        return self.tape.input(name)
-
-    def inertia(self) -> Inertia:
-        """Return the body's tensor along its axes, about the scene's point."""
-        tensor, body = self.known.bindings["I"], self.known.scene.body
-        by_symbol = {self.known.words.symbols[c]: v for c, v in self.leaves.items()}
-        places = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-        values = [value_of(self.graph, tensor[p], by_symbol) for p in places]
-        xx, yy, zz, xy, xz, yz = (self.parameter(value) for value in values)
-        kind = body.kind if body.kind != "rod" else "axisymmetric"
-        if kind == "general" and all(n.exact == 0 for n in (xy, xz, yz)):
-            kind = "principal"
-        return Inertia((xx, yy, zz, xy, xz, yz), kind, body.axis)
-
-    def function(self) -> Tape:
-        """Return a tape for a function."""
-        return Tape("t", below=self.tape)
 
 
 def needs(scene: Scene) -> tuple[str, ...]:
@@ -127,7 +84,7 @@ def _motion(moving: Moving, name: str) -> tuple[Program, ...]:
 
 def _taylor(moving: Moving, order: int) -> Program:
     words, rate = moving.known.words, moving.rates["state_rate"]
-    step = _time(moving.known.scene, "time_step")
+    step = _time_step(moving)
     series = taylor_step(rate, words.states, words.inputs, order, step)
     return replace(series.signature, loops=series, assumptions=rate.assumptions)
 
@@ -146,7 +103,7 @@ _STEP_PROGRAMS: Mapping[str, Callable[[System], Program]] = {
 
 
 def _runge_kutta(moving: Moving, name: str) -> Program:
-    rates, step = moving.rates, _time(moving.known.scene, "time_step")
+    rates, step = moving.rates, _time_step(moving)
     slopes = rates[SLOPES[name.rpartition("_")[2]]] if name in STEP_DERIVATIVES else None
     system = System(moving.known.words.states, rates["state_rate"], slopes, step)
     program = _STEP_PROGRAMS[name](system)
@@ -164,10 +121,12 @@ def _runge_kutta(moving: Moving, name: str) -> Program:
     return compact(system, program) if small else program
 
 
-def _time(scene: Scene, name: str) -> Quantity:
-    given = scene.time_step if name == "time_step" else scene.time
-    says = "length of the step" if name == "time_step" else "time from the given to the new state"
-    return Quantity(name, (name,), (), "s", "", given.low, given.high, says)
+def _time_step(moving: Moving) -> Quantity:
+    return _seconds("time_step", moving.known.scene.time_step, "length of the step")
+
+
+def _seconds(name: str, range_: Given, says: str) -> Quantity:
+    return Quantity(name, (name,), (), "s", "", range_.low, range_.high, says)
 
 
 @dataclass(frozen=True)
@@ -202,7 +161,8 @@ def _rotation(words: Vocabulary) -> tuple[Quantity, Quantity]:
 def _flow_exact(moving: Moving) -> Program:
     tape, words = moving.function(), moving.known.words
     attitude, omega = _rotation(words)
-    time = _time(moving.known.scene, "time")
+    given = single(moving.known).scene.time
+    time = _seconds("time", given, "time from the given to the new state")
     (t,) = _inputs(tape, time)
     q, w = flow_exact(tape, moving.inertia(), _inputs(tape, attitude), _inputs(tape, omega), t)
     outputs = (next_of(attitude), next_of(omega))
@@ -212,7 +172,7 @@ def _flow_exact(moving: Moving) -> Program:
 
 
 def _dmv(moving: Moving) -> tuple[Program, ...]:
-    words, step = moving.known.words, _time(moving.known.scene, "time_step")
+    words, step = moving.known.words, _time_step(moving)
     omega = words["omega"]
     tape = moving.function()
     (h,) = _inputs(tape, step)
@@ -247,7 +207,7 @@ def _dmv_step(moving: Moving, plan: Quantity, names: Sequence[str]) -> Program:
 
 
 def _split(moving: Moving, name: str) -> Program:
-    tape, step = moving.function(), _time(moving.known.scene, "time_step")
+    tape, step = moving.function(), _time_step(moving)
     attitude, omega = _rotation(moving.known.words)
     order, body, rest = SPLITTINGS[step_of(name)], moving.inertia(), remainder((attitude, omega))
     (h,) = _inputs(tape, step)
@@ -286,25 +246,3 @@ def _moment(moving: Moving, tape: Tape) -> Callable[[Sequence[Number]], list[Num
         return called(tape, program, outside | dict(zip(parts, attitude, strict=True)))
 
     return at
-
-
-def traced(moving: Moving, taken: Mapping[str, str]) -> tuple[Traced, Mapping[str, str]]:
-    """Return set-up's part of the motions, and how its constants are renamed.
-
-    taken : names of the graph's constants, each with the parameter that it is, or ""
-    """
-    shared = {parameter: name for name, parameter in taken.items() if parameter}
-    names: dict[str, str] = {}
-    for operand, (name, _) in moving.tape.names.items():
-        used = {*taken, *names.values()}
-        several = (name, *(f"{name}{k}" for k in range(2, len(used) + 3)))
-        names[operand] = shared.get(operand) or next(n for n in several if n not in used)
-    new = {name: names[operand] for operand, (name, _) in moving.tape.names.items()}
-    own = {operand: name for operand, name in names.items() if operand not in shared}
-    return Traced(tuple(moving.tape.ops), dict(moving.given), own), new
-
-
-def with_names(program: Program, names: Mapping[str, str]) -> Program:
-    """Return a program whose constants are called by their new names."""
-    results = tuple(names.get(r, r) if isinstance(r, str) else r for r in program.results)
-    return replace(program, ops=renamed(program.ops, names), results=results)

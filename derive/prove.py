@@ -15,10 +15,11 @@ from typing import Any
 from flint import arb, ctx, fmpq, fmpq_mat
 
 from derive.equations import Equations, equations
-from derive.library import JACOBIAN, Library
+from derive.library import Library
 from derive.program import Op, Program, component_names, read_by, run
+from derive.recorded import needed
 from derive.reference import BALLS, Known, solution
-from derive.trace import needed
+from derive.scene.wanted import JACOBIAN
 
 POINTS = 2
 TRIES = 50

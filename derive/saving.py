@@ -5,12 +5,13 @@ from dataclasses import dataclass, replace
 
 from derive.forms import cost
 from derive.graph import Graph
-from derive.library import JACOBIAN, Library
+from derive.library import Library
 from derive.lower import lower
 from derive.machine.answers import Answers
 from derive.machine.balances import Balances, Row
 from derive.machine.mechanism import Mechanism, dropped, plain_arrangement
 from derive.scene import SceneError
+from derive.scene.wanted import JACOBIAN
 
 
 @dataclass(frozen=True)

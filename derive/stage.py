@@ -22,8 +22,8 @@ from derive.program import (
     operands_of,
     renamed,
 )
+from derive.recorded import needed
 from derive.schedule import schedule
-from derive.trace import needed
 from derive.wording import spelling
 
 

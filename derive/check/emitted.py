@@ -1,13 +1,14 @@
 """The emitted files of a scene, compiled and loaded: what a user would run."""
 
-import importlib.util
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from derive.c_text import F64, PRECISIONS, Precision
+from derive.casadi_module import imported
 from derive.check.call import Function, functions
 from derive.check.compiler import Compiler, compiled
 from derive.files import scene_files
@@ -86,17 +87,10 @@ def loaded(library: Library, found: Files, workshop: Path, with_: Compiler) -> I
         yield Emitted(library, precision, callable_, shared)
 
 
-def casadi_module(library: Library, found: Files, workshop: Path) -> Any:
+def casadi_module(library: Library, found: Files, workshop: Path) -> ModuleType:
     """Return the scene's CasADi file as a module."""
     name = f"{library.known.scene.name}_casadi"
-    path = workshop / f"{name}.py"
-    path.write_text(found.texts[path.name], encoding="utf-8")
-    spec = importlib.util.spec_from_file_location(name, path)
-    if spec is None or spec.loader is None:
-        raise ImportError(f"{path} is not a Python module")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return imported(name, found.texts[f"{name}.py"], workshop)
 
 
 def is_double(emitted: Emitted) -> bool:

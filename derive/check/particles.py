@@ -19,7 +19,7 @@ from derive.reference import Known, reference
 from derive.sample import Sample
 from derive.scene import Machine
 from derive.scene.machine import Result
-from derive.scene.machine_file import written_out
+from derive.scene.results import written_out
 
 AGREE = mpf(10) ** -25
 AGREE_QUATERNIONS = mpf(10) ** -13  # those of a sample have norm 1 only to double precision

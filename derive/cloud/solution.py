@@ -12,7 +12,7 @@ from derive.cloud.history import History
 from derive.cloud.series import DIGITS, crossed, each, series
 from derive.formula import Formula
 from derive.scene import Machine
-from derive.scene.machine_file import written_out
+from derive.scene.results import written_out
 
 NOTHING = mpf(10) ** (8 - DIGITS)
 

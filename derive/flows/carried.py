@@ -12,8 +12,9 @@ from fractions import Fraction
 from derive.flows.attitude_stages import norm_squared
 from derive.flows.compensated import compensated_add
 from derive.flows.system import System
+from derive.operations import sqrt
 from derive.program import Quantity
-from derive.trace import Number, sqrt
+from derive.trace import Number
 
 Row = list[Number]
 

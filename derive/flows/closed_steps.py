@@ -8,7 +8,8 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from derive.flows.inertia import Inertia
-from derive.trace import Number, cos, less, named, number, select, sin, sqrt
+from derive.operations import cos, less, select, sin, sqrt
+from derive.trace import Number, named, number
 
 Plan = list[tuple[str, Number, str]]
 AXES = "xyz"

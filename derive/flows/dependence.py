@@ -9,7 +9,7 @@ from fractions import Fraction
 from derive.arithmetic import EXACT
 from derive.flows.system import System
 from derive.program import Op, Operand, Program, run
-from derive.trace import needed
+from derive.recorded import needed
 
 TRIALS = 3  # each in exact numbers: two bilinear forms that differ do not agree by chance
 

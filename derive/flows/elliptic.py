@@ -12,7 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from derive.trace import Number, number, sqrt
+from derive.operations import sqrt
+from derive.trace import Number, number
 
 RUNGS = 12
 """From the least complementary modulus of a double, 2^-537, to means that agree in 53 bits."""

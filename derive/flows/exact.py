@@ -8,9 +8,10 @@ from derive.flows.inertia import Inertia
 from derive.flows.principal_axes import Row, Three, principal_axes
 from derive.flows.revolution import precess, spun
 from derive.flows.tumbling import tumble
+from derive.operations import less, power_of_two, select
 from derive.rotations.lengths import largest
 from derive.rotations.quaternion import product
-from derive.trace import Number, Tape, less, named, power_of_two, select
+from derive.trace import Number, Tape, named
 
 Motion = tuple[list[Number], list[Number]]
 

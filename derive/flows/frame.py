@@ -6,7 +6,8 @@ from fractions import Fraction
 
 from derive.flows.inertia import Inertia
 from derive.flows.principal_axes import principal_axes
-from derive.trace import Number, Tape, at_most, both, either, named, number, select
+from derive.operations import at_most, both, either, select
+from derive.trace import Number, Tape, named, number
 
 Vector = Sequence[Number]
 Change = Callable[[Vector], list[Number]]

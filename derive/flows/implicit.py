@@ -6,7 +6,9 @@ c_i = al W_i + e_i c_j c_k with al = 1 + |c|^2: c is tan(angle/2) times the axis
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from derive.trace import Number, Tape, absolute, at_most, repeat, sqrt
+from derive.operations import absolute, at_most, sqrt
+from derive.recorded import repeat
+from derive.trace import Number, Tape
 
 AXES = "xyz"
 PASSES = 16  # three or four suffice; at one radian a step, ten

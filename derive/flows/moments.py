@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 
-from derive.trace import Number, less, select
+from derive.operations import less, select
+from derive.trace import Number
 
 
 def in_order(moments: Sequence[Number]) -> tuple[Number, Number, Number]:

@@ -28,16 +28,8 @@ from derive.flows.moments import in_order
 from derive.flows.orthogonal import lacking
 from derive.flows.preprocessing import D, S, coefficients, summed
 from derive.flows.turns import quaternion_change
-from derive.trace import (
-    Number,
-    Tape,
-    absolute,
-    less,
-    named,
-    number,
-    select,
-    splitter,
-)
+from derive.operations import absolute, less, select, splitter
+from derive.trace import Number, Tape, named, number
 
 CYCLIC = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 Plan = list[tuple[str, Number, str]]

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from derive.flows.principal_axes import Three, quotient, root
-from derive.trace import Number, absolute, at_most, both, less, named, number, select, sqrt
+from derive.operations import absolute, at_most, both, less, select, sqrt
+from derive.trace import Number, named, number
 
 NEARLY_ZERO = Fraction(1, 2**100)
 """The complementary modulus on the separatrix, where the motion is over long before its period."""

@@ -8,7 +8,8 @@ lacking from the way back is worked out here, and added where nothing rounds it 
 from collections.abc import Sequence
 
 from derive.flows.compensated import two_product, two_sum
-from derive.trace import Number, Tape, number, splitter
+from derive.operations import splitter
+from derive.trace import Number, Tape, number
 
 Rows = Sequence[Sequence[Number]]
 

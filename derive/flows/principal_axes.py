@@ -13,17 +13,9 @@ from fractions import Fraction
 from math import isqrt
 
 from derive.flows.inertia import Inertia
-from derive.trace import (
-    Number,
-    Tape,
-    absolute,
-    less,
-    number,
-    power_of_two,
-    repeat,
-    select,
-    sqrt,
-)
+from derive.operations import absolute, less, power_of_two, select, sqrt
+from derive.recorded import repeat
+from derive.trace import Number, Tape, number
 
 BITS = 192  # kept of an exact root, and of exact numbers from turn to turn
 PASSES = 8  # over the three pairs of axes; six reach 2^-106 from any tensor tried

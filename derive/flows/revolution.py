@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from derive.flows.principal_axes import Three
+from derive.operations import cos, sin, sqrt
 from derive.rotations.lengths import squares
 from derive.rotations.quaternion import product
-from derive.trace import Number, cos, named, number, sin, sqrt
+from derive.trace import Number, named, number
 
 
 def spun(omega: Three, time: Number) -> list[Number]:

@@ -15,8 +15,9 @@ from derive.flows.attitude_stages import Turning, norm_squared, turning
 from derive.flows.dependence import free_omega
 from derive.flows.matrices import Matrix
 from derive.flows.system import System, rates_at, slopes_at
+from derive.operations import sqrt
 from derive.rotations.quaternion import product
-from derive.trace import Number, Tape, sqrt
+from derive.trace import Number, Tape
 
 Row = list[Number]
 THIRD = Fraction(1, 3)

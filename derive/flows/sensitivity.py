@@ -27,9 +27,10 @@ from derive.flows.attitude_stages import (
 from derive.flows.matrices import Matrix, identity, minus, plus, product, times, transposed, zeros
 from derive.flows.runge_kutta import THIRD, Row, Stages, Step
 from derive.flows.system import System
+from derive.operations import sqrt
 from derive.program import Operand
 from derive.rotations.quaternion import conjugate
-from derive.trace import Number, number, sqrt
+from derive.trace import Number, number
 
 
 @dataclass(frozen=True)

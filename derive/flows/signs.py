@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from derive.program import Op, Operand, Program
-from derive.trace import Number, Tape, needed, number
+from derive.recorded import needed
+from derive.trace import Number, Tape, number
 
 PASSES_THROUGH = ("add", "sub", "mul", "div", "neg")
 

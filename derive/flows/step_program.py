@@ -11,7 +11,8 @@ from derive.flows.order import with_values_read_soon
 from derive.flows.signs import with_signs_moved
 from derive.flows.system import System, next_of
 from derive.program import Operand, Program, Quantity, Sparsity
-from derive.trace import Number, Tape, needed
+from derive.recorded import needed
+from derive.trace import Number, Tape
 
 Row = list[Number]
 COMPRESSED = "in compressed-column order"

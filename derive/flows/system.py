@@ -14,8 +14,9 @@ from functools import cache
 
 from derive.flows.matrices import Matrix, zeros
 from derive.program import Op, Operand, Program, Quantity, Sparsity, every_op, operands_of
+from derive.recorded import called
 from derive.stage import free_prefix
-from derive.trace import Number, Tape, called, number
+from derive.trace import Number, Tape, number
 
 TIME_STEP = Quantity(
     "time_step", ("time_step",), (), "s", "", Fraction(0), Fraction(1, 10), "length of the step"

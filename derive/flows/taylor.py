@@ -1,5 +1,6 @@
 """From a rate to its Taylor step: the state's terms up to an order, their sum, the next step."""
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 from derive.flows.proposal import PROPOSED, proposal
@@ -24,26 +25,14 @@ def taylor_step(
     Raises ValueError for an operation that has no recurrence here.
     """
     names = [c for q in states for c in q.components]
-    rates = dict(zip(names, rate.results, strict=True))
-    draft = Draft({x for x in names if rates[x] != 0}, _joining(rate))
-    for op in rate.ops:
-        if not isinstance(op, Op):
-            raise ValueError(f"'{rate.name}' has a loop, of which there is no Taylor series")
-        record(draft, op, rate.ops)
-    moving = {
-        x: (rates[x], draft.term(rates[x]) if draft.moves(rates[x]) else Fraction(0))
-        for x in names
-        if rates[x] != 0
-    }
-    used = [q for q in rate.inputs if q.name == "constants"]
-    used += [*states, *(q for q in inputs if q in rate.inputs), time_step]
-    close, proposed = proposal(order, [[c for c in q.components if c in moving] for q in states])
-    ends = {x: f"{x}_after" if x in moving else x for x in names}
-    sums = [Op(ends[x], "add", (x, f"{x}_sum")) for x in moving]
+    rates = {x: r for x, r in zip(names, rate.results, strict=True) if r != 0}
+    draft = _drafted(rate, set(rates))
+    moving = {x: (r, draft.term(r) if draft.moves(r) else Fraction(0)) for x, r in rates.items()}
+    close, proposed = _close(order, states, tuple(moving))
     series = Series(
         name="step_taylor" if order == 20 else f"step_taylor{order}",
         says=f"One step by a Taylor series of order {order}.",
-        inputs=tuple(used),
+        inputs=(*_read(rate, states, inputs), time_step),
         outputs=(*map(next_of, states), PROPOSED),
         order=order,
         start=tuple(draft.start),
@@ -52,11 +41,42 @@ def taylor_step(
         each=tuple(draft.each),
         kept=tuple(draft.kept),
         rates=moving,
-        close=(*sums, *close),
-        results=(*ends.values(), proposed),
+        close=close,
+        results=(*(_after(x) if x in moving else x for x in names), proposed),
     )
     _refuse_clashes(series)
     return series
+
+
+def _drafted(rate: Program, moving: set[str]) -> Draft:
+    """Return the terms of every operation of a rate, of which these components move."""
+    draft = Draft(moving, _joining(rate))
+    for op in rate.ops:
+        if not isinstance(op, Op):
+            raise ValueError(f"'{rate.name}' has a loop, of which there is no Taylor series")
+        record(draft, op, rate.ops)
+    return draft
+
+
+def _read(
+    rate: Program, states: tuple[Quantity, ...], inputs: tuple[Quantity, ...]
+) -> tuple[Quantity, ...]:
+    """Return what a step reads: the constants, the state, and the inputs that its rate reads."""
+    constants = [q for q in rate.inputs if q.name == "constants"]
+    return (*constants, *states, *(q for q in inputs if q in rate.inputs))
+
+
+def _close(
+    order: int, states: tuple[Quantity, ...], moving: Sequence[str]
+) -> tuple[tuple[Op, ...], str]:
+    """Return the operations that add the terms and propose a step, and the proposal's name."""
+    sums = [Op(_after(x), "add", (x, f"{x}_sum")) for x in moving]
+    ops, proposed = proposal(order, [[c for c in q.components if c in moving] for q in states])
+    return (*sums, *ops), proposed
+
+
+def _after(component: str) -> str:
+    return f"{component}_after"
 
 
 def _joining(rate: Program) -> frozenset[str]:
@@ -69,7 +89,6 @@ def _joining(rate: Program) -> frozenset[str]:
                 kind = "add" if divides or op.operator in ("add", "sub", "neg") else op.operator
                 readers.setdefault(operand, []).append(kind)
     return frozenset(str(value) for value, kinds in readers.items() if kinds == ["add"])
-
 
 
 def _refuse_clashes(series: Series) -> None:

@@ -12,7 +12,8 @@ from fractions import Fraction
 from derive.flows.elliptic import HALF, Angle, Complex, Ladder, Values, angle, functions, ladder
 from derive.flows.orbit import Orbit, orbit, role_of_a
 from derive.flows.principal_axes import Three
-from derive.trace import Number, absolute, cos, less, select, sin, sqrt
+from derive.operations import absolute, cos, less, select, sin, sqrt
+from derive.trace import Number
 
 OVER = Fraction(40)
 """The phase on the separatrix after which nothing but a pure spin is left: sech 40 = 2^-57."""

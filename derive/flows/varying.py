@@ -8,9 +8,10 @@ from fractions import Fraction
 
 from derive.flows.attitude_stages import between, norm_squared, right_matrix, tangent_matrix
 from derive.flows.matrices import Matrix, minus, plus, product, times, zeros
+from derive.operations import less, select, sqrt
 from derive.rotations.quaternion import conjugate, exponential
 from derive.rotations.quaternion import product as hamilton
-from derive.trace import Number, Tape, less, number, select, sqrt
+from derive.trace import Number, Tape, number
 
 Row = list[Number]
 TINY = Fraction(1, 2**40)

@@ -11,11 +11,12 @@ from derive.arithmetic import extended, paired, working
 from derive.emit import TEMPLATES
 from derive.gallery.drawing import drawing
 from derive.lecture import LECTURE
-from derive.library import JACOBIAN, Library
+from derive.library import Library
 from derive.machine.mechanism import Mechanism, arrange
 from derive.notation import equation_mathml, sympy_equation_mathml
 from derive.page.machine import written_names
 from derive.program import Program, run
+from derive.scene.wanted import JACOBIAN
 
 LONGEST_EQUATION = 45  # operations of a closed form that a card still shows
 

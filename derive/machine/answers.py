@@ -19,7 +19,8 @@ from derive.machine.question import Question, substituted
 from derive.machine.words import MATRICES
 from derive.program import Quantity
 from derive.scene import Input, Machine, SceneError
-from derive.scene.machine_file import JACOBIAN, written_out
+from derive.scene.results import written_out
+from derive.scene.wanted import JACOBIAN
 from derive.specialise import stated
 
 FRAME_STEPS = ("angular_velocities_add", "acceleration_seen_from_axes")

@@ -10,7 +10,7 @@ from derive.formula import Formula
 from derive.machine.sheet import Sheet
 from derive.program import Quantity
 from derive.scene import Input, Machine
-from derive.scene.machine_file import AXES, ENERGIES, _groups
+from derive.scene.results import AXES, ENERGIES, groups
 from derive.scene.scalars import PER_SECOND
 from derive.vocabulary import ANY, Vocabulary
 
@@ -115,7 +115,7 @@ def _inputs(machine: Machine) -> Iterator[Quantity]:
 def _outputs(machine: Machine) -> Iterator[Quantity]:
     for u in machine.unknowns:
         yield _scalar(u.name, u.unit, None, None, u.meaning)
-    for group in _groups(machine.unknowns):
+    for group in groups(machine.unknowns):
         first = next(u for u in machine.unknowns if u.name == f"{group}_x")
         parts = tuple(f"{group}_{a}" for a in AXES)
         says = first.meaning.removesuffix(" along x")

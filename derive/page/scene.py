@@ -8,7 +8,7 @@ from markupsafe import Markup
 from derive.comment import cost
 from derive.emit import TEMPLATES, first_line
 from derive.lecture import LECTURE
-from derive.library import JACOBIAN, Library
+from derive.library import Library
 from derive.machine.mechanism import Mechanism
 from derive.notation import name_mathml
 from derive.page.code import listing
@@ -19,6 +19,7 @@ from derive.page.pattern import pattern
 from derive.page.prose import prose
 from derive.page.words import given
 from derive.program import Measurement, Program, Quantity
+from derive.scene.wanted import JACOBIAN
 
 _PRECISIONS = ("f32", "f64")
 

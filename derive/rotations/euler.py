@@ -10,21 +10,10 @@ paper, no angles are added and no quarter turn is taken away afterwards, for tha
 from collections.abc import Sequence
 from fractions import Fraction
 
+from derive.operations import absolute, at_most, atan2, cos, less, power_of_two, select, sin, sqrt
 from derive.rotations.lengths import FAR, either_way, largest, squares
 from derive.rotations.quaternion import product
-from derive.trace import (
-    Number,
-    absolute,
-    at_most,
-    atan2,
-    cos,
-    less,
-    number,
-    power_of_two,
-    select,
-    sin,
-    sqrt,
-)
+from derive.trace import Number, number
 
 
 def sign_of(i: int, j: int) -> int:

@@ -6,9 +6,10 @@ from fractions import Fraction
 from functools import partial
 
 from derive.program import Program, Quantity
+from derive.recorded import needed
 from derive.rotations import euler, matrix, quaternion, rodrigues
 from derive.scene.wanted import SEQUENCES
-from derive.trace import Number, Tape, needed
+from derive.trace import Number, Tape
 
 Formula = Callable[..., list[Number]]
 
@@ -16,6 +17,7 @@ PARTS = ("w", "x", "y", "z")
 ENTRIES = ("xx", "yx", "zx", "xy", "yy", "zy", "xz", "yz", "zz")
 HALF_TURN = Fraction("3.14159")
 """Samples of angles are taken up to here; the functions take any."""
+
 
 @dataclass(frozen=True)
 class AttitudeFunction:

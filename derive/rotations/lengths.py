@@ -8,7 +8,8 @@ by one unit in its last place turns a vector visibly.
 from collections.abc import Sequence
 from fractions import Fraction
 
-from derive.trace import Number, Tape, absolute, less, power_of_two, select, splitter, sqrt
+from derive.operations import absolute, less, power_of_two, select, splitter, sqrt
+from derive.trace import Number, Tape
 
 FAR = Fraction(2**60)
 """Larger numbers are brought down by this before their power of two is asked for: the way to a

@@ -5,8 +5,9 @@ R_NB takes components along B's axes to components along N's.
 
 from collections.abc import Sequence
 
+from derive.operations import less, select, sqrt
 from derive.rotations.lengths import either_way, squares
-from derive.trace import Number, less, select, sqrt
+from derive.trace import Number
 
 
 def from_quaternion(q: Sequence[Number]) -> list[Number]:

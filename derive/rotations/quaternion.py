@@ -8,19 +8,9 @@ component of the result. Sources: Sola, "Quaternion kinematics for the error-sta
 from collections.abc import Sequence
 from fractions import Fraction
 
+from derive.operations import absolute, atan2, cos, less, power_of_two, select, sin, sqrt
 from derive.rotations.lengths import FAR, largest, length_and_rest, size_of, squares
-from derive.trace import (
-    Number,
-    Tape,
-    absolute,
-    atan2,
-    cos,
-    less,
-    power_of_two,
-    select,
-    sin,
-    sqrt,
-)
+from derive.trace import Number, Tape
 
 TINY = Fraction(1, 2**30)
 """Below, a rotation vector v has sin(|v|/2)/|v| = 1/2 and cos(|v|/2) = 1 to the last bit."""

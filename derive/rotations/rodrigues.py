@@ -6,8 +6,9 @@ there is no singular attitude. Source: Schaub and Junkins, J. Astronaut. Sci. 44
 
 from collections.abc import Sequence
 
+from derive.operations import absolute, less, power_of_two, select
 from derive.rotations.lengths import FAR, largest, squares
-from derive.trace import Number, absolute, less, power_of_two, select
+from derive.trace import Number
 
 
 def from_quaternion(q: Sequence[Number]) -> list[Number]:

@@ -5,32 +5,20 @@ from __future__ import annotations
 import re
 from collections import Counter
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
-from derive.formula import ZERO, Formula, substitute
-from derive.grammar import parse
+from derive.formula import ZERO, Formula
 from derive.scene.declaration import Given, Input, SceneError
 from derive.scene.frames import read_frames
-from derive.scene.load import MARK, read_loads, unknown_units
+from derive.scene.load import read_loads
 from derive.scene.machine import INERTIAL, Frame, Machine, Member, Place, Result, Steady, Unknown
 from derive.scene.member import read_member
-from derive.scene.names import distinct, identifier, label
+from derive.scene.names import distinct, label
 from derive.scene.numbers import member_doubts
-from derive.scene.scalars import PER_SECOND, Scalars, known, places, read_scalars, unknown_rates
-from derive.scene.table import (
-    Scope,
-    Table,
-    formula,
-    interval,
-    keys,
-    nearest,
-    shown,
-    table,
-    text,
-    triple,
-    word,
-)
-from derive.unit import LENGTH, NONE, Dimension, dimension, dimension_of, spelled
+from derive.scene.results import answer_units, of_any_unit, read_asked, read_results, written_out
+from derive.scene.scalars import PER_SECOND, Scalars, known, places, read_scalars
+from derive.scene.table import Scope, Table, formula, interval, keys, table, text, triple, word
+from derive.unit import LENGTH, dimension
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -40,13 +28,6 @@ TABLES = (
     "angular_momentum", "linearised", "steady", "motion",
 )  # fmt: skip
 OF_ONE_BODY = ("body", "axes", "wheels", "point", "known", "position")
-ENERGIES = ("kinetic_energy", "potential_energy", "energy")
-FUNCTIONS = (
-    *ENERGIES,
-    *("angular_momentum", "accelerations", "state_rate", "step_rk4", "linearised", "steady"),
-)
-JACOBIAN = "_jacobian"
-AXES = ("x", "y", "z")
 
 
 def is_machine(document: Mapping[str, object]) -> bool:
@@ -56,6 +37,31 @@ def is_machine(document: Mapping[str, object]) -> bool:
 
 def read_machine(document: Mapping[str, object], name: str, source: str) -> Machine:
     """Return the machine of a parsed TOML document, checked table by table."""
+    part = _tables(document)
+    scalars = read_scalars(part)
+    frames = read_frames(part["frames"], scalars, tuple(part["bodies"].entries))
+    bodies = _bodies(part["bodies"], frames, scalars)
+    loads, unknowns = read_loads(part["loads"], scalars, frames, bodies)
+    results = read_results(part["results"], scalars, unknowns)
+    distinct(_declared(scalars, unknowns, results))
+    asked = read_asked(document["wanted"], scalars, unknowns, results)
+    return Machine(
+        name=name, title=text(document.get("title", name), "title"),
+        source=text(document.get("source", "own"), "source"), text=source,
+        parameters=scalars.parameters, coordinates=scalars.coordinates,
+        speeds=scalars.speeds, inputs=scalars.inputs,
+        frames=frames, bodies=bodies, loads=loads, unknowns=unknowns, results=results,
+        momentum=_momentum(part["angular_momentum"], frames, bodies, scalars),
+        about=_about(part["linearised"], scalars),
+        steady=_steady(part["steady"], scalars, unknowns, results, asked),
+        asked=asked, wanted=tuple(asked), form=_form(document),
+        time_step=_time_step(part["motion"]),
+        warnings=(*_unused(scalars, source), *_doubts(bodies, scalars)),
+    )  # fmt: skip
+
+
+def _tables(document: Mapping[str, object]) -> Mapping[str, Table]:
+    """Return the tables of a machine's file, empty where it has none; refuse another kind's."""
     for key in OF_ONE_BODY:
         if key in document:
             rule = "is for a single body; with bodies and frames, use bodies, frames and loads"
@@ -64,38 +70,12 @@ def read_machine(document: Mapping[str, object], name: str, source: str) -> Mach
         raise SceneError("the file needs 'wanted', above its first [table]")
     keys(Table("the file", document), ("wanted", "bodies"),
          (*TABLES, "title", "source", "form"))  # fmt: skip
-    part = {key: table(document.get(key, {}), key) for key in TABLES}
-    scalars = read_scalars(part)
-    frames = read_frames(part["frames"], scalars, tuple(part["bodies"].entries))
-    bodies = _bodies(part["bodies"], frames, scalars)
-    loads, unknowns = read_loads(part["loads"], scalars, frames, bodies)
-    results = _results(part["results"], scalars, unknowns)
-    distinct(_declared(scalars, unknowns, results))
-    asked = _wanted(document["wanted"], scalars, unknowns, results)
-    return Machine(
-        name=name,
-        title=text(document.get("title", name), "title"),
-        source=text(document.get("source", "own"), "source"),
-        text=source,
-        parameters=scalars.parameters,
-        coordinates=scalars.coordinates,
-        speeds=scalars.speeds,
-        inputs=scalars.inputs,
-        frames=frames,
-        bodies=bodies,
-        loads=loads,
-        unknowns=unknowns,
-        results=results,
-        momentum=_momentum(part["angular_momentum"], frames, bodies, scalars),
-        about=_about(part["linearised"], scalars),
-        steady=_steady(part["steady"], scalars, unknowns, results, asked),
-        asked=asked,
-        wanted=tuple(asked),
-        form="accurate" if word(document.get("form", "fast"), "form", ("fast", "accurate"))
-        == "accurate" else "fast",
-        time_step=_time_step(part["motion"]),
-        warnings=(*_unused(scalars, source), *_doubts(bodies, scalars)),
-    )  # fmt: skip
+    return {key: table(document.get(key, {}), key) for key in TABLES}
+
+
+def _form(document: Mapping[str, object]) -> Literal["fast", "accurate"]:
+    said = word(document.get("form", "fast"), "form", ("fast", "accurate"))
+    return "accurate" if said == "accurate" else "fast"
 
 
 def _bodies(given: Table, frames: tuple[Frame, ...], scalars: Scalars) -> tuple[Member, ...]:
@@ -105,67 +85,6 @@ def _bodies(given: Table, frames: tuple[Frame, ...], scalars: Scalars) -> tuple[
         read_member(label(name, "a body"), table(value, f"body '{name}'"), frames, scalars)
         for name, value in given.entries.items()
     )
-
-
-def _answers(scalars: Scalars, unknowns: tuple[Unknown, ...]) -> dict[str, Dimension]:
-    """Return all that a result may be made of beside what is known."""
-    found = dict(unknown_units(unknowns)) | unknown_rates(scalars)
-    found |= dict.fromkeys(ENERGIES, dimension("J"))
-    momentum = dimension("kg m^2/s")
-    found |= _entries(scalars)
-    return found | {f"angular_momentum_{axis}": momentum for axis in AXES}
-
-
-def _entries(scalars: Scalars) -> dict[str, Dimension]:
-    """Return the entries of the matrices of small motion, each with its dimension.
-
-    Entries stand for forces or moments; of one kind alone they are told apart by nothing else.
-    """
-    free = [m for m in (*scalars.coordinates, *scalars.speeds) if m.free]
-    inertia = {"rad": "kg m^2", "rad/s": "kg m^2", "m": "kg", "m/s": "kg"}
-    found = {}
-    for name, per in (("mass", 0), ("damping", 1), ("stiffness", 2)):
-        for i in range(len(free)):
-            for k, m in enumerate(free):
-                unit = dimension(inertia[m.unit])
-                found[f"{name}_matrix_{i + 1}_{k + 1}"] = (unit[0], unit[1], unit[2] - per)
-    return found
-
-
-def _results(given: Table, scalars: Scalars, unknowns: tuple[Unknown, ...]) -> tuple[Result, ...]:
-    answers, found = _answers(scalars, unknowns), list[Result]()
-    scope = known(scalars)
-    for key, value in given.entries.items():
-        name, meaning, said = identifier(key, "a result"), "", value
-        if isinstance(value, dict):
-            inner = Table(f"result '{key}'", value)
-            keys(inner, ("formula",), ("meaning",))
-            said, meaning = inner.entries["formula"], str(inner.entries.get("meaning", ""))
-        both = Scope(dict(scope.dimensions) | answers, {}, "")
-        read, unit = _of_any_unit(said, f"result '{key}'", both)
-        answers[name] = unit
-        found.append(Result(name, spelled(unit), read, meaning or f"{read}"))
-    return tuple(found)
-
-
-def _of_any_unit(value: object, label: str, scope: Scope) -> tuple[Formula, Dimension]:
-    """Return a formula and the dimension that it turns out to have."""
-    plain = MARK.sub(r"\1", value) if isinstance(value, str) else value
-    try:
-        read = formula(plain, label, scope, NONE)
-    except SceneError as error:
-        unit = _unit_found(str(error), plain, scope)
-        if unit is None:
-            raise
-        return formula(plain, label, scope, unit), unit
-    return read, dimension_of(read, scope.dimensions) or NONE
-
-
-def _unit_found(sentence: str, value: object, scope: Scope) -> Dimension | None:
-    """Return the dimension of a formula that was refused for not being a plain number."""
-    if " is in " not in sentence or not isinstance(value, str):
-        return None
-    return dimension_of(parse(value), scope.dimensions)
 
 
 def _declared(
@@ -181,39 +100,6 @@ def _declared(
         found += [(name, f"the rate '{name}'") for name in rates]
     found += [(u.name, f"the unknown '{u.name}'") for u in unknowns]
     return found + [(r.name, f"the result '{r.name}'") for r in results]
-
-
-def _wanted(
-    value: object, scalars: Scalars, unknowns: tuple[Unknown, ...], results: tuple[Result, ...]
-) -> Mapping[str, tuple[str, ...]]:
-    if not isinstance(value, list) or not value:
-        raise SceneError(f"wanted must be a list of at least one answer, not {shown(value)}")
-    groups = _groups(unknowns)
-    known_ = [*FUNCTIONS, *groups, *(u.name for u in unknowns), *(r.name for r in results),
-              *unknown_rates(scalars)]  # fmt: skip
-    asked: dict[str, tuple[str, ...]] = {}
-    for entry in value:
-        if not isinstance(entry, str):
-            raise SceneError(f"wanted has {shown(entry)}, which is no answer")
-        name, colon, parts = (part.strip() for part in entry.partition(":"))
-        base = name.removesuffix(JACOBIAN)
-        answers = tuple(p.strip() for p in parts.split(",")) if colon else (base,)
-        for answer in answers:
-            if answer not in known_:
-                raise SceneError(
-                    f"wanted has '{answer}', which is no answer{nearest(answer, known_)}"
-                )
-        if name in asked:
-            raise SceneError(f"wanted has '{name}' twice")
-        asked[identifier(name, "a wanted function")] = answers
-    return asked
-
-
-def _groups(unknowns: tuple[Unknown, ...]) -> tuple[str, ...]:
-    """Return the names of which all three components are unknowns."""
-    names = {u.name for u in unknowns}
-    firsts = [n.removesuffix("_x") for n in names if n.endswith("_x")]
-    return tuple(sorted(f for f in firsts if {f"{f}_{a}" for a in AXES} <= names))
 
 
 def _unused(scalars: Scalars, source: str) -> tuple[str, ...]:
@@ -293,15 +179,8 @@ def _steady(
     names = tuple(word(one, "steady.unknown", scalar) for one in each)
     vanishes = None
     if "vanishes" in given.entries:
-        answers = _answers(scalars, unknowns) | {r.name: dimension(r.unit) for r in results}
+        answers = answer_units(scalars, unknowns) | {r.name: dimension(r.unit) for r in results}
         both = Scope(dict(known(scalars).dimensions) | answers, {}, "")
-        vanishes, _ = _of_any_unit(given.entries["vanishes"], "steady.vanishes", both)
+        vanishes, _ = of_any_unit(given.entries["vanishes"], "steady.vanishes", both)
         vanishes = written_out(vanishes, results)
     return Steady(names, vanishes)
-
-
-def written_out(formula_: Formula, results: tuple[Result, ...]) -> Formula:
-    """Return a formula with every result in it replaced by what it is made of."""
-    for r in reversed(results):
-        formula_ = substitute(formula_, {r.name: r.formula})
-    return formula_

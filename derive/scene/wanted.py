@@ -47,7 +47,10 @@ ATTITUDES = (
 )
 """Formulas for attitudes, which need no body."""
 
-JACOBIANS = tuple(f"{name}_jacobian" for name in EQUATIONS)
+JACOBIAN, SENSITIVITY = "_jacobian", "_sensitivity"
+"""How the name of a function with derivatives ends: by what varies; by state and parameters."""
+
+JACOBIANS = tuple(f"{name}{JACOBIAN}" for name in EQUATIONS)
 WANTED = (*EQUATIONS, *JACOBIANS, *STEPS, *COMPENSATED, *STEP_DERIVATIVES, *ATTITUDES)
 
 
@@ -83,3 +86,12 @@ def step_of(name: str) -> str:
     ('step_rk4', 'step_split6')
     """
     return "_".join(name.split("_")[:2])
+
+
+def base_of(name: str) -> str:
+    """Return the function of the lecture that a function with derivatives belongs to.
+
+    >>> base_of("acceleration_jacobian"), base_of("state_rate_sensitivity"), base_of("moment")
+    ('acceleration', 'state_rate', 'moment')
+    """
+    return name.removesuffix(JACOBIAN).removesuffix(SENSITIVITY)

@@ -2,11 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import ModuleType
 from typing import Any
 
 import casadi
 
+from derive.casadi_module import imported
 from derive.casadi_text import casadi_file
 from derive.library import Library, library
 from derive.machine.mechanism import Mechanism, depends_on
@@ -77,6 +80,6 @@ class Instrument:
 def opened(source: str) -> Instrument:
     """Return the instrument of a catalogue name or of a file."""
     made = library(load(source))
-    module = ModuleType(f"{made.known.scene.name}_casadi")
-    exec(compile(casadi_file(made), module.__name__, "exec"), module.__dict__)  # noqa: S102
-    return Instrument(made, module)
+    name = f"{made.known.scene.name}_casadi"
+    with TemporaryDirectory(prefix="derive-") as folder:
+        return Instrument(made, imported(name, casadi_file(made), Path(folder)))

@@ -15,7 +15,8 @@ from derive.arithmetic import MANTISSA, extended, paired, working
 from derive.flows.exact import flow_exact
 from derive.flows.inertia import Inertia
 from derive.program import Program, Quantity, run
-from derive.trace import Number, Tape, needed, number
+from derive.recorded import needed
+from derive.trace import Number, Tape, number
 
 Rows = NDArray[Any]
 TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")

@@ -1,25 +1,46 @@
-"""The series of preprocessed discrete Moser-Veselov as it was published, in any arithmetic."""
+"""The series of preprocessed discrete Moser-Veselov as it was published, in any arithmetic.
 
-from collections.abc import Sequence
+Source: Hairer and Vilmart, J. Phys. A 39 (2006) 13225, section 5, to order ten; so are the names.
+"""
+
+from collections.abc import Callable, Sequence
 from typing import Any
+
+Rows = tuple[tuple[Any, ...], ...]
 
 
 def series(moments: Sequence[Any], turned: Sequence[Any]) -> tuple[Any, Any]:
-    """Return s and d for moments and the angles (rad) of one step about the axes.
-
-    Source: Hairer and Vilmart, J. Phys. A 39 (2006) 13225, section 5, to order ten.
-    """
-    a, b, c = moments
-    t = a * b * c
+    """Return s and d for moments and the angles (rad) of one step about the axes."""
     N = sum((i * w) ** 2 for i, w in zip(moments, turned, strict=True)) / 2
     H = sum(i * w * w for i, w in zip(moments, turned, strict=True)) / 2
-    s1, s2, s3, s4 = (sum(i**k for i in moments) for k in (1, 2, 3, 4))
-    x1, x2, x3, x4 = (sum(1 / i**k for i in moments) for k in (1, 2, 3, 4))
+    return 1 + total(rows_of_s(moments), N, H), total(rows_of_d(moments), N, H)
 
-    def X(p: int, r: int) -> Any:
-        return (a**p + b**p) / c**r + (b**p + c**p) / a**r + (c**p + a**p) / b**r
 
-    S = (
+def total(rows: Rows, N: Any, H: Any) -> Any:
+    """Return the sum of row k, entry i, times N^(k + 1 - i) H^i."""
+    places = ((k, i, value) for k, row in enumerate(rows) for i, value in enumerate(row))
+    return sum((value * N ** (k + 1 - i) * H**i for k, i, value in places), N * 0)
+
+
+def power_sums(moments: Sequence[Any]) -> tuple[list[Any], list[Any]]:
+    """Return the sums of the moments' first four powers, and of those of their inverses."""
+    s = [sum(i**k for i in moments) for k in (1, 2, 3, 4)]
+    x = [sum(1 / i**k for i in moments) for k in (1, 2, 3, 4)]
+    return s, x
+
+
+def mixed(moments: Sequence[Any]) -> Callable[[int, int], Any]:
+    """Return X(p, r), the sum of powers p of two moments over the power r of the third."""
+    a, b, c = moments
+    return lambda p, r: (a**p + b**p) / c**r + (b**p + c**p) / a**r + (c**p + a**p) / b**r
+
+
+def rows_of_s(moments: Sequence[Any]) -> Rows:
+    """Return the coefficients of s - 1, a row an order."""
+    a, b, c = moments
+    t, X = a * b * c, mixed(moments)
+    (s1, s2, s3, s4), (x1, x2, x3, x4) = power_sums(moments)
+    return (
         (s1 / (6 * t), -x1 / 3),
         ((s2 / t - x1) / (30 * t), (1 - X(1, 1)) / (30 * t), (3 * s1 / t + 2 * x2) / 60),
         (
@@ -37,7 +58,14 @@ def series(moments: Sequence[Any], turned: Sequence[Any]) -> tuple[Any, Any]:
             (2 * t**2 * x4 + 5 * t * X(1, 2) - 171 * t * x1 + 159 * s2) / (45360 * t**2),
         ),
     )
-    D = (
+
+
+def rows_of_d(moments: Sequence[Any]) -> Rows:
+    """Return the coefficients of d, a row an order."""
+    a, b, c = moments
+    t, X = a * b * c, mixed(moments)
+    (s1, s2, s3, s4), (x1, x2, x3, _) = power_sums(moments)
+    return (
         (-1 / (3 * t), s1 / (6 * t)),
         (-s1 / (60 * t**2), x1 / (10 * t) - s2 / (60 * t**2), -(9 + X(1, 1)) / (60 * t)),
         (
@@ -55,15 +83,3 @@ def series(moments: Sequence[Any], turned: Sequence[Any]) -> tuple[Any, Any]:
             (165 * s1 - t * X(1, 3) - 9 * X(2, 1) - 145 * t * x2) / (45360 * t**2),
         ),
     )
-
-    def total(rows: Sequence[Sequence[Any]]) -> Any:
-        return sum(
-            (
-                value * N ** (k + 1 - i) * H**i
-                for k, row in enumerate(rows)
-                for i, value in enumerate(row)
-            ),
-            N * 0,
-        )
-
-    return 1 + total(S), total(D)

@@ -3,8 +3,10 @@
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
+from derive.operations import sqrt
 from derive.program import Program, Quantity
-from derive.trace import Number, Tape, needed, number, sqrt
+from derive.recorded import needed
+from derive.trace import Number, Tape, number
 
 Values = Mapping[str, Number]
 Moment = Callable[[Values], Sequence[Number | int | Fraction]]

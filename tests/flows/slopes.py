@@ -6,8 +6,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from derive.flows.matrices import compressed
+from derive.operations import cos, sin, sqrt
 from derive.program import Op, Operand, Program, Quantity
-from derive.trace import Number, Tape, called, cos, needed, number, sin, sqrt
+from derive.recorded import called, needed
+from derive.trace import Number, Tape, number
 
 Rule = Callable[[Sequence[Number], Sequence[Number]], Number]  # of operands and of their slopes
 RULES: dict[str, Rule] = {

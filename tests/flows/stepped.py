@@ -20,7 +20,8 @@ from derive.flows.inertia import Inertia
 from derive.flows.moser_veselov import plan_dmv, step_dmv
 from derive.flows.splitting import step_split, step_split_compensated
 from derive.program import Program, Quantity, run
-from derive.trace import Number, Tape, needed, number
+from derive.recorded import needed
+from derive.trace import Number, Tape, number
 
 TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
 BITS = 140

@@ -9,8 +9,10 @@ from hypothesis import strategies as st
 
 from derive.arithmetic import MANTISSA, working
 from derive.flows.compensated import compensated_add, two_product
+from derive.operations import splitter
 from derive.program import Program, Quantity, run
-from derive.trace import Tape, needed, number, splitter
+from derive.recorded import needed
+from derive.trace import Tape, number
 
 PRECISIONS = (np.float64, np.float32)
 STATES = st.floats(min_value=0.5, max_value=2, width=32)

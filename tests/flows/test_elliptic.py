@@ -11,8 +11,10 @@ import pytest
 
 from derive.arithmetic import working
 from derive.flows.elliptic import RUNGS, angle, functions, ladder
+from derive.operations import cos, sin, sqrt
 from derive.program import Program, run
-from derive.trace import Number, Tape, cos, needed, sin, sqrt
+from derive.recorded import needed
+from derive.trace import Number, Tape
 from tests.flows.free import quantity
 
 MANY: dict[str, Callable[..., Any]] = {

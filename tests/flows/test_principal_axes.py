@@ -11,7 +11,8 @@ from derive.arithmetic import MANTISSA, extended, paired
 from derive.flows.inertia import Inertia
 from derive.flows.principal_axes import principal_axes
 from derive.program import Program, run
-from derive.trace import Tape, needed, number
+from derive.recorded import needed
+from derive.trace import Tape, number
 from tests.flows.free import TENSOR, Rows, quantity
 
 MOMENTS = (

@@ -10,7 +10,8 @@ from derive.arithmetic import working
 from derive.flows.steps import step_lie, step_rk4
 from derive.flows.system import System
 from derive.program import Program, Quantity, run
-from derive.trace import Tape, called, needed
+from derive.recorded import called, needed
+from derive.trace import Tape
 from tests.flows.systems import Values, at, mpf, start, system, without_slopes
 
 U = {np.float32: 2.0**-24, np.float64: 2.0**-53}

@@ -21,7 +21,8 @@ from derive.flows.steps import (
 )
 from derive.flows.system import System
 from derive.program import Op, Program, Quantity, run
-from derive.trace import Tape, needed
+from derive.recorded import needed
+from derive.trace import Tape
 from tests.flows.rates import BODY, body, hanging
 from tests.flows.slopes import with_slopes
 from tests.flows.systems import CONTEXT, EVERY, Values, at, mpf, start, system, unit, without_slopes

@@ -7,9 +7,12 @@ import pytest
 
 from derive.check import check_library
 from derive.check.compiler import Compiler, find_compiler
-from derive.library import Library
+from derive.check.emitted import Files
 from derive.check.verdict import Verdict
-from tests.defects import DEFECTS, Defect, files, printed, scene_library
+from derive.library import Library, library
+from derive.scene import load
+from tests.defects import DEFECTS, Defect
+from tests.generated.mutants import Texts, printed
 
 SAMPLES = 12
 
@@ -21,11 +24,11 @@ def workshop(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @cache
 def original(name: str) -> Library:
-    return scene_library(name)
+    return library(load(name))
 
 
-def verdicts(made: Library, texts: dict[str, str], place: Path, with_: Compiler) -> list[Verdict]:
-    return list(check_library(made, files(texts), place, with_, SAMPLES))
+def verdicts(made: Library, texts: Texts, place: Path, with_: Compiler) -> list[Verdict]:
+    return list(check_library(made, Files(texts, "made in memory"), place, with_, SAMPLES))
 
 
 @pytest.mark.parametrize("name", sorted({d.scene for d in DEFECTS}))

@@ -10,12 +10,12 @@ from flint import arb, ctx
 
 from derive.c_text import F64
 from derive.equations import equations
-from derive.library import JACOBIAN, STEP
+from derive.library import STEP
 from derive.machine.mechanism import Known, Mechanism, in_terms, truth_of
-from derive.reference import BALLS, Known, reference, solution
+from derive.reference import BALLS, reference, solution
 from derive.sample import Sample, samples
 from derive.scene import catalogue, load
-from derive.scene.wanted import EQUATIONS
+from derive.scene.wanted import EQUATIONS, JACOBIAN
 from derive.truth import Truth
 
 STEP_BITS = 200  # central differences with a step of 2^-200, at 800 bits: 400 bits right
@@ -29,7 +29,7 @@ def scene(name: str) -> Known:
 
 def truths(known: Known) -> list[Truth]:
     bases = dict.fromkeys(w.removesuffix(JACOBIAN) for w in known.scene.wanted)
-    stated = [b for b in bases if b in EQUATIONS or isinstance(known, Mechanism) and b != STEP]
+    stated = [b for b in bases if b in EQUATIONS or (isinstance(known, Mechanism) and b != STEP)]
     return [truth_of(known, base) for base in stated]
 
 
@@ -93,7 +93,7 @@ def test_slopes_are_central_differences_of_the_reference_itself(name: str) -> No
                     assert abs(difference - slope) < arb(2) ** -(STEP_BITS + 100)
 
 
-def found(name: str, wanted: str, values: Mapping[str, float]) -> dict[str, Known]:
+def found(name: str, wanted: str, values: Mapping[str, float]) -> dict[str, Any]:
     known = scene(name)
     given = dict(ordinary(known).values) | values
     return reference(equations(known, truth_of(known, wanted)), given, ())

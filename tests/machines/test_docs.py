@@ -7,7 +7,16 @@ import pytest
 
 from derive.library import library
 from derive.prove import prove
-from derive.scene import Machine, catalogue, frames, load, machine_file, member, parse_scene
+from derive.scene import (
+    Machine,
+    catalogue,
+    frames,
+    load,
+    machine_file,
+    member,
+    parse_scene,
+    results,
+)
 from derive.scene.load import MAIN
 
 PAGE = (Path(__file__).parents[2] / "docs" / "machines.md").read_text(encoding="utf-8")
@@ -27,7 +36,7 @@ def test_the_page_has_two_examples_and_is_one_page() -> None:
 
 def test_every_word_that_a_machine_may_use_stands_on_the_page() -> None:
     words = [
-        *machine_file.TABLES, *machine_file.FUNCTIONS, *frames.TURNING, *frames.ORIGIN, *MAIN,
+        *machine_file.TABLES, *results.FUNCTIONS, *frames.TURNING, *frames.ORIGIN, *MAIN,
         *member.OWN, *member.MORE_SHAPES, *(w for row in member.MORE_SHAPES.values() for w in row),
     ]  # fmt: skip
     assert [word for word in words if not re.search(rf"\b{word}\b", PAGE)] == []

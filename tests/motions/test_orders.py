@@ -11,10 +11,10 @@ from derive.convergence import Order, course, exactness, order
 from derive.library import Library, library
 from derive.motion_error import with_motion
 from derive.program import Line, Op, Program, Repeat
+from derive.recorded import needed
 from derive.sample import Sample, samples
 from derive.scene import catalogue, load
 from derive.scene.wanted import moves
-from derive.trace import needed
 
 MOVING = [name for name in catalogue() if any(map(moves, load(name).wanted))]
 MUTANTS = 12  # of each step, spread over its sums

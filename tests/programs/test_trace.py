@@ -6,23 +6,13 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from derive import trace
 from derive.arithmetic import working
 from derive.c_text import F32, F64, body
 from derive.casadi_text import plain_lines
+from derive.operations import at_most, less, select
 from derive.program import Op, Program, Quantity, Repeat, run
-from derive.trace import (
-    Number,
-    Tape,
-    called,
-    less,
-    named,
-    needed,
-    number,
-    operation,
-    repeat,
-    select,
-)
+from derive.recorded import called, needed, repeat
+from derive.trace import Number, Tape, named, number, operation
 
 X = Quantity("x", ("x_0", "x_1"), (2,), "1", "", None, None, "two numbers")
 Y = Quantity("y", ("y",), (), "1", "", None, None, "what comes out")
@@ -46,7 +36,7 @@ def root_by_newton(tape: Tape, passes: int) -> Program:
     def one_pass(carried: list[Number]) -> tuple[list[Number], Number]:
         (root,) = carried
         new = (root + square / root) / 2
-        return [new], trace.at_most(root, new)
+        return [new], at_most(root, new)
 
     (root,) = repeat(tape, passes, [square + 1], one_pass)
     return program(tape, root)
@@ -165,7 +155,7 @@ def test_a_program_is_recorded_where_it_is_called() -> None:
 def test_equal_choices_are_no_choice() -> None:
     _, tape = tapes()
     a = tape.input("x_0")
-    condition = trace.less(a, 0)
+    condition = less(a, 0)
     assert select(condition, a, a) == a
     found = run(program(tape, select(condition, -a, a)), working(np.float64), [np.array([-2.0]), 0])
     assert found[0] == 2.0

@@ -8,9 +8,11 @@ import flint
 import numpy as np
 import pytest
 
+from derive.operations import atan2, cos, sin, sqrt
 from derive.program import Program
+from derive.recorded import needed
 from derive.rotations.functions import FUNCTIONS
-from derive.trace import Number, Tape, atan2, cos, needed, number, sin, sqrt
+from derive.trace import Number, Tape, number
 from tests.rotations import cases, truth
 from tests.rotations.measured import PRECISIONS, called, error, promise
 from tests.rotations.truth import plain

@@ -1,0 +1,1 @@
+"""What the command line does, a command a file: its options, and what runs it."""

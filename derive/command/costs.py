@@ -1,0 +1,33 @@
+"""Tables of what functions cost, how wrong they are, and what machines were spared."""
+
+from collections.abc import Sequence
+
+from rich.table import Table
+
+from derive.command.terminal import console
+from derive.generation import Made
+from derive.saving import Saving
+
+
+def print_costs(results: Sequence[Made]) -> None:
+    """Print the operations and errors of every function, then what was found not to be needed."""
+    columns = ("float: median", "largest", "double: median", "largest")
+    table = Table("scene", "function", "+ - * /", "div", *columns, box=None)
+    for row in (row for result in results for row in result.costs):
+        table.add_row(row.scene, row.function, str(row.flops), str(row.divisions), *row.errors)
+    console.print(table)
+    console.print("Errors in u (2^-24 float, 2^-53 double) of the largest term, sampled.")
+    _print_savings([saving for result in results for saving in result.savings])
+
+
+def _print_savings(savings: Sequence[Saving]) -> None:
+    """Print what each answer of a machine was found not to need, and the operations it saves."""
+    if not savings:
+        return
+    columns = ("unknowns left out", "cancels", "never enters", "+ - * /", "body by body")
+    table = Table("scene", "function", *columns, box=None)
+    for s in savings:
+        plain = "" if s.plain is None else str(s.plain)
+        lists = [" ".join(names) for names in (s.unknowns, s.cancels, s.absent)]
+        table.add_row(s.scene, s.function, *lists, str(s.operations), plain)
+    console.print(table)

@@ -1,0 +1,93 @@
+"""``derive generate``: the files of scenes, written or compared with what lies there."""
+
+import argparse
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from derive.command.costs import print_costs
+from derive.command.scenes import scene_argument
+from derive.command.terminal import OUT, console, errors, progress
+from derive.files import differences, write
+from derive.generation import Made, all_made, gallery_of, lecture_made
+from derive.scene import SceneError, catalogue
+
+
+def options(command: argparse.ArgumentParser) -> None:
+    """Declare the options of ``derive generate``."""
+    scene_argument(command)
+    command.add_argument(
+        "--out",
+        type=Path,
+        default=OUT,
+        metavar="DIR",
+        help="folder to write to (default: generated)",
+    )
+    command.add_argument(
+        "--check",
+        action="store_true",
+        help="write nothing; exit 1 with a diff if the files are not what would be written",
+    )
+    command.set_defaults(run=generate)
+
+
+def generate(given: argparse.Namespace) -> int:
+    """Write, or with --check compare, the files of scenes."""
+    results = made_of(given.scenes, () if given.scenes else (lecture_made,))
+    texts = {name: text for result in results for name, text in result.texts.items()}
+    if not given.scenes:
+        texts |= gallery_of(results)
+    if given.check:
+        return _compare(given, texts)
+    write(given.out, texts)
+    print_costs(results)
+    console.print(f"{len(texts)} files in {given.out}/")
+    return 0
+
+
+def made_of(scenes: Sequence[str], also: Sequence[Callable[[], Made]]) -> list[Made]:
+    """Return what scenes become, none meaning all, and what is made also; print the warnings."""
+    sources = [str(source) for source in scenes or catalogue()]
+    _distinct(sources)
+    found: dict[int, Made] = {}
+    with progress() as shown:
+        task = shown.add_task("deriving, proving and measuring")
+        for place, result in all_made(sources, also):
+            found[place] = result
+            done = f"{len(found)} of {len(sources) + len(also)} done"
+            shown.update(task, description=f"deriving, proving and measuring: {done}")
+    results = [found[place] for place in sorted(found)]
+    for warning in (w for result in results for w in result.warnings):
+        errors.print(f"derive: warning: {warning}", style="yellow", highlight=False, markup=False)
+    return results
+
+
+def _distinct(sources: Sequence[str]) -> None:
+    """Refuse two scenes of one name: their files would lie over each other."""
+    named: dict[str, str] = {}
+    for source in sources:
+        name = Path(source).stem
+        if name in named:
+            raise SceneError(
+                f"scenes must have names of their own, but '{named[name]}' and '{source}' "
+                f"are both '{name}'"
+            )
+        named[name] = source
+
+
+def _compare(given: argparse.Namespace, texts: Mapping[str, str]) -> int:
+    """Print how the files differ from ``texts``, and the command that mends it."""
+    found = list(differences(given.out, texts))
+    if not found:
+        console.print(f"{len(texts)} files in {given.out}/ are what `derive generate` makes")
+        return 0
+    for difference in found:
+        sys.stdout.write(difference.diff)
+    command = " ".join(["derive generate", *given.scenes])
+    if given.out != OUT:
+        command += f" --out {given.out}"
+    errors.print(
+        f"derive: {len(found)} files differ from what would be generated; mend: {command}",
+        style="red",
+    )
+    return 1

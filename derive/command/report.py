@@ -1,0 +1,38 @@
+"""``derive report``: what every function costs and how wrong it is."""
+
+import argparse
+
+from derive.command.costs import print_costs
+from derive.command.generate import made_of
+from derive.command.scenes import scene_argument
+from derive.command.terminal import OUT, console, errors, progress
+
+
+def options(command: argparse.ArgumentParser) -> None:
+    """Declare the options of ``derive report``."""
+    scene_argument(command)
+    command.add_argument("--full", action="store_true", help="finer steps and longer runs")
+    command.add_argument(
+        "--only",
+        nargs="+",
+        default=[],
+        metavar="NAME",
+        help="run one case or section, print its figures and write nothing",
+    )
+    command.set_defaults(run=report)
+
+
+def report(given: argparse.Namespace) -> int:
+    """Write the speed-against-error report; of scenes, only print what their functions cost."""
+    if given.scenes:
+        print_costs(made_of(given.scenes, ()))
+        return 0
+    from derive.report import command  # matplotlib and the peers are an extra
+
+    try:
+        return command.report(
+            OUT, "full" if given.full else "small", given.only, console, progress()
+        )
+    except ImportError as absent:
+        errors.print(f"derive: {absent}", style="red", highlight=False, markup=False)
+        return 2

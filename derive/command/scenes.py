@@ -1,0 +1,30 @@
+"""``derive scenes``: the catalogue; and how other commands are told which scenes are meant."""
+
+import argparse
+
+from rich.table import Table
+
+from derive.command.terminal import console
+from derive.scene import catalogue, load
+
+
+def options(command: argparse.ArgumentParser) -> None:
+    """Declare ``derive scenes``, which has no options."""
+    command.set_defaults(run=list_scenes)
+
+
+def scene_argument(command: argparse.ArgumentParser) -> None:
+    """Let a command take scenes; none means the whole catalogue."""
+    command.add_argument(
+        "scenes", nargs="*", metavar="SCENE", help="catalogue name or path to a TOML file"
+    )
+
+
+def list_scenes(_: argparse.Namespace) -> int:
+    """Print the catalogue: name, title, wanted functions."""
+    table = Table("scene", "what it is", "functions", box=None)
+    for name in catalogue():
+        scene = load(name)
+        table.add_row(name, scene.title, ", ".join(scene.wanted))
+    console.print(table)
+    return 0

@@ -1,0 +1,109 @@
+"""What the formulas of motion are given, and what they leave behind for set-up."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from derive.flows.inertia import Inertia
+from derive.function import Graphed
+from derive.graph import Graph, Value
+from derive.lower import value_of
+from derive.machine.mechanism import Known, Mechanism, single
+from derive.program import Program, renamed
+from derive.scene.wanted import SPLITTINGS, step_of
+from derive.stage import Traced, exact_number, hot, used_inputs
+from derive.trace import Number, Tape, number
+
+
+@dataclass
+class Moving:
+    """What the formulas of motion are given: the scene, its rates, its body, the tape of set-up.
+
+    moment : the program of the moment along the axes, None if there is none
+    given  : the graph's values that set-up works on, by the names that the tape has for them
+    """
+
+    scene: Graphed
+    rates: Mapping[str, Program]
+    moment: Program | None
+    tape: Tape = field(default_factory=lambda: Tape("p"))
+    given: dict[str, Value] = field(default_factory=dict)
+
+    @property
+    def known(self) -> Known:
+        """Return the scene in the lecture's terms."""
+        return self.scene.known
+
+    def parameter(self, value: Value) -> Number:
+        """Return a parameter-only value of the graph as a number of set-up."""
+        exact = exact_number(self.scene.graph, value)
+        if exact is not None:
+            return number(exact)
+        own = [name for name, leaf in self.scene.leaves.items() if leaf == value]
+        name = own[0] if own else f"given{len(self.given)}"
+        if not own:
+            self.given[name] = value
+        return self.tape.input(name)
+
+    def inertia(self) -> Inertia:
+        """Return the body's tensor along its axes, about the scene's point."""
+        known, by_symbol = single(self.known), self.scene.by_symbol()
+        tensor, body = known.bindings["I"], known.scene.body
+        places = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+        values = [value_of(self.scene.graph, tensor[p], by_symbol) for p in places]
+        xx, yy, zz, xy, xz, yz = (self.parameter(value) for value in values)
+        kind = body.kind if body.kind != "rod" else "axisymmetric"
+        if kind == "general" and all(n.exact == 0 for n in (xy, xz, yz)):
+            kind = "principal"
+        return Inertia((xx, yy, zz, xy, xz, yz), kind, body.axis)
+
+    def function(self) -> Tape:
+        """Return a tape for a function."""
+        return Tape("t", below=self.tape)
+
+
+def applied_moment(scene: Graphed) -> Program | None:
+    """Return the program of the moment along the axes, for steps that kick; None if it is zero."""
+    known = scene.known
+    if isinstance(known, Mechanism):
+        return None
+    if not any(step_of(name) in SPLITTINGS for name in known.scene.wanted):
+        return None
+    by_symbol = scene.by_symbol()
+    values = [value_of(scene.graph, e, by_symbol) for e in known.bindings["M"]]
+    if not any(coefficient for coefficient, _ in values):
+        return None
+    ops, results = hot(scene.graph, scene.constants, values)
+    inputs = used_inputs((*known.words.states, *known.words.inputs), ops, results)
+    output = known.words["moment"]
+    return Program("applied_moment", "", inputs, (output,), ops, results)
+
+
+def traced(moving: Moving) -> tuple[Traced, Mapping[str, str]]:
+    """Return set-up's part of the motions, and how its constants are renamed.
+
+    A parameter that is a constant of the graph already keeps the name that it has there.
+    """
+    taken = moving.scene.constants.names
+    shared = {_parameter(moving.scene.graph, value): name for value, name in taken.items()}
+    shared.pop("", None)
+    names: dict[str, str] = {}
+    for operand, (name, _) in moving.tape.names.items():
+        used = {*taken.values(), *names.values()}
+        several = (name, *(f"{name}{k}" for k in range(2, len(used) + 3)))
+        names[operand] = shared.get(operand) or next(n for n in several if n not in used)
+    new = {name: names[operand] for operand, (name, _) in moving.tape.names.items()}
+    own = {operand: name for operand, name in names.items() if operand not in shared}
+    return Traced(tuple(moving.tape.ops), dict(moving.given), own), new
+
+
+def _parameter(graph: Graph, value: Value) -> str:
+    """Return the parameter that a constant is, "" if it is made of several."""
+    coefficient, node = value
+    kind, *rest = graph.nodes[node]
+    return str(rest[0]) if kind == "input" and coefficient == 1 else ""
+
+
+def with_names(program: Program, names: Mapping[str, str]) -> Program:
+    """Return a program whose constants are called by their new names."""
+    results = tuple(names.get(r, r) if isinstance(r, str) else r for r in program.results)
+    return replace(program, ops=renamed(program.ops, names), results=results)

@@ -1,0 +1,139 @@
+"""What a machine is asked: the answers it has, results made of them, and what is wanted."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from derive.formula import substitute
+from derive.grammar import parse
+from derive.scene.declaration import SceneError
+from derive.scene.load import MARK, unknown_units
+from derive.scene.machine import Result
+from derive.scene.names import identifier
+from derive.scene.scalars import known, unknown_rates
+from derive.scene.table import Scope, Table, formula, keys, nearest, shown
+from derive.scene.wanted import JACOBIAN
+from derive.unit import NONE, dimension, dimension_of, spelled
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from derive.formula import Formula
+    from derive.scene.machine import Unknown
+    from derive.scene.scalars import Scalars
+    from derive.unit import Dimension
+
+ENERGIES = ("kinetic_energy", "potential_energy", "energy")
+FUNCTIONS = (
+    *ENERGIES,
+    *("angular_momentum", "accelerations", "state_rate", "step_rk4", "linearised", "steady"),
+)
+AXES = ("x", "y", "z")
+
+
+def read_results(
+    given: Table, scalars: Scalars, unknowns: tuple[Unknown, ...]
+) -> tuple[Result, ...]:
+    """Return the results of a scene file; each may be made of those before it."""
+    answers, found = answer_units(scalars, unknowns), list[Result]()
+    scope = known(scalars)
+    for key, value in given.entries.items():
+        name, meaning, said = identifier(key, "a result"), "", value
+        if isinstance(value, dict):
+            inner = Table(f"result '{key}'", value)
+            keys(inner, ("formula",), ("meaning",))
+            said, meaning = inner.entries["formula"], str(inner.entries.get("meaning", ""))
+        both = Scope(dict(scope.dimensions) | answers, {}, "")
+        read, unit = of_any_unit(said, f"result '{key}'", both)
+        answers[name] = unit
+        found.append(Result(name, spelled(unit), read, meaning or f"{read}"))
+    return tuple(found)
+
+
+def of_any_unit(value: object, label: str, scope: Scope) -> tuple[Formula, Dimension]:
+    """Return a formula and the dimension that it turns out to have."""
+    plain = MARK.sub(r"\1", value) if isinstance(value, str) else value
+    try:
+        read = formula(plain, label, scope, NONE)
+    except SceneError as error:
+        unit = _unit_found(str(error), plain, scope)
+        if unit is None:
+            raise
+        return formula(plain, label, scope, unit), unit
+    return read, dimension_of(read, scope.dimensions) or NONE
+
+
+def _unit_found(sentence: str, value: object, scope: Scope) -> Dimension | None:
+    """Return the dimension of a formula that was refused for not being a plain number."""
+    if " is in " not in sentence or not isinstance(value, str):
+        return None
+    return dimension_of(parse(value), scope.dimensions)
+
+
+def read_asked(
+    value: object, scalars: Scalars, unknowns: tuple[Unknown, ...], results: tuple[Result, ...]
+) -> Mapping[str, tuple[str, ...]]:
+    """Return the answers that each wanted function gives."""
+    if not isinstance(value, list) or not value:
+        raise SceneError(f"wanted must be a list of at least one answer, not {shown(value)}")
+    known_ = [*FUNCTIONS, *groups(unknowns), *(u.name for u in unknowns),
+              *(r.name for r in results), *unknown_rates(scalars)]  # fmt: skip
+    asked: dict[str, tuple[str, ...]] = {}
+    for entry in value:
+        name, answers = _entry(entry, known_)
+        if name in asked:
+            raise SceneError(f"wanted has '{name}' twice")
+        asked[identifier(name, "a wanted function")] = answers
+    return asked
+
+
+def _entry(entry: object, known_: Sequence[str]) -> tuple[str, tuple[str, ...]]:
+    """Return a wanted function, ``name`` or ``name: answer, answer``, and its answers."""
+    if not isinstance(entry, str):
+        raise SceneError(f"wanted has {shown(entry)}, which is no answer")
+    name, colon, parts = (part.strip() for part in entry.partition(":"))
+    alone = name.removesuffix(JACOBIAN)
+    answers = tuple(p.strip() for p in parts.split(",")) if colon else (alone,)
+    for answer in answers:
+        if answer not in known_:
+            raise SceneError(f"wanted has '{answer}', which is no answer{nearest(answer, known_)}")
+    return name, answers
+
+
+def groups(unknowns: tuple[Unknown, ...]) -> tuple[str, ...]:
+    """Return the names of which all three components are unknowns."""
+    names = {u.name for u in unknowns}
+    firsts = [n.removesuffix("_x") for n in names if n.endswith("_x")]
+    return tuple(sorted(f for f in firsts if {f"{f}_{a}" for a in AXES} <= names))
+
+
+def answer_units(scalars: Scalars, unknowns: tuple[Unknown, ...]) -> dict[str, Dimension]:
+    """Return all that a result may be made of beside what is known."""
+    found = dict(unknown_units(unknowns)) | unknown_rates(scalars)
+    found |= dict.fromkeys(ENERGIES, dimension("J"))
+    momentum = dimension("kg m^2/s")
+    found |= _entries(scalars)
+    return found | {f"angular_momentum_{axis}": momentum for axis in AXES}
+
+
+def _entries(scalars: Scalars) -> dict[str, Dimension]:
+    """Return the entries of the matrices of small motion, each with its dimension.
+
+    Entries stand for forces or moments; of one kind alone they are told apart by nothing else.
+    """
+    free = [m for m in (*scalars.coordinates, *scalars.speeds) if m.free]
+    inertia = {"rad": "kg m^2", "rad/s": "kg m^2", "m": "kg", "m/s": "kg"}
+    found = {}
+    for name, per in (("mass", 0), ("damping", 1), ("stiffness", 2)):
+        for i in range(len(free)):
+            for k, m in enumerate(free):
+                unit = dimension(inertia[m.unit])
+                found[f"{name}_matrix_{i + 1}_{k + 1}"] = (unit[0], unit[1], unit[2] - per)
+    return found
+
+
+def written_out(formula_: Formula, results: tuple[Result, ...]) -> Formula:
+    """Return a formula with every result in it replaced by what it is made of."""
+    for r in reversed(results):
+        formula_ = substitute(formula_, {r.name: r.formula})
+    return formula_
