@@ -111,7 +111,7 @@ class Course:
 def course(library: Library, name: str, values: Mapping[str, float]) -> Course:
     """Return the true motion over a step that suits ``name`` and over half of it."""
     with ctx.workprec(BITS):
-        given = unit_attitude({c: arb(x) for c, x in values.items()})
+        given = unit_attitude(library, {c: arb(x) for c, x in values.items()})
         rate = rate_of(library, given)
         start = [given[c] for c in _states(library)]
         h = arb(TURN.get(step_of(name), 0.2) / _turning(library, rate(start), start))
@@ -136,7 +136,7 @@ def _states(library: Library) -> list[str]:
 def exactness(library: Library, values: Mapping[str, float]) -> float:
     """Return the relative error of the exact flow over half a turn of the state or so."""
     with ctx.workprec(BITS):
-        given = unit_attitude({c: arb(x) for c, x in values.items()})
+        given = unit_attitude(library, {c: arb(x) for c, x in values.items()})
         states = _states(library)
         rate = rate_of(library, given)
         start = [given[c] for c in states]
@@ -148,11 +148,13 @@ def exactness(library: Library, values: Mapping[str, float]) -> float:
         return _distance([found[f"{c}_next"] for c in states], here)
 
 
-def unit_attitude(values: dict[str, Any]) -> dict[str, Any]:
-    """Return the values with the attitude brought to length one."""
-    parts = [c for c in values if c.startswith("attitude_")]
-    size = sum((values[c] ** 2 for c in parts), arb(0)).sqrt()
-    return values | {c: (values[c] / size).mid() for c in parts}
+def unit_attitude(library: Library, values: dict[str, Any]) -> dict[str, Any]:
+    """Return the values with every quaternion of the state brought to length one."""
+    for q in library.known.words.states:
+        if q.shape == (4,):
+            size = sum((values[c] ** 2 for c in q.components), arb(0)).sqrt()
+            values = values | {c: (values[c] / size).mid() for c in q.components}
+    return values
 
 
 def _turning(library: Library, rates: State, state: State) -> float:

@@ -4,7 +4,7 @@ A central difference over 2^-130 is wrong by 2^-260 of the third derivative: a s
 from it is wrong. Errors of attitude turn the quaternion from the right, before and after.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -37,17 +37,27 @@ def slopes(library: Library, program: Program, values: Mapping[str, float]) -> I
     """Yield every derivative that a step gives, in its pattern or not, beside its difference."""
     ((output, pattern),) = (program.sparsity or {}).items()
     with ctx.workprec(BITS):
-        given = unit_attitude({c: arb(x) for c, x in values.items()})
+        given = unit_attitude(library, {c: arb(x) for c, x in values.items()})
+        parts = _attitude(library)
         here = _results(library, program, given)
         (quantity,) = (q for q in program.outputs if q.name == output)
         entries = dict(zip(pattern.places(), (here[c] for c in quantity.components), strict=True))
         for k, column in enumerate(pattern.columns):
-            ends = [_results(library, program, _shifted(given, column, s)) for s in (1, -1)]
-            rises = [_difference(here, ends[0], ends[1], row) / (2 * SHIFT) for row in pattern.rows]
+            above, below = (
+                _results(library, program, _shifted(given, column, parts, s)) for s in (1, -1)
+            )
+            apart = [_difference((here, above, below), row, parts) for row in pattern.rows]
+            rises = [change / (2 * SHIFT) for change in apart]
             size = max(1.0, *(abs(float(rise)) for rise in rises))
             for i, row in enumerate(pattern.rows):
                 found = entries.get((i, k), arb(0))
                 yield Slope(row, column, float(found), abs(float(found - rises[i])) / size)
+
+
+def _attitude(library: Library) -> tuple[str, ...]:
+    """Return the components of the quaternion that errors of attitude turn."""
+    states = library.known.words.states
+    return next((q.components for q in states if q.shape == (4,)), ())
 
 
 def _results(library: Library, program: Program, values: Values) -> dict[str, Any]:
@@ -59,21 +69,23 @@ def _results(library: Library, program: Program, values: Values) -> dict[str, An
     return known
 
 
-def _shifted(values: Values, column: str, sign: int) -> dict[str, Any]:
+def _shifted(values: Values, column: str, parts: Sequence[str], sign: int) -> dict[str, Any]:
     """Return the values with one of them, or the attitude by an error about one axis, shifted."""
     if not column.startswith(ERROR):
         return {**values, column: values[column] + sign * SHIFT}
     axis = "xyz".index(column[-1])
     half = [sign * SHIFT / 2 if k == axis else arb(0) for k in range(3)]
-    turned = _product([values[f"attitude_{part}"] for part in "wxyz"], [arb(1), *half])
-    return {**values, **{f"attitude_{p}": x for p, x in zip("wxyz", turned, strict=True)}}
+    turned = _product([values[part] for part in parts], [arb(1), *half])
+    return {**values, **dict(zip(parts, turned, strict=True))}
 
 
-def _difference(here: Values, above: Values, below: Values, row: str) -> Any:
+def _difference(ends: tuple[Values, Values, Values], row: str, parts: Sequence[str]) -> Any:
+    """Return by how much two results of a step differ, seen from a third one between them."""
+    here, above, below = ends
     if not row.startswith(ERROR):
         return above[row] - below[row]
-    w, *v = (here[f"attitude_{part}_next"] for part in "wxyz")
-    change = [above[f"attitude_{p}_next"] - below[f"attitude_{p}_next"] for p in "wxyz"]
+    w, *v = (here[f"{part}_next"] for part in parts)
+    change = [above[f"{part}_next"] - below[f"{part}_next"] for part in parts]
     return 2 * _product([w, *(-x for x in v)], change)["wxyz".index(row[len(ERROR)])]
 
 

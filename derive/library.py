@@ -13,7 +13,7 @@ from derive.motions import motions, needs
 from derive.moving import Moving, applied_moment, traced, with_names
 from derive.program import Program, Quantity, read_by
 from derive.scene import Machine, Scene
-from derive.scene.wanted import EQUATIONS, base_of
+from derive.scene.wanted import EQUATIONS, base_of, moves
 from derive.stage import (
     Constant,
     Traced,
@@ -25,7 +25,6 @@ from derive.stage import (
 from derive.truth import Truth
 from derive.wording import formula
 
-STEP, RATE = "step_rk4", "state_rate"  # what moves a machine in time, and what it rests on
 INVERSE = re.compile("J_[xyz][xyz]")
 
 
@@ -91,10 +90,9 @@ def library(scene: Scene | Machine) -> Library:
 def _asked(scene: Scene | Machine) -> tuple[list[str], list[str]]:
     """Return the functions that satisfy equations, and those that only motions rest on."""
     if isinstance(scene, Machine):
-        asked = [name for name in scene.wanted if name != STEP]
-        rests = [RATE] if STEP in scene.wanted and RATE not in asked else []
-        return asked, rests
-    asked = [name for name in scene.wanted if base_of(name) in EQUATIONS]
+        asked = [name for name in scene.wanted if not moves(name)]
+    else:
+        asked = [name for name in scene.wanted if base_of(name) in EQUATIONS]
     return asked, [name for name in needs(scene) if name not in asked]
 
 

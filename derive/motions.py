@@ -21,7 +21,7 @@ from derive.moving import Moving
 from derive.program import Operand, Program, Quantity
 from derive.recorded import called, needed
 from derive.rotations.functions import attitude_program
-from derive.scene import Scene, SceneError
+from derive.scene import Machine, Scene, SceneError
 from derive.scene.declaration import Given
 from derive.scene.wanted import ATTITUDES, SPLITTINGS, STEP_DERIVATIVES, TAYLOR, moves, step_of
 from derive.stage import used_inputs
@@ -51,7 +51,7 @@ SLOPES = {
 """What the derivatives of a step rest on, by kind."""
 
 
-def needs(scene: Scene) -> tuple[str, ...]:
+def needs(scene: Scene | Machine) -> tuple[str, ...]:
     """Return the equations that the wanted steps rest on, whether they are wanted themselves."""
     steps = [name for name in scene.wanted if step_of(name) in RATES]
     slopes = [SLOPES[name.rpartition("_")[2]] for name in steps if name in STEP_DERIVATIVES]
@@ -106,6 +106,7 @@ def _runge_kutta(moving: Moving, name: str) -> Program:
     rates, step = moving.rates, _time_step(moving)
     slopes = rates[SLOPES[name.rpartition("_")[2]]] if name in STEP_DERIVATIVES else None
     system = System(moving.known.words.states, rates["state_rate"], slopes, step)
+    _check_quaternions(moving, name, len(system.quaternions))
     program = _STEP_PROGRAMS[name](system)
     if program.sparsity and not any(pattern.row for pattern in program.sparsity.values()):
         raise SceneError(
@@ -117,8 +118,22 @@ def _runge_kutta(moving: Moving, name: str) -> Program:
         inputs=used_inputs(program.inputs, program.ops, program.results),
         assumptions=rates["state_rate"].assumptions,
     )
-    small = moving.known.scene.emission == "compact" and name in LOOPED
-    return compact(system, program) if small else program
+    return compact(system, program) if _looped(moving, name) else program
+
+
+def _looped(moving: Moving, name: str) -> bool:
+    return moving.known.scene.emission == "compact" and name in LOOPED
+
+
+def _check_quaternions(moving: Moving, name: str, count: int) -> None:
+    """Refuse a machine's step that knows of another number of quaternions than the state has."""
+    scene = moving.known.scene
+    if name.endswith("_tangent") and count != 1:
+        rule = f"is over the errors of one quaternion, and the state has {count}"
+        raise SceneError(f"scene '{scene.name}': '{name}' {rule}")
+    if _looped(moving, name) and count > 1:
+        rule = f"emission = 'compact' is for one quaternion at most, and the state has {count}"
+        raise SceneError(f"scene '{scene.name}': '{name}': {rule}")
 
 
 def _time_step(moving: Moving) -> Quantity:

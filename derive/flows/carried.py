@@ -1,7 +1,7 @@
 """A step that carries what rounding leaves to the next: increments, summed with a remainder.
 
-The attitude's length is kept by an increment too. What rounding does to that part is along the
-attitude: it changes its length, which the next step mends, and never its direction.
+A quaternion's length is kept by an increment too. What rounding does to that part is along the
+quaternion: it changes its length, which the next step mends, and never its direction.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ def remainder(states: Sequence[Quantity]) -> Quantity:
 
 def carried_on(system: System, start: Row, increments: Row, remainders: Row) -> tuple[Row, Row]:
     """Return the state after its increments, and what rounding leaves of them."""
-    gains, attitude = list(increments), system.place("attitude")
-    if attitude is not None:
-        gains[attitude] = on_the_sphere(start[attitude], increments[attitude])
+    gains = list(increments)
+    for place in system.quaternions:
+        gains[place] = on_the_sphere(start[place], increments[place])
     sums = [compensated_add(*each) for each in zip(start, gains, remainders, strict=True)]
     return [after for after, _ in sums], [rest for _, rest in sums]
 

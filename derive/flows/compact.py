@@ -85,8 +85,8 @@ def compact(system: System, step: Program) -> Program:
             return step
         columns = Columns(pattern_of(system), own, system.columns.index(own.columns[0]))
         rate = system.slopes or rate
-    place = system.place("attitude")
-    loops = Compact(system.names, rate, columns, place.start if place else None, step)
+    starts = [place.start for place in system.quaternions]
+    loops = Compact(system.names, rate, columns, starts[0] if starts else None, step)
     results = tuple(c for q in step.outputs for c in q.components)
     return replace(step, ops=(), results=results, loops=loops)
 

@@ -44,10 +44,10 @@ class Stages:
 
 @dataclass(frozen=True)
 class Step:
-    """The state after a step, and its attitude's length before that became one, if it has one."""
+    """The state after a step, and its quaternions' squared lengths before these became one."""
 
     after: Row
-    length_squared: Number | None
+    lengths_squared: Row
 
 
 def stages(tape: Tape, system: System) -> Stages:
@@ -89,13 +89,13 @@ def increments(system: System, stages: Stages) -> Row:
 
 
 def step(system: System, stages: Stages) -> Step:
-    """Return the state after the step, its attitude of length one."""
+    """Return the state after the step, its quaternions of length one."""
     after = [y + d for y, d in zip(stages.start, increments(system, stages), strict=True)]
-    attitude = system.place("attitude")
-    if attitude is None:
-        return Step(after, None)
-    after[attitude], length_squared = unit(after[attitude])
-    return Step(after, length_squared)
+    lengths_squared = []
+    for place in system.quaternions:
+        after[place], squared = unit(after[place])
+        lengths_squared.append(squared)
+    return Step(after, lengths_squared)
 
 
 def unit(q: Row) -> tuple[Row, Number]:

@@ -91,14 +91,15 @@ def _grouped(pairs: Sequence[tuple[Number, Number]]) -> list[tuple[Number, Numbe
 
 def step_slopes(system: System, stages: Stages, step: Step) -> Back:
     """Return the derivatives (n, n) and (n, m) of the state after a step."""
-    made, attitude = _unconstrained(stages), system.place("attitude")
-    if attitude is None or step.length_squared is None:
-        return made
-    q, scale = step.after[attitude], 1 / sqrt(step.length_squared)
+    made = _unconstrained(stages)
+    scales = [1 / sqrt(squared) for squared in step.lengths_squared]
     if stages.turn is None:
-        for part in (made.state, made.rest):
-            part[attitude] = _on_the_sphere(q, times(scale, part[attitude]))
+        for place, scale in zip(system.quaternions, scales, strict=True):
+            for part in (made.state, made.rest):
+                part[place] = _on_the_sphere(step.after[place], times(scale, part[place]))
         return made
+    (attitude,), (scale,) = system.quaternions, scales
+    q = step.after[attitude]
     turned = _turned(system, stages, stages.turn)
     made.rest[attitude] = product(tangent_matrix(q), turned.rest)
     made.state[attitude] = product(tangent_matrix(q), turned.state)
@@ -112,11 +113,11 @@ def by_errors(system: System, stages: Stages, step: Step) -> Back:
 
     An error delta stands for the attitude q exp(delta / 2): it is in rad, along body axes.
     """
-    made, attitude = _unconstrained(stages), system.place("attitude")
-    if attitude is None or step.length_squared is None:
-        raise ValueError("a tangent space needs an attitude quaternion among the states")
+    made, attitude = _unconstrained(stages), system.quaternion
+    if attitude is None:
+        raise ValueError("a tangent space needs one attitude quaternion among the states")
     if stages.turn is None:
-        twice = 2 / sqrt(step.length_squared)
+        twice = 2 / sqrt(step.lengths_squared[0])
         drop = times(twice, transposed(tangent_matrix(step.after[attitude])))
         rows = Back(product(drop, made.state[attitude]), product(drop, made.rest[attitude]))
     else:

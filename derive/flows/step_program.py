@@ -90,6 +90,6 @@ def next_names(names: Sequence[str]) -> tuple[str, ...]:
 
 def names_with_errors(system: System) -> tuple[str, ...]:
     """Return the names of the states, three errors for the attitude."""
-    attitude = system.place("attitude") or slice(0)
+    attitude = system.quaternion or slice(0)
     errors = tuple(f"attitude_error_{axis}" for axis in "xyz")
     return (*system.names[: attitude.start], *errors, *system.names[attitude.stop :])

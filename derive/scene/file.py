@@ -36,7 +36,7 @@ from derive.scene.table import (
     triple,
     word,
 )
-from derive.scene.wanted import attitudes_only, read_wanted
+from derive.scene.wanted import attitudes_only, read_emission, read_form, read_wanted
 from derive.unit import (
     ACCELERATION,
     ANGULAR_ACCELERATION,
@@ -99,8 +99,8 @@ def read_scene(document: dict[str, object], name: str, source: str) -> Scene:
         position=ranges[0],
         velocity=ranges[1],
         wanted=read_wanted(document["wanted"]),
-        form="accurate" if _form(document) == "accurate" else "fast",
-        emission="compact" if _emission(document) == "compact" else "fast",
+        form=read_form(document),
+        emission=read_emission(document),
         time_step=_time(part["motion"], "time_step"),
         time=_time(part["motion"], "time"),
         warnings=(),
@@ -121,10 +121,6 @@ def _top_level(document: dict[str, object]) -> None:
     keys(Table("the file", document), ("wanted", "body"), optional)
 
 
-def _emission(document: Mapping[str, object]) -> str:
-    return word(document.get("emission", "fast"), "emission", ("fast", "compact"))
-
-
 def _time(given: Table, name: str) -> Given:
     """Return the range of a time in s; a step goes forward, a time may be negative."""
     if name not in given.entries:
@@ -132,10 +128,6 @@ def _time(given: Table, name: str) -> Given:
     inner = table(given.entries[name], f"motion.{name}")
     keys(inner, ("range",), ())
     return Given(*interval(inner.entries["range"], f"motion.{name}.range"), None)
-
-
-def _form(document: Mapping[str, object]) -> str:
-    return word(document.get("form", "fast"), "form", ("fast", "accurate"))
 
 
 def _axes(given: Table, symbols: Symbols) -> Axes:

@@ -209,8 +209,8 @@ class Machine:
     wanted: tuple[str, ...]
     form: Literal["fast", "accurate"]
     time_step: Given
+    emission: Literal["fast", "compact"]
     warnings: tuple[str, ...]
-    emission: str = "fast"
 
     @property
     def moving(self) -> tuple[Moving, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from fractions import Fraction
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from derive.formula import ZERO, Formula
 from derive.scene.declaration import Given, Input, SceneError
@@ -18,6 +18,7 @@ from derive.scene.numbers import member_doubts
 from derive.scene.results import answer_units, of_any_unit, read_asked, read_results, written_out
 from derive.scene.scalars import PER_SECOND, Scalars, known, places, read_scalars
 from derive.scene.table import Scope, Table, formula, interval, keys, table, text, triple, word
+from derive.scene.wanted import read_emission, read_form
 from derive.unit import LENGTH, dimension
 
 if TYPE_CHECKING:
@@ -54,8 +55,8 @@ def read_machine(document: Mapping[str, object], name: str, source: str) -> Mach
         momentum=_momentum(part["angular_momentum"], frames, bodies, scalars),
         about=_about(part["linearised"], scalars),
         steady=_steady(part["steady"], scalars, unknowns, results, asked),
-        asked=asked, wanted=tuple(asked), form=_form(document),
-        time_step=_time_step(part["motion"]),
+        asked=asked, wanted=tuple(asked), form=read_form(document),
+        emission=read_emission(document), time_step=_time_step(part["motion"]),
         warnings=(*_unused(scalars, source), *_doubts(bodies, scalars)),
     )  # fmt: skip
 
@@ -69,13 +70,8 @@ def _tables(document: Mapping[str, object]) -> Mapping[str, Table]:
     if "wanted" not in document:
         raise SceneError("the file needs 'wanted', above its first [table]")
     keys(Table("the file", document), ("wanted", "bodies"),
-         (*TABLES, "title", "source", "form"))  # fmt: skip
+         (*TABLES, "title", "source", "form", "emission"))  # fmt: skip
     return {key: table(document.get(key, {}), key) for key in TABLES}
-
-
-def _form(document: Mapping[str, object]) -> Literal["fast", "accurate"]:
-    said = word(document.get("form", "fast"), "form", ("fast", "accurate"))
-    return "accurate" if said == "accurate" else "fast"
 
 
 def _bodies(given: Table, frames: tuple[Frame, ...], scalars: Scalars) -> tuple[Member, ...]:

@@ -12,7 +12,7 @@ from derive.scene.machine import Result
 from derive.scene.names import identifier
 from derive.scene.scalars import known, unknown_rates
 from derive.scene.table import Scope, Table, formula, keys, nearest, shown
-from derive.scene.wanted import JACOBIAN
+from derive.scene.wanted import JACOBIAN, OF_MACHINES
 from derive.unit import NONE, dimension, dimension_of, spelled
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 ENERGIES = ("kinetic_energy", "potential_energy", "energy")
 FUNCTIONS = (
     *ENERGIES,
-    *("angular_momentum", "accelerations", "state_rate", "step_rk4", "linearised", "steady"),
+    *("angular_momentum", "accelerations", "state_rate", "linearised", "steady"),
 )
 AXES = ("x", "y", "z")
 
@@ -76,7 +76,7 @@ def read_asked(
     """Return the answers that each wanted function gives."""
     if not isinstance(value, list) or not value:
         raise SceneError(f"wanted must be a list of at least one answer, not {shown(value)}")
-    known_ = [*FUNCTIONS, *groups(unknowns), *(u.name for u in unknowns),
+    known_ = [*FUNCTIONS, *OF_MACHINES, *groups(unknowns), *(u.name for u in unknowns),
               *(r.name for r in results), *unknown_rates(scalars)]  # fmt: skip
     asked: dict[str, tuple[str, ...]] = {}
     for entry in value:
@@ -92,9 +92,11 @@ def _entry(entry: object, known_: Sequence[str]) -> tuple[str, tuple[str, ...]]:
     if not isinstance(entry, str):
         raise SceneError(f"wanted has {shown(entry)}, which is no answer")
     name, colon, parts = (part.strip() for part in entry.partition(":"))
-    alone = name.removesuffix(JACOBIAN)
+    alone = name if name in OF_MACHINES else name.removesuffix(JACOBIAN)
     answers = tuple(p.strip() for p in parts.split(",")) if colon else (alone,)
     for answer in answers:
+        if colon and answer in OF_MACHINES:
+            raise SceneError(f"wanted has '{answer}' within '{name}', but a step stands alone")
         if answer not in known_:
             raise SceneError(f"wanted has '{answer}', which is no answer{nearest(answer, known_)}")
     return name, answers

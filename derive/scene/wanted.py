@@ -1,11 +1,15 @@
-"""What a scene may ask for: functions of the lecture, motion in time, formulas for attitudes."""
+"""What a scene may ask for, and in what form: functions of the lecture, motions, attitudes."""
 
 from __future__ import annotations
 
 from itertools import permutations
+from typing import TYPE_CHECKING, Literal
 
 from derive.scene.declaration import SceneError
-from derive.scene.table import nearest, shown
+from derive.scene.table import nearest, shown, word
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 EQUATIONS = (
     "angular_momentum",
@@ -28,6 +32,15 @@ STEP_DERIVATIVES = (
     *(f"step_lie_{kind}" for kind in ("jacobian", "tangent")),
 )
 TORQUE_FREE = ("step_dmv", "flow_exact")
+OF_MACHINES = (
+    "step_rk4",
+    "step_rk4_compensated",
+    "step_rk4_jacobian",
+    "step_rk4_tangent",
+    "step_rk4_sensitivity",
+    *TAYLOR,
+)
+"""Those that need nothing but the rate of a state, so that machines may ask for them."""
 ROTATIONAL = (*TORQUE_FREE, *SPLITTINGS, *(f"{name}_compensated" for name in SPLITTINGS))
 """Those that move a free rotation, attitude and omega, and nothing else."""
 
@@ -51,7 +64,8 @@ JACOBIAN, SENSITIVITY = "_jacobian", "_sensitivity"
 """How the name of a function with derivatives ends: by what varies; by state and parameters."""
 
 JACOBIANS = tuple(f"{name}{JACOBIAN}" for name in EQUATIONS)
-WANTED = (*EQUATIONS, *JACOBIANS, *STEPS, *COMPENSATED, *STEP_DERIVATIVES, *ATTITUDES)
+MOTIONS = (*STEPS, *COMPENSATED, *STEP_DERIVATIVES)
+WANTED = (*EQUATIONS, *JACOBIANS, *MOTIONS, *ATTITUDES)
 
 
 def read_wanted(value: object) -> tuple[str, ...]:
@@ -69,6 +83,18 @@ def read_wanted(value: object) -> tuple[str, ...]:
     return tuple(value)
 
 
+def read_form(document: Mapping[str, object]) -> Literal["fast", "accurate"]:
+    """Return how accurate the wanted functions are to be."""
+    said = word(document.get("form", "fast"), "form", ("fast", "accurate"))
+    return "accurate" if said == "accurate" else "fast"
+
+
+def read_emission(document: Mapping[str, object]) -> Literal["fast", "compact"]:
+    """Return whether steps are to be printed as they run fastest, or as short loops."""
+    said = word(document.get("emission", "fast"), "emission", ("fast", "compact"))
+    return "compact" if said == "compact" else "fast"
+
+
 def attitudes_only(value: object) -> bool:
     """Tell whether a file asks for formulas of attitudes and nothing else, so needs no body."""
     return isinstance(value, list) and bool(value) and all(name in ATTITUDES for name in value)
@@ -76,7 +102,7 @@ def attitudes_only(value: object) -> bool:
 
 def moves(name: str) -> bool:
     """Tell whether a wanted function moves the state in time."""
-    return name.startswith(("step_", "flow_"))
+    return name in MOTIONS
 
 
 def step_of(name: str) -> str:

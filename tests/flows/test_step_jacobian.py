@@ -173,7 +173,7 @@ def test_the_tangent_jacobian_has_three_columns_for_the_attitude() -> None:
 
 
 def test_a_motion_without_a_quaternion_has_no_tangent_space() -> None:
-    with pytest.raises(ValueError, match="needs an attitude quaternion"):
+    with pytest.raises(ValueError, match="needs one attitude quaternion"):
         step_rk4_tangent(system("heavy_top"))
 
 
