@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from derive.flows.inertia import Inertia
+from derive.flows.inertia import Inertia, as_symmetric
 from derive.function import Graphed
 from derive.graph import Graph, Value
 from derive.lower import value_of
@@ -38,23 +38,23 @@ class Moving:
         exact = exact_number(self.scene.graph, value)
         if exact is not None:
             return number(exact)
-        own = [name for name, leaf in self.scene.leaves.items() if leaf == value]
-        name = own[0] if own else f"given{len(self.given)}"
-        if not own:
+        known = {**self.scene.leaves, **self.given}
+        name = next((name for name, same in known.items() if same == value), None)
+        if name is None:
+            name = f"given{len(self.given)}"
             self.given[name] = value
         return self.tape.input(name)
 
     def inertia(self) -> Inertia:
-        """Return the body's tensor along its axes, about the scene's point."""
-        known, by_symbol = single(self.known), self.scene.by_symbol()
-        tensor, body = known.bindings["I"], known.scene.body
+        """Return the body's tensor along its axes, about the scene's point.
+
+        Moments that are the same formula are equal, whatever kind of body the scene says it is.
+        """
+        tensor, by_symbol = single(self.known).bindings["I"], self.scene.by_symbol()
         places = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
         values = [value_of(self.scene.graph, tensor[p], by_symbol) for p in places]
         xx, yy, zz, xy, xz, yz = (self.parameter(value) for value in values)
-        kind = body.kind if body.kind != "rod" else "axisymmetric"
-        if kind == "general" and all(n.exact == 0 for n in (xy, xz, yz)):
-            kind = "principal"
-        return Inertia((xx, yy, zz, xy, xz, yz), kind, body.axis)
+        return as_symmetric((xx, yy, zz, xy, xz, yz))
 
     def function(self) -> Tape:
         """Return a tape for a function."""

@@ -5,6 +5,8 @@ from typing import Literal
 
 from derive.trace import Number
 
+Tensor = tuple[Number, Number, Number, Number, Number, Number]
+
 
 @dataclass(frozen=True)
 class Inertia:
@@ -15,6 +17,22 @@ class Inertia:
              principal with two equal moments across ``axis``, "spherical" has three equal ones
     """
 
-    tensor: tuple[Number, Number, Number, Number, Number, Number]
+    tensor: Tensor
     kind: Literal["general", "principal", "axisymmetric", "spherical"]
     axis: Literal["x", "y", "z"] | None
+
+
+def as_symmetric(tensor: Tensor) -> Inertia:
+    """Return the most special body that has this tensor: equal moments are the same number."""
+    xx, yy, zz, *products = tensor
+    if any(n.exact != 0 for n in products):
+        return Inertia(tensor, "general", None)
+    if xx == yy == zz:
+        return Inertia(tensor, "spherical", None)
+    if yy == zz:
+        return Inertia(tensor, "axisymmetric", "x")
+    if zz == xx:
+        return Inertia(tensor, "axisymmetric", "y")
+    if xx == yy:
+        return Inertia(tensor, "axisymmetric", "z")
+    return Inertia(tensor, "principal", None)

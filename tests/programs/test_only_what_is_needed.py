@@ -35,6 +35,35 @@ def test_a_body_costs_less_the_more_symmetry_it_has():
     assert (principal, axisymmetric, spherical) == (12, 8, 3)
 
 
+FREE = """
+[axes]
+fixed_in = "body"
+attitude = "quaternion"
+[known]
+moment = ["0", "0", "0"]
+"""
+
+
+def test_equal_moments_make_a_principal_body_move_as_an_axisymmetric_or_spherical_one():
+    """Whatever kind the scene calls it: also a box with a square face."""
+    axisymmetric = 'kind = "axisymmetric"\naxis = "{}"\naxial = "C"\ntransverse = "A"'
+    by_axis = {"x": '["C", "A", "A"]', "y": '["A", "C", "A"]', "z": '["A", "A", "C"]'}
+    for step in ("flow_exact", "step_dmv", "step_split"):
+        for axis, moments in by_axis.items():
+            own = flops(f'kind = "principal"\nmoments = {moments}{FREE}', step)
+            assert own == flops(axisymmetric.format(axis) + FREE, step)
+        sphere = flops(f'kind = "principal"\nmoments = ["A", "A", "A"]{FREE}', step)
+        assert sphere == flops(f'kind = "spherical"\nmoment = "A"{FREE}', step)
+        whole = flops(f'kind = "principal"\nmoments = ["A", "B", "C"]{FREE}', step)
+        assert sphere < own < whole / 2
+
+
+def test_a_box_with_a_square_face_moves_as_an_axisymmetric_body():
+    box = 'shape = "box"\nmass = 2\nlengths = {}' + FREE
+    square, oblong = (flops(box.format(f"[1, {n}, 3]"), "flow_exact") for n in (1, 2))
+    assert square < oblong / 5
+
+
 def test_zero_products_make_a_general_body_a_principal_one():
     assert flops(general('["0", "0", "0"]')) == 12
 
