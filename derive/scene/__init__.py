@@ -31,6 +31,7 @@ from derive.scene.machine_file import is_machine, read_machine
 from derive.scene.names import identifier
 from derive.scene.rules import check, warnings
 from derive.scene.table import nearest, shown, table
+from derive.scene.wanted import idle_times
 
 __all__ = [
     "Axes",
@@ -107,14 +108,21 @@ def parse_scene(text: str, name: str) -> Scene | Machine:
     try:
         identifier(name, "the file")
         document = _document(text)
-        if is_machine(document):
-            return read_machine(document, name, text)
-        scene = read_scene(document, name, text)
-        said = tuple(table(document.get("known", {}), "known").entries)
-        check(scene, said)
-        return replace(scene, warnings=warnings(scene, said))
+        scene = _read(document, name, text)
+        times = table(document.get("motion", {}), "motion").entries
+        idle = idle_times(times, scene.wanted)
+        return replace(scene, warnings=(*scene.warnings, *idle))
     except SceneError as error:
         raise SceneError(f"scene '{name}': {error}") from None
+
+
+def _read(document: dict[str, object], name: str, text: str) -> Scene | Machine:
+    if is_machine(document):
+        return read_machine(document, name, text)
+    scene = read_scene(document, name, text)
+    said = tuple(table(document.get("known", {}), "known").entries)
+    check(scene, said)
+    return replace(scene, warnings=warnings(scene, said))
 
 
 def _document(text: str) -> dict[str, object]:

@@ -11,8 +11,8 @@ from derive.scene.load import MARK, unknown_units
 from derive.scene.machine import Result
 from derive.scene.names import identifier
 from derive.scene.scalars import known, unknown_rates
-from derive.scene.table import Scope, Table, formula, keys, nearest, shown
-from derive.scene.wanted import JACOBIAN, OF_MACHINES
+from derive.scene.table import Scope, Table, formula, keys, shown
+from derive.scene.wanted import JACOBIAN, OF_MACHINES, resembling
 from derive.unit import NONE, dimension, dimension_of, spelled
 
 if TYPE_CHECKING:
@@ -98,7 +98,8 @@ def _entry(entry: object, known_: Sequence[str]) -> tuple[str, tuple[str, ...]]:
         if colon and answer in OF_MACHINES:
             raise SceneError(f"wanted has '{answer}' within '{name}', but a step stands alone")
         if answer not in known_:
-            raise SceneError(f"wanted has '{answer}', which is no answer{nearest(answer, known_)}")
+            hint = resembling(answer, known_)
+            raise SceneError(f"wanted has '{answer}', which is no answer{hint}")
     return name, answers
 
 

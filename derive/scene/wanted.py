@@ -9,7 +9,7 @@ from derive.scene.declaration import SceneError
 from derive.scene.table import nearest, shown, word
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
 EQUATIONS = (
     "angular_momentum",
@@ -74,13 +74,30 @@ def read_wanted(value: object) -> tuple[str, ...]:
         raise SceneError(f"wanted must be a list of at least one function, not {shown(value)}")
     for name in value:
         if not isinstance(name, str) or name not in WANTED:
-            hint = nearest(name, WANTED) if isinstance(name, str) else ""
+            hint = resembling(name, WANTED) if isinstance(name, str) else ""
             more = "and more in docs/scenes.md and docs/motion.md"
             hint = hint or f" (known: {', '.join(EQUATIONS)}, {more})"
             raise SceneError(f"wanted has {shown(name)}, which is no function{hint}")
         if value.count(name) > 1:
             raise SceneError(f"wanted has '{name}' twice")
     return tuple(value)
+
+
+def resembling(name: str, known: Iterable[str]) -> str:
+    """Return a hint at what may be meant by a name that is not known."""
+    if name.startswith("step_taylor"):
+        return " (step_taylor is of order 20, step_taylor12 to step_taylor19 of what they say)"
+    return nearest(name, known)
+
+
+def idle_times(motion: Iterable[str], wanted: Iterable[str]) -> Iterator[str]:
+    """Yield a sentence for each time of a scene's table ``motion`` that nothing wanted takes."""
+    moving = [name for name in wanted if moves(name)]
+    flows = [name for name in moving if name.startswith("flow_")]
+    takers = {"time": flows, "time_step": [name for name in moving if name not in flows]}
+    for time in motion:
+        if not takers[time]:
+            yield f"motion.{time} is given, but nothing that is wanted takes it"
 
 
 def read_form(document: Mapping[str, object]) -> Literal["fast", "accurate"]:

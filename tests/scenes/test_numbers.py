@@ -108,6 +108,18 @@ def warned(name: str, old: str, new: str) -> tuple[str, ...]:
             "known.moment is given, but no acceleration or state_rate is wanted",
         ),
         (
+            "free_body",
+            "[body]",
+            "[motion]\ntime_step = { range = [0, 0.1] }\n[body]",
+            "motion.time_step is given, but nothing that is wanted takes it",
+        ),
+        (
+            "edge_runner_flat",
+            "[speeds]",
+            "[motion]\ntime_step = { range = [0, 0.1] }\n[speeds]",
+            "motion.time_step is given, but nothing that is wanted takes it",
+        ),
+        (
             "gyrostat",
             "[1, 0, 0]",
             "[0.7071067811, 0.7071067811, 0]",
