@@ -193,4 +193,11 @@ DEFECTS = (
         other_text("_f64.c", ("? 0 : 1", "? 0 : 0")),
         ("refuses what is no body",),
     ),
+    Defect(
+        "a body without end",
+        "set-up that takes an infinite moment, whose reciprocal is a harmless 0",
+        "free_body_principal",
+        other_text("_f64.c", ("&& I_xx - I_xx >= 0.0", "")),
+        ("refuses what is no body",),
+    ),
 )
