@@ -10,10 +10,10 @@ from derive.function import Arranged, Graphed, arranged, function, graphed
 from derive.graph import Graph, Value
 from derive.machine.mechanism import Known, in_terms
 from derive.motions import motions, needs
-from derive.moving import Moving, applied_moment, traced, with_names
 from derive.program import Program, Quantity, read_by
 from derive.scene import Machine, Scene
 from derive.scene.wanted import EQUATIONS, base_of, moves
+from derive.setting import Setting, applied_moment, traced, with_names
 from derive.stage import (
     Constant,
     Traced,
@@ -98,13 +98,13 @@ def _asked(scene: Scene | Machine) -> tuple[list[str], list[str]]:
 
 def _moved(scene: Graphed, rates: Mapping[str, Program]) -> Moved:
     """Return what moves the state, its constants beside those that the rates asked for."""
-    moving = Moving(scene, rates, applied_moment(scene))
-    programs = motions(moving)
-    part, renaming = traced(moving)
+    setting = Setting(scene, rates, applied_moment(scene))
+    programs = motions(setting)
+    part, renaming = traced(setting)
     programs = tuple(with_names(program, renaming) for program in programs)
     read = {name for program in programs for name in read_by(program)}
     names = {operand: name for operand, name in part.names.items() if name in read}
-    says = {operand: said for operand, (_, said) in moving.tape.names.items()}
+    says = {operand: said for operand, (_, said) in setting.tape.names.items()}
     meanings = {name: says[operand] for operand, name in names.items()}
     return Moved(programs, replace(part, names=names), meanings)
 

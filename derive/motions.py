@@ -17,13 +17,13 @@ from derive.flows.system import System, next_of
 from derive.flows.taylor import taylor_step
 from derive.lecture import LECTURE
 from derive.machine.mechanism import single
-from derive.moving import Moving
 from derive.program import Operand, Program, Quantity
 from derive.recorded import called, needed
 from derive.rotations.functions import attitude_program
 from derive.scene import Machine, Scene, SceneError
 from derive.scene.declaration import Given
 from derive.scene.wanted import ATTITUDES, SPLITTINGS, STEP_DERIVATIVES, TAYLOR, moves, step_of
+from derive.setting import Setting
 from derive.stage import used_inputs
 from derive.trace import Number, Tape, number
 from derive.vocabulary import Vocabulary
@@ -58,33 +58,33 @@ def needs(scene: Scene | Machine) -> tuple[str, ...]:
     return tuple(dict.fromkeys(["state_rate"] * bool(steps) + slopes))
 
 
-def motions(moving: Moving) -> tuple[Program, ...]:
+def motions(setting: Setting) -> tuple[Program, ...]:
     """Return the programs of all wanted motions and attitude formulas, in the scene's order."""
     found: dict[str, Program] = {}
-    for name in moving.known.scene.wanted:
+    for name in setting.known.scene.wanted:
         if name in ATTITUDES:
             found[name] = attitude_program(name)
         elif moves(name):
-            found |= {program.name: program for program in _motion(moving, name)}
+            found |= {program.name: program for program in _motion(setting, name)}
     return tuple(found.values())
 
 
-def _motion(moving: Moving, name: str) -> tuple[Program, ...]:
+def _motion(setting: Setting, name: str) -> tuple[Program, ...]:
     step = step_of(name)
     if name == "flow_exact":
-        return (_flow_exact(moving),)
+        return (_flow_exact(setting),)
     if name == "step_dmv":
-        return _dmv(moving)
+        return _dmv(setting)
     if step in TAYLOR:
-        return (_taylor(moving, TAYLOR[step]),)
+        return (_taylor(setting, TAYLOR[step]),)
     if step in SPLITTINGS:
-        return (_split(moving, name),)
-    return (_runge_kutta(moving, name),)
+        return (_split(setting, name),)
+    return (_runge_kutta(setting, name),)
 
 
-def _taylor(moving: Moving, order: int) -> Program:
-    words, rate = moving.known.words, moving.rates["state_rate"]
-    step = _time_step(moving)
+def _taylor(setting: Setting, order: int) -> Program:
+    words, rate = setting.known.words, setting.rates["state_rate"]
+    step = _time_step(setting)
     series = taylor_step(rate, words.states, words.inputs, order, step)
     return replace(series.signature, loops=series, assumptions=rate.assumptions)
 
@@ -102,15 +102,15 @@ _STEP_PROGRAMS: Mapping[str, Callable[[System], Program]] = {
 }
 
 
-def _runge_kutta(moving: Moving, name: str) -> Program:
-    rates, step = moving.rates, _time_step(moving)
+def _runge_kutta(setting: Setting, name: str) -> Program:
+    rates, step = setting.rates, _time_step(setting)
     slopes = rates[SLOPES[name.rpartition("_")[2]]] if name in STEP_DERIVATIVES else None
-    system = System(moving.known.words.states, rates["state_rate"], slopes, step)
-    _check_quaternions(moving, name, len(system.quaternions))
+    system = System(setting.known.words.states, rates["state_rate"], slopes, step)
+    _check_quaternions(setting, name, len(system.quaternions))
     program = _STEP_PROGRAMS[name](system)
     if program.sparsity and not any(pattern.row for pattern in program.sparsity.values()):
         raise SceneError(
-            f"scene '{moving.known.scene.name}': wanted '{name}' must have entries, "
+            f"scene '{setting.known.scene.name}': wanted '{name}' must have entries, "
             "but nothing that it is a derivative by changes the step"
         )
     program = replace(
@@ -118,26 +118,26 @@ def _runge_kutta(moving: Moving, name: str) -> Program:
         inputs=used_inputs(program.inputs, program.ops, program.results),
         assumptions=rates["state_rate"].assumptions,
     )
-    return compact(system, program) if _looped(moving, name) else program
+    return compact(system, program) if _looped(setting, name) else program
 
 
-def _looped(moving: Moving, name: str) -> bool:
-    return moving.known.scene.emission == "compact" and name in LOOPED
+def _looped(setting: Setting, name: str) -> bool:
+    return setting.known.scene.emission == "compact" and name in LOOPED
 
 
-def _check_quaternions(moving: Moving, name: str, count: int) -> None:
+def _check_quaternions(setting: Setting, name: str, count: int) -> None:
     """Refuse a machine's step that knows of another number of quaternions than the state has."""
-    scene = moving.known.scene
+    scene = setting.known.scene
     if name.endswith("_tangent") and count != 1:
         rule = f"is over the errors of one quaternion, and the state has {count}"
         raise SceneError(f"scene '{scene.name}': '{name}' {rule}")
-    if _looped(moving, name) and count > 1:
+    if _looped(setting, name) and count > 1:
         rule = f"emission = 'compact' is for one quaternion at most, and the state has {count}"
         raise SceneError(f"scene '{scene.name}': '{name}': {rule}")
 
 
-def _time_step(moving: Moving) -> Quantity:
-    return _seconds("time_step", moving.known.scene.time_step, "length of the step")
+def _time_step(setting: Setting) -> Quantity:
+    return _seconds("time_step", setting.known.scene.time_step, "length of the step")
 
 
 def _seconds(name: str, range_: Given, says: str) -> Quantity:
@@ -173,25 +173,25 @@ def _rotation(words: Vocabulary) -> tuple[Quantity, Quantity]:
     return words["attitude"], words["omega"]
 
 
-def _flow_exact(moving: Moving) -> Program:
-    tape, words = moving.function(), moving.known.words
+def _flow_exact(setting: Setting) -> Program:
+    tape, words = setting.function(), setting.known.words
     attitude, omega = _rotation(words)
-    given = single(moving.known).scene.time
+    given = single(setting.known).scene.time
     time = _seconds("time", given, "time from the given to the new state")
     (t,) = _inputs(tape, time)
-    q, w = flow_exact(tape, moving.inertia(), _inputs(tape, attitude), _inputs(tape, omega), t)
+    q, w = flow_exact(tape, setting.inertia(), _inputs(tape, attitude), _inputs(tape, omega), t)
     outputs = (next_of(attitude), next_of(omega))
     says = "Attitude and angular velocity after any time without torque (exact solution)."
     made = Recorded((attitude, omega, time), outputs, (*map(number, q), *map(number, w)))
     return _program("flow_exact", says, tape, made)
 
 
-def _dmv(moving: Moving) -> tuple[Program, ...]:
-    words, step = moving.known.words, _time_step(moving)
+def _dmv(setting: Setting) -> tuple[Program, ...]:
+    words, step = setting.known.words, _time_step(setting)
     omega = words["omega"]
-    tape = moving.function()
+    tape = setting.function()
     (h,) = _inputs(tape, step)
-    entries = plan_dmv(tape, moving.inertia(), _inputs(tape, omega), h)
+    entries = plan_dmv(tape, setting.inertia(), _inputs(tape, omega), h)
     names = tuple(f"plan_{name}" for name, _, _ in entries)
     plan = Quantity(
         "plan", names, (len(names),), "", "", None, None,
@@ -200,16 +200,16 @@ def _dmv(moving: Moving) -> tuple[Program, ...]:
     says = "Plan many steps of one length from an angular velocity; call it once."
     made = Recorded((omega, step), (plan,), tuple(number(n) for _, n, _ in entries))
     planned = _program("plan_dmv", says, tape, made)
-    return planned, _dmv_step(moving, plan, [name for name, _, _ in entries])
+    return planned, _dmv_step(setting, plan, [name for name, _, _ in entries])
 
 
-def _dmv_step(moving: Moving, plan: Quantity, names: Sequence[str]) -> Program:
-    tape, (attitude, omega) = moving.function(), _rotation(moving.known.words)
+def _dmv_step(setting: Setting, plan: Quantity, names: Sequence[str]) -> Program:
+    tape, (attitude, omega) = setting.function(), _rotation(setting.known.words)
     rest = remainder((attitude, omega))
     planned = dict(zip(names, _inputs(tape, plan), strict=True))
     q, w, left = step_dmv(
         tape,
-        moving.inertia(),
+        setting.inertia(),
         planned,
         _inputs(tape, attitude),
         _inputs(tape, omega),
@@ -221,13 +221,13 @@ def _dmv_step(moving: Moving, plan: Quantity, names: Sequence[str]) -> Program:
     return _program("step_dmv", says, tape, made)
 
 
-def _split(moving: Moving, name: str) -> Program:
-    tape, step = moving.function(), _time_step(moving)
-    attitude, omega = _rotation(moving.known.words)
-    order, body, rest = SPLITTINGS[step_of(name)], moving.inertia(), remainder((attitude, omega))
+def _split(setting: Setting, name: str) -> Program:
+    tape, step = setting.function(), _time_step(setting)
+    attitude, omega = _rotation(setting.known.words)
+    order, body, rest = SPLITTINGS[step_of(name)], setting.inertia(), remainder((attitude, omega))
     (h,) = _inputs(tape, step)
-    given = _inputs(tape, attitude), _inputs(tape, omega), _moment(moving, tape), h
-    inputs = (attitude, omega, *_outside(moving), step)
+    given = _inputs(tape, attitude), _inputs(tape, omega), _moment(setting, tape), h
+    inputs = (attitude, omega, *_outside(setting), step)
     outputs = [next_of(attitude), next_of(omega)]
     says = "One step of the rotation by splitting it into turns about two axes"
     if name.endswith(COMPENSATION):
@@ -243,19 +243,19 @@ def _split(moving: Moving, name: str) -> Program:
     return _program(name, says, tape, made)
 
 
-def _outside(moving: Moving) -> tuple[Quantity, ...]:
+def _outside(setting: Setting) -> tuple[Quantity, ...]:
     """Return the inputs that the moment may use, held while the step lasts."""
-    states = moving.known.words.states
-    return tuple(q for q in moving.moment.inputs if q not in states) if moving.moment else ()
+    states = setting.known.words.states
+    return tuple(q for q in setting.moment.inputs if q not in states) if setting.moment else ()
 
 
-def _moment(moving: Moving, tape: Tape) -> Callable[[Sequence[Number]], list[Number]] | None:
+def _moment(setting: Setting, tape: Tape) -> Callable[[Sequence[Number]], list[Number]] | None:
     """Return the moment along the axes as a function of the attitude, None if there is none."""
-    program = moving.moment
+    program = setting.moment
     if program is None:
         return None
-    outside = {c: tape.input(c) for q in _outside(moving) for c in q.components}
-    parts = moving.known.words["attitude"].components
+    outside = {c: tape.input(c) for q in _outside(setting) for c in q.components}
+    parts = setting.known.words["attitude"].components
 
     def at(attitude: Sequence[Number]) -> list[Number]:
         return called(tape, program, outside | dict(zip(parts, attitude, strict=True)))

@@ -20,7 +20,7 @@ FLOORS = (
     ("machine",),
     ("lower", "forms", "stage", "function"),
     ("flows",),
-    ("moving", "motions", "library"),
+    ("setting", "motions", "library"),
     ("saving",),
     (
         *("c_text", "series_text", "compact_text", "definition", "comment", "signature", "example"),

@@ -15,7 +15,7 @@ from derive.trace import Number, Tape, number
 
 
 @dataclass
-class Moving:
+class Setting:
     """What the formulas of motion are given: the scene, its rates, its body, the tape of set-up.
 
     moment : the program of the moment along the axes, None if there is none
@@ -78,22 +78,22 @@ def applied_moment(scene: Graphed) -> Program | None:
     return Program("applied_moment", "", inputs, (output,), ops, results)
 
 
-def traced(moving: Moving) -> tuple[Traced, Mapping[str, str]]:
+def traced(setting: Setting) -> tuple[Traced, Mapping[str, str]]:
     """Return set-up's part of the motions, and how its constants are renamed.
 
     A parameter that is a constant of the graph already keeps the name that it has there.
     """
-    taken = moving.scene.constants.names
-    shared = {_parameter(moving.scene.graph, value): name for value, name in taken.items()}
+    taken = setting.scene.constants.names
+    shared = {_parameter(setting.scene.graph, value): name for value, name in taken.items()}
     shared.pop("", None)
     names: dict[str, str] = {}
-    for operand, (name, _) in moving.tape.names.items():
+    for operand, (name, _) in setting.tape.names.items():
         used = {*taken.values(), *names.values()}
         several = (name, *(f"{name}{k}" for k in range(2, len(used) + 3)))
         names[operand] = shared.get(operand) or next(n for n in several if n not in used)
-    new = {name: names[operand] for operand, (name, _) in moving.tape.names.items()}
+    new = {name: names[operand] for operand, (name, _) in setting.tape.names.items()}
     own = {operand: name for operand, name in names.items() if operand not in shared}
-    return Traced(tuple(moving.tape.ops), dict(moving.given), own), new
+    return Traced(tuple(setting.tape.ops), dict(setting.given), own), new
 
 
 def _parameter(graph: Graph, value: Value) -> str:
