@@ -13,8 +13,20 @@ import flint
 import numpy as np
 from numpy.typing import NDArray
 
+from derive.pair_sine import PI, pair_sine
+from derive.pairs import (
+    MANTISSA,
+    Pair,
+    pair_add,
+    pair_div,
+    pair_minus,
+    pair_mul,
+    pair_select,
+    pair_sqrt,
+    splitter,
+)
+
 Table = dict[str, Callable[..., Any]]
-Pair = tuple[Any, Any]
 
 _PYTHON: Table = {
     "add": operator.add,
@@ -45,8 +57,6 @@ EXACT: Table = _PYTHON | {
 # Operators whose result is a truth and not a number, and those that ask the platform's libm.
 TRUTHS = frozenset(("less", "at_most", "both", "either"))
 LIBM = frozenset(("sin", "cos", "exp", "log", "atan2"))
-
-MANTISSA: dict[type, int] = {np.float64: 53, np.float32: 24}
 
 
 def rounded(q: Fraction, dtype: type) -> Any:
@@ -119,8 +129,6 @@ _CHOICES: Table = {
     "select": np.where,
 }
 
-PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
-
 
 def power_of_two(x: Any, dtype: type) -> Any:
     """Return the power of two at or next to x > 0, by float operations only (Rump)."""
@@ -129,107 +137,39 @@ def power_of_two(x: Any, dtype: type) -> Any:
     return q - dtype(1.0 - 2.0**-p) * q
 
 
-def splitter(bits: int) -> int:
-    """Return the number that splits a float of so many bits into halves (Veltkamp)."""
-    return (1 << (bits + 1) // 2) + 1
-
-
-def two_sum(a: Any, b: Any) -> Pair:
-    """Return s and e with s + e = a + b exactly and s = fl(a + b) (Knuth)."""
-    s = a + b
-    t = s - a
-    return s, (a - (s - t)) + (b - t)
-
-
-def fast_two_sum(a: Any, b: Any) -> Pair:
-    """Return s and e with s + e = a + b exactly where abs(a) >= abs(b) (Dekker)."""
-    s = a + b
-    return s, b - (s - a)
-
-
-def _split(a: Any, factor: Any) -> Pair:
-    c = factor * a
-    high = c - (c - a)
-    return high, a - high
-
-
-def two_product(a: Any, b: Any, factor: Any) -> Pair:
-    """Return p and e with p + e = a b exactly and p = fl(a b) (Veltkamp and Dekker)."""
-    p = a * b
-    ah, al = _split(a, factor)
-    bh, bl = _split(b, factor)
-    return p, ((ah * bh - p) + ah * bl + al * bh) + al * bl
-
-
-def pair_add(a: Pair, b: Pair) -> Pair:
-    """Return a + b within 3 u^2 relative, whatever cancels (Joldes, Muller and Popescu 2017)."""
-    s, e = two_sum(a[0], b[0])
-    t, f = two_sum(a[1], b[1])
-    x, y = fast_two_sum(s, e + t)
-    return fast_two_sum(x, y + f)
-
-
-def pair_mul(a: Pair, b: Pair, factor: Any) -> Pair:
-    """Return a b within a few u^2 relative."""
-    p, e = two_product(a[0], b[0], factor)
-    return fast_two_sum(p, e + (a[0] * b[1] + a[1] * b[0]))
-
-
-def pair_div(a: Pair, b: Pair, factor: Any) -> Pair:
-    """Return a / b within a few u^2 relative: long division, three digits."""
-    zero = b[0] * 0
-    q1 = a[0] / b[0]
-    r = pair_add(a, _minus(pair_mul((q1, zero), b, factor)))
-    q2 = r[0] / b[0]
-    r = pair_add(r, _minus(pair_mul((q2, zero), b, factor)))
-    return pair_add(pair_add((q1, zero), (q2, zero)), (r[0] / b[0], zero))
-
-
-def pair_sqrt(a: Pair, factor: Any, root: Callable[[Any], Any]) -> Pair:
-    """Return the square root of a within a few u^2 relative (Karp and Markstein)."""
-    s = root(a[0])
-    r = pair_add(a, _minus(two_product(s, s, factor)))
-    return fast_two_sum(s, np.where(s > 0, r[0] / (s + s), s * 0))
-
-
-def _minus(a: Pair) -> Pair:
-    return -a[0], a[1] * 0 - a[1]  # a zero stays a positive zero, as CasADi has it
-
-
-def _pair_select(condition: Any, yes: Pair, no: Pair) -> Pair:
-    return np.where(condition, yes[0], no[0]), np.where(condition, yes[1], no[1])
+def pair_of(q: Fraction, dtype: type) -> tuple[Fraction, Fraction]:
+    """Return the two floats whose sum is next to ``q``."""
+    high = Fraction(float(rounded(q, dtype)))
+    return high, Fraction(float(rounded(q - high, dtype)))
 
 
 def extended(dtype: type) -> Table:
     """Return the arithmetic of pairs of ``dtype``, vectorised over samples."""
     factor = dtype(splitter(MANTISSA[dtype]))
-    base = working(dtype)
 
     def number(q: Fraction) -> Pair:
-        high = rounded(q, dtype)
-        return high, rounded(q - Fraction(float(high)), dtype)
+        high, low = pair_of(q, dtype)
+        return rounded(high, dtype), rounded(low, dtype)
 
-    def angle(a: Pair, value: str, slope: str, sign: int) -> Pair:
-        return fast_two_sum(base[value](a[0]), dtype(sign) * base[slope](a[0]) * a[1])
-
+    sine = pair_sine(dtype, lambda q: rounded(q, dtype))
     return {
         "number": number,
         "add": pair_add,
-        "sub": lambda a, b: pair_add(a, _minus(b)),
-        "neg": _minus,
+        "sub": lambda a, b: pair_add(a, pair_minus(b)),
+        "neg": pair_minus,
         "low": lambda a: (a[1], a[1] * 0),
         "mul": lambda a, b: pair_mul(a, b, factor),
         "div": lambda a, b: pair_div(a, b, factor),
         "sqrt": lambda a: pair_sqrt(a, factor, np.sqrt),
-        "sin": lambda a: angle(a, "sin", "cos", 1),
-        "cos": lambda a: angle(a, "cos", "sin", -1),
+        "sin": lambda a: sine(a, 0),
+        "cos": lambda a: sine(a, 1),
         "power_of_two": lambda a: (power_of_two(a[0], dtype), a[0] * 0),
-        "abs": lambda a: _pair_select(a[0] < 0, _minus(a), a),
+        "abs": lambda a: pair_select(a[0] < 0, pair_minus(a), a),
         "less": lambda a, b: (a[0] < b[0]) | ((a[0] == b[0]) & (a[1] < b[1])),
         "at_most": lambda a, b: (a[0] < b[0]) | ((a[0] == b[0]) & (a[1] <= b[1])),
         "both": np.logical_and,
         "either": np.logical_or,
-        "select": _pair_select,
+        "select": pair_select,
         "pi": lambda: number(PI),
     }
 

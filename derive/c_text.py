@@ -6,7 +6,9 @@ from fractions import Fraction
 
 import numpy as np
 
-from derive.arithmetic import PI, TRUTHS, rounded, splitter
+from derive.arithmetic import TRUTHS, pair_of, rounded
+from derive.pair_sine import PI
+from derive.pairs import splitter
 from derive.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
 
 UNSIGNED_CHAR = 255
@@ -230,9 +232,8 @@ def _by_value(program: Program) -> dict[str, str]:
 
 
 def _pair_literal(q: Fraction, pair: str, precision: Precision) -> str:
-    high = rounded(q, precision.dtype)
-    low = q - Fraction(float(high))
-    return f"({pair}){{{literal(Fraction(float(high)), precision)}, {literal(low, precision)}}}"
+    high, low = pair_of(q, precision.dtype)
+    return f"({pair}){{{literal(high, precision)}, {literal(low, precision)}}}"
 
 
 def _rounded(operand: Operand, names: set[str], precision: Precision) -> str:
@@ -263,8 +264,9 @@ RESTS_ON: dict[str, tuple[str, ...]] = {
     "mul": ("two_product",),
     "div": ("neg", "add", "two_product", "mul"),
     "sqrt": ("neg", "add", "two_product"),
-    "sin": (),
-    "cos": (),
+    "sine": ("neg", "add", "two_product", "mul"),
+    "sin": ("neg", "add", "two_product", "mul", "sine"),
+    "cos": ("neg", "add", "two_product", "mul", "sine"),
     "power_of_two": (),
     "pi": (),
     "abs": ("neg",),

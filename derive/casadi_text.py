@@ -3,12 +3,13 @@
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from derive.arithmetic import rounded
-from derive.c_text import F64, machine_number
-from derive.emit import TEMPLATES, first_line
+from derive.arithmetic import pair_of, rounded
+from derive.c_text import F64, machine_number, pair_functions
+from derive.emit import TEMPLATES, first_line, works_in_pairs
 from derive.flows.compact import Compact
 from derive.flows.series import Series
 from derive.library import Library
+from derive.pair_sine import quarter_turn, series
 from derive.program import Line, Op, Operand, Program, Quantity, Repeat
 from derive.series_text import series_casadi
 
@@ -21,12 +22,17 @@ def casadi_file(library: Library) -> str:
     """Return the text of ``<scene>_casadi.py``."""
     name = library.known.scene.name
     has_setup = bool(library.constants)
+    in_pairs = [p for p in library.printed() if works_in_pairs(p)] + [library.setup] * has_setup
     return TEMPLATES.get_template("casadi.py.jinja").render(
         first_line=first_line(library),
         title=library.known.scene.title,
         scene=name,
         setup=_setup(library.setup, name) if has_setup else None,
-        pairs=has_setup or any(p.arithmetic == "pairs" for p in library.printed()),
+        pairs=bool(in_pairs),
+        turns=any(name in ("sin", "cos") for name in pair_functions(in_pairs)),
+        odd=[tuple(map(float, pair_of(c, F64.dtype))) for c in series(F64.bits, 1)],
+        even=[tuple(map(float, pair_of(c, F64.dtype))) for c in series(F64.bits, 0)],
+        quarter=[float(part) for part in quarter_turn(lambda q: rounded(q, F64.dtype))],
         functions=[_function(p, name) for p in library.printed()],
     )
 
@@ -36,8 +42,7 @@ def _pairs(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
 
     def text(operand: Operand) -> str:
         if isinstance(operand, Fraction):
-            high = float(rounded(operand, F64.dtype))
-            return f"({high!r}, {float(rounded(operand - Fraction(high), F64.dtype))!r})"
+            return repr(tuple(map(float, pair_of(operand, F64.dtype))))
         return f"({place[operand]}, 0.0)" if operand in place else operand
 
     def stored(operand: Operand) -> str:

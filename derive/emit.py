@@ -8,7 +8,7 @@ from pathlib import Path
 import jinja2
 
 from derive import __version__
-from derive.arithmetic import PI, rounded, splitter
+from derive.arithmetic import pair_of, rounded
 from derive.c_text import (
     MATH,
     PRECISIONS,
@@ -23,6 +23,8 @@ from derive.comment import comment
 from derive.definition import definition
 from derive.example import example
 from derive.library import Library
+from derive.pair_sine import PI, quarter_turn, series
+from derive.pairs import splitter
 from derive.program import Measurement, Program
 from derive.signature import Names, dense_prototype, dense_size, prototype
 
@@ -174,7 +176,7 @@ def _uses_math(library: Library) -> bool:
 
 def _pair_function(name: str, names: Names, precision: Precision) -> str:
     bits = precision.bits
-    pi = Fraction(float(rounded(PI, precision.dtype)))
+    pi_high, pi_low = pair_of(PI, precision.dtype)
     return (
         TEMPLATES.get_template(f"pair/{name}.c.jinja")
         .render(
@@ -183,15 +185,41 @@ def _pair_function(name: str, names: Names, precision: Precision) -> str:
             scalar=precision.scalar,
             pair=f"{names.scene}_pair_{precision.name}",
             zero=literal(Fraction(0), precision),
+            one=literal(Fraction(1), precision),
             split=literal(Fraction(splitter(bits)), precision),
             top=literal(Fraction(2 ** (bits - 1) + 1), precision),
             one_less=literal(1 - Fraction(1, 2**bits), precision),
-            pi_high=literal(pi, precision),
-            pi_low=literal(Fraction(float(rounded(PI - pi, precision.dtype))), precision),
+            pi_high=literal(pi_high, precision),
+            pi_low=literal(pi_low, precision),
+            **_sine(precision) if name == "sine" else {},
             **precision.functions,
         )
         .rstrip()
     )
+
+
+def _sine(precision: Precision) -> dict[str, object]:
+    """Return what the sine of a pair is made of, as C."""
+
+    def pair(q: Fraction) -> str:
+        high, low = pair_of(q, precision.dtype)
+        return f"{{{literal(high, precision)}, {literal(low, precision)}}}"
+
+    def text(q: Fraction) -> str:
+        return literal(q, precision)
+
+    quarters = quarter_turn(lambda q: rounded(q, precision.dtype))
+    return {
+        "odd": [pair(c) for c in series(precision.bits, 1)],
+        "even": [pair(c) for c in series(precision.bits, 0)],
+        "quarter": [text(part) for part in quarters],
+        "per_quarter": text(2 / PI),
+        "four": text(Fraction(4)),
+        "quarter_of_one": text(Fraction(1, 4)),
+        "half": text(Fraction(1, 2)),
+        "three_halves": text(Fraction(3, 2)),
+        "five_halves": text(Fraction(5, 2)),
+    }
 
 
 def _setup_definition(program: Program, names: Names, precision: Precision) -> str:

@@ -10,8 +10,8 @@ import pytest
 FLOORS = (
     ("vectors", "formula", "grammar", "unit", "scene", "catalogue", "program", "graph"),
     (
-        *("particles", "arithmetic", "trace", "operations", "recorded", "rotations"),
-        *("tree", "rate", "facts", "relations"),
+        *("particles", "pairs", "pair_sine", "arithmetic"),
+        *("trace", "operations", "recorded", "rotations", "tree", "rate", "facts", "relations"),
     ),
     ("expand", "derivative", "table", "share", "write"),
     ("step", "notation", "principal", "vocabulary", "valuation", "wording"),

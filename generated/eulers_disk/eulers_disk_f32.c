@@ -32,6 +32,22 @@ static eulers_disk_pair_f32 eulers_disk_neg_f32(eulers_disk_pair_f32 a)
     return (eulers_disk_pair_f32){-a.high, 0.0F - a.low};
 }
 
+/* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
+static eulers_disk_pair_f32 eulers_disk_add_f32(eulers_disk_pair_f32 a, eulers_disk_pair_f32 b)
+{
+    const float s = a.high + b.high;
+    const float v = s - a.high;
+    const float e = (a.high - (s - v)) + (b.high - v);
+    const float t = a.low + b.low;
+    const float w = t - a.low;
+    const float f = (a.low - (t - w)) + (b.low - w);
+    const float c = e + t;
+    const float x = s + c;
+    const float y = (c - (x - s)) + f;
+    const float high = x + y;
+    return (eulers_disk_pair_f32){high, y - (high - x)};
+}
+
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
 static eulers_disk_pair_f32 eulers_disk_two_product_f32(float a, float b)
 {
@@ -53,20 +69,57 @@ static eulers_disk_pair_f32 eulers_disk_mul_f32(eulers_disk_pair_f32 a, eulers_d
     return (eulers_disk_pair_f32){high, e - (high - p.high)};
 }
 
+/* The sine of an angle and so many quarter turns: these taken off, then a series. */
+static eulers_disk_pair_f32 eulers_disk_sine_f32(eulers_disk_pair_f32 a, float quarters)
+{
+    static const eulers_disk_pair_f32 odd[8] = {
+        {1.0F, 0.0F},
+        {(-0.166666672F), 4.96705388e-09F},
+        {0.00833333377F, (-4.34617203e-10F)},
+        {(-0.000198412701F), 2.72559687e-12F},
+        {2.75573188e-06F, 3.79357122e-14F},
+        {(-2.50521079e-08F), (-4.41762304e-16F)},
+        {1.60590444e-10F, (-5.35252651e-18F)},
+        {(-7.64716361e-13F), (-1.22007105e-20F)}
+    };
+    static const eulers_disk_pair_f32 even[8] = {
+        {1.0F, 0.0F},
+        {(-0.5F), 0.0F},
+        {0.0416666679F, (-1.24176347e-09F)},
+        {(-0.00138888892F), 3.36310944e-11F},
+        {2.48015876e-05F, (-3.40699609e-13F)},
+        {(-2.755732e-07F), 7.57511221e-15F},
+        {2.08767559e-09F, 1.10828391e-16F},
+        {(-1.14707454e-11F), (-2.37220769e-19F)}
+    };
+    const float k = floorf(0.636619747F * a.high + 0.5F);
+    const eulers_disk_pair_f32 k1 = eulers_disk_two_product_f32(k, 1.57079637F);
+    const eulers_disk_pair_f32 k2 = eulers_disk_two_product_f32(k, (-4.37113883e-08F));
+    const eulers_disk_pair_f32 k3 = {-(k * (-1.71512451e-15F)), 0.0F};
+    const eulers_disk_pair_f32 r1 = eulers_disk_add_f32(a, eulers_disk_neg_f32(k1));
+    const eulers_disk_pair_f32 r2 = eulers_disk_add_f32(r1, eulers_disk_neg_f32(k2));
+    const eulers_disk_pair_f32 r = eulers_disk_add_f32(r2, k3);
+    const eulers_disk_pair_f32 square = eulers_disk_mul_f32(r, r);
+    const float all = k + quarters;
+    const float turn = all - 4.0F * floorf(all * 0.25F);
+    const int across = (turn > 0.5F && turn < 1.5F) || turn > 2.5F;
+    eulers_disk_pair_f32 sum = { 0.0F, 0.0F };
+    int n;
+    for (n = 8 - 1; n >= 0; --n) {
+        sum = eulers_disk_add_f32(eulers_disk_mul_f32(sum, square), across ? even[n] : odd[n]);
+    }
+    if (!across) { sum = eulers_disk_mul_f32(sum, r); }
+    return turn > 1.5F ? eulers_disk_neg_f32(sum) : sum;
+}
+
 static eulers_disk_pair_f32 eulers_disk_sin_f32(eulers_disk_pair_f32 a)
 {
-    const float s = sinf(a.high);
-    const float e = cosf(a.high) * a.low;
-    const float high = s + e;
-    return (eulers_disk_pair_f32){high, e - (high - s)};
+    return eulers_disk_sine_f32(a, 0.0F);
 }
 
 static eulers_disk_pair_f32 eulers_disk_cos_f32(eulers_disk_pair_f32 a)
 {
-    const float s = cosf(a.high);
-    const float e = -sinf(a.high) * a.low;
-    const float high = s + e;
-    return (eulers_disk_pair_f32){high, e - (high - s)};
+    return eulers_disk_sine_f32(a, 1.0F);
 }
 
 void eulers_disk_setup_f32(float m, float r, float tilt, float g,

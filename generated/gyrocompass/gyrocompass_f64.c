@@ -94,12 +94,64 @@ static gyrocompass_pair_f64 gyrocompass_sqrt_f64(gyrocompass_pair_f64 a)
     return (gyrocompass_pair_f64){high, e - (high - s)};
 }
 
+/* The sine of an angle and so many quarter turns: these taken off, then a series. */
+static gyrocompass_pair_f64 gyrocompass_sine_f64(gyrocompass_pair_f64 a, double quarters)
+{
+    static const gyrocompass_pair_f64 odd[14] = {
+        {1.0, 0.0},
+        {(-0.16666666666666666), (-9.25185853854297e-18)},
+        {0.008333333333333333, 1.1564823173178714e-19},
+        {(-0.0001984126984126984), (-1.7209558293420705e-22)},
+        {2.7557319223985893e-06, (-1.858393274046472e-22)},
+        {(-2.505210838544172e-08), 1.448814070935912e-24},
+        {1.6059043836821613e-10, 1.2585294588752098e-26},
+        {(-7.647163731819816e-13), (-7.03872877733453e-30)},
+        {2.8114572543455206e-15, 1.6508842730861433e-31},
+        {(-8.22063524662433e-18), (-2.2141894119604265e-34)},
+        {1.9572941063391263e-20, (-1.3643503830087908e-36)},
+        {(-3.868170170630684e-23), 8.843177655482344e-40},
+        {6.446950284384474e-26, (-1.9330404233703465e-42)},
+        {(-9.183689863795546e-29), (-1.4303150396787322e-45)}
+    };
+    static const gyrocompass_pair_f64 even[14] = {
+        {1.0, 0.0},
+        {(-0.5), 0.0},
+        {0.041666666666666664, 2.3129646346357427e-18},
+        {(-0.001388888888888889), 5.300543954373577e-20},
+        {2.48015873015873e-05, 2.1511947866775882e-23},
+        {(-2.755731922398589e-07), (-2.3767714622250297e-23)},
+        {2.08767569878681e-09, (-1.20734505911326e-25)},
+        {(-1.1470745597729725e-11), (-2.0655512752830745e-28)},
+        {4.779477332387385e-14, 4.399205485834081e-31},
+        {(-1.5619206968586225e-16), (-1.1910679660273754e-32)},
+        {4.110317623312165e-19, 1.4412973378659527e-36},
+        {(-8.896791392450574e-22), 7.911402614872376e-38},
+        {1.6117375710961184e-24, (-3.6846573564509766e-41)},
+        {(-2.4795962632247976e-27), 1.2953730964765229e-43}
+    };
+    const double k = floor(0.6366197723675814 * a.high + 0.5);
+    const gyrocompass_pair_f64 k1 = gyrocompass_two_product_f64(k, 1.5707963267948966);
+    const gyrocompass_pair_f64 k2 = gyrocompass_two_product_f64(k, 6.123233995736766e-17);
+    const gyrocompass_pair_f64 k3 = {-(k * (-1.4973849048591698e-33)), 0.0};
+    const gyrocompass_pair_f64 r1 = gyrocompass_add_f64(a, gyrocompass_neg_f64(k1));
+    const gyrocompass_pair_f64 r2 = gyrocompass_add_f64(r1, gyrocompass_neg_f64(k2));
+    const gyrocompass_pair_f64 r = gyrocompass_add_f64(r2, k3);
+    const gyrocompass_pair_f64 square = gyrocompass_mul_f64(r, r);
+    const double all = k + quarters;
+    const double turn = all - 4.0 * floor(all * 0.25);
+    const int across = (turn > 0.5 && turn < 1.5) || turn > 2.5;
+    gyrocompass_pair_f64 sum = { 0.0, 0.0 };
+    int n;
+    for (n = 14 - 1; n >= 0; --n) {
+        sum = gyrocompass_add_f64(gyrocompass_mul_f64(sum, square), across ? even[n] : odd[n]);
+    }
+    if (!across) { sum = gyrocompass_mul_f64(sum, r); }
+    return turn > 1.5 ? gyrocompass_neg_f64(sum) : sum;
+}
+
 static gyrocompass_pair_f64 gyrocompass_cos_f64(gyrocompass_pair_f64 a)
 {
-    const double s = cos(a.high);
-    const double e = -sin(a.high) * a.low;
-    const double high = s + e;
-    return (gyrocompass_pair_f64){high, e - (high - s)};
+    return gyrocompass_sine_f64(a, 1.0);
 }
 
 static gyrocompass_pair_f64 gyrocompass_pi_f64(void)

@@ -85,20 +85,57 @@ static rod_wire_vertical_shaft_pair_f32 rod_wire_vertical_shaft_div_f32(rod_wire
     return rod_wire_vertical_shaft_add_f32(rod_wire_vertical_shaft_add_f32(q1, q2), q3);
 }
 
+/* The sine of an angle and so many quarter turns: these taken off, then a series. */
+static rod_wire_vertical_shaft_pair_f32 rod_wire_vertical_shaft_sine_f32(rod_wire_vertical_shaft_pair_f32 a, float quarters)
+{
+    static const rod_wire_vertical_shaft_pair_f32 odd[8] = {
+        {1.0F, 0.0F},
+        {(-0.166666672F), 4.96705388e-09F},
+        {0.00833333377F, (-4.34617203e-10F)},
+        {(-0.000198412701F), 2.72559687e-12F},
+        {2.75573188e-06F, 3.79357122e-14F},
+        {(-2.50521079e-08F), (-4.41762304e-16F)},
+        {1.60590444e-10F, (-5.35252651e-18F)},
+        {(-7.64716361e-13F), (-1.22007105e-20F)}
+    };
+    static const rod_wire_vertical_shaft_pair_f32 even[8] = {
+        {1.0F, 0.0F},
+        {(-0.5F), 0.0F},
+        {0.0416666679F, (-1.24176347e-09F)},
+        {(-0.00138888892F), 3.36310944e-11F},
+        {2.48015876e-05F, (-3.40699609e-13F)},
+        {(-2.755732e-07F), 7.57511221e-15F},
+        {2.08767559e-09F, 1.10828391e-16F},
+        {(-1.14707454e-11F), (-2.37220769e-19F)}
+    };
+    const float k = floorf(0.636619747F * a.high + 0.5F);
+    const rod_wire_vertical_shaft_pair_f32 k1 = rod_wire_vertical_shaft_two_product_f32(k, 1.57079637F);
+    const rod_wire_vertical_shaft_pair_f32 k2 = rod_wire_vertical_shaft_two_product_f32(k, (-4.37113883e-08F));
+    const rod_wire_vertical_shaft_pair_f32 k3 = {-(k * (-1.71512451e-15F)), 0.0F};
+    const rod_wire_vertical_shaft_pair_f32 r1 = rod_wire_vertical_shaft_add_f32(a, rod_wire_vertical_shaft_neg_f32(k1));
+    const rod_wire_vertical_shaft_pair_f32 r2 = rod_wire_vertical_shaft_add_f32(r1, rod_wire_vertical_shaft_neg_f32(k2));
+    const rod_wire_vertical_shaft_pair_f32 r = rod_wire_vertical_shaft_add_f32(r2, k3);
+    const rod_wire_vertical_shaft_pair_f32 square = rod_wire_vertical_shaft_mul_f32(r, r);
+    const float all = k + quarters;
+    const float turn = all - 4.0F * floorf(all * 0.25F);
+    const int across = (turn > 0.5F && turn < 1.5F) || turn > 2.5F;
+    rod_wire_vertical_shaft_pair_f32 sum = { 0.0F, 0.0F };
+    int n;
+    for (n = 8 - 1; n >= 0; --n) {
+        sum = rod_wire_vertical_shaft_add_f32(rod_wire_vertical_shaft_mul_f32(sum, square), across ? even[n] : odd[n]);
+    }
+    if (!across) { sum = rod_wire_vertical_shaft_mul_f32(sum, r); }
+    return turn > 1.5F ? rod_wire_vertical_shaft_neg_f32(sum) : sum;
+}
+
 static rod_wire_vertical_shaft_pair_f32 rod_wire_vertical_shaft_sin_f32(rod_wire_vertical_shaft_pair_f32 a)
 {
-    const float s = sinf(a.high);
-    const float e = cosf(a.high) * a.low;
-    const float high = s + e;
-    return (rod_wire_vertical_shaft_pair_f32){high, e - (high - s)};
+    return rod_wire_vertical_shaft_sine_f32(a, 0.0F);
 }
 
 static rod_wire_vertical_shaft_pair_f32 rod_wire_vertical_shaft_cos_f32(rod_wire_vertical_shaft_pair_f32 a)
 {
-    const float s = cosf(a.high);
-    const float e = -sinf(a.high) * a.low;
-    const float high = s + e;
-    return (rod_wire_vertical_shaft_pair_f32){high, e - (high - s)};
+    return rod_wire_vertical_shaft_sine_f32(a, 1.0F);
 }
 
 void rod_wire_vertical_shaft_setup_f32(float W, float L, float beta, float w, float g,

@@ -10,7 +10,7 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is. Body of these files: sha256 d39b0a5a7503d797.
+ * double, times the largest term of the sum that an output is. Body of these files: sha256 15d5b5d4a038ac2d.
  */
 #ifndef ROLLING_CONE_F64_H
 #define ROLLING_CONE_F64_H
@@ -48,8 +48,8 @@ void rolling_cone_setup_f64(double m, double h, double r, double a, double g,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.84, largest 3.2 u of the largest term (sampled: 105 points, worst at
- *            kinetic_energy, point 74).
+ * Error: median 0.72, largest 3 u of the largest term (sampled: 105 points, worst at
+ *            kinetic_energy, point 95).
  * Cost: 2 mul.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, rate_seen_from_N, rigid.
@@ -69,8 +69,8 @@ void rolling_cone_kinetic_energy_f64(const rolling_cone_constants_f64 *constants
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.87, largest 4 u of the largest term (sampled: 105 points, worst at x_N, point
- *            10).
+ * Error: median 0.9, largest 3.3 u of the largest term (sampled: 105 points, worst at x_N, point
+ *            69).
  * Cost: 1 add, 2 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -90,8 +90,8 @@ void rolling_cone_x_N_f64(const rolling_cone_constants_f64 *constants, double W,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.61, largest 3.5 u of the largest term (sampled: 105 points, worst at steady,
- *            point 98).
+ * Error: median 0.41, largest 2.5 u of the largest term (sampled: 105 points, worst at steady,
+ *            point 66).
  * Cost: 1 sub, 2 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

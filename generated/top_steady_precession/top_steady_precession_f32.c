@@ -27,6 +27,11 @@ typedef struct {
     float low;
 } top_steady_precession_pair_f32;
 
+static top_steady_precession_pair_f32 top_steady_precession_neg_f32(top_steady_precession_pair_f32 a)
+{
+    return (top_steady_precession_pair_f32){-a.high, 0.0F - a.low};
+}
+
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
 static top_steady_precession_pair_f32 top_steady_precession_add_f32(top_steady_precession_pair_f32 a, top_steady_precession_pair_f32 b)
 {
@@ -64,20 +69,57 @@ static top_steady_precession_pair_f32 top_steady_precession_mul_f32(top_steady_p
     return (top_steady_precession_pair_f32){high, e - (high - p.high)};
 }
 
+/* The sine of an angle and so many quarter turns: these taken off, then a series. */
+static top_steady_precession_pair_f32 top_steady_precession_sine_f32(top_steady_precession_pair_f32 a, float quarters)
+{
+    static const top_steady_precession_pair_f32 odd[8] = {
+        {1.0F, 0.0F},
+        {(-0.166666672F), 4.96705388e-09F},
+        {0.00833333377F, (-4.34617203e-10F)},
+        {(-0.000198412701F), 2.72559687e-12F},
+        {2.75573188e-06F, 3.79357122e-14F},
+        {(-2.50521079e-08F), (-4.41762304e-16F)},
+        {1.60590444e-10F, (-5.35252651e-18F)},
+        {(-7.64716361e-13F), (-1.22007105e-20F)}
+    };
+    static const top_steady_precession_pair_f32 even[8] = {
+        {1.0F, 0.0F},
+        {(-0.5F), 0.0F},
+        {0.0416666679F, (-1.24176347e-09F)},
+        {(-0.00138888892F), 3.36310944e-11F},
+        {2.48015876e-05F, (-3.40699609e-13F)},
+        {(-2.755732e-07F), 7.57511221e-15F},
+        {2.08767559e-09F, 1.10828391e-16F},
+        {(-1.14707454e-11F), (-2.37220769e-19F)}
+    };
+    const float k = floorf(0.636619747F * a.high + 0.5F);
+    const top_steady_precession_pair_f32 k1 = top_steady_precession_two_product_f32(k, 1.57079637F);
+    const top_steady_precession_pair_f32 k2 = top_steady_precession_two_product_f32(k, (-4.37113883e-08F));
+    const top_steady_precession_pair_f32 k3 = {-(k * (-1.71512451e-15F)), 0.0F};
+    const top_steady_precession_pair_f32 r1 = top_steady_precession_add_f32(a, top_steady_precession_neg_f32(k1));
+    const top_steady_precession_pair_f32 r2 = top_steady_precession_add_f32(r1, top_steady_precession_neg_f32(k2));
+    const top_steady_precession_pair_f32 r = top_steady_precession_add_f32(r2, k3);
+    const top_steady_precession_pair_f32 square = top_steady_precession_mul_f32(r, r);
+    const float all = k + quarters;
+    const float turn = all - 4.0F * floorf(all * 0.25F);
+    const int across = (turn > 0.5F && turn < 1.5F) || turn > 2.5F;
+    top_steady_precession_pair_f32 sum = { 0.0F, 0.0F };
+    int n;
+    for (n = 8 - 1; n >= 0; --n) {
+        sum = top_steady_precession_add_f32(top_steady_precession_mul_f32(sum, square), across ? even[n] : odd[n]);
+    }
+    if (!across) { sum = top_steady_precession_mul_f32(sum, r); }
+    return turn > 1.5F ? top_steady_precession_neg_f32(sum) : sum;
+}
+
 static top_steady_precession_pair_f32 top_steady_precession_sin_f32(top_steady_precession_pair_f32 a)
 {
-    const float s = sinf(a.high);
-    const float e = cosf(a.high) * a.low;
-    const float high = s + e;
-    return (top_steady_precession_pair_f32){high, e - (high - s)};
+    return top_steady_precession_sine_f32(a, 0.0F);
 }
 
 static top_steady_precession_pair_f32 top_steady_precession_cos_f32(top_steady_precession_pair_f32 a)
 {
-    const float s = cosf(a.high);
-    const float e = -sinf(a.high) * a.low;
-    const float high = s + e;
-    return (top_steady_precession_pair_f32){high, e - (high - s)};
+    return top_steady_precession_sine_f32(a, 1.0F);
 }
 
 void top_steady_precession_setup_f32(float r, float l, float theta, float n, float g,

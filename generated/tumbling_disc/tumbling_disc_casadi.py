@@ -81,18 +81,6 @@ def _sqrt(a):
     return high, e - (high - s)
 
 
-def _sin(a):
-    s, e = ca.sin(a[0]), ca.cos(a[0]) * a[1]
-    high = s + e
-    return high, e - (high - s)
-
-
-def _cos(a):
-    s, e = ca.cos(a[0]), -ca.sin(a[0]) * a[1]
-    high = s + e
-    return high, e - (high - s)
-
-
 def _power_of_two(a):
     q = 4503599627370497.0 * a[0]
     return q - 0.9999999999999999 * q, 0.0

@@ -11,8 +11,8 @@ from derive.c_text import F32, F64, PRECISIONS, Precision
 from derive.check.agreement import LARGEST_BOUND, MEDIAN_BOUND
 from derive.library import Library, library
 from derive.measure import Expected, error, figures, upwards
+from derive.motion_error import LONG_FLOATS
 from derive.program import Measurement, component_names, run
-from derive.prove import WIDE_BALLS
 from derive.sample import samples
 from derive.scene import catalogue, load
 
@@ -65,11 +65,12 @@ def test_figures_are_printed_rounded_up() -> None:
 
 
 # Set-up: within 1 ulp up to condition 1e12 in double, 1e6 in float.
+INVERSES = ("free_body", "rigid_body")
 CONDITIONS = [(F64, 1e-3), (F64, 1e-9), (F64, 1e-12), (F32, 1e-3), (F32, 1e-6)]
 
 
 @pytest.mark.parametrize(("precision", "small"), CONDITIONS, ids=lambda v: getattr(v, "name", v))
-@pytest.mark.parametrize("name", ["free_body", "rigid_body"])
+@pytest.mark.parametrize("name", INVERSES)
 def test_constants_are_within_an_ulp(name: str, precision: Precision, small: float) -> None:
 
     made = scene_library(name)
@@ -78,6 +79,14 @@ def test_constants_are_within_an_ulp(name: str, precision: Precision, small: flo
         values = dict(sample.values) | slender(small * (1 + number / 16), precision)
         worst = max(worst, largest_ulps(made, values, precision))
     assert worst <= 1.0
+
+
+@pytest.mark.parametrize("precision", [F32, F64], ids=lambda p: p.name)
+@pytest.mark.parametrize("name", [n for n in catalogue() if scene_library(n).constants])
+def test_constants_of_every_scene_are_within_an_ulp(name: str, precision: Precision) -> None:
+    made = scene_library(name)
+    drawn = samples(made.known, precision, 12, 0).each
+    assert max(largest_ulps(made, dict(s.values), precision) for s in drawn) <= 1.0
 
 
 def slender(small: float, precision: Precision) -> dict[str, float]:
@@ -98,9 +107,10 @@ def largest_ulps(made: Library, values: dict[str, float], precision: Precision) 
     given = np.array([[values[n]] for n in names], precision.dtype)
     found = [float(r[0][0]) for r in run(made.setup, extended(precision.dtype), paired(given))]
     with ctx.workprec(400):
-        true = run(made.setup, WIDE_BALLS, [arb(values[n]) for n in names])
+        true = run(made.setup, LONG_FLOATS, [arb(values[n]) for n in names])
         constants = dict(zip(component_names(made.setup), true, strict=True))
-        assert_inverse(constants, values)
+        if made.known.scene.name in INVERSES:
+            assert_inverse(constants, values)
         return max(ulps(x, y, precision) for x, y in zip(found, true, strict=True))
 
 
