@@ -56,7 +56,7 @@ EXACT: Table = _PYTHON | {
 
 # Operators whose result is a truth and not a number, and those that ask the platform's libm.
 TRUTHS = frozenset(("less", "at_most", "both", "either"))
-LIBM = frozenset(("sin", "cos", "exp", "log", "atan2"))
+LIBM = frozenset(("sin", "cos", "atan2"))
 
 
 def rounded(q: Fraction, dtype: type) -> Any:

@@ -38,8 +38,6 @@ MATH = {
     "cos": "cos",
     "sqrt": "sqrt",
     "atan2": "atan2",
-    "exp": "exp",
-    "log": "log",
     "abs": "fabs",
     "floor": "floor",
 }

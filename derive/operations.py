@@ -5,11 +5,6 @@ from fractions import Fraction
 from derive.trace import Number, Tape, number, operation
 
 
-def unit_roundoff(tape: Tape) -> Number:
-    """Return u of the arithmetic that the program runs in: half the distance from 1 to the next."""
-    return Number(tape, tape.record("unit_roundoff", ()))
-
-
 def splitter(tape: Tape) -> Number:
     """Return the number that splits a float into halves, 2^ceil(p/2) + 1 for p bits (Veltkamp)."""
     return Number(tape, tape.record("splitter", ()))
@@ -33,21 +28,6 @@ def cos(x: Number) -> Number:
 def atan2(y: Number | int, x: Number | int) -> Number:
     """Return the angle of the point (x, y), in rad, from -pi to pi."""
     return operation("atan2", y, x)
-
-
-def exp(x: Number) -> Number:
-    """Return e to the power x."""
-    return operation("exp", x)
-
-
-def log(x: Number) -> Number:
-    """Return the natural logarithm."""
-    return operation("log", x)
-
-
-def floor(x: Number) -> Number:
-    """Return the largest whole number that is not above ``x``."""
-    return operation("floor", x)
 
 
 def absolute(x: Number) -> Number:

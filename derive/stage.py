@@ -92,9 +92,6 @@ class Traced:
     names: Mapping[str, str]
 
 
-NOTHING_TRACED = Traced((), {}, {})
-
-
 @dataclass(frozen=True)
 class Constant:
     """One named constant and the formula it is made by."""

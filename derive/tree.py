@@ -9,7 +9,6 @@ from itertools import product
 
 from derive.vectors import IDENTITY, Expression, number, zero
 
-_ADDITIVE = ("add", "negate")
 _MULTILINEAR = (
     *("scale", "dot", "cross", "apply", "outer", "cross_tensor", "transpose", "trace", "axial"),
     *("component", "quantity", "sum", "others"),

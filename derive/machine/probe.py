@@ -63,13 +63,6 @@ class Probe:
         for symbol, value in definitions.items():
             self.values[symbol] = self.value(value)
 
-    def with_(self, changed: Mapping[Symbol, Any], definitions: Mapping[Symbol, Expr]) -> "Probe":
-        """Return another point, at which a few values differ."""
-        kept = {s: v for s, v in self.values.items() if s not in definitions}
-        other = Probe(kept | dict(changed))
-        other.define(definitions)
-        return other
-
 
 def point(words: Words, number: int) -> Probe:
     """Return random values of all arguments and of the data left out."""
