@@ -14,6 +14,7 @@ from derive.arithmetic import rounded
 from derive.c_text import Precision
 from derive.formula import FLOATS, Formula, evaluate
 from derive.machine.mechanism import Known, Mechanism
+from derive.scene.numbers import Matrix, semidefinite, triangle
 from derive.specialise import Specialised
 
 Triple = tuple[float, float, float]
@@ -116,48 +117,34 @@ def admissible(known: Known, values: Mapping[str, float]) -> bool:
     """Tell whether a scene's parameters describe a body, wheels included."""
     if isinstance(known, Mechanism):
         return True
-    tensor = _tensor(known, values)
-    half = (tensor[0][0] + tensor[1][1] + tensor[2][2]) / 2
-    second = [[half * (i == k) - tensor[i][k] for k in range(3)] for i in range(3)]
-    return solvable(known, values) and _positive(second)
+    return solvable(known, values) and triangle(_tensor(known, values))
 
 
 def solvable(known: Specialised, values: Mapping[str, float]) -> bool:
-    """Tell whether the tensor, less the wheels' axial moments, is positive definite.
+    """Tell whether the tensor, less the wheels' axial moments, has no negative moment.
 
     That is all that the equations need; a body keeps the triangle inequality besides.
     """
     numbers = _numbers(known, values)
     tensor = _tensor(known, values)
+    size = sum(abs(tensor[i][i]) for i in range(3))
     for wheel in known.scene.wheels:
         axis, axial = [_number(f, numbers) for f in wheel.axis], _number(wheel.axial, numbers)
-        tensor = [[tensor[i][k] - axial * axis[i] * axis[k] for k in range(3)] for i in range(3)]
-    return _positive(tensor)
+        tensor = tuple(
+            tuple(tensor[i][k] - axial * axis[i] * axis[k] for k in range(3)) for i in range(3)
+        )
+    return semidefinite(tensor, Fraction(size))
 
 
 def _numbers(known: Specialised, values: Mapping[str, float]) -> dict[str, float]:
     return dict(values) | {n: float(x) for n, x in known.words.numbers.items()}
 
 
-def _tensor(known: Specialised, values: Mapping[str, float]) -> list[list[Fraction]]:
+def _tensor(known: Specialised, values: Mapping[str, float]) -> Matrix:
     numbers = _numbers(known, values)
     xx, yy, zz, xy, xz, yz = (_number(f, numbers) for f in known.scene.body.inertia)
-    return [[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]
+    return (xx, -xy, -xz), (-xy, yy, -yz), (-xz, -yz, zz)
 
 
 def _number(formula: Formula, numbers: Mapping[str, float]) -> Fraction:
     return Fraction(evaluate(formula, numbers, FLOATS))
-
-
-def _positive(m: Sequence[Sequence[Fraction]]) -> bool:
-    """Tell whether a symmetric matrix has no negative principal minor but for rounding."""
-    size = sum(abs(m[i][i]) for i in range(3))
-    pairs = [m[i][i] * m[k][k] - m[i][k] ** 2 for i, k in ((0, 1), (0, 2), (1, 2))]
-    whole = (
-        m[0][0] * pairs[2]
-        - m[0][1] * (m[0][1] * m[2][2] - m[0][2] * m[1][2])
-        + m[0][2] * (m[0][1] * m[1][2] - m[0][2] * m[1][1])
-    )
-    slack = -Fraction(1, 10**12)
-    firsts = all(m[i][i] >= slack * size for i in range(3))
-    return firsts and all(p >= slack * size**2 for p in pairs) and whole >= slack * size**3

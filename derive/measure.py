@@ -78,7 +78,7 @@ def upwards(x: float) -> float:
     """
     if x == 0 or not math.isfinite(x):
         return x
-    step = math.floor(math.log10(abs(x))) - DIGITS + 1
+    step = int(f"{x:e}".partition("e")[2]) - DIGITS + 1
     unit = 10.0 ** abs(step)
     return math.ceil(x * unit) / unit if step < 0 else math.ceil(x / unit) * unit
 

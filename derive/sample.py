@@ -179,10 +179,10 @@ def _half_turn(of: Source, number: int) -> Values | None:
 
 def _range_ends(of: Source, number: int) -> Values | None:
     """Return a sample with every coordinate at an end of its range: closest to a gimbal lock."""
-    names = {c.name for c in of.known.scene.coordinates}
+    names = [c.name for c in of.known.scene.coordinates]
 
     def change(q: Quantity, x: float) -> float:
-        return _end(of, q, (number + len(q.name)) % 2) if q.name in names else x
+        return _end(of, q, number >> names.index(q.name) & 1) if q.name in names else x
 
     return _changed(of, change) if names else None
 

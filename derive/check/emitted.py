@@ -17,6 +17,10 @@ from derive.measure import figures
 from derive.motion_error import moving_figures
 from derive.program import Program
 from derive.sample import Sample
+from derive.scene import SceneError
+
+ENDINGS = (".json", "_casadi.py", "_f32.c", "_f32.h", "_f64.c", "_f64.h")
+"""Of the files of a scene that checks read; whatever else lies there is nobody's business."""
 
 
 @dataclass(frozen=True)
@@ -71,8 +75,11 @@ def files(library: Library, folder: Path) -> Files:
     name = library.known.scene.name
     place = folder / name
     if (place / f"{name}.json").is_file():
-        texts = {p.name: p.read_text(encoding="utf-8") for p in sorted(place.iterdir())}
-        return Files(texts, f"{place}")
+        own = [f"{name}{ending}" for ending in ENDINGS]
+        missing = [file for file in own if not (place / file).is_file()]
+        if missing:
+            raise SceneError(f"scene '{name}': {place / missing[0]} is missing; generate it again")
+        return Files({file: (place / file).read_text(encoding="utf-8") for file in own}, f"{place}")
     made = scene_files(library, figures(library) + moving_figures(library))
     return Files({path.partition("/")[2]: text for path, text in made.items()}, "made in memory")
 

@@ -67,7 +67,8 @@ void centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_z
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.7, largest 16 u of the largest term (sampled: 108 points, worst at F, point 16).
+ * Error: median 0.69, largest 16 u of the largest term (sampled: 108 points, worst at F, point
+ *            16).
  * Cost: 11 add, 16 sub, 48 mul, 3 sin, 3 cos.
  * Rests on: axes_are_orthonormal, composed_turns, constant_mass, further_axes_are_right_handed,
  *            newton, rate_seen_from_N, third_law.
@@ -97,7 +98,7 @@ void centrifuge_gondola_F_f64(const centrifuge_gondola_constants_f64 *constants,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 1.8, largest 10 u of the largest term (sampled: 108 points, worst at M, point 37).
+ * Error: median 1.7, largest 10 u of the largest term (sampled: 108 points, worst at M, point 37).
  * Cost: 17 add, 19 sub, 62 mul, 1 neg, 3 sin, 3 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

@@ -71,7 +71,7 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
  *            jacobian[13]  nonzeros of the Jacobian, in compressed-column order
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.47, largest 5.4 u of the largest term (sampled: 123 points, worst at jacobian,
+ * Error: median 0.46, largest 5.4 u of the largest term (sampled: 123 points, worst at jacobian,
  *            point 71).
  * Cost: 1 add, 5 sub, 17 mul, 1 div, 4 neg, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,

@@ -82,7 +82,7 @@ void sleeping_top_linearised_f32(const sleeping_top_constants_f32 *constants, fl
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.8, largest 5.6 u of the largest term (sampled: 105 points, worst at alpha_ddot,
+ * Error: median 0.79, largest 5.6 u of the largest term (sampled: 105 points, worst at alpha_ddot,
  *            point 82).
  * Cost: 4 sub, 9 mul, 1 div, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,

@@ -82,7 +82,7 @@ void sleeping_top_linearised_f64(const sleeping_top_constants_f64 *constants, do
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.74, largest 4.4 u of the largest term (sampled: 105 points, worst at alpha_ddot,
+ * Error: median 0.77, largest 4.4 u of the largest term (sampled: 105 points, worst at alpha_ddot,
  *            point 72).
  * Cost: 4 sub, 9 mul, 1 div, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -130,8 +130,8 @@ void sleeping_top_energy_f64(const sleeping_top_constants_f64 *constants, double
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.52, largest 6.3 u of the largest term (sampled: 30 points, worst at
- *            alpha_dot_next, point 26).
+ * Error: median 0.5, largest 9.1 u of the largest term (sampled: 30 points, worst at
+ *            beta_dot_next, point 26).
  * Cost: 28 add, 16 sub, 64 mul, 4 div, 8 sin, 8 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

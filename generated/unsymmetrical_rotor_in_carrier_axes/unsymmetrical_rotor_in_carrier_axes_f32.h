@@ -48,7 +48,7 @@ void unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float
  *            W_dot  rad/s^2  -1 .. 1
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.65, largest 4.8 u of the largest term (sampled: 123 points, worst at moment,
+ * Error: median 0.64, largest 4.8 u of the largest term (sampled: 123 points, worst at moment,
  *            point 90).
  * Cost: 3 add, 2 sub, 15 mul, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -108,7 +108,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f32(const unsymmetrica
  *            rate_absolute[3]  N m  along xyz  rate of angular momentum seen from the inertial frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
- * Error: median 0.67, largest 4.4 u of the largest term (sampled: 123 points, worst at
+ * Error: median 0.66, largest 4.4 u of the largest term (sampled: 123 points, worst at
  *            rate_absolute, point 11).
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.

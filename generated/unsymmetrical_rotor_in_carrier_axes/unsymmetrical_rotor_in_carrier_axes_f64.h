@@ -48,7 +48,7 @@ void unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, dou
  *            W_dot  rad/s^2  -1 .. 1
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.54, largest 4.4 u of the largest term (sampled: 123 points, worst at moment,
+ * Error: median 0.53, largest 4.4 u of the largest term (sampled: 123 points, worst at moment,
  *            point 67).
  * Cost: 3 add, 2 sub, 15 mul, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -67,7 +67,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
  *            jacobian[11]  nonzeros of the Jacobian, in compressed-column order
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.56, largest 4.6 u of the largest term (sampled: 123 points, worst at moment,
+ * Error: median 0.57, largest 4.6 u of the largest term (sampled: 123 points, worst at moment,
  *            point 56).
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
