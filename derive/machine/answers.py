@@ -107,7 +107,7 @@ class Answers:
         if name == "angular_momentum":
             return {q: list(self.angular_momentum)}
         if name in ("kinetic_energy", "potential_energy", "energy"):
-            return {q: [self.energies[name]]}
+            return {q: [self.energy(name)]}
         result = next((r for r in self.machine.results if r.name == name), None)
         if result is not None:
             return {q: [self.expression(result.formula)]}
@@ -136,7 +136,7 @@ class Answers:
         swaps: dict[Symbol, Expr] = {}
         for name in ("kinetic_energy", "potential_energy", "energy"):
             if symbols[name] in whole.free_symbols:
-                swaps[symbols[name]] = self.energies[name]
+                swaps[symbols[name]] = self.energy(name)
         for k, axis in enumerate("xyz"):
             own = symbols[f"angular_momentum_{axis}"]
             if own in whole.free_symbols:
@@ -153,10 +153,11 @@ class Answers:
         made = linearised(self.machine, self.balances)
         return {name: list(made[name].T) for name in MATRICES}
 
-    @property
-    def energies(self) -> Mapping[str, Expr]:
-        """Return the energies of all bodies; what is not asked for may not exist."""
-        return _Energies(self.frames)
+    def energy(self, name: str) -> Expr:
+        """Return an energy of all bodies; what is not asked for may not exist."""
+        bodies = self.machine.bodies if name != "potential_energy" else ()
+        total = sum((kinetic_energy(self.frames, body.name) for body in bodies), Integer(0))
+        return total if name == "kinetic_energy" else total + potential_energy(self.frames)
 
     @cached_property
     def angular_momentum(self) -> Matrix:
@@ -220,24 +221,6 @@ def _lasts(row: Row) -> bool:
     """Tell whether a balance still says something where nothing but the steady motion is left."""
     rest = row.values[-1]
     return bool(abs(rest[0]) > NOTHING * max(map(abs, rest)))
-
-
-@dataclass(frozen=True)
-class _Energies(Mapping[str, Expr]):
-    frames: Frames
-
-    def __getitem__(self, name: str) -> Expr:
-        total: Expr = Integer(0)
-        if name != "potential_energy":
-            for body in self.frames.machine.bodies:
-                total += kinetic_energy(self.frames, body.name)
-        return total if name == "kinetic_energy" else total + potential_energy(self.frames)
-
-    def __iter__(self):  # type: ignore[no-untyped-def]
-        return iter(("kinetic_energy", "potential_energy", "energy"))
-
-    def __len__(self) -> int:
-        return 3
 
 
 _STEPS = {

@@ -62,27 +62,27 @@ def read_member(name: str, given: Table, frames: tuple[Frame, ...], scalars: Sca
     turned: tuple[Turning, ...] = ()
     if "turned" in entries:
         turned = turnings(entries["turned"], f"{given.label}.turned", places(scalars))
+    spins = _spins(given, made, scalars)
+    relative = _angular_velocity(given, centre, made, scalars)
+    return Member(
+        name, frame, made.mass, made.inertia, centre, made.axis, turned,
+        spins.get("spin"), spins.get("axial_speed"), relative, made.look, _lengths(given, scope),
+    )  # fmt: skip
+
+
+def _spins(given: Table, made: _Substance, scalars: Scalars) -> dict[str, Formula]:
+    """Return how a body turns about its own axis: its spin or its axial speed, or neither."""
     spins = {
-        key: formula(entries[key], f"{given.label}.{key}", motions(scalars), ANGULAR_VELOCITY)
+        key: formula(given.entries[key], f"{given.label}.{key}", motions(scalars), ANGULAR_VELOCITY)
         for key in ("spin", "axial_speed")
-        if key in entries
+        if key in given.entries
     }
     if len(spins) == 2:
         raise SceneError(f"{given.label} has both spin and axial_speed; give one of them")
     if spins and made.axis is None:
         rule = "turns about its own axis, so it must be axisymmetric and name its axis"
         raise SceneError(f"{given.label} {rule}; or give the angle by turned")
-    relative = _angular_velocity(given, centre, made, scalars)
-    lengths = {
-        key: formula(entries[key], f"{given.label}.{key}", scope, LENGTH)
-        for key in LENGTHS
-        if key in entries
-    }
-    lengths |= _listed_lengths(given, scope)
-    return Member(
-        name, frame, made.mass, made.inertia, centre, made.axis, turned,
-        spins.get("spin"), spins.get("axial_speed"), relative, made.look, lengths,
-    )  # fmt: skip
+    return spins
 
 
 def _angular_velocity(
@@ -102,14 +102,18 @@ def _angular_velocity(
     return triple(given.entries["angular_velocity"], label, motions(scalars), ANGULAR_VELOCITY)
 
 
-def _listed_lengths(given: Table, scope: Scope) -> dict[str, Formula]:
-    value = given.entries.get("lengths")
-    if not isinstance(value, list):
-        return {}
-    return {
-        f"length_{n}": formula(part, f"{given.label}.lengths", scope, LENGTH)
-        for n, part in enumerate(value, 1)
+def _lengths(given: Table, scope: Scope) -> dict[str, Formula]:
+    """Return the lengths that a body is drawn by."""
+    entries = given.entries
+    found = {
+        key: formula(entries[key], f"{given.label}.{key}", scope, LENGTH)
+        for key in LENGTHS
+        if key in entries
     }
+    listed = entries.get("lengths")
+    for n, part in enumerate(listed if isinstance(listed, list) else (), 1):
+        found[f"length_{n}"] = formula(part, f"{given.label}.lengths", scope, LENGTH)
+    return found
 
 
 def _about(
