@@ -31,7 +31,7 @@ from derive.scene.machine_file import is_machine, read_machine
 from derive.scene.names import identifier
 from derive.scene.rules import check, warnings
 from derive.scene.table import nearest, shown, table
-from derive.scene.wanted import idle_times
+from derive.scene.times import idle_times
 
 __all__ = [
     "Axes",

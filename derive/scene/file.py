@@ -36,6 +36,7 @@ from derive.scene.table import (
     triple,
     word,
 )
+from derive.scene.times import TIMES, read_time
 from derive.scene.wanted import attitudes_only, read_emission, read_form, read_wanted
 from derive.unit import (
     ACCELERATION,
@@ -55,11 +56,6 @@ TABLES = (
     *("parameters", "coordinates", "speeds", "axes", "body", "point", "known", "position"),
     "motion",
 )
-TIMES = {
-    "time_step": (Fraction(0), Fraction(1, 100)),
-    "time": (Fraction(0), Fraction(10)),
-}
-"""Ranges in s where the scene gives none: of a step, and of the time that a flow goes on for."""
 LATER = ("frames", "bodies", "loads")
 KNOWN: Mapping[str, tuple[Dimension, int]] = {
     "angular_velocity": (ANGULAR_VELOCITY, 10),
@@ -101,8 +97,8 @@ def read_scene(document: dict[str, object], name: str, source: str) -> Scene:
         wanted=read_wanted(document["wanted"]),
         form=read_form(document),
         emission=read_emission(document),
-        time_step=_time(part["motion"], "time_step"),
-        time=_time(part["motion"], "time"),
+        time_step=read_time(part["motion"], "time_step"),
+        time=read_time(part["motion"], "time"),
         warnings=(),
     )
 
@@ -119,15 +115,6 @@ def _top_level(document: dict[str, object]) -> None:
     said = ("title", "source", "form", "emission")
     optional = (*(name for name in TABLES if name != "body"), "wheels", *said)
     keys(Table("the file", document), ("wanted", "body"), optional)
-
-
-def _time(given: Table, name: str) -> Given:
-    """Return the range of a time in s; a step goes forward, a time may be negative."""
-    if name not in given.entries:
-        return Given(*TIMES[name], None)
-    inner = table(given.entries[name], f"motion.{name}")
-    keys(inner, ("range",), ())
-    return Given(*interval(inner.entries["range"], f"motion.{name}.range"), None)
 
 
 def _axes(given: Table, symbols: Symbols) -> Axes:

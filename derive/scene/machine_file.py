@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from derive.formula import ZERO, Formula
-from derive.scene.declaration import Given, Input, SceneError
+from derive.scene.declaration import Input, SceneError
 from derive.scene.frames import read_frames
 from derive.scene.load import read_loads
 from derive.scene.machine import INERTIAL, Frame, Machine, Member, Place, Result, Steady, Unknown
@@ -17,7 +16,8 @@ from derive.scene.names import distinct, label
 from derive.scene.numbers import member_doubts
 from derive.scene.results import answer_units, of_any_unit, read_asked, read_results, written_out
 from derive.scene.scalars import PER_SECOND, Scalars, known, places, read_scalars
-from derive.scene.table import Scope, Table, formula, interval, keys, table, text, triple, word
+from derive.scene.table import Scope, Table, formula, keys, table, text, triple, word
+from derive.scene.times import read_time
 from derive.scene.wanted import read_emission, read_form
 from derive.unit import LENGTH, dimension
 
@@ -56,7 +56,7 @@ def read_machine(document: Mapping[str, object], name: str, source: str) -> Mach
         about=_about(part["linearised"], scalars),
         steady=_steady(part["steady"], scalars, unknowns, results, asked),
         asked=asked, wanted=tuple(asked), form=read_form(document),
-        emission=read_emission(document), time_step=_time_step(part["motion"]),
+        emission=read_emission(document), time_step=read_time(part["motion"], "time_step"),
         warnings=(*_unused(scalars, source), *_doubts(bodies, scalars)),
     )  # fmt: skip
 
@@ -71,7 +71,9 @@ def _tables(document: Mapping[str, object]) -> Mapping[str, Table]:
         raise SceneError("the file needs 'wanted', above its first [table]")
     keys(Table("the file", document), ("wanted", "bodies"),
          (*TABLES, "title", "source", "form", "emission"))  # fmt: skip
-    return {key: table(document.get(key, {}), key) for key in TABLES}
+    part = {key: table(document.get(key, {}), key) for key in TABLES}
+    keys(part["motion"], (), ("time_step",))
+    return part
 
 
 def _bodies(given: Table, frames: tuple[Frame, ...], scalars: Scalars) -> tuple[Member, ...]:
@@ -114,16 +116,6 @@ def _doubts(bodies: tuple[Member, ...], scalars: Scalars) -> Iterator[str]:
     """Yield a sentence for every body that no masses can make up."""
     for body in bodies:
         yield from member_doubts(f"body '{body.name}'", body.inertia, scalars.parameters)
-
-
-def _time_step(given: Table) -> Given:
-    """Return the range of the length of a step."""
-    keys(given, (), ("time_step",))
-    if "time_step" not in given.entries:
-        return Given(Fraction(0), Fraction(1, 100), None)
-    inner = table(given.entries["time_step"], "motion.time_step")
-    keys(inner, ("range",), ())
-    return Given(*interval(inner.entries["range"], "motion.time_step.range"), None)
 
 
 def _momentum(

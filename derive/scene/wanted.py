@@ -9,7 +9,7 @@ from derive.scene.declaration import SceneError
 from derive.scene.table import nearest, shown, word
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Mapping
 
 EQUATIONS = (
     "angular_momentum",
@@ -88,16 +88,6 @@ def resembling(name: str, known: Iterable[str]) -> str:
     if name.startswith("step_taylor"):
         return " (step_taylor is of order 20, step_taylor12 to step_taylor19 of what they say)"
     return nearest(name, known)
-
-
-def idle_times(motion: Iterable[str], wanted: Iterable[str]) -> Iterator[str]:
-    """Yield a sentence for each time of a scene's table ``motion`` that nothing wanted takes."""
-    moving = [name for name in wanted if moves(name)]
-    flows = [name for name in moving if name.startswith("flow_")]
-    takers = {"time": flows, "time_step": [name for name in moving if name not in flows]}
-    for time in motion:
-        if not takers[time]:
-            yield f"motion.{time} is given, but nothing that is wanted takes it"
 
 
 def read_form(document: Mapping[str, object]) -> Literal["fast", "accurate"]:
