@@ -41,7 +41,8 @@ def scene_files(library: Library, figures: Sequence[Measurement]) -> dict[str, s
 def write(folder: Path, texts: Mapping[str, str]) -> None:
     """Write all ``texts`` below ``folder``, each file replaced as a whole or not at all.
 
-    Raises OutputError, with nothing half-written, if a folder or file cannot be written.
+    Raises OutputError, with no file half-written, if a folder or file cannot be written. However
+    it ends, nothing temporary is left.
     """
     staged: list[tuple[Path, Path]] = []
     try:
@@ -52,11 +53,12 @@ def write(folder: Path, texts: Mapping[str, str]) -> None:
         for temporary, target in staged:
             os.replace(temporary, target)
     except OSError as error:
-        for temporary, _ in staged:
-            temporary.unlink(missing_ok=True)
         raise OutputError(
             f"output folder '{folder}' must be writable, but: {error.strerror or error}"
         ) from error
+    finally:
+        for temporary, _ in staged:
+            temporary.unlink(missing_ok=True)
 
 
 def require_writable(file: Path) -> None:
@@ -73,9 +75,13 @@ def _temporary(target: Path, text: str) -> Path:
     if target.is_dir():
         raise IsADirectoryError(0, f"'{target.name}' is a folder")
     descriptor, path = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
-    with os.fdopen(descriptor, "wb") as file:
-        file.write(text.encode())
-    os.chmod(path, 0o644)
+    try:
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(text.encode())
+        os.chmod(path, 0o644)
+    except BaseException:
+        Path(path).unlink(missing_ok=True)
+        raise
     return Path(path)
 
 
