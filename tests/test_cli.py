@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from derive.cli import main
-from derive.files import OutputError, write
+from derive.files import OutputError, folders_left_over, write
 
 SCENE = "free_body_principal"
 
@@ -52,11 +52,36 @@ def test_a_missing_and_a_left_over_file_fail_the_check(made, capsys):
     aside = file.rename(file.with_name("left_over.h"))
     try:
         assert main(["generate", SCENE, "--out", str(made), "--check"]) == 1
-        shown = capsys.readouterr().out
-        assert "missing" in shown
-        assert "no scene makes this file" in shown
+        shown = capsys.readouterr()
+        assert "missing" in shown.out
+        assert "no scene makes this file" in shown.out
+        assert "2 files differ" in shown.err
+        assert f"derive generate {SCENE} --out {made}\n" in shown.err
+        assert f"rm {aside}\n" in shown.err
     finally:
         aside.rename(file)
+
+
+def test_a_file_that_is_only_left_over_is_mended_by_deleting_it(made, capsys):
+    extra = made / SCENE / "left over.h"
+    extra.write_text("")
+    try:
+        assert main(["generate", SCENE, "--out", str(made), "--check"]) == 1
+        shown = capsys.readouterr().err
+        assert "1 file differs" in shown
+        assert f"rm '{extra}'\n" in shown
+        assert "derive generate" not in shown
+    finally:
+        extra.unlink()
+
+
+def test_the_folder_of_a_scene_that_is_no_more_is_left_over(tmp_path):
+    for name in ("gone/gone.json", "gone/gone_f64.c", "notes/mine.txt", "kept/kept.json"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("")
+    found = list(folders_left_over(tmp_path, {"kept/kept.json": "", "index.html": ""}))
+    assert [d.name for d in found] == ["gone/gone.json", "gone/gone_f64.c"]
+    assert all(d.left_over for d in found)
 
 
 def test_an_edit_of_the_scene_fails_the_check(made, tmp_path, capsys):
@@ -98,6 +123,19 @@ def test_files_are_replaced_as_a_whole_or_not_at_all(tmp_path):
     assert contents(tmp_path) == {"kept": b"old"}
 
 
+def test_nothing_temporary_is_left_by_whatever_ends_the_writing(tmp_path, monkeypatch):
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("derive.files.os.replace", stop)
+    with pytest.raises(KeyboardInterrupt):
+        write(tmp_path, {"one": "new", "two": "new"})
+    monkeypatch.setattr("derive.files.os.chmod", stop)
+    with pytest.raises(KeyboardInterrupt):
+        write(tmp_path, {"one": "new"})
+    assert contents(tmp_path) == {}
+
+
 def test_the_catalogue_is_listed(capsys):
     assert main(["scenes"]) == 0
     assert SCENE in capsys.readouterr().out
@@ -107,7 +145,7 @@ def test_help_names_every_command(capsys):
     with pytest.raises(SystemExit):
         main(["--help"])
     shown = capsys.readouterr().out
-    words = ("lecture", "generate", "check", "report", "bench", "scenes")
+    words = ("lecture", "generate", "check", "report", "bench", "solve", "scenes")
     assert all(word in shown for word in words)
 
 
