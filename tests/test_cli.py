@@ -92,6 +92,15 @@ def test_an_edit_of_the_scene_fails_the_check(made, tmp_path, capsys):
     assert "sha256" in capsys.readouterr().out
 
 
+def test_files_of_a_scene_outside_the_catalogue_name_its_file(tmp_path):
+    body = '[body]\nkind = "spherical"\nmoment = "1"\n'
+    source = scene(tmp_path, "ball", '"acceleration"', body)
+    assert main(["generate", source, "--out", str(tmp_path / "out")]) == 0
+    made = contents(tmp_path / "out")
+    assert len(made) == 7
+    assert all(b"derive generate ball.toml" in text for text in made.values())
+
+
 def test_a_bad_scene_gets_one_sentence_and_no_file(tmp_path, capsys):
     scene = tmp_path / "broken.toml"
     scene.write_text('title = "x"\nwanted = ["moment"]\n[body]\nkind = "cube"\n')
