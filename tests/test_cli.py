@@ -6,6 +6,8 @@ import pytest
 
 from derive.cli import main
 from derive.files import OutputError, folders_left_over, write
+from derive.prove import ProofError
+from derive.reference import NoValueError
 
 SCENE = "free_body_principal"
 
@@ -203,3 +205,33 @@ def test_a_jacobian_of_what_does_not_vary_is_refused(tmp_path, capsys):
     assert main(["generate", source, "--out", str(tmp_path / "out")]) == 2
     assert "'moment_jacobian' must have entries" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("raised", "code"),
+    [(ProofError("'moment' differs"), 1), (NoValueError("no solution"), 2)],
+)
+def test_what_fails_its_proof_is_told_from_bad_input(raised, code, monkeypatch, capsys):
+    def fails(_):
+        raise raised
+
+    monkeypatch.setattr("derive.generation.prove", fails)
+    assert main(["generate", SCENE, "--check"]) == code
+    assert str(raised) in capsys.readouterr().err
+
+
+def test_a_bug_of_ours_is_not_called_bad_input(monkeypatch):
+    def fails(_):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("derive.generation.figures", fails)
+    with pytest.raises(ZeroDivisionError):
+        main(["generate", SCENE, "--check"])
+
+
+def test_formulas_without_a_value_are_refused(tmp_path, capsys):
+    body = '[parameters]\na = { unit = "kg m^2", range = [1, 2], meaning = "moment" }\n'
+    body += '[body]\nkind = "spherical"\nmoment = "sqrt(a^2 - 9*a^2)"\n'
+    source = scene(tmp_path, "hollow", '"kinetic_energy"', body)
+    assert main(["generate", source, "--out", str(tmp_path / "out")]) == 2
+    assert "scene 'hollow'" in capsys.readouterr().err
