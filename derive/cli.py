@@ -1,7 +1,7 @@
 """The command line: derive lecture | generate | check | report | bench | solve | scenes.
 
-Exit code 0: done. 1: something differs or fails its check. 2: the input is bad, and one sentence
-says what, by which rule, and what was found.
+Exit code 0: done. 1: something differs, or fails its check or its proof. 2: the input is bad, and
+one sentence says what, by which rule, and what was found.
 """
 
 import argparse
@@ -13,6 +13,7 @@ from derive.command import bench, check, generate, lecture, report, scenes, solv
 from derive.command.terminal import errors
 from derive.files import OutputError
 from derive.prove import ProofError
+from derive.reference import NoValueError
 from derive.scene import SceneError
 
 STOPPED = 130  # what a shell expects after an interrupt
@@ -34,11 +35,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command: Callable[[argparse.Namespace], int] = options.run
     try:
         return command(options)
-    except (SceneError, OutputError, ProofError, CompilerError) as error:
+    except ProofError as error:
+        errors.print(f"derive: {error}", style="red", highlight=False, markup=False)
+        return 1
+    except (SceneError, OutputError, CompilerError, NoValueError) as error:
         errors.print(f"derive: {error}", style="red", highlight=False, markup=False)
         return 2
     except KeyboardInterrupt:
-        errors.print("derive: stopped; nothing was half-written")
+        errors.print("derive: stopped; every file is whole, some may be new")
         return STOPPED
 
 

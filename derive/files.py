@@ -21,10 +21,14 @@ class OutputError(OSError):
 
 @dataclass(frozen=True)
 class Difference:
-    """One file that is not what would be generated, and how it differs."""
+    """One file that is not what would be generated, and how it differs.
+
+    left_over : no scene makes the file, so that only deleting it mends the difference
+    """
 
     name: str
     diff: str
+    left_over: bool
 
 
 def scene_files(library: Library, figures: Sequence[Measurement]) -> dict[str, str]:
@@ -41,7 +45,8 @@ def scene_files(library: Library, figures: Sequence[Measurement]) -> dict[str, s
 def write(folder: Path, texts: Mapping[str, str]) -> None:
     """Write all ``texts`` below ``folder``, each file replaced as a whole or not at all.
 
-    Raises OutputError, with nothing half-written, if a folder or file cannot be written.
+    Raises OutputError, with no file half-written, if a folder or file cannot be written. However
+    it ends, nothing temporary is left.
     """
     staged: list[tuple[Path, Path]] = []
     try:
@@ -52,11 +57,12 @@ def write(folder: Path, texts: Mapping[str, str]) -> None:
         for temporary, target in staged:
             os.replace(temporary, target)
     except OSError as error:
-        for temporary, _ in staged:
-            temporary.unlink(missing_ok=True)
         raise OutputError(
             f"output folder '{folder}' must be writable, but: {error.strerror or error}"
         ) from error
+    finally:
+        for temporary, _ in staged:
+            temporary.unlink(missing_ok=True)
 
 
 def require_writable(file: Path) -> None:
@@ -73,9 +79,13 @@ def _temporary(target: Path, text: str) -> Path:
     if target.is_dir():
         raise IsADirectoryError(0, f"'{target.name}' is a folder")
     descriptor, path = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
-    with os.fdopen(descriptor, "wb") as file:
-        file.write(text.encode())
-    os.chmod(path, 0o644)
+    try:
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(text.encode())
+        os.chmod(path, 0o644)
+    except BaseException:
+        Path(path).unlink(missing_ok=True)
+        raise
     return Path(path)
 
 
@@ -85,7 +95,7 @@ def differences(folder: Path, texts: Mapping[str, str]) -> Iterator[Difference]:
         path = folder / name
         found = path.read_bytes().decode(errors="replace") if path.is_file() else ""
         if not path.is_file():
-            yield Difference(name, f"{name}: missing\n")
+            yield Difference(name, f"{name}: missing\n", left_over=False)
         elif found != text:
             lines = unified_diff(
                 found.splitlines(keepends=True),
@@ -94,9 +104,24 @@ def differences(folder: Path, texts: Mapping[str, str]) -> Iterator[Difference]:
                 f"{name} (generated)",
                 n=1,
             )
-            yield Difference(name, "".join(lines))
+            yield Difference(name, "".join(lines), left_over=False)
     for folder_name in sorted({name.split("/")[0] for name in texts if "/" in name}):
-        for path in sorted((folder / folder_name).glob("*")):
-            name = f"{folder_name}/{path.name}"
-            if name not in texts and path.is_file():
-                yield Difference(name, f"{name}: no scene makes this file; delete it\n")
+        yield from _left_over(folder, folder_name, texts)
+
+
+def folders_left_over(folder: Path, texts: Mapping[str, str]) -> Iterator[Difference]:
+    """Yield the files of folders below ``folder`` that none of ``texts``, a whole catalogue, is in.
+
+    A folder counts that holds a JSON of its own name, as every scene's does; others are no scenes.
+    """
+    made = {name.split("/")[0] for name in texts}
+    for path in sorted(folder.glob("*/")):
+        if path.name not in made and (path / f"{path.name}.json").is_file():
+            yield from _left_over(folder, path.name, texts)
+
+
+def _left_over(folder: Path, name: str, texts: Mapping[str, str]) -> Iterator[Difference]:
+    for path in sorted((folder / name).glob("*")):
+        file = f"{name}/{path.name}"
+        if file not in texts and path.is_file():
+            yield Difference(file, f"{file}: no scene makes this file; delete it\n", left_over=True)

@@ -12,7 +12,8 @@ from derive.measure import figures
 from derive.motion_error import moving_figures
 from derive.page import lecture_page
 from derive.program import Measurement
-from derive.prove import ProofError, prove
+from derive.prove import prove
+from derive.reference import NoValueError
 from derive.saving import Saving, savings
 from derive.scene import SceneError, load
 
@@ -49,9 +50,7 @@ def made(source: str) -> Made:
     try:
         prove(programs)
         measured = figures(programs) + moving_figures(programs)
-    except ProofError:
-        raise
-    except ArithmeticError as error:
+    except NoValueError as error:
         rule = "formulas must have a value on all of the declared ranges"
         raise SceneError(f"scene '{scene.name}': {rule}, but {error}") from None
     _finite(scene.name, measured)

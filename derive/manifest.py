@@ -14,6 +14,7 @@ from derive.library import Library
 from derive.machine.mechanism import Mechanism, depends_on, dropped
 from derive.notation import equation_text
 from derive.program import Measurement, Program, Quantity, Sparsity
+from derive.scene import argument
 from derive.scene.wanted import JACOBIAN
 from derive.signature import Names, dense
 
@@ -25,7 +26,7 @@ def manifest(library: Library, figures: Sequence[Measurement]) -> str:
         "scene": scene.name,
         "title": scene.title,
         "generator": f"derive {__version__}",
-        "command": f"derive generate {scene.name}",
+        "command": f"derive generate {argument(scene)}",
         "source": {
             "file": f"{scene.name}.toml",
             "sha256": hashlib.sha256(scene.text.encode()).hexdigest(),

@@ -18,7 +18,7 @@ from derive.equations import Equations, equations
 from derive.library import Library
 from derive.program import Op, Program, component_names, read_by, run
 from derive.recorded import needed
-from derive.reference import BALLS, Known, solution
+from derive.reference import BALLS, Known, NoValueError, solution
 from derive.scene.wanted import JACOBIAN
 
 POINTS = 2
@@ -87,7 +87,10 @@ class Point:
 
 
 def prove(library: Library) -> None:
-    """Raise ProofError unless every program satisfies its truth at exact random points."""
+    """Raise ProofError unless every program satisfies its truth at exact random points.
+
+    Raises NoValueError if no such point is found at which the scene's formulas have values.
+    """
     asked = {name: equations(library.known, fact) for name, fact in library.truths.items()}
     for number in range(POINTS):
         try:
@@ -113,9 +116,7 @@ def _prove_in_balls(library: Library, asked: Mapping[str, Equations], number: in
         if all(_exists(question, at) for question in asked.values()):
             _prove_at(library, asked, at)
             return
-    raise ProofError(
-        f"scene '{library.known.scene.name}': no random point was found at which all roots exist"
-    )
+    raise NoValueError("no random point was found at which all roots exist")
 
 
 def _exists(question: Equations, at: Point) -> bool:

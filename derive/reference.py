@@ -197,10 +197,17 @@ BALLS: Arithmetic = {
 }
 
 
+class NoValueError(ArithmeticError):
+    """Equations without a value at a point of the declared ranges; the sentence says why."""
+
+
 def reference(
     asked: Equations, given: Mapping[str, float], columns: Iterable[str]
 ) -> dict[str, Known]:
-    """Return every unknown as a ball far narrower than one rounding of its largest term."""
+    """Return every unknown as a ball far narrower than one rounding of its largest term.
+
+    Raises NoValueError where the equations have no solution, or none that can be told.
+    """
     wanted, bits = tuple(columns), BITS
     while bits <= MOST_BITS:
         with ctx.workprec(bits):
@@ -212,7 +219,7 @@ def reference(
             if found and all(_tight(known) for known in found.values()):
                 return found
         bits *= 2
-    raise ArithmeticError(f"the equations have no solution that {MOST_BITS} bits can tell")
+    raise NoValueError(f"the equations have no solution that {MOST_BITS} bits can tell")
 
 
 def _tight(known: Known) -> bool:

@@ -16,6 +16,7 @@ from derive.body_sample import BODIES, Hard, admissible, bodies_taken, hard_body
 from derive.c_text import Precision
 from derive.machine.mechanism import Known, Mechanism, single
 from derive.program import Quantity
+from derive.scene import SceneError
 
 Values = dict[str, float]
 LARGE_SPIN = 1e4
@@ -96,7 +97,7 @@ def _ordinary(of: Source) -> Values:
             return values | _motion(of)
         if tries > PATIENCE and solvable(single(of.known), values):
             return values | _motion(of)
-    raise ArithmeticError(
+    raise SceneError(
         f"scene '{of.known.scene.name}': the ranges of its parameters must hold a body, "
         f"but none was found in {TRIES} tries"
     )

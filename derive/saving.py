@@ -9,6 +9,7 @@ from derive.library import Library
 from derive.lower import lower
 from derive.machine.answers import Answers
 from derive.machine.balances import Balances, Row
+from derive.machine.matching import UndeterminedError
 from derive.machine.mechanism import Mechanism, dropped, plain_arrangement
 from derive.scene import SceneError
 from derive.scene.wanted import JACOBIAN
@@ -68,7 +69,7 @@ def _plain(known: Mechanism, base: str) -> int | None:
     try:
         question = plain.question(base)
         way = plain_arrangement(known, question)
-    except (SceneError, ArithmeticError):
+    except (SceneError, UndeterminedError):
         return None
     graph = Graph()
     words = known.words

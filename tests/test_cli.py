@@ -5,7 +5,9 @@ from pathlib import Path
 import pytest
 
 from derive.cli import main
-from derive.files import OutputError, write
+from derive.files import OutputError, folders_left_over, write
+from derive.prove import ProofError
+from derive.reference import NoValueError
 
 SCENE = "free_body_principal"
 
@@ -52,11 +54,36 @@ def test_a_missing_and_a_left_over_file_fail_the_check(made, capsys):
     aside = file.rename(file.with_name("left_over.h"))
     try:
         assert main(["generate", SCENE, "--out", str(made), "--check"]) == 1
-        shown = capsys.readouterr().out
-        assert "missing" in shown
-        assert "no scene makes this file" in shown
+        shown = capsys.readouterr()
+        assert "missing" in shown.out
+        assert "no scene makes this file" in shown.out
+        assert "2 files differ" in shown.err
+        assert f"derive generate {SCENE} --out {made}\n" in shown.err
+        assert f"rm {aside}\n" in shown.err
     finally:
         aside.rename(file)
+
+
+def test_a_file_that_is_only_left_over_is_mended_by_deleting_it(made, capsys):
+    extra = made / SCENE / "left over.h"
+    extra.write_text("")
+    try:
+        assert main(["generate", SCENE, "--out", str(made), "--check"]) == 1
+        shown = capsys.readouterr().err
+        assert "1 file differs" in shown
+        assert f"rm '{extra}'\n" in shown
+        assert "derive generate" not in shown
+    finally:
+        extra.unlink()
+
+
+def test_the_folder_of_a_scene_that_is_no_more_is_left_over(tmp_path):
+    for name in ("gone/gone.json", "gone/gone_f64.c", "notes/mine.txt", "kept/kept.json"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("")
+    found = list(folders_left_over(tmp_path, {"kept/kept.json": "", "index.html": ""}))
+    assert [d.name for d in found] == ["gone/gone.json", "gone/gone_f64.c"]
+    assert all(d.left_over for d in found)
 
 
 def test_an_edit_of_the_scene_fails_the_check(made, tmp_path, capsys):
@@ -65,6 +92,15 @@ def test_an_edit_of_the_scene_fails_the_check(made, tmp_path, capsys):
     other.write_text(text.replace("title", "# a remark\ntitle", 1))
     assert main(["generate", str(other), "--out", str(made), "--check"]) == 1
     assert "sha256" in capsys.readouterr().out
+
+
+def test_files_of_a_scene_outside_the_catalogue_name_its_file(tmp_path):
+    body = '[body]\nkind = "spherical"\nmoment = "1"\n'
+    source = scene(tmp_path, "ball", '"acceleration"', body)
+    assert main(["generate", source, "--out", str(tmp_path / "out")]) == 0
+    made = contents(tmp_path / "out")
+    assert len(made) == 7
+    assert all(b"derive generate ball.toml" in text for text in made.values())
 
 
 def test_a_bad_scene_gets_one_sentence_and_no_file(tmp_path, capsys):
@@ -98,6 +134,19 @@ def test_files_are_replaced_as_a_whole_or_not_at_all(tmp_path):
     assert contents(tmp_path) == {"kept": b"old"}
 
 
+def test_nothing_temporary_is_left_by_whatever_ends_the_writing(tmp_path, monkeypatch):
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("derive.files.os.replace", stop)
+    with pytest.raises(KeyboardInterrupt):
+        write(tmp_path, {"one": "new", "two": "new"})
+    monkeypatch.setattr("derive.files.os.chmod", stop)
+    with pytest.raises(KeyboardInterrupt):
+        write(tmp_path, {"one": "new"})
+    assert contents(tmp_path) == {}
+
+
 def test_the_catalogue_is_listed(capsys):
     assert main(["scenes"]) == 0
     assert SCENE in capsys.readouterr().out
@@ -107,7 +156,7 @@ def test_help_names_every_command(capsys):
     with pytest.raises(SystemExit):
         main(["--help"])
     shown = capsys.readouterr().out
-    words = ("lecture", "generate", "check", "report", "bench", "scenes")
+    words = ("lecture", "generate", "check", "report", "bench", "solve", "scenes")
     assert all(word in shown for word in words)
 
 
@@ -156,3 +205,33 @@ def test_a_jacobian_of_what_does_not_vary_is_refused(tmp_path, capsys):
     assert main(["generate", source, "--out", str(tmp_path / "out")]) == 2
     assert "'moment_jacobian' must have entries" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("raised", "code"),
+    [(ProofError("'moment' differs"), 1), (NoValueError("no solution"), 2)],
+)
+def test_what_fails_its_proof_is_told_from_bad_input(raised, code, monkeypatch, capsys):
+    def fails(_):
+        raise raised
+
+    monkeypatch.setattr("derive.generation.prove", fails)
+    assert main(["generate", SCENE, "--check"]) == code
+    assert str(raised) in capsys.readouterr().err
+
+
+def test_a_bug_of_ours_is_not_called_bad_input(monkeypatch):
+    def fails(_):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("derive.generation.figures", fails)
+    with pytest.raises(ZeroDivisionError):
+        main(["generate", SCENE, "--check"])
+
+
+def test_formulas_without_a_value_are_refused(tmp_path, capsys):
+    body = '[parameters]\na = { unit = "kg m^2", range = [1, 2], meaning = "moment" }\n'
+    body += '[body]\nkind = "spherical"\nmoment = "sqrt(a^2 - 9*a^2)"\n'
+    source = scene(tmp_path, "hollow", '"kinetic_energy"', body)
+    assert main(["generate", source, "--out", str(tmp_path / "out")]) == 2
+    assert "scene 'hollow'" in capsys.readouterr().err

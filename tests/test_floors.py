@@ -1,6 +1,7 @@
 """Imports go down the floors, never up and never in a circle; SymPy stays with the symbols."""
 
 import ast
+import re
 from collections.abc import Iterator
 from fnmatch import fnmatch
 from pathlib import Path
@@ -54,7 +55,6 @@ WITHOUT_SYMPY = (
         "recorded",
         "flows",
         "rotations",
-        "scene_[bfnrst]*",
         "graph",
         "expand",
         "table",
@@ -64,6 +64,7 @@ WITHOUT_SYMPY = (
     *("schedule", "derivative", "forms", "stage", "arithmetic", "c_text", "casadi_text", "emit"),
 )
 PACKAGE = Path(__file__).parent.parent / "derive"
+PAGE = PACKAGE.parent / "docs" / "architecture.md"
 FILES = sorted(p for p in PACKAGE.rglob("*.py") if p.relative_to(PACKAGE).parts != ("__init__.py",))
 
 
@@ -112,6 +113,30 @@ def test_sympy_stays_out_of_the_modules_that_must_not_know_it(path: Path) -> Non
     barred = any(fnmatch(room(path), pattern) for pattern in WITHOUT_SYMPY)
     roots = {m.split(".")[0] for m in imported(path.read_text(encoding="utf-8"))}
     assert not (barred and "sympy" in roots)
+
+
+def rows(text: str) -> list[list[str]]:
+    """Return the rooms that each row of the page's table of floors names."""
+    table = [line.split("|") for line in text.splitlines() if line.startswith("| ")]
+    named = [re.findall(r"`(\w+)/?`", row[2]) for row in table]
+    return [row for row in named if row]
+
+
+def test_the_page_names_every_room_in_the_order_of_the_floors() -> None:
+    assert list(map(sorted, rows(PAGE.read_text(encoding="utf-8")))) == list(map(sorted, FLOORS))
+
+
+def test_a_room_that_the_page_leaves_out_or_moves_is_found() -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    for before, after in ((", `grammar`", ""), ("`machine/`", "`saving`"), ("`flows/`", "")):
+        assert before in page
+        assert list(map(sorted, rows(page.replace(before, after)))) != list(map(sorted, FLOORS))
+
+
+def test_every_floor_and_pattern_is_of_a_room_that_is_there() -> None:
+    rooms = {room(path) for path in FILES} | {"catalogue"}
+    assert {name for names in FLOORS for name in names} == rooms
+    assert all(any(fnmatch(name, pattern) for name in rooms) for pattern in WITHOUT_SYMPY)
 
 
 def test_an_import_that_goes_up_is_found() -> None:

@@ -31,12 +31,15 @@ O3_CONTRACTED = Column("O3-native, contracted", (*NATIVE, "-DDERIVE_ALLOW_CONTRA
 
 
 class BuildError(RuntimeError):
-    """A compiler or a built program failed; the message is what it said."""
+    """A compiler or a built program failed or is missing; the message is what it said."""
 
 
 def run(command: Sequence[str], given: bytes = b"") -> bytes:
-    """Return what a command prints; raise BuildError with its complaint if it fails."""
-    done = subprocess.run(command, input=given, capture_output=True, check=False)
+    """Return what a command prints; raise BuildError with its complaint if it fails or is none."""
+    try:
+        done = subprocess.run(command, input=given, capture_output=True, check=False)
+    except OSError as error:
+        raise BuildError(f"`{command[0]}` cannot be run: {error.strerror}") from None
     if done.returncode:
         said = done.stderr.decode(errors="replace")[-2000:]
         raise BuildError(f"`{' '.join(command)}` ended with {done.returncode}: {said}")

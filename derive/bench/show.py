@@ -16,6 +16,7 @@ from derive.bench.build import O2, O3_CONTRACTED, O3_NATIVE
 from derive.bench.contest import Entry, authors, contest, overhead
 from derive.bench.problem import PROBLEMS, Problem
 from derive.bench.sample import SETS
+from derive.files import write
 
 SAMPLES_IN_A_SET = 1000
 COLUMNS = (O2.name, O3_NATIVE.name, O3_CONTRACTED.name)
@@ -41,7 +42,7 @@ def bench(generated: Path, out: Path | None, console: Console, progress: Progres
     for line in missing(entries):
         console.print(line, highlight=False, markup=False)
     if out is not None:
-        out.write_text(figures(entries, loop), encoding="utf-8")
+        write(out.parent, {out.name: figures(entries, loop)})
     return 0
 
 

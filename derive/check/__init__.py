@@ -88,7 +88,7 @@ def interface(made: Library, found: Files) -> Verdict:
         given = {a["name"]: a["components"] for a in described.get(program.name, ())}
         given.pop("constants", None)
         if meant != given:
-            says = f"{program.name}: the JSON and the scene disagree; run `derive generate {name}`"
+            says = f"{program.name}: not as in the JSON; run `{found.manifest['command']}`"
     outcome = JUDGED[not says]
     says = says or f"{len(described)} functions"
     return Verdict(name, "all", "", "describes the scene's functions", outcome, says)

@@ -16,7 +16,10 @@ def print_costs(results: Sequence[Made]) -> None:
     for row in (row for result in results for row in result.costs):
         table.add_row(row.scene, row.function, str(row.flops), str(row.divisions), *row.errors)
     console.print(table)
-    console.print("Errors in u (2^-24 float, 2^-53 double) of the largest term, sampled.")
+    console.print(
+        "Errors in u (2^-24 float, 2^-53 double) of the largest term, sampled; of motions and"
+        " attitudes, of the largest component, by rounding alone."
+    )
     _print_savings([saving for result in results for saving in result.savings])
 
 

@@ -1,6 +1,7 @@
 """``derive generate``: the files of scenes, written or compared with what lies there."""
 
 import argparse
+import shlex
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -8,7 +9,7 @@ from pathlib import Path
 from derive.command.costs import print_costs
 from derive.command.scenes import scene_argument
 from derive.command.terminal import OUT, console, errors, progress
-from derive.files import differences, write
+from derive.files import Difference, differences, folders_left_over, write
 from derive.generation import Made, all_made, gallery_of, lecture_made
 from derive.scene import SceneError, catalogue
 
@@ -76,18 +77,27 @@ def _distinct(sources: Sequence[str]) -> None:
 
 
 def _compare(given: argparse.Namespace, texts: Mapping[str, str]) -> int:
-    """Print how the files differ from ``texts``, and the command that mends it."""
+    """Print how the files differ from ``texts``, and the commands that mend it."""
     found = list(differences(given.out, texts))
+    if not given.scenes:
+        found += folders_left_over(given.out, texts)
     if not found:
         console.print(f"{len(texts)} files in {given.out}/ are what `derive generate` makes")
         return 0
     for difference in found:
         sys.stdout.write(difference.diff)
-    command = " ".join(["derive generate", *given.scenes])
-    if given.out != OUT:
-        command += f" --out {given.out}"
-    errors.print(
-        f"derive: {len(found)} files differ from what would be generated; mend: {command}",
-        style="red",
-    )
+    count = "1 file differs" if len(found) == 1 else f"{len(found)} files differ"
+    errors.print(f"derive: {count} from what would be generated; mend:", style="red")
+    for command in _mending(given, found):
+        errors.print(command, style="red", highlight=False, markup=False, soft_wrap=True)
     return 1
+
+
+def _mending(given: argparse.Namespace, found: Sequence[Difference]) -> list[str]:
+    """Return what makes files again that differ, and deletes those that no scene makes."""
+    commands = []
+    if not all(difference.left_over for difference in found):
+        out = [] if given.out == OUT else ["--out", str(given.out)]
+        commands.append(shlex.join(["derive", "generate", *given.scenes, *out]))
+    left = [str(given.out / difference.name) for difference in found if difference.left_over]
+    return [*commands, *([shlex.join(["rm", *left])] if left else [])]

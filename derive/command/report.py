@@ -11,7 +11,9 @@ from derive.command.terminal import OUT, console, errors, progress
 def options(command: argparse.ArgumentParser) -> None:
     """Declare the options of ``derive report``."""
     scene_argument(command)
-    command.add_argument("--full", action="store_true", help="finer steps and longer runs")
+    command.add_argument(
+        "--full", action="store_true", help="finer steps and more of them: about 20 minutes"
+    )
     command.add_argument(
         "--only",
         nargs="+",

@@ -5,6 +5,7 @@ import argparse
 from rich.table import Table
 
 from derive.command.terminal import console
+from derive.scene import SceneError
 from derive.solve import command as answers
 
 
@@ -15,9 +16,13 @@ def options(command: argparse.ArgumentParser) -> None:
 
 
 def solve(given: argparse.Namespace) -> int:
-    """Print the answers of a scene with their units."""
+    """Print the answers of a scene with their units; refuse at the end what has no values."""
+    found = answers.solved(given)
     table = Table("function", "answer", "value", "unit", box=None)
-    for row in answers.solved(given):
+    for row in found.rows:
         table.add_row(*row)
-    console.print(table)
+    if found.rows or not found.unanswered:
+        console.print(table)
+    if found.unanswered:
+        raise SceneError(f"set values by --set: {'; '.join(found.unanswered)}")
     return 0

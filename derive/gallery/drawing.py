@@ -2,7 +2,7 @@
 
 The ellipsoid of a body has its mass and its second moments, so that a disc is flat, a rod is a
 line, and a body that is turned is seen to be turned. Everything is placed by the scene's own
-angles and lengths, at seven tenths of their ranges.
+angles and lengths: a machine at seven tenths of their ranges, a single body in the middle.
 """
 
 from collections.abc import Iterable, Iterator, Sequence

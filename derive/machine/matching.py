@@ -7,6 +7,10 @@ import networkx as nx
 Group = tuple[tuple[int, ...], tuple[int, ...]]
 
 
+class UndeterminedError(ArithmeticError):
+    """Equations that do not determine their unknowns."""
+
+
 def blocks(holds: Sequence[frozenset[int]]) -> list[Group]:
     """Return (equations, unknowns) of each block, earlier ones first.
 
@@ -33,7 +37,7 @@ def blocks(holds: Sequence[frozenset[int]]) -> list[Group]:
 def matched(holds: Sequence[frozenset[int]]) -> Mapping[int, int]:
     """Return for each unknown the equation that yields it.
 
-    Raises ArithmeticError if some equation yields none.
+    Raises UndeterminedError if some equation yields none.
     """
     graph = nx.Graph()
     graph.add_nodes_from(("row", n) for n in range(len(holds)))
@@ -41,5 +45,5 @@ def matched(holds: Sequence[frozenset[int]]) -> Mapping[int, int]:
     rows = [("row", n) for n in range(len(holds))]
     pairs = nx.bipartite.hopcroft_karp_matching(graph, rows)
     if any(row not in pairs for row in rows):
-        raise ArithmeticError("an equation fixes no unknown that others leave open")
+        raise UndeterminedError("an equation fixes no unknown that others leave open")
     return {pairs[row][1]: row[1] for row in rows}

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from derive.comment import cost
+from derive.comment import cost, of_what
 from derive.emit import TEMPLATES, first_line
 from derive.lecture import LECTURE
 from derive.library import Library
@@ -38,7 +38,7 @@ class Argument:
 
 @dataclass(frozen=True)
 class Accuracy:
-    """One row of a table of errors, in units of rounding of the largest term."""
+    """One row of a table of errors, in units of rounding of what the section names."""
 
     output: str
     cells: tuple[str, ...]
@@ -54,6 +54,7 @@ class Section:
     passages: tuple[Passage, ...]
     arguments: tuple[Argument, ...]
     cost: str
+    measure: str
     accuracy: tuple[Accuracy, ...]
     code: Markup
     pattern: Markup
@@ -110,6 +111,7 @@ def _section(
         equations if owner == program.name else (),
         _arguments(library, program),
         cost(program),
+        of_what(program),
         _accuracy(program, figures),
         listing(program, library.known.scene.name, links),
         pattern(sparsity, says) if sparsity else Markup(""),

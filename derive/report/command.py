@@ -16,7 +16,7 @@ from derive.report.run import Ask, made
 PAGE, DATA = "report.html", "report.json"
 NEEDS = "the report needs matplotlib and SciPy: `pip install 'derive[bench]'`"
 SHOWN = {
-    "hard_cases": ("name", "naive", "naive_found", "ours", "ours_found", "holds"),
+    "hard_cases": ("name", "naive", "naive_found", "naive_holds", "ours", "ours_found", "holds"),
     "orders": ("method", "case", "claimed", "measured", "points", "agrees"),
     "step_and_jacobian": ("author", "flops", "instructions", "missing"),
     "gyroscopic_term": ("form", "precision", "asphericity", "median", "largest"),

@@ -10,7 +10,7 @@ from derive.bench.motion.case import NO_VECTOR, Case
 from derive.bench.motion.runner import Job, moved
 from derive.bench.motion.wrong import wrong
 from derive.report.case_run import PRECISIONS, Workshop
-from derive.report.hard import Hard, program
+from derive.report.hard import Hard, by_precision, program
 
 MISS = Fraction(1, 1024)  # rad: the body's x axis passes so far from the vertical
 STEP, STEPS = Fraction(1, 128), 384
@@ -23,7 +23,7 @@ def near_lock(shop: Workshop) -> Iterator[Hard]:
     """Yield the row of a body that turns past gimbal lock. Raises ImportError without mpmath."""
     case = passing()
     naive = {p: (wrong(case, euler(case, p)).attitude,) for p in PRECISIONS}
-    ours = {p: (_ours(case, shop, p),) for p in PRECISIONS}
+    ours = by_precision(partial(_ours, case, shop))
     yield Hard("Euler angles 1e-3 from gimbal lock", "attitude, rad", "RK4 on Euler angles (zyx)",
                naive, f"{OURS}, same step", ours, BOUND,
                "RK4's own error (h omega/2)^5/120 a step; in float a rounding a step")  # fmt: skip
@@ -47,10 +47,10 @@ def passing() -> Case:
                 omega, q, None, None)  # fmt: skip
 
 
-def _ours(case: Case, shop: Workshop, precision: str) -> float:
+def _ours(case: Case, shop: Workshop, precision: str) -> tuple[float]:
     mover, given = program(case, OURS, shop, precision)
     (motion,) = moved(mover, case, given, [Job(OURS, float(STEP), STEPS)])
-    return math.nan if motion is None else wrong(case, motion.states[-1]).attitude
+    return (math.nan if motion is None else wrong(case, motion.states[-1]).attitude,)
 
 
 def euler(case: Case, precision: str) -> list[float]:

@@ -53,21 +53,25 @@ class Formula:
 
 def formulas(folder: Path) -> Iterator[Hard]:
     """Yield the rows of formulas. Raises ImportError without mpmath and numpy."""
+    called = callable_by_precision(emission("formulas"), folder)
+    for formula in FORMULAS:
+        yield _row(formula, called)
+
+
+def _row(formula: Formula, called: Mapping[str, Mapping[str, Function]]) -> Hard:
+    """Return the row of a formula; the digits of references end with it."""
     import mpmath
 
-    mpmath.mp.dps = DIGITS
-    made = emission("formulas")
-    called = callable_by_precision(made, folder)
-    for formula in FORMULAS:
+    with mpmath.workdps(DIGITS):
         naive = {p: (_largest(formula, partial(_plain, formula.naive, p), p),) for p in PRECISIONS}
         ours = {
             p: (_largest(formula, partial(_ours, own[formula.ours]), p),)
             for p, own in called.items()
             if formula.ours in own
         }
-        bound = {p: formula.bound * ROUNDOFF[p] for p in PRECISIONS}
-        yield Hard(formula.name, formula.measure, formula.naive_says, naive, formula.ours, ours,
-                   bound, formula.why)  # fmt: skip
+    bound = {p: formula.bound * ROUNDOFF[p] for p in PRECISIONS}
+    return Hard(formula.name, formula.measure, formula.naive_says, naive, formula.ours, ours,
+                bound, formula.why)  # fmt: skip
 
 
 def callable_by_precision(made: Emission, folder: Path) -> Mapping[str, Mapping[str, Function]]:

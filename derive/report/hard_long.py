@@ -18,34 +18,43 @@ from derive.report.case_run import PRECISIONS, Workshop
 from derive.report.hard import Hard, by_precision, program
 from derive.sample import Sample
 
-STEP, SEEN = 0.01, 1000  # s; so many times on the way the drift is looked at
-INVARIANTS = (
-    (0, "energy", {"f64": 1e-14, "f32": 3e-6}),
-    (1, "|l|", {"f64": 5e-15, "f32": 1e-6}),
-)
+COUNT, STEP, SEEN = 1_000_000, 0.01, 1000  # steps; s; how often on the way drift is looked at
+CASE = "asym_ii_generic"
+DRIFTS = ("energy", "|l|")
+BOUNDS = {"energy": {"f64": 1e-14, "f32": 3e-6}, "|l|": {"f64": 5e-15, "f32": 1e-6}}
 TARGET = "the target: rounding adds up like a random walk when it is carried along"
 KAPPAS = 4.0
 State = Sequence[float]
 
 
+def row_name(count: int, what: str) -> str:
+    """Return the name of a row of ``count`` steps."""
+    return f"{count:.0e} steps of 0.01 s: {what}"
+
+
+def bounds(case: Case, count: int) -> Mapping[str, Mapping[str, float]]:
+    """Return what ``count`` steps of a case must keep to: energy, momentum, attitude."""
+    turn = case.rate * STEP * count
+    return BOUNDS | {"attitude": {p: KAPPAS * turn * ROUNDOFF[p] for p in PRECISIONS}}
+
+
 def long_runs(every: Mapping[str, Case], shop: Workshop, count: int) -> Iterator[Hard]:
     """Yield the rows of ``count`` steps of 0.01 s: energy, momentum, attitude."""
-    case = replace(every["asym_ii_generic"], time=Fraction(count, 100))
-    name = f"{count:.0e} steps of 0.01 s"
+    case = replace(every[CASE], time=Fraction(count, 100))
+    bound = bounds(case, count)
     found = {m: by_precision(partial(_states, case, m, shop, count)) for m in (RK4, "step_dmv")}
-    for place, what, bound in INVARIANTS:
+    for place, what in enumerate(DRIFTS):
         naive, ours = (
             {p: (_drift(case, states, place),) for p, states in found[m].items()} for m in found
         )
-        yield Hard(f"{name}: {what}", f"largest drift of {what}", RK4, naive, "step_dmv", ours,
-                   bound, TARGET)  # fmt: skip
+        yield Hard(row_name(count, what), f"largest drift of {what}", RK4, naive, "step_dmv", ours,
+                   bound[what], TARGET)  # fmt: skip
     naive, ours = (
         {p: (_turned_wrongly(case, p, states[-1], shop, count),) for p, states in found[m].items()}
         for m in found
     )
-    turn = case.rate * STEP * count
-    yield Hard(f"{name}: attitude", "angle at the end", RK4, naive, "step_dmv", ours,
-               {p: KAPPAS * turn * ROUNDOFF[p] for p in PRECISIONS},
+    yield Hard(row_name(count, "attitude"), "angle at the end", RK4, naive, "step_dmv", ours,
+               bound["attitude"],
                "4 u times all the angle turned: the rate is known to u")  # fmt: skip
 
 

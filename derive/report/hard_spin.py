@@ -11,6 +11,7 @@ from derive.report.case_run import PRECISIONS, Workshop
 from derive.report.elliptic import elliptic
 from derive.report.hard import ELLIPTIC, Hard, best, by_precision
 
+NAMES = (*(f"pure spin about {axis}" for axis in "xyz"), "zero rate")
 RATE = 2
 KAPPA = 40.0  # rad turned, twice: the rate and the time may each be rounded
 
@@ -20,11 +21,10 @@ def spins(given: Case, shop: Workshop) -> Iterator[Hard]:
 
     given : gives the inertia and the time. Raises ImportError without mpmath
     """
-    for n, axis in enumerate((*"xyz", "none")):
+    for n, name in enumerate(NAMES):
         case = spinning(given, n)
         naive = {p: (elliptic(case, p),) for p in PRECISIONS}
         ours = by_precision(partial(best, case, "flow_exact", shop))
-        name = "zero rate" if axis == "none" else f"pure spin about {axis}"
         yield Hard(name, "omega / attitude", ELLIPTIC, naive, "flow_exact", ours,
                    {p: KAPPA * ROUNDOFF[p] for p in PRECISIONS},
                    "kappa u: rate and time may each be rounded")  # fmt: skip

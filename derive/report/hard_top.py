@@ -40,16 +40,21 @@ class Answer:
 
 def tops(folder: Path) -> Iterator[Hard]:
     """Yield the rows of the top: largest relative errors over samples."""
-    import mpmath
-
-    mpmath.mp.dps = DIGITS
     called = callable_by_precision(emission("top"), folder)
     for answer in ANSWERS:
+        yield _row(answer, called)
+
+
+def _row(answer: Answer, called: Mapping[str, Mapping[str, Function]]) -> Hard:
+    """Return the row of an answer; the digits of references end with it."""
+    import mpmath
+
+    with mpmath.workdps(DIGITS):
         naive = {p: (_largest(answer, answer.naive, p),) for p in PRECISIONS}
         ours = {p: (_largest(answer, partial(answer.ours, own), p),) for p, own in called.items()}
-        bound = {p: answer.bound * ROUNDOFF[p] for p in PRECISIONS}
-        yield Hard(answer.name, "relative", answer.naive_says, naive, answer.ours_says, ours,
-                   bound, answer.why)  # fmt: skip
+    bound = {p: answer.bound * ROUNDOFF[p] for p in PRECISIONS}
+    return Hard(answer.name, "relative", answer.naive_says, naive, answer.ours_says, ours,
+                bound, answer.why)  # fmt: skip
 
 
 def _largest(answer: Answer, form: Form, precision: str) -> float:

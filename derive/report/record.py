@@ -149,8 +149,11 @@ def _rounded(x: Any) -> Any:
 
 
 def _hard(row: Hard) -> dict[str, Any]:
-    holds = {p: row.holds(p) for p in row.ours_found}
-    return asdict(row) | {"holds": holds, "command": "derive report --only hard"}
+    verdicts = {
+        "naive_holds": {p: row.naive_holds(p) for p in row.naive_found},
+        "holds": {p: row.holds(p) for p in row.ours_found},
+    }
+    return asdict(row) | verdicts | {"command": "derive report --only hard"}
 
 
 def _entry(entry: Entry) -> dict[str, Any]:

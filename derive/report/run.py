@@ -1,6 +1,6 @@
 """A run of the report: programs are made, then cases are moved one by one, then the rest."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,19 +16,19 @@ from derive.report.gyroscopic import gyroscopic
 from derive.report.hard import Hard, motions, scaled
 from derive.report.hard_euler import near_lock
 from derive.report.hard_formulas import formulas
-from derive.report.hard_long import long_runs
+from derive.report.hard_long import COUNT, long_runs
 from derive.report.hard_moment import cancelling
 from derive.report.hard_spin import spins
 from derive.report.hard_top import tops
 from derive.report.orders import orders
 from derive.report.point import FULL, SMALL
 from derive.report.record import Report
-from derive.report.targets import Evidence, targets
+from derive.report.targets import Evidence, Target, targets
 from derive.report.workshop import workshop
 from derive.scene import SceneError
 
 LIMITS = {"small": SMALL, "full": FULL}
-LONG_RUN, WORKERS = 1_000_000, 3
+WORKERS = 3
 CASES = "cases"
 PARTS = ("hard", "orders", "tools", "gyroscopic", "functions")
 Tell = Callable[[str], None]
@@ -84,7 +84,7 @@ def _made(ask: Ask, every: dict[str, Case], folder: Path) -> Report:
         tools.result(),
         turning,
         counted.result(),
-        tuple(targets(evidence)),
+        tuple(t for t in targets(evidence) if _shown(ask, t, every)),
     )
 
 
@@ -92,7 +92,7 @@ def _hard(every: dict[str, Case], shop: Workshop) -> Iterable[Hard]:
     yield from motions(every, shop)
     yield from scaled(every, shop)
     yield from spins(every["asym_ii_generic"], shop)
-    yield from long_runs(every, shop, LONG_RUN)
+    yield from long_runs(every, shop, COUNT)
     yield from near_lock(shop)
     yield from formulas(shop.folder)
     yield from cancelling(shop.folder)
@@ -101,6 +101,11 @@ def _hard(every: dict[str, Case], shop: Workshop) -> Iterable[Hard]:
 
 def _part(ask: Ask, name: str, make: Callable[[], Iterable[T]]) -> tuple[T, ...]:
     return tuple(make()) if _wanted(ask, name) else ()
+
+
+def _shown(ask: Ask, target: Target, every: Mapping[str, Case]) -> bool:
+    """Tell whether the part of a report that shows a target was asked for."""
+    return _wanted(ask, target.only, *([CASES] if target.only in every else []))
 
 
 def _wanted(ask: Ask, *names: str) -> bool:

@@ -7,21 +7,27 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from derive.bench.build import BuildError, run
+from derive.bench.build import O3_NATIVE, BuildError, run
+from derive.bench.motion.case import cases
 from derive.bench.motion.ours import Emission, emission
 from derive.bench.motion.step_jacobian import Entry
 from derive.bench.motion.textbook import DOP853
 from derive.bench.motion.wrong import ROUNDOFF
+from derive.bench.own import AUTHOR
 from derive.report.case_run import PRECISIONS, Found
-from derive.report.gyroscopic import Gyroscopic
-from derive.report.hard import Hard
+from derive.report.gyroscopic import ASPHERICITIES, Gyroscopic
+from derive.report.gyroscopic import SCENES as FORMS
+from derive.report.hard import ROD, ROD_BOUNDS, SCALED, Hard
+from derive.report.hard_long import CASE, COUNT, bounds, row_name
+from derive.report.hard_spin import NAMES as SPINS
 from derive.report.point import Point
 
 SAYS = {"f64": "double", "f32": "float"}
-GENERIC, TOP, ROD = "asym_ii_generic", "heavy_top_asymmetric", "rod_7e-9"
+GENERIC, TOP = "asym_ii_generic", "heavy_top_asymmetric"
 EXACT, DMV, TAYLOR = "flow_exact", "step_dmv", "step_taylor"
 HEYOKA = "heyoka (Taylor)"
 USUAL = 0.1  # rad a step
+NOT = "not measured"
 
 
 @dataclass(frozen=True)
@@ -40,7 +46,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Evidence:
-    """What a run found, as far as targets rest on it."""
+    """What a run found, as far as targets rest on it; whatever it lacks is not measured."""
 
     found: Mapping[str, Found]
     hard: Sequence[Hard]
@@ -49,35 +55,66 @@ class Evidence:
     folder: Path
 
 
+Verdict = tuple[str, bool] | str
+"""What was measured and whether it reaches the limit; or why that cannot be said."""
+
+
 def targets(given: Evidence) -> Iterator[Target]:
-    """Yield all targets in the order of their subjects."""
+    """Yield all targets in the order of their subjects: the same ones, whatever was found."""
     yield from _exact(given)
     yield from _dmv(given)
     yield from _long(given)
-    yield from _taylor(given)
+    yield from _faster(given, TOP, TAYLOR, 1e-11, 1.5)
     yield from _gyroscopic(given)
     yield from _derivatives(given)
     yield from _special()
 
 
+def _target(says: str, limit: str, only: str, verdict: Verdict) -> Target:
+    if isinstance(verdict, str):
+        return Target(says, limit, verdict, None, only)
+    return Target(says, limit, *verdict, only)
+
+
 def _exact(given: Evidence) -> Iterator[Target]:
     for precision, units, calls in (("f64", 2.0, 6000), ("f32", 4.0, 4500)):
-        own = [
-            (f, p)
-            for f in given.found.values()
-            for p in f.points
-            if (p.method, p.precision) == (EXACT, precision)
-        ]
-        if own:
-            worst, name = max((_units(f, p, units), f.case.name) for f, p in own)
-            limit = "max(2 kappa u, 16 u)" if precision == "f64" else "4 kappa u"
-            yield Target(f"flow_exact, {SAYS[precision]}: error on every torque-free case", limit,
-                         f"at most {worst:.2g} of it ({name})", worst <= 1, "cases")  # fmt: skip
-            costs = [p.instructions for _, p in own if p.instructions]
-            if costs:
-                yield Target(f"flow_exact, {SAYS[precision]}: instructions a call", f"{calls} Ir",
-                             f"{max(costs):.0f} Ir", max(costs) <= calls, "cases")  # fmt: skip
-    yield from _scales(given)
+        says = f"flow_exact, {SAYS[precision]}"
+        limit = "max(2 kappa u, 16 u)" if precision == "f64" else "4 kappa u"
+        yield _target(f"{says}: error on every torque-free case", limit, "cases",
+                      _exact_errors(given, precision, units))  # fmt: skip
+        yield _target(f"{says}: instructions a call", f"{calls} Ir", "cases",
+                      _exact_instructions(given, precision, calls))  # fmt: skip
+    for name in SCALED:
+        yield _target(f"{EXACT}, {name}", "no NaN, 4 kappa u", "hard", _hard(given, EXACT, name))
+    for name in SPINS:
+        yield _target(f"{EXACT}, {name}", "no NaN, kappa u", "hard", _hard(given, EXACT, name))
+
+
+def _exact_points(given: Evidence, precision: str) -> dict[str, list[Point]]:
+    """Return the points of the exact flow in every torque-free case, whether run or not."""
+    names = [case.name for case in cases().values() if not case.torqued]
+    return {name: _of(given, name, EXACT, precision) for name in names}
+
+
+def _exact_errors(given: Evidence, precision: str, units: float) -> Verdict:
+    points = _exact_points(given, precision)
+    missing = [name for name, own in points.items() if not own]
+    if missing:
+        return f"{NOT}: {', '.join(missing)}"
+    worst, name = max(
+        (_units(given.found[name], p, units), name) for name, own in points.items() for p in own
+    )
+    return f"at most {worst:.2g} of it ({name})", worst <= 1
+
+
+def _exact_instructions(given: Evidence, precision: str, calls: int) -> Verdict:
+    points = _exact_points(given, precision)
+    costs = {n: [p.instructions for p in own if p.instructions] for n, own in points.items()}
+    missing = [name for name, own in points.items() if not own or len(costs[name]) < len(own)]
+    if missing:
+        return f"{NOT}: {', '.join(missing)}"
+    largest = max(max(own) for own in costs.values())
+    return f"{largest:.0f} Ir", largest <= calls
 
 
 def _units(found: Found, point: Point, units: float) -> float:
@@ -88,19 +125,20 @@ def _units(found: Found, point: Point, units: float) -> float:
     return point.wrong.state / allowed if math.isfinite(point.wrong.state) else math.inf
 
 
-def _scales(given: Evidence) -> Iterator[Target]:
-    for row in (h for h in given.hard if h.name.startswith(("inertia", "pure", "zero"))):
-        if row.ours == EXACT:
-            finite = all(math.isfinite(x) for own in row.ours_found.values() for x in own)
-            both = row.ours_found and all(row.holds(p) for p in row.ours_found)
-            yield Target(f"flow_exact, {row.name}", "no NaN, 4 kappa u",
-                         _figures(row), bool(finite and both), "hard")  # fmt: skip
-
-
-def _figures(row: Hard) -> str:
-    return "; ".join(
-        f"{SAYS[p]} " + " / ".join(f"{x:.1e}" for x in own) for p, own in row.ours_found.items()
-    )
+def _hard(
+    given: Evidence, ours: str, name: str, precisions: Sequence[str] = PRECISIONS
+) -> Verdict:
+    """Return whether ours keeps the bound of a hard case in all of ``precisions``."""
+    row = next((h for h in given.hard if (h.ours, h.name) == (ours, name)), None)
+    if row is None:
+        return NOT
+    missing = [SAYS[p] for p in precisions if p not in row.ours_found]
+    if missing:
+        return f"{NOT}: {', '.join(missing)}"
+    figures = [" / ".join(f"{x:.1e}" for x in row.ours_found[p]) for p in precisions]
+    said = [f"{SAYS[p]} {own}" for p, own in zip(precisions, figures, strict=True)]
+    shown = figures[0] if len(precisions) == 1 else "; ".join(said)
+    return shown, all(row.holds(p) for p in precisions)
 
 
 def instructions(point: Point) -> float | None:
@@ -129,6 +167,17 @@ def cost_at(
     return None
 
 
+def _why_no_cost(
+    points: Sequence[Point], error: float, cost: Callable[[Point], float | None]
+) -> Verdict:
+    """Return why ``cost_at`` finds nothing: no figure, or a curve that ends above the error."""
+    known = [p.wrong.state for p in points if cost(p) is not None]
+    finite = [e for e in known if math.isfinite(e)]
+    if not known or min(finite, default=math.inf) <= error:
+        return NOT
+    return (f"ends at {min(finite):.1e}" if finite else "no finite error"), False
+
+
 def _of(given: Evidence, case: str, method: str, precision: str = "f64") -> list[Point]:
     if case not in given.found:
         return []
@@ -138,35 +187,44 @@ def _of(given: Evidence, case: str, method: str, precision: str = "f64") -> list
 
 def _dmv(given: Evidence) -> Iterator[Target]:
     for precision, limit in (("f64", 600), ("f32", 360)):
-        own = [p for p in _of(given, GENERIC, DMV, precision) if p.instructions]
-        near = min(own, key=lambda p: abs(math.log(p.radians / USUAL)), default=None)
-        if near and near.instructions:
-            each = near.instructions / near.passes
-            yield Target(f"step_dmv, {SAYS[precision]}: instructions a step", f"{limit} Ir",
-                         f"{each:.0f} Ir at {near.radians:.2g} rad a step", each <= limit,
-                         GENERIC)  # fmt: skip
-    ours, dop = (cost_at(_of(given, GENERIC, m), 1e-12, instructions) for m in (DMV, DOP853))
-    if ours is not None:
-        yield Target("step_dmv: the generic case to 1e-12", "1.0 M Ir", f"{ours / 1e6:.2f} M Ir",
-                     ours <= 1e6, GENERIC)  # fmt: skip
-    if ours is not None:
-        yield from _below_dop853(given, ours, dop)
+        yield _target(f"step_dmv, {SAYS[precision]}: instructions a step", f"{limit} Ir", GENERIC,
+                      _each_step(_of(given, GENERIC, DMV, precision), limit))  # fmt: skip
+    yield _target("step_dmv: the generic case to 1e-12", "1.0 M Ir", GENERIC, _generic(given))
+    yield _target("step_dmv: below DOP853 in C, to 1e-12", "9 times", GENERIC,
+                  _below_dop853(given))  # fmt: skip
     yield from _faster(given, GENERIC, DMV, 1e-12, 1.0)
-    for row in (h for h in given.hard if h.ours == DMV and h.name.startswith("rod")):
-        for precision, bound in (("f64", 5e-14), ("f32", 2e-5)):
-            worst = max(row.ours_found.get(precision, (math.nan,)))
-            yield Target(f"step_dmv, {SAYS[precision]}: thin rod, I3/I1 = 7e-9", f"{bound:.0e}",
-                         f"{worst:.1e}", worst <= bound, "hard")  # fmt: skip
+    for precision, bound in zip(PRECISIONS, ROD_BOUNDS, strict=True):
+        yield _target(f"step_dmv, {SAYS[precision]}: thin rod, I3/I1 = 7e-9", f"{bound:.0e}",
+                      "hard", _hard(given, DMV, ROD, (precision,)))  # fmt: skip
 
 
-def _below_dop853(given: Evidence, ours: float, dop: float | None) -> Iterator[Target]:
+def _each_step(points: Sequence[Point], limit: int) -> Verdict:
+    counts = [(p, p.instructions) for p in points if p.instructions is not None]
+    if not counts:
+        return NOT
+    near, count = min(counts, key=lambda pair: abs(math.log(pair[0].radians / USUAL)))
+    each = count / near.passes
+    return f"{each:.0f} Ir at {near.radians:.2g} rad a step", each <= limit
+
+
+def _generic(given: Evidence) -> Verdict:
+    points = _of(given, GENERIC, DMV)
+    ours = cost_at(points, 1e-12, instructions)
+    if ours is None:
+        return _why_no_cost(points, 1e-12, instructions)
+    return f"{ours / 1e6:.2f} M Ir", ours <= 1e6
+
+
+def _below_dop853(given: Evidence) -> Verdict:
+    points = _of(given, GENERIC, DMV)
+    ours = cost_at(points, 1e-12, instructions)
+    dop = cost_at(_of(given, GENERIC, DOP853), 1e-12, instructions)
+    if ours is None:
+        return _why_no_cost(points, 1e-12, instructions)
     if dop is None:
-        best = min((p.wrong.state for p in _of(given, GENERIC, DOP853)), default=math.nan)
-        said = f"DOP853 in C ends at {best:.1e}"
-        yield Target("step_dmv: below DOP853 in C, to 1e-12", "9 times", said, None, GENERIC)
-    else:
-        yield Target("step_dmv: below DOP853 in C, to 1e-12", "9 times", f"{dop / ours:.1f} times",
-                     dop / ours >= 9, GENERIC)  # fmt: skip
+        ends = min((p.wrong.state for p in _of(given, GENERIC, DOP853)), default=math.nan)
+        return NOT if math.isnan(ends) else f"DOP853 in C ends at {ends:.1e}"
+    return f"{dop / ours:.1f} times", dop / ours >= 9
 
 
 def _faster(
@@ -174,61 +232,67 @@ def _faster(
 ) -> Iterator[Target]:
     """Yield whether a stepper of ours takes at most ``times`` heyoka's time to an error."""
     names = [method, f"{method}_adaptive"] if method == TAYLOR else [method]
-    costs = [cost_at(_of(given, case, m), error, seconds) for m in names]
+    points = [_of(given, case, m) for m in names]
+    costs = [cost_at(own, error, seconds) for own in points]
     own = min((c for c in costs if c is not None), default=None)
     peer = cost_at(_of(given, case, HEYOKA), error, seconds)
-    limit = f"{times:g} times heyoka's time"
-    says = f"{method}: {case} to {error:.0e}, same run"
-    if own is None or peer is None:
-        yield Target(says, limit, "not measured", None, case)
-    else:
+    verdict: Verdict = NOT
+    if own is None:
+        verdict = _why_no_cost([p for each in points for p in each], error, seconds)
+    elif peer is not None:
         said = f"{own / peer:.2f} times ({own * 1e6:.0f} against {peer * 1e6:.0f} microseconds)"
-        yield Target(says, limit, said, own / peer <= times, case)
+        verdict = said, own / peer <= times
+    yield _target(f"{method}: {case} to {error:.0e}, same run", f"{times:g} times heyoka's time",
+                  case, verdict)  # fmt: skip
 
 
 def _long(given: Evidence) -> Iterator[Target]:
-    for row in (h for h in given.hard if "steps of 0.01 s" in h.name):
+    for what, bound in bounds(cases()[CASE], COUNT).items():
+        row = row_name(COUNT, what)
         for precision in PRECISIONS:
-            if precision in row.ours_found:
-                yield Target(f"step_dmv, {SAYS[precision]}: {row.name}",
-                             f"{row.bound[precision]:.0e}", f"{row.ours_found[precision][0]:.1e}",
-                             row.holds(precision), "hard")  # fmt: skip
-
-
-def _taylor(given: Evidence) -> Iterator[Target]:
-    yield from _faster(given, TOP, TAYLOR, 1e-11, 1.5)
+            yield _target(f"step_dmv, {SAYS[precision]}: {row}", f"{bound[precision]:.0e}", "hard",
+                          _hard(given, DMV, row, (precision,)))  # fmt: skip
 
 
 def _gyroscopic(given: Evidence) -> Iterator[Target]:
-    for form in ("fast", "accurate"):
+    for form in FORMS:
         for precision in PRECISIONS:
             own = [g for g in given.gyroscopic if (g.form, g.precision) == (form, precision)]
-            if own:
-                middle, largest = max(g.median for g in own), max(g.largest for g in own)
-                yield Target(f"gyroscopic term, form {form}, {SAYS[precision]}, any asphericity",
-                             "1 u median, 16 u largest", f"{middle:.2f} u, {largest:.1f} u",
-                             middle <= 1 and largest <= 16, "gyroscopic")  # fmt: skip
+            yield _target(f"gyroscopic term, form {form}, {SAYS[precision]}, any asphericity",
+                          "1 u median, 16 u largest", "gyroscopic", _largest(own))  # fmt: skip
+
+
+def _largest(own: Sequence[Gyroscopic]) -> Verdict:
+    if {g.asphericity for g in own} != set(ASPHERICITIES):
+        return NOT
+    middle, largest = max(g.median for g in own), max(g.largest for g in own)
+    return f"{middle:.2f} u, {largest:.1f} u", middle <= 1 and largest <= 16
 
 
 def _derivatives(given: Evidence) -> Iterator[Target]:
-    for entry in given.tools:
-        if entry.author == "ours" and entry.flops:
-            total = entry.flops.total
-            yield Target("RK4 step with its 7x7 Jacobian: operations", "840", f"{total}",
-                         total <= 840, "tools")  # fmt: skip
-            if "O3-native" in entry.instructions:
-                count = entry.instructions["O3-native"]
-                yield Target("RK4 step with its 7x7 Jacobian: -O3 -march=native", "1500 Ir",
-                             f"{count:.0f} Ir", count <= 1500, "tools")  # fmt: skip
-    flops = next((f["cost"]["flops"] for f in emission("thirteen").manifest["functions"]
-                  if f["name"] == "step_rk4_jacobian"), None)  # fmt: skip
-    if flops is not None:
-        yield Target("RK4 step of 13 states with its derivatives: operations",
-                     "half of CasADi's 5898", f"{flops}", flops <= 5898 / 2, "tools")  # fmt: skip
+    ours = next((e for e in given.tools if e.author == AUTHOR), None)
+    total = ours.flops.total if ours and ours.flops else None
+    yield _target("RK4 step with its 7x7 Jacobian: operations", "840", "tools",
+                  _at_most(total, 840, ""))  # fmt: skip
+    count = ours.instructions.get(O3_NATIVE.name) if ours else None
+    yield _target("RK4 step with its 7x7 Jacobian: -O3 -march=native", "1500 Ir", "tools",
+                  _at_most(count, 1500, " Ir"))  # fmt: skip
+    yield _target("RK4 step of 13 states with its derivatives: operations",
+                  "half of CasADi's 5898", "tools",
+                  _at_most(_flops("thirteen").get("step_rk4_jacobian"), 5898 / 2, ""))  # fmt: skip
     size = code_size(emission("compact"), given.folder)
-    yield Target("the same as loops, float: code for a Cortex-M4F", "3000 bytes",
-                 "no arm-none-eabi-gcc" if size is None else f"{size} bytes",
-                 None if size is None else size <= 3000, "tools")  # fmt: skip
+    yield _target("the same as loops, float: code for a Cortex-M4F", "3000 bytes", "tools",
+                  "no arm-none-eabi-gcc" if size is None else _at_most(size, 3000, " bytes"),
+                  )  # fmt: skip
+
+
+def _at_most(found: float | None, limit: float, unit: str) -> Verdict:
+    return NOT if found is None else (f"{found:.0f}{unit}", found <= limit)
+
+
+def _flops(scene: str) -> dict[str, int | None]:
+    functions = emission(scene).manifest["functions"]
+    return {f["name"]: f.get("cost", {}).get("flops") for f in functions}
 
 
 ARM = ("arm-none-eabi-gcc", "-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16",
@@ -258,12 +322,15 @@ def code_size(made: Emission, folder: Path) -> int | None:
 def _special() -> Iterator[Target]:
     """Yield whether what is known of a body makes its steppers smaller."""
     scenes = ("principal", "axisymmetric", "spherical")
-    flops = {s: {f["name"]: f["cost"].get("flops") for f in emission(s).manifest["functions"]}
-             for s in scenes}  # fmt: skip
-    for name in (EXACT, DMV, "step_split6", "step_rk4", TAYLOR):
-        counts = [flops[scene].get(name) for scene in scenes]
-        known = [c for c in counts if c is not None]
-        falls = len(known) == len(scenes) and known[0] > known[1] >= known[2]
-        shown = " > ".join("none" if c is None else str(c) for c in counts)
-        yield Target(f"{name}: operations for a principal, axisymmetric, spherical body", "falling",
-                     shown, falls, "functions")  # fmt: skip
+    flops = {scene: _flops(scene) for scene in scenes}
+    for method in (EXACT, DMV, "step_split6", "step_rk4", TAYLOR):
+        counts = [flops[scene].get(method) for scene in scenes]
+        says = f"{method}: operations for a principal, axisymmetric, spherical body"
+        yield _target(says, "falling", "functions", _falling(counts))
+
+
+def _falling(counts: Sequence[int | None]) -> Verdict:
+    known = [c for c in counts if c is not None]
+    if len(known) < len(counts):
+        return NOT
+    return ", ".join(map(str, known)), all(a > b for a, b in pairwise(known))

@@ -14,6 +14,7 @@ from derive.bench.motion.runner import Mover
 from derive.report.case_run import ANY, PRECISIONS, Workshop
 from derive.report.point import Limits
 from derive.report.settings import tolerances
+from derive.scene import SceneError
 
 COUNTED_CASE, SHORT_CASE = "asym_ii_generic", "const_body_torque"
 SLOW = ("scipy", "mujoco")  # under callgrind; a short case does for them
@@ -39,8 +40,8 @@ def _programs(scene: str, folder: Path) -> tuple[Emission | None, Mapping[str, M
     """Return the emission of a scene and its program in each precision, or why there is none."""
     try:
         made = emission(scene)
-    except Exception as reason:
-        return None, dict.fromkeys(PRECISIONS, f"{type(reason).__name__}: {reason}")
+    except SceneError as reason:
+        return None, dict.fromkeys(PRECISIONS, str(reason))
     built: dict[str, Mover | str] = {}
     for precision in PRECISIONS:
         try:

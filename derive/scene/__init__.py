@@ -47,6 +47,7 @@ __all__ = [
     "Speed",
     "Turn",
     "Wheel",
+    "argument",
     "catalogue",
     "load",
     "parse_scene",
@@ -63,6 +64,17 @@ def catalogue() -> tuple[str, ...]:
     True
     """
     return tuple(sorted(path.stem for path in CATALOGUE.glob("*.toml")))
+
+
+def argument(scene: Scene | Machine) -> str:
+    """Return what commands are told to mean a scene: its name in the catalogue, or its file.
+
+    >>> argument(load("heavy_top"))
+    'heavy_top'
+    """
+    file = f"{scene.name}.toml"
+    known = scene.name in catalogue() and _contents(CATALOGUE / file) == scene.text
+    return scene.name if known else file
 
 
 def load(source: str | Path) -> Scene | Machine:

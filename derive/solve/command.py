@@ -2,9 +2,13 @@
 
 import argparse
 from collections.abc import Iterator, Sequence
-from math import pi
+from dataclasses import dataclass
+from math import isfinite, nan, pi
 from pathlib import Path
 
+from numpy.linalg import LinAlgError
+
+from derive.files import require_writable, write
 from derive.scene import Machine, SceneError
 from derive.scene.table import nearest
 from derive.solve.instrument import Instrument, opened
@@ -14,6 +18,14 @@ from derive.solve.simulation import plot, simulated
 Row = tuple[str, str, str, str]
 FACTORS = {"deg": pi / 180, "rpm": 2 * pi / 60}
 """Units that a value may be set in beside SI: ``skew=3deg``."""
+
+
+@dataclass(frozen=True)
+class Solved:
+    """Rows of what, where from, value and unit; and what stays unanswered, a clause a function."""
+
+    rows: list[Row]
+    unanswered: list[str]
 
 
 def options(command: argparse.ArgumentParser) -> None:
@@ -47,27 +59,67 @@ def options(command: argparse.ArgumentParser) -> None:
 
 def _moved(given: argparse.Namespace, found: Instrument, values: dict[str, float]) -> list[Row]:
     """Return the state at the end of a motion, its plot written if a file is named."""
+    if given.plot is not None:
+        require_writable(given.plot)
     motion = simulated(found, values, given.until, given.step)
     if given.plot is not None:
-        given.plot.write_text(plot(motion), encoding="utf-8")
+        write(given.plot.parent, {given.plot.name: plot(motion)})
     at = f"at {motion.times[-1]:.6g} s"
     return [(at, n, f"{v[-1]:.12g}", motion.units[n]) for n, v in motion.states.items()]
 
 
-def solved(given: argparse.Namespace) -> list[Row]:
-    """Return rows of what, where from, value and unit."""
+def solved(given: argparse.Namespace) -> Solved:
+    """Return what was asked for, and what stays unanswered because a value is not set.
+
+    Raises SceneError for options that do not go together, and for values without an answer.
+    """
+    _require_one_question(given)
     found = opened(given.scene)
     values = settings(found, [text for group in given.set for text in group])
     if given.until is not None:
-        return _moved(given, found, values)
-    if given.limit:
-        unit = {c: q.unit for q in found.quantities() for c in q.components}
-        return [
-            ("limit of stability", name, f"{value:.12g}", unit.get(name, ""))
-            for name in given.limit
-            for value in limits(found, values, _known(found, name))
-        ]
-    return [row for name in found.library.known.scene.wanted for row in _rows(found, name, values)]
+        return Solved(_moved(given, found, values), [])
+    try:
+        if given.limit:
+            return Solved(list(_limits(given, found, values)), [])
+        return _every_answer(found, values)
+    except LinAlgError as error:
+        raise SceneError(
+            f"scene '{found.name}': small motion needs a mass matrix that can be inverted, "
+            f"but with these values: {error}"
+        ) from None
+
+
+def _require_one_question(given: argparse.Namespace) -> None:
+    if given.plot is not None and given.until is None:
+        raise SceneError(f"--plot {given.plot}: a plot shows a motion and needs --until SECONDS")
+    if given.limit and given.until is not None:
+        raise SceneError(
+            f"--limit {given.limit[0]}: limits of stability are no motion; leave out "
+            f"--until {given.until:g}"
+        )
+
+
+def _limits(
+    given: argparse.Namespace, found: Instrument, values: dict[str, float]
+) -> Iterator[Row]:
+    unit = {c: q.unit for q in found.quantities() for c in q.components}
+    wanted = found.library.known.scene.wanted
+    if "linearised" not in wanted:
+        raise SceneError(f"scene '{found.name}': --limit needs wanted = [..., \"linearised\"]")
+    for name in given.limit:
+        for value in limits(found, values, _known(found, name)):
+            yield "limit of stability", name, f"{value:.12g}", unit.get(name, "")
+
+
+def _every_answer(found: Instrument, values: dict[str, float]) -> Solved:
+    answered = Solved([], [])
+    for name in found.library.known.scene.wanted:
+        missing = _missing(found, name, values)
+        if missing:
+            answered.unanswered.append(f"'{name}' needs {', '.join(missing)}")
+        else:
+            answered.rows.extend(_rows(found, name, values))
+    return answered
 
 
 def settings(found: Instrument, texts: Sequence[str]) -> dict[str, float]:
@@ -94,26 +146,42 @@ def _number(text: str, value: str) -> float:
         if value.endswith(unit):
             return _number(text, value.removesuffix(unit).strip()) * factor
     try:
-        return float(value)
+        number = float(value)
     except ValueError:
-        raise SceneError(f"--set {text}: a value is a number, as m=1200 or skew=3deg") from None
+        number = nan
+    if not isfinite(number):
+        raise SceneError(
+            f"--set {text}: a value is a number, as m=1200 or skew=3deg, not '{value}'"
+        )
+    return number
+
+
+def _unknowns(found: Instrument, name: str, values: dict[str, float]) -> tuple[str, ...]:
+    """Return the unknowns of a steady motion that is to be found; none if they are all set."""
+    scene = found.library.known.scene
+    steady = scene.steady if isinstance(scene, Machine) and name == "steady" else None
+    return () if steady is None or all(n in values for n in steady.unknown) else steady.unknown
+
+
+def _missing(found: Instrument, name: str, values: dict[str, float]) -> list[str]:
+    given = (*values, *_unknowns(found, name, values))
+    return [c for c in found.needed(name.removesuffix("_jacobian")) if c not in given]
 
 
 def _rows(found: Instrument, name: str, values: dict[str, float]) -> Iterator[Row]:
-    scene = found.library.known.scene
-    steady = scene.steady if isinstance(scene, Machine) else None
-    if name == "steady" and steady and not all(n in values for n in steady.unknown):
+    if _unknowns(found, name, values):
         unit = {c: q.unit for q in found.quantities() for c in q.components}
         for number, root in enumerate(roots(found, values), 1):
             for unknown, value in root.items():
                 yield f"steady motion {number}", unknown, f"{value:.12g}", unit[unknown]
         return
-    missing = [c for c in found.needed(name.removesuffix("_jacobian")) if c not in values]
-    if missing:
-        yield name, "", f"needs {', '.join(missing)}", ""
-        return
     units = {c: q.unit for q in found.library[name].outputs for c in q.components}
     for component, value in found.answer(name, values).items():
+        if not isfinite(value):
+            raise SceneError(
+                f"scene '{found.name}': '{name}' must be finite, but with these values "
+                f"{component} is {value}"
+            )
         yield name, component, f"{value:.12g}", units[component]
     if name == "linearised":
         for number, value in enumerate(frequencies(found, values), 1):

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any
 
 import casadi
@@ -13,6 +14,7 @@ from derive.solve.instrument import Instrument
 
 STEP = "step_rk4"
 WIDTH, HEIGHT, LEFT, GAP = 640, 110, 90, 14
+MOST = 10_000_000  # steps: what fits into the memory of a small machine
 SHOWN = 600  # points of a line, at most
 
 
@@ -30,8 +32,10 @@ def simulated(
 ) -> Simulation:
     """Return the motion from the state in ``given``, other inputs held, by ``step_rk4``.
 
-    Raises SceneError if the scene does not ask for that step, or a state is not given.
+    Raises SceneError if the scene does not ask for that step, a state is not given, a time has no
+    sense, or the motion does not stay finite.
     """
+    count = _count(until, step)
     scene = found.library.known.scene
     if STEP not in scene.wanted:
         raise SceneError(f"scene '{found.name}': a simulation needs wanted = [..., \"{STEP}\"]")
@@ -42,15 +46,41 @@ def simulated(
         raise SceneError(f"scene '{found.name}': a simulation begins at {', '.join(missing)}")
     start = [float(given[n]) for n in names]
     moved = _one_step(found, dict(given) | {"time_step": step}, names)
-    count = round(until / step)
     after = moved.mapaccum("motion", count)(start).full() if count else np.zeros((len(names), 0))
     rows = [start, *after.T.tolist()]
+    _require_finite(found.name, names, rows, step)
     columns = zip(*rows, strict=True)
     return Simulation(
         tuple(step * k for k in range(len(rows))),
         dict(zip(names, (tuple(c) for c in columns), strict=True)),
         _units(states),
     )
+
+
+def _count(until: float, step: float) -> int:
+    """Return the number of steps; raise SceneError for times that make none."""
+    if not (isfinite(step) and step > 0):
+        raise SceneError(f"--step must be a positive number of seconds, not {step}")
+    if not (isfinite(until) and until >= 0):
+        raise SceneError(f"--until must be a number of seconds from 0 up, not {until}")
+    if until > MOST * step:
+        raise SceneError(
+            f"--until must be at most {MOST:,} steps of --step {step:g}, that is "
+            f"{MOST * step:g} s, not {until:g}"
+        )
+    return round(until / step)
+
+
+def _require_finite(
+    scene: str, names: Sequence[str], rows: Sequence[Sequence[float]], step: float
+) -> None:
+    for k, row in enumerate(rows):
+        for name, value in zip(names, row, strict=True):
+            if not isfinite(value):
+                raise SceneError(
+                    f"scene '{scene}': a motion must stay finite, but {name} is {value} after "
+                    f"{step * k:.6g} s; a shorter --step may help"
+                )
 
 
 def _one_step(found: Instrument, given: Mapping[str, float], names: Sequence[str]) -> Any:

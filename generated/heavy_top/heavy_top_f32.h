@@ -11,7 +11,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest term of the sum that an output is. Body of these files: sha256 d32c4d35ab5a1b33.
+ * float, times the largest term of the sum that an output is; of motions and attitudes,
+ * times the largest component of the output. Body of these files: sha256 d32c4d35ab5a1b33.
  */
 #ifndef HEAVY_TOP_F32_H
 #define HEAVY_TOP_F32_H

@@ -29,8 +29,53 @@ def test_an_answer_is_printed_with_its_unit(capsys: pytest.CaptureFixture[str]) 
 
 
 def test_what_is_missing_is_named(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["solve", "edge_runner_flat", "--set", "m=1200"]) == 0
-    assert "needs r, g, W" in capsys.readouterr().out
+    assert main(["solve", "edge_runner_flat", "--set", "m=1200"]) == 2
+    assert "'N' needs r, g, W" in " ".join(capsys.readouterr().err.split())
+
+
+def test_what_can_be_answered_is_shown_before_what_cannot(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    data = [f"{name}={value}" for name, value in TOP.items()]
+    assert main(["solve", "sleeping_top", "--set", *data]) == 2
+    shown = capsys.readouterr()
+    assert "31.0104916028" in shown.out
+    assert "'energy' needs alpha, alpha_dot, beta, beta_dot" in " ".join(shown.err.split())
+
+
+REFUSED = {
+    "--step must be a positive number of seconds, not 0.0": ["--until=1", "--step=0"],
+    "--step must be a positive number of seconds, not -0.1": ["--until=1", "--step=-0.1"],
+    "--step must be a positive number of seconds, not nan": ["--until=1", "--step=nan"],
+    "--until must be a number of seconds from 0 up, not nan": ["--until=nan"],
+    "--until must be a number of seconds from 0 up, not inf": ["--until=inf"],
+    "--until must be a number of seconds from 0 up, not -1.0": ["--until=-1"],
+    "--until must be at most 10,000,000 steps": ["--until=1e9"],
+    "must stay finite, but": ["--until=1", "--step=1", "--set", "alpha_dot=1e200"],
+    "output file '/nonexistent/x.svg' must be writable": [
+        "--until=0.1",
+        "--plot=/nonexistent/x.svg",
+    ],
+    "--plot x.svg: a plot shows a motion and needs --until": ["--plot=x.svg"],
+    "--limit n: limits of stability are no motion": ["--limit=n", "--until=1"],
+    "--set m=nan: a value is a number": ["--set", "m=nan"],
+    "--set m=-infdeg: a value is a number": ["--set", "m=-infdeg"],
+    "mass matrix that can be inverted": ["--set", "m=0"],
+}
+
+
+@pytest.mark.parametrize("sentence", REFUSED)
+def test_what_makes_no_sense_is_refused_in_one_sentence(
+    sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = [f"{name}={value}" for name, value in (TOP | START).items()]
+    assert main(["solve", "sleeping_top", "--set", *data, *REFUSED[sentence]]) == 2
+    assert sentence in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_limit_needs_small_motion(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["solve", "edge_runner_flat", "--limit", "W"]) == 2
+    assert 'needs wanted = [..., "linearised"]' in " ".join(capsys.readouterr().err.split())
 
 
 def test_a_name_that_the_scene_does_not_have_is_refused_with_a_hint() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from derive.check.compiler import find_compiler
 from derive.library import library
-from derive.scene import load
+from derive.scene import Machine, catalogue, load
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -98,3 +98,42 @@ def test_the_table_counts_what_the_catalogue_gives() -> None:
 
 def test_every_file_that_the_readme_links_is_there() -> None:
     assert all((ROOT / path).is_file() for path in re.findall(r"\]\(([\w/.]+)\)", README))
+
+
+def errors(scene: str, functions: list[str]) -> tuple[float, float]:
+    """Return the largest median and the largest error of functions in a scene's committed JSON."""
+    text = (ROOT / "generated" / scene / f"{scene}.json").read_text(encoding="utf-8")
+    described = {f["name"]: f.get("error", {}) for f in json.loads(text)["functions"]}
+    own = [described[name][precision] for name in functions for precision in ("f32", "f64")]
+    rows = [row for outputs in own for row in outputs.values()]
+    return max(r["median_ulp"] for r in rows), max(r["largest_ulp"] for r in rows)
+
+
+def test_the_errors_that_it_states_are_those_of_the_committed_files() -> None:
+    table, machines = [], []
+    for label, _, _ in ROW.findall(README):
+        name = label.split("`")[1]
+        ends = "Jacobian" in label
+        wanted = [f.name for f in library(load(name)).functions]
+        table.append(errors(name, [f for f in wanted[:2] if f.endswith("_jacobian") == ends][:1]))
+    for name in catalogue():
+        scene = load(name)
+        answers = [f for f in scene.wanted if not f.startswith(("step_", "flow_"))]
+        if isinstance(scene, Machine) and answers:
+            machines.append(errors(name, answers))
+    text = " ".join(README.split())
+    sentences = (
+        r"by at most ([\d.]+) units of rounding [^.]+, and by ([\d.]+) in the worst sample;",
+        r"machines by ([\d.]+) and ([\d.]+)\. Each",
+    )
+    found = [re.search(sentence, text) for sentence in sentences]
+    said = [(float(one[1]), float(one[2])) for one in found if one]
+    assert said == [tuple(map(max, zip(*rows, strict=True))) for rows in (table, machines)]
+
+
+def test_the_gallery_holds_as_many_scenes_as_it_says() -> None:
+    (said,) = re.findall(r"a gallery of the (\d+) scenes", README)
+    gallery = (ROOT / "generated" / "index.html").read_text(encoding="utf-8")
+    linked = set(re.findall(r'href="(\w+)/\1\.html"', gallery))
+    assert linked == set(catalogue())
+    assert len(linked) == int(said)

@@ -1,10 +1,12 @@
 """The page is one file: no script, nothing from elsewhere, everything that was found on it."""
 
 import re
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
 
+from derive.report.hard import Hard
 from derive.report.page import page
 from derive.report.plots import figure, panels, spread, svg
 from tests.report.made_up import found, report
@@ -36,6 +38,16 @@ def test_what_was_not_run_stands_on_the_page(html: str) -> None:
 def test_a_target_that_is_missed_is_called_so(html: str) -> None:
     assert html.count("not reached") == 1
     assert html.count("not measured") >= 1
+
+
+def test_a_naive_form_is_judged_in_each_precision_by_the_bound_of_ours() -> None:
+    bound = dict.fromkeys(("f64", "f32"), 1e-6)
+    figures = {"f64": (1e-3,), "f32": (1e-9,)}
+    row = Hard("a case", "", "naive", figures, "ours", {"f64": (1e-9,)}, bound, "why")
+    shown = " ".join(page(replace(report(), hard=(row,))).split())
+    assert '1e-3 <span class="no">fails</span>' in shown
+    assert '1e-9 <span class="yes">kept</span>' in shown
+    assert "<td>not run</td></tr>" in shown
 
 
 def test_every_heading_of_the_contents_exists(html: str) -> None:

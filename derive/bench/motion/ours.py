@@ -16,7 +16,7 @@ from derive.bench.motion.runner import Mover, built, methods_header
 from derive.emit import c_files
 from derive.library import Library, library
 from derive.manifest import manifest
-from derive.scene import load
+from derive.scene import SceneError, load
 
 SCENES = ("principal", "general", "axisymmetric", "spherical", "moment", "wheel", "weight")
 AXES = ("x", "y", "z")
@@ -71,9 +71,9 @@ def _values(case: Case) -> dict[str, float]:
 
 @cache
 def emission(scene: str) -> Emission:
-    """Return the C and the manifest of one of ``SCENES``, made in memory.
+    """Return the C and the manifest of a scene of the folder ``scenes``, made in memory.
 
-    A function that cannot be made is left out, and ``without`` says why.
+    A function that is refused is left out, and ``without`` says why.
     """
     text = (files("derive.bench.motion") / "scenes" / f"{scene}.toml").read_text(encoding="utf-8")
     with TemporaryDirectory() as folder:
@@ -95,8 +95,8 @@ def _unmade(path: Path) -> dict[str, str]:
         path.write_text(_only(text, set(names) - {name}), encoding="utf-8")
         try:
             library(load(str(path)))
-        except Exception as reason:
-            found[name] = f"not emitted: {type(reason).__name__} {reason}"
+        except SceneError as reason:
+            found[name] = f"not emitted: {reason}"
     return found
 
 
