@@ -13,6 +13,7 @@ from typing import Any
 from flint import arb, ctx
 
 from derive.equations import Equations, equations
+from derive.largest import largest
 from derive.library import Library
 from derive.machine.mechanism import single
 from derive.motion_error import LONG_FLOATS
@@ -186,6 +187,6 @@ def _results(program: Program, known: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _distance(found: Sequence[Any], should: Sequence[Any]) -> float:
-    size = max(abs(float(x)) for x in should)
+    size = largest(map(abs, should))
     gaps = [(a - b).mid() for a, b in zip(found, should, strict=True)]
-    return max(abs(float(g)) for g in gaps) / size
+    return largest(map(abs, gaps)) / size if math.isfinite(size) else math.inf

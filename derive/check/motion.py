@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from derive.check.verdict import JUDGED, Verdict
 from derive.convergence import BITS, EXACT, LEVELS, course, exactness, order
 from derive.differences import GAP, slopes
+from derive.largest import largest
 from derive.library import Library
 from derive.sample import Sample
 from derive.scene.wanted import STEPS
@@ -27,7 +28,7 @@ def orders(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
 
 
 def _exact(library: Library, each: Sequence[Sample]) -> Verdict:
-    worst = max(exactness(library, s.values) for s in each)
+    worst = largest(exactness(library, s.values) for s in each)
     says = f"relative error {worst:.1g} without rounding, {BITS} bits, {LEVELS} levels"
     outcome = JUDGED[worst <= EXACT]
     return Verdict(library.known.scene.name, "flow_exact", "exact", "is the motion", outcome, says)
@@ -47,7 +48,7 @@ def step_slopes(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
     for program in library.motions:
         if program.sparsity:
             found = [slope for s in ordinary for slope in slopes(library, program, s.values)]
-            worst = max(found, key=lambda slope: slope.gap)
+            worst = max(found, key=lambda slope: largest([slope.gap]))
             where = f"d({worst.row})/d({worst.column})"
             says = f"{len(found)} slopes, largest gap {worst.gap:.1g} at {where}"
             outcome = JUDGED[worst.gap <= GAP]

@@ -12,6 +12,7 @@ from derive.cloud.series import DIGITS
 from derive.cloud.small import at_rest, slopes
 from derive.equations import equations
 from derive.formula import symbols
+from derive.largest import largest
 from derive.library import Library
 from derive.machine.mechanism import Mechanism
 from derive.machine.words import MATRICES
@@ -41,7 +42,7 @@ def clouds(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
         return
     for base, fact in library.truths.items():
         question = equations(known, fact)
-        worst, count, limit = mpf(0), 0, AGREE
+        worst, count, limit = 0.0, 0, AGREE
         for sample in each:
             true = reference(question, sample.values, ())
             if base == "linearised" or fact.outputs[0].name in MATRICES:
@@ -52,12 +53,12 @@ def clouds(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
                 gaps = _gaps(known.scene, sample, names, true)
             if any(frame.quaternion for frame in known.scene.frames):
                 limit = max(limit, AGREE_QUATERNIONS)
-            worst, count = max([worst, *gaps]), count + len(gaps)
+            worst, count = largest([worst, *gaps]), count + len(gaps)
         if not count:
             says = "the cloud has no such number at these points"
             yield Verdict(known.scene.name, base, "exact", "cloud of particles", "skipped", says)
             continue
-        says = f"{count} numbers, {float(worst):.1g} apart, relative to the largest term"
+        says = f"{count} numbers, {worst:.1g} apart, relative to the largest term"
         verdict = JUDGED[bool(worst < limit)]
         yield Verdict(known.scene.name, base, "exact", "cloud of particles", verdict, says)
 

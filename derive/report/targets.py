@@ -12,6 +12,7 @@ from derive.bench.motion.ours import Emission, emission
 from derive.bench.motion.step_jacobian import Entry
 from derive.bench.motion.textbook import DOP853
 from derive.bench.motion.wrong import ROUNDOFF
+from derive.largest import largest
 from derive.report.case_run import PRECISIONS, Found
 from derive.report.gyroscopic import Gyroscopic
 from derive.report.hard import Hard
@@ -154,7 +155,7 @@ def _dmv(given: Evidence) -> Iterator[Target]:
     yield from _faster(given, GENERIC, DMV, 1e-12, 1.0)
     for row in (h for h in given.hard if h.ours == DMV and h.name.startswith("rod")):
         for precision, bound in (("f64", 5e-14), ("f32", 2e-5)):
-            worst = max(row.ours_found.get(precision, (math.nan,)))
+            worst = largest(row.ours_found.get(precision, (math.nan,)))
             yield Target(f"step_dmv, {SAYS[precision]}: thin rod, I3/I1 = 7e-9", f"{bound:.0e}",
                          f"{worst:.1e}", worst <= bound, "hard")  # fmt: skip
 
