@@ -17,8 +17,8 @@ from derive.motion_error import LONG_FLOATS
 from derive.program import Program, component_names, run
 
 SHIFT = arb(2) ** -130  # exact
-GAP = 1e-30
-"""A relative difference that is no rounding of 500 bits."""
+GAP = 1e-70
+"""A relative difference between what a difference leaves out, 2^-260, and a wrong slope."""
 ERROR = "attitude_error_"
 
 Values = Mapping[str, Any]

@@ -12,7 +12,7 @@ from derive.differences import GAP, slopes
 from derive.largest import largest
 from derive.library import Library
 from derive.sample import Sample
-from derive.scene.wanted import STEPS
+from derive.scene.wanted import COMPENSATED, STEPS
 
 FEW = 2
 
@@ -23,7 +23,7 @@ def orders(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
     for program in library.motions:
         if program.name == "flow_exact":
             yield _exact(library, ordinary)
-        elif program.name in STEPS:
+        elif program.name in (*STEPS, *COMPENSATED):
             yield _order(library, program.name, ordinary)
 
 
@@ -36,7 +36,7 @@ def _exact(library: Library, each: Sequence[Sample]) -> Verdict:
 
 def _order(library: Library, name: str, each: Sequence[Sample]) -> Verdict:
     found = [order(library, name, course(library, name, s.values)) for s in each]
-    measured = ", ".join(f"{one.measured:.2f}" for one in found)
+    measured = ", ".join(map(str, found))
     says = f"claimed {found[0].claimed}, measured {measured}"
     outcome = JUDGED[all(one.holds for one in found)]
     return Verdict(library.known.scene.name, name, "exact", "order", outcome, says)

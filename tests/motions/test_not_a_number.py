@@ -85,7 +85,7 @@ def test_a_step_or_flow_without_a_value_is_no_motion() -> None:
 
 
 def test_an_order_of_errors_that_are_no_numbers_does_not_hold() -> None:
-    assert not any(Order(4, e).holds for e in ((1e-7, NAN), (NAN, 1e-7), (NAN, NAN)))
+    assert not any(Order(4, e, closed=False).holds for e in ((1e-7, NAN), (NAN, 1e-7), (NAN, NAN)))
 
 
 def test_a_slope_without_a_value_is_noticed() -> None:
