@@ -69,6 +69,9 @@ def check_library(
 def proof(made: Library) -> Verdict:
     """Return whether the programs satisfy the lecture's equations exactly."""
     name = made.known.scene.name
+    if not made.functions:
+        says = "nothing is wanted that the lecture's equations state: motions are measured"
+        return Verdict(name, "all", "exact", "satisfies the lecture", "skipped", says)
     try:
         prove(made)
     except ProofError as error:

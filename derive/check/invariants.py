@@ -169,6 +169,9 @@ def _turn_verdict(
     emitted: Emitted, function: str, check: str, rows: Sequence[Sequence[_Compared]]
 ) -> Verdict:
     every = [c for row in rows for c in row]
+    if not every:
+        says = "nothing that it returns is known to turn with the axes"
+        return _verdict(emitted, function, check, "skipped", says)
     most = largest(abs(c.should) for c in every)
     gap = largest(abs(c.found - c.should) for c in every)
     says = f"{len(rows)} samples, largest gap {gap / (most or 1):.2g} of the largest value"
