@@ -70,7 +70,7 @@ class Order:
         return self.claimed - BELOW <= self.measured <= self.claimed + ABOVE
 
     def __str__(self) -> str:
-        return f"closed form, {largest(self.errors):.1g}" if self.closed else f"{self.measured:.2f}"
+        return f"{largest(self.errors):.1g}" if self.closed else f"{self.measured:.2f}"
 
 
 def rate_of(library: Library, values: Mapping[str, Any]) -> Rate:
