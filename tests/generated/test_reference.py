@@ -10,12 +10,11 @@ from flint import arb, ctx
 
 from derive.c_text import F64
 from derive.equations import equations
-from derive.library import STEP
 from derive.machine.mechanism import Known, Mechanism, in_terms, truth_of
 from derive.reference import BALLS, reference, solution
 from derive.sample import Sample, samples
 from derive.scene import catalogue, load
-from derive.scene.wanted import EQUATIONS, JACOBIAN
+from derive.scene.wanted import EQUATIONS, JACOBIAN, moves
 from derive.truth import Truth
 
 STEP_BITS = 200  # central differences with a step of 2^-200, at 800 bits: 400 bits right
@@ -29,7 +28,7 @@ def scene(name: str) -> Known:
 
 def truths(known: Known) -> list[Truth]:
     bases = dict.fromkeys(w.removesuffix(JACOBIAN) for w in known.scene.wanted)
-    stated = [b for b in bases if b in EQUATIONS or (isinstance(known, Mechanism) and b != STEP)]
+    stated = [b for b in bases if b in EQUATIONS or (isinstance(known, Mechanism) and not moves(b))]
     return [truth_of(known, base) for base in stated]
 
 
