@@ -11,13 +11,14 @@ from typing import Any
 from flint import arb, ctx
 
 from derive.convergence import BITS, unit_attitude
+from derive.largest import largest
 from derive.library import Library
 from derive.motion_error import LONG_FLOATS
 from derive.program import Program, component_names, run
 
 SHIFT = arb(2) ** -130  # exact
-GAP = 1e-30
-"""A relative difference that is no rounding of 500 bits."""
+GAP = 1e-70
+"""A relative difference between what a difference leaves out, 2^-260, and a wrong slope."""
 ERROR = "attitude_error_"
 
 Values = Mapping[str, Any]
@@ -48,7 +49,7 @@ def slopes(library: Library, program: Program, values: Mapping[str, float]) -> I
             )
             apart = [_difference((here, above, below), row, parts) for row in pattern.rows]
             rises = [change / (2 * SHIFT) for change in apart]
-            size = max(1.0, *(abs(float(rise)) for rise in rises))
+            size = largest([1.0, *map(abs, rises)])
             for i, row in enumerate(pattern.rows):
                 found = entries.get((i, k), arb(0))
                 yield Slope(row, column, float(found), abs(float(found - rises[i])) / size)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from derive.arithmetic import Table, extended, paired, working
 from derive.c_text import PRECISIONS, Precision
 from derive.equations import equations
+from derive.largest import largest
 from derive.library import Library
 from derive.program import Measurement, Program, component_names, run
 from derive.reference import Known, reference
@@ -55,16 +56,16 @@ def figures(library: Library) -> tuple[Measurement, ...]:
 
 def measurement(found: Errors, precision: Precision, each: Sequence[Sample]) -> Measurement:
     """Return median and largest of errors, rounded up to the digits that are printed."""
-    worst = [max(row, default=0.0) for row in found.rows]
-    largest = max(worst)
+    worst = [largest(row) if row else 0.0 for row in found.rows]
+    most = largest(worst)
     middle = median([error for row in found.rows for error in row] or [0.0])
-    number = each[worst.index(largest)].number
+    number = each[worst.index(most)].number
     return Measurement(
         found.function,
         precision.name,
         found.output,
         upwards(middle),
-        upwards(largest),
+        upwards(most),
         number,
         len(each),
     )

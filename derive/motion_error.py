@@ -15,6 +15,7 @@ from flint import arb, ctx
 
 from derive.arithmetic import working
 from derive.c_text import PRECISIONS, Precision
+from derive.largest import largest
 from derive.library import Library
 from derive.measure import Errors, measurement, replayed
 from derive.program import Measurement, Program, Quantity, component_names, run
@@ -196,13 +197,12 @@ def _errors(
     """Return the errors of one output's components, in u of the largest; a plan's one by one."""
     true = [arb(x).mid() for x in should]
     if not all(x.is_finite() for x in true):
-        both = not all(map(math.isfinite, found))  # nothing is said where there is no value
-        return (0.0 if both else math.inf,) * len(found)
+        return (math.inf,) * len(found)  # samples lie where every function has a value
     smallest = float(np.finfo(precision.dtype).smallest_normal)
     sizes = [abs(float(x)) for x in true]
-    largest = max(*sizes, smallest)
-    own = [max(size, smallest) if size > largest * NOTHING else largest for size in sizes]
-    scales = own if q.name == PLAN else [largest] * len(sizes)
+    most = largest((*sizes, smallest))
+    own = [max(size, smallest) if size > most * NOTHING else most for size in sizes]
+    scales = own if q.name == PLAN else [most] * len(sizes)
     return tuple(
         _error(x, y, scale) / precision.unit_roundoff
         for x, y, scale in zip(found, true, scales, strict=True)

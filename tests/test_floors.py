@@ -9,7 +9,10 @@ from pathlib import Path
 import pytest
 
 FLOORS = (
-    ("vectors", "formula", "grammar", "unit", "scene", "catalogue", "program", "graph"),
+    (
+        *("vectors", "formula", "grammar", "unit", "scene", "catalogue", "program", "graph"),
+        "largest",
+    ),
     (
         *("particles", "pairs", "pair_sine", "arithmetic"),
         *("trace", "operations", "recorded", "rotations", "tree", "rate", "facts", "relations"),

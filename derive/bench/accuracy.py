@@ -8,6 +8,7 @@ from flint import arb
 
 from derive.bench.problem import Problem
 from derive.bench.truth import Column
+from derive.largest import largest
 
 UNIT = 2.0**-53
 
@@ -25,10 +26,10 @@ def accuracy(
 ) -> Accuracy:
     """Return the norm of each block's error over the norm of the block, median and largest."""
     errors = [
-        max(_error(block.places, row, column) for block in problem.blocks)
+        largest(_error(block.places, row, column) for block in problem.blocks)
         for row, column in zip(found, true, strict=True)
     ]
-    return Accuracy(median(errors), max(errors))
+    return Accuracy(median(errors), largest(errors))
 
 
 def _error(places: Sequence[int], row: Sequence[float], column: Column) -> float:

@@ -119,10 +119,12 @@ def motion_accuracy(
         columns = [list(column) for column in zip(*rows, strict=True)]
         for found in motion_errors(emitted.library, program, columns, each, emitted.precision):
             size = measurement(found, emitted.precision, each)
-            figure = _figure(printed.get(program.name, {}), emitted, found.output)
-            allowed = FACTOR * max(LARGEST_BOUND, figure)
+            stated = _stated(printed.get(program.name, {}), emitted, found.output)
+            allowed = FACTOR * max(LARGEST_BOUND, stated or 0.0)
             says = f"{found.output}: median {size.median:.2g} u, largest {size.worst:.2g} u"
-            says += f" of {len(each)} samples; the header says {figure:.2g} u"
+            printed_says = "nothing" if stated is None else f"{stated:.2g} u"
+            says += f" of {len(each)} samples; the header says {printed_says}, "
+            says += f"allowed {allowed:.2g} u"
             yield _verdict(emitted, program, "rounding", JUDGED[size.worst <= allowed], says)
 
 
@@ -139,16 +141,17 @@ def _accurate(
         f"{found.output}: median {size.median:.2g} u, largest {size.worst:.2g} u "
         f"at sample {size.sample} ({kind}) of {len(each)}"
     )
-    allowed = min(LARGEST_BOUND, FACTOR * max(1.0, _figure(printed, emitted, found.output)))
+    stated = _stated(printed, emitted, found.output)
+    allowed = min(LARGEST_BOUND, FACTOR * max(1.0, LARGEST_BOUND if stated is None else stated))
     holds = size.median <= MEDIAN_BOUND and size.worst <= allowed
     says += "" if holds else f"; allowed {MEDIAN_BOUND:.2g} u and {allowed:.2g} u"
     return _verdict(emitted, program, "error", JUDGED[holds], says)
 
 
-def _figure(printed: Mapping[str, Any], emitted: Emitted, output: str) -> float:
-    """Return the largest error that the scene's JSON states, or the bound if it states none."""
+def _stated(printed: Mapping[str, Any], emitted: Emitted, output: str) -> float | None:
+    """Return the largest error that the header and the JSON state, None if they state none."""
     stated = printed.get(emitted.precision.name, {}).get(output)
-    return float(stated["largest_ulp"]) if stated else LARGEST_BOUND
+    return float(stated["largest_ulp"]) if stated else None
 
 
 def casadi_bits(emitted: Emitted, module: Any, each: Sequence[Sample]) -> Iterator[Verdict]:
@@ -238,6 +241,10 @@ def aliasing(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
             for i in function.arguments
             if o.output and i.kind == "array" and not i.output
         ]
+        if not pairs:
+            says = "no output and input are arrays that could share their place"
+            yield _verdict(emitted, program, "outputs over inputs", "skipped", says)
+            continue
         bad = [
             f"{o} over {i}"
             for o, i in pairs
@@ -254,8 +261,11 @@ def _same_over(function: Any, values: Mapping[str, Any], output: str, over: str)
 
 def refusal(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether set-up refuses parameters that are no body's or not finite, and no others."""
-    setup = emitted.library.setup
-    if not setup.positive or not emitted.library.constants:
+    setup, check_ = emitted.library.setup, "refuses what is no body"
+    reason = "" if setup.positive else "set-up has no condition that parameters could break"
+    reason = reason if emitted.library.constants else "there is no set-up to refuse anything"
+    if reason:
+        yield _verdict(emitted, setup, check_, "skipped", reason)
         return
     good = [emitted.constants(s)["status"] == [0.0] for s in each]
     names = [c for q in setup.inputs for c in q.components]
@@ -264,7 +274,7 @@ def refusal(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     bad = [emitted.constants(s)["status"] == [1.0] for s in (*endless, *turned)]
     says = f"{sum(good)} of {len(good)} bodies taken, {sum(bad)} of {len(bad)} others refused"
     outcome = JUDGED[all(good) and all(bad)]
-    yield _verdict(emitted, setup, "refuses what is no body", outcome, says)
+    yield _verdict(emitted, setup, check_, outcome, says)
 
 
 def _with(sample: Sample, values: dict[str, float]) -> Sample:

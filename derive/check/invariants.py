@@ -6,12 +6,13 @@ axes: a body described along other axes fixed in it moves the same way.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import frexp
+from math import frexp, isfinite
 
 from derive.check.emitted import Emitted
 from derive.check.turning import Turning, turnings
 from derive.check.verdict import JUDGED, Outcome, Verdict
 from derive.formula import FLOATS, Formula, evaluate
+from derive.largest import largest
 from derive.machine.mechanism import single
 from derive.program import Quantity
 from derive.sample import Sample, Values, varying
@@ -35,7 +36,7 @@ def power_balance(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]
         yield _verdict(emitted, "kinetic_energy", "power balance", "skipped", reason)
         return
     gaps = [_power_gap(emitted, s) for s in each]
-    worst = max(gaps)
+    worst = largest(gaps)
     says = f"{len(each)} samples, largest gap {worst:.2g} of what rounding allows"
     yield _verdict(emitted, "kinetic_energy", "power balance", JUDGED[worst <= 1], says)
 
@@ -62,8 +63,8 @@ def _power_gap(emitted: Emitted, sample: Sample) -> float:
     rates = _rates(emitted, sample)
     moving = emitted.library["kinetic_energy"].inputs
     names = [c for q in moving if q.name != "constants" for c in q.components]
-    largest = max((abs(sample.values[c]) for c in names), default=0.0)
-    step = 2.0 ** (frexp(largest)[1] - frexp(max(abs(rates[c]) for c in names))[1])
+    fastest = max((abs(sample.values[c]) for c in names), default=0.0)
+    step = 2.0 ** (frexp(fastest)[1] - frexp(max(abs(rates[c]) for c in names))[1])
     ahead, behind = (
         _energy(emitted, sample, {c: sample.values[c] + h * rates[c] for c in names})
         for h in (step, -step)
@@ -168,10 +169,14 @@ def _turn_verdict(
     emitted: Emitted, function: str, check: str, rows: Sequence[Sequence[_Compared]]
 ) -> Verdict:
     every = [c for row in rows for c in row]
-    largest = max((abs(c.should) for c in every), default=0.0)
-    gap = max((abs(c.found - c.should) for c in every), default=0.0)
-    says = f"{len(rows)} samples, largest gap {gap / (largest or 1):.2g} of the largest value"
-    return _verdict(emitted, function, check, JUDGED[gap <= TURNED * largest], says)
+    if not every:
+        says = "nothing that it returns is known to turn with the axes"
+        return _verdict(emitted, function, check, "skipped", says)
+    most = largest(abs(c.should) for c in every)
+    gap = largest(abs(c.found - c.should) for c in every)
+    says = f"{len(rows)} samples, largest gap {gap / (most or 1):.2g} of the largest value"
+    holds = isfinite(most) and gap <= TURNED * most
+    return _verdict(emitted, function, check, JUDGED[holds], says)
 
 
 def _verdict(emitted: Emitted, function: str, check: str, outcome: Outcome, says: str) -> Verdict:

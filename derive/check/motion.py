@@ -9,9 +9,10 @@ from collections.abc import Iterator, Sequence
 from derive.check.verdict import JUDGED, Verdict
 from derive.convergence import BITS, EXACT, LEVELS, course, exactness, order
 from derive.differences import GAP, slopes
+from derive.largest import largest
 from derive.library import Library
 from derive.sample import Sample
-from derive.scene.wanted import STEPS
+from derive.scene.wanted import COMPENSATED, STEPS
 
 FEW = 2
 
@@ -22,12 +23,12 @@ def orders(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
     for program in library.motions:
         if program.name == "flow_exact":
             yield _exact(library, ordinary)
-        elif program.name in STEPS:
+        elif program.name in (*STEPS, *COMPENSATED):
             yield _order(library, program.name, ordinary)
 
 
 def _exact(library: Library, each: Sequence[Sample]) -> Verdict:
-    worst = max(exactness(library, s.values) for s in each)
+    worst = largest(exactness(library, s.values) for s in each)
     says = f"relative error {worst:.1g} without rounding, {BITS} bits, {LEVELS} levels"
     outcome = JUDGED[worst <= EXACT]
     return Verdict(library.known.scene.name, "flow_exact", "exact", "is the motion", outcome, says)
@@ -35,8 +36,9 @@ def _exact(library: Library, each: Sequence[Sample]) -> Verdict:
 
 def _order(library: Library, name: str, each: Sequence[Sample]) -> Verdict:
     found = [order(library, name, course(library, name, s.values)) for s in each]
-    measured = ", ".join(f"{one.measured:.2f}" for one in found)
-    says = f"claimed {found[0].claimed}, measured {measured}"
+    measured = ", ".join(map(str, found))
+    claimed = f"claimed {found[0].claimed}, measured {measured}"
+    says = f"in closed form, errors {measured}" if found[0].closed else claimed
     outcome = JUDGED[all(one.holds for one in found)]
     return Verdict(library.known.scene.name, name, "exact", "order", outcome, says)
 
@@ -47,7 +49,7 @@ def step_slopes(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
     for program in library.motions:
         if program.sparsity:
             found = [slope for s in ordinary for slope in slopes(library, program, s.values)]
-            worst = max(found, key=lambda slope: slope.gap)
+            worst = max(found, key=lambda slope: largest([slope.gap]))
             where = f"d({worst.row})/d({worst.column})"
             says = f"{len(found)} slopes, largest gap {worst.gap:.1g} at {where}"
             outcome = JUDGED[worst.gap <= GAP]

@@ -10,20 +10,24 @@ from derive.check.verdict import JUDGED, Verdict
 from derive.cloud import Answers, answers
 from derive.cloud.series import DIGITS
 from derive.cloud.small import at_rest, slopes
-from derive.equations import equations
+from derive.convergence import unit_attitude
+from derive.equations import Equations, equations
 from derive.formula import symbols
+from derive.largest import largest
 from derive.library import Library
 from derive.machine.mechanism import Mechanism
 from derive.machine.words import MATRICES
-from derive.reference import Known, reference
+from derive.reference import BITS, Known, reference
 from derive.sample import Sample
 from derive.scene import Machine
 from derive.scene.machine import Result
 from derive.scene.results import written_out
+from derive.truth import Truth
 
 AGREE = mpf(10) ** -25
-AGREE_QUATERNIONS = mpf(10) ** -13  # those of a sample have norm 1 only to double precision
-AGREE_SLOPES = mpf(10) ** -12
+SECANTS = 60
+SAME = 1e-60
+"""Two guesses of a root that are one: half of the digits that it is computed in."""
 PLAIN = (
     "kinetic_energy",
     "potential_energy",
@@ -41,35 +45,76 @@ def clouds(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
         return
     for base, fact in library.truths.items():
         question = equations(known, fact)
-        worst, count, limit = mpf(0), 0, AGREE
-        for sample in each:
-            true = reference(question, sample.values, ())
+        worst, count = 0.0, 0
+        for values in _where_it_lasts(library, each):
+            true = reference(question, values, ())
+            with mp.workdps(DIGITS):
+                given = {name: digits(x) for name, x in values.items()}
             if base == "linearised" or fact.outputs[0].name in MATRICES:
-                limit = AGREE_SLOPES
-                gaps = _small(known.scene, sample, true)
+                gaps = _small(known.scene, given, true)
             else:
-                names = [c for q in fact.outputs for c in q.components]
-                gaps = _gaps(known.scene, sample, names, true)
-            if any(frame.quaternion for frame in known.scene.frames):
-                limit = max(limit, AGREE_QUATERNIONS)
-            worst, count = max([worst, *gaps]), count + len(gaps)
+                gaps = _gaps(known.scene, given, fact, true)
+            worst, count = largest([worst, *gaps]), count + len(gaps)
         if not count:
             says = "the cloud has no such number at these points"
             yield Verdict(known.scene.name, base, "exact", "cloud of particles", "skipped", says)
             continue
-        says = f"{count} numbers, {float(worst):.1g} apart, relative to the largest term"
-        verdict = JUDGED[bool(worst < limit)]
+        says = f"{count} numbers, {worst:.1g} apart, relative to the largest term"
+        verdict = JUDGED[bool(worst < AGREE)]
         yield Verdict(known.scene.name, base, "exact", "cloud of particles", verdict, says)
 
 
+def _where_it_lasts(library: Library, each: Sequence[Sample]) -> Iterator[dict[str, Any]]:
+    """Yield the values of samples; of a steady motion at a root of its residual, if one is near.
+
+    Quaternions are brought to length 1, which floats have only to their own precision.
+
+    Off the root the balances contradict each other, and each says something else.
+    """
+    with ctx.workprec(BITS):
+        balls = [unit_attitude(library, {c: arb(x) for c, x in s.values.items()}) for s in each]
+    steady = library.known.scene.steady if isinstance(library.known.scene, Machine) else None
+    if steady is None or steady.vanishes is not None or "steady" not in library.truths:
+        yield from balls
+    elif len(steady.unknown) == 1:
+        question = equations(library.known, library.truths["steady"])
+        for values in balls:
+            root = _root(question, values, steady.unknown[0])
+            if root is not None:
+                yield values | {steady.unknown[0]: root}
+
+
+def _root(question: Equations, values: Mapping[str, Any], name: str) -> Any:
+    """Return where the only residual vanishes, to a part in 10^60, by secants; None if nowhere."""
+
+    def residual(x: Any) -> Any:
+        return reference(question, {**values, name: x}, ())["steady"].value.mid()
+
+    with ctx.workprec(BITS):
+        last, here = values[name], (values[name] * arb("1.01")).mid()
+        before, now = residual(last), residual(here)
+        for _ in range(SECANTS):
+            if now == before or not here.is_finite():
+                return None
+            last, here = here, (here - now * (here - last) / (now - before)).mid()
+            if abs(here - last) < abs(here) * SAME:
+                return here
+            before, now = now, residual(here)
+    return None
+
+
 def _gaps(
-    machine: Machine, sample: Sample, names: Sequence[str], true: Mapping[str, Known]
+    machine: Machine, given: Mapping[str, Any], fact: Truth, true: Mapping[str, Known]
 ) -> list[Any]:
     """Return how far each answer is from the cloud's, relative to the function's largest term."""
-    cloud = answers(machine, sample.values)
-    if machine.steady is not None and cloud.contradiction > AGREE:
-        return []  # off the root the balances contradict each other, and each says something else
-    found = [_of_cloud(machine, cloud, name) for name in names]
+    cloud = answers(machine, given)
+    lasts = machine.steady is not None and machine.steady.vanishes is None
+    if fact.name == "steady" and lasts:
+        return [cloud.contradiction]  # at a root, the particles are in balance
+    if lasts and cloud.contradiction > AGREE:
+        return []
+    names = [c for q in fact.outputs for c in q.components]
+    found = [_of_cloud(machine, cloud, fact.name, name) for name in names]
     with mp.workdps(DIGITS):
         scale = max([mpf(true[name].scale) for name in names] + [abs(x) for x in found if x] or [1])
         return [
@@ -79,16 +124,45 @@ def _gaps(
         ]
 
 
-def _of_cloud(machine: Machine, cloud: Answers, name: str) -> Any:
+def _of_cloud(machine: Machine, cloud: Answers, function: str, name: str) -> Any:
     """Return an answer of the cloud, None if it has none."""
+    if function == "steady" and machine.steady is not None and machine.steady.vanishes is not None:
+        return cloud.result(machine.steady.vanishes)
+    if function == "state_rate":
+        return cloud.rate(name.removesuffix("_rate"))
     if name in cloud.unknowns:
         return cloud.unknowns[name]
     if name in PLAIN:
         return cloud.momenta[name]
     result = next((r for r in machine.results if r.name == name), None)
-    if result is None or _of_matrices(machine, result):
+    if result is None:
         return None
+    if _of_matrices(machine, result):
+        return _of_slopes(machine, cloud, result)
     return cloud.result(result.formula)
+
+
+def _of_slopes(machine: Machine, cloud: Answers, result: Result) -> Any:
+    """Return a result of the matrices of small motion, None if it rests on more than slopes.
+
+    The cloud knows M^-1 D and M^-1 K only, so a result must be the same for any M: it is taken
+    with M = 1 and with another, and both must say the same.
+    """
+    by_velocity, by_place = slopes(machine, cloud.given)
+    size = by_velocity.rows
+    with mp.workdps(DIGITS):
+        values = []
+        for M in (mp.eye(size), mp.diag([k + 2 for k in range(size)]) + mp.ones(size)):
+            each = dict(zip(MATRICES, (M, -M * by_velocity, -M * by_place), strict=True))
+            entries = {
+                f"{name}_{i + 1}_{k + 1}": matrix[i, k]
+                for name, matrix in each.items()
+                for i in range(size)
+                for k in range(size)
+            }
+            values.append(cloud.result(result.formula, entries))
+        first, second = values
+        return first if abs(first - second) <= AGREE * abs(first) else None
 
 
 def _of_matrices(machine: Machine, result: Result) -> bool:
@@ -104,11 +178,11 @@ def digits(ball: Any) -> Any:
     return mpf(int(man)) * mpf(2) ** int(exp)
 
 
-def _small(machine: Machine, sample: Sample, true: Mapping[str, Known]) -> list[Any]:
+def _small(machine: Machine, given: Mapping[str, Any], true: Mapping[str, Known]) -> list[Any]:
     """Return how far M, D and K are from the slopes of the cloud's accelerations."""
-    if not at_rest(machine, sample.values):
+    if not at_rest(machine, given):
         return []  # the given motion is none, for these values
-    by_velocity, by_place = slopes(machine, sample.values)
+    by_velocity, by_place = slopes(machine, given)
     size = by_velocity.rows
     with mp.workdps(DIGITS):
         M, D, K = (mp.matrix([[digits(true[f"{name}_{i + 1}_{k + 1}"].value) for k in range(size)]

@@ -104,11 +104,20 @@ class Answers:
             energies["energy"] = energy + height
             return energies | dict(zip(names, along, strict=True))
 
-    def result(self, formula: Formula) -> Any:
-        """Return the value of a formula of answers."""
+    def rate(self, name: str) -> Any:
+        """Return the rate of a state, None if it is none or an acceleration is not determined."""
+        free = [m.unknown for m in (*self.machine.coordinates, *self.machine.speeds) if m.free]
+        if not set(free) <= set(self.unknowns):
+            return None
+        with mp.workdps(DIGITS):
+            scalars = self._history(self.unknowns).scalars
+            return scalars[name].velocity if name in scalars else None
+
+    def result(self, formula: Formula, also: Mapping[str, Any] | None = None) -> Any:
+        """Return the value of a formula of answers, and of what is ``also`` known by name."""
         with mp.workdps(DIGITS):
             history = self._history(self.unknowns)
-            known = self.unknowns | self.momenta
+            known = self.unknowns | self.momenta | dict(also or {})
             history.scalars.update({n: series(v) for n, v in known.items()})
             return history.value(written_out(formula, self.machine.results)).value
 

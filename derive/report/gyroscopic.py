@@ -14,6 +14,7 @@ from derive.check.call import Function
 from derive.report.hard_formulas import callable_by_precision, rounded
 
 SCENES = {"fast": "gyroscopic", "accurate": "gyroscopic_accurate"}
+NAMES = ("I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
 SAMPLES = 300
 ASPHERICITIES = tuple(10.0**-n for n in range(13))
 Row = Sequence[float]
@@ -49,7 +50,7 @@ def gyroscopic(folder: Path) -> Iterator[Gyroscopic]:
 def _errors(
     own: Mapping[str, Function], precision: str, asphericity: float
 ) -> list[tuple[float, float]]:
-    """Return the errors of all samples that are no spheres once they are rounded."""
+    """Return the errors of all samples; that of a sphere is none at all, or without bound."""
     dice = random.Random(f"{asphericity}")
     found = []
     for _ in range(SAMPLES):
@@ -58,13 +59,14 @@ def _errors(
         inertia = rounded(parts, precision)
         omega = rounded([dice.uniform(-10, 10) for _ in range(3)], precision)
         true = _exact(inertia, omega)
+        made = own["setup"]({n: [x] for n, x in zip(NAMES, inertia, strict=True)})
+        given = {"constants": made["constants"], "omega": omega, "omega_dot": [0.0] * 3}
+        apart = _distance(own["moment"](given)["moment"], true) / ROUNDOFF[precision]
         if any(true):
-            names = ("I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
-            made = own["setup"]({n: [x] for n, x in zip(names, inertia, strict=True)})
-            given = {"constants": made["constants"], "omega": omega, "omega_dot": [0.0] * 3}
-            apart = _distance(own["moment"](given)["moment"], true) / ROUNDOFF[precision]
             found.append((apart / _norm(true), apart / _norm(_terms(inertia, omega))))
-    return found or [(0.0, 0.0)]
+        else:
+            found.append((math.inf, math.inf) if apart else (0.0, 0.0))
+    return found
 
 
 def _exact(inertia: Row, omega: Row) -> list[Fraction]:

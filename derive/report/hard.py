@@ -18,6 +18,7 @@ from derive.bench.motion.runner import Job, Mover, moved
 from derive.bench.motion.textbook import PUBLISHED, RK4, published, textbook
 from derive.bench.motion.textbook import parameters as textbook_parameters
 from derive.bench.motion.wrong import ROUNDOFF, Wrong, wrong
+from derive.largest import largest
 from derive.report.case_run import PRECISIONS, Workshop
 from derive.report.elliptic import elliptic
 from derive.report.settings import steps
@@ -51,11 +52,7 @@ class Hard:
         return self._keeps(self.naive_found, precision)
 
     def _keeps(self, found: Figures, precision: str) -> bool:
-        return max(found.get(precision, (math.nan,)), key=_worst) <= self.bound[precision]
-
-
-def _worst(x: float) -> float:
-    return math.inf if math.isnan(x) else x
+        return largest(found.get(precision, (math.nan,))) <= self.bound[precision]
 
 
 @dataclass(frozen=True)
@@ -184,7 +181,7 @@ def best(case: Case, method: str, shop: Workshop, precision: str) -> tuple[float
         jobs = [Job(method, float(case.time) / n, n) for n in _tried(case, counts)]
     found = moved(mover, case, given, jobs)
     every = [wrong(case, m.states[-1]) for m in found if m] or [Wrong(*[math.nan] * 4)]
-    chosen = min(every, key=lambda w: _worst(w.state))
+    chosen = min(every, key=lambda w: largest([w.state]))
     return chosen.omega, chosen.attitude
 
 

@@ -14,6 +14,7 @@ from typing import Any
 from derive.bench.motion.ours import emission
 from derive.bench.motion.wrong import ROUNDOFF
 from derive.check.call import Function
+from derive.largest import largest
 from derive.report.case_run import PRECISIONS
 from derive.report.hard import Hard
 from derive.report.hard_formulas import DIGITS, SAMPLES, callable_by_precision
@@ -62,13 +63,13 @@ def _largest(answer: Answer, form: Form, precision: str) -> float:
 
     real: Any = np.float32 if precision == "f32" else np.float64
     dice = random.Random(answer.name)
-    worst = 0.0
+    errors = []
     for _ in range(SAMPLES):
         given = {name: float(real(x)) for name, x in _sample(dice).items()}
         true = answer.true(given)
         found = form({name: real(x) for name, x in given.items()}, real)
-        worst = max(worst, abs(float((float(found) - true) / true)))
-    return worst
+        errors.append(abs((float(found) - true) / true))
+    return largest(errors)
 
 
 def _sample(dice: random.Random) -> dict[str, float]:

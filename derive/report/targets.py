@@ -14,6 +14,7 @@ from derive.bench.motion.step_jacobian import Entry
 from derive.bench.motion.textbook import DOP853
 from derive.bench.motion.wrong import ROUNDOFF
 from derive.bench.own import AUTHOR
+from derive.largest import largest
 from derive.report.case_run import PRECISIONS, Found
 from derive.report.gyroscopic import ASPHERICITIES, Gyroscopic
 from derive.report.gyroscopic import SCENES as FORMS
@@ -113,8 +114,8 @@ def _exact_instructions(given: Evidence, precision: str, calls: int) -> Verdict:
     missing = [name for name, own in points.items() if not own or len(costs[name]) < len(own)]
     if missing:
         return f"{NOT}: {', '.join(missing)}"
-    largest = max(max(own) for own in costs.values())
-    return f"{largest:.0f} Ir", largest <= calls
+    most = max(max(own) for own in costs.values())
+    return f"{most:.0f} Ir", most <= calls
 
 
 def _units(found: Found, point: Point, units: float) -> float:
@@ -265,8 +266,8 @@ def _gyroscopic(given: Evidence) -> Iterator[Target]:
 def _largest(own: Sequence[Gyroscopic]) -> Verdict:
     if {g.asphericity for g in own} != set(ASPHERICITIES):
         return NOT
-    middle, largest = max(g.median for g in own), max(g.largest for g in own)
-    return f"{middle:.2f} u, {largest:.1f} u", middle <= 1 and largest <= 16
+    middle, worst = largest([g.median for g in own]), largest([g.largest for g in own])
+    return f"{middle:.2f} u, {worst:.1f} u", middle <= 1 and worst <= 16
 
 
 def _derivatives(given: Evidence) -> Iterator[Target]:

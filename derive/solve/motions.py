@@ -1,18 +1,20 @@
 """Steady and small motions of a machine: roots by CasADi, frequencies by an eigenvalue routine."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import product
+from itertools import pairwise, product
 from typing import Any
 
 import casadi
 import numpy as np
 from numpy.typing import NDArray
 
+from derive.largest import largest
 from derive.scene import Machine, SceneError
 from derive.solve.instrument import Instrument
 
 STARTS = 200  # of one unknown; of several, so many in all
-SAME = 1e-7  # relative distance of two roots that are one
+SAME = 1e-7  # distance of two roots that are one, beside the root or, near 0, beside its range
+LEFT = 1e-9  # of the largest residual on the grid: Newton's method leaves less at any root
 UNSTABLE = 1e-6  # growth beside the largest eigenvalue that is more than rounding
 HALVINGS = 60
 
@@ -38,13 +40,17 @@ def roots(found: Instrument, given: Mapping[str, float]) -> list[dict[str, float
             f"scene '{found.name}': the steady residual must depend on "
             f"{' and '.join(names)}, but it does not; say another by steady.vanishes"
         )
-    rule = {"x": x, "g": casadi.vertcat(*left.values())}
+    grid = _grid(found, names)
+    size = max((s for p in grid if np.isfinite(s := _size(residual, p))), default=0.0)
+    rule = {"x": x, "g": casadi.vertcat(*left.values()) / (size or 1.0)}
     finder = casadi.rootfinder("finder", "newton", rule, {"error_on_fail": False})
+    near = SAME * np.abs([_bounds(found, name) for name in names]).max(axis=1)
     kept: list[NDArray[Any]] = []
-    for start in _starts(found, names, residual):
+    for start in _starts(grid, residual):
         root = np.array(finder(x0=start)["x"]).ravel()
-        known = any(np.allclose(root, other, rtol=SAME, atol=0) for other in kept)
-        if not known and _is_root(residual, root, start) and _within(found, names, root):
+        known = any(np.allclose(root, other, rtol=SAME, atol=near) for other in kept)
+        vanishes = _size(residual, root) <= LEFT * size
+        if not known and vanishes and _within(found, names, root):
             kept.append(root)
     return [dict(zip(names, map(float, root), strict=True)) for root in sorted(kept, key=tuple)]
 
@@ -54,26 +60,27 @@ def _bounds(found: Instrument, name: str) -> tuple[float, float]:
     return float(q.low or 0), float(q.high or 0)
 
 
-def _starts(found: Instrument, names: Sequence[str], residual: Any) -> Iterator[NDArray[Any]]:
-    """Yield starts: where one residual changes sign, or a grid of several unknowns."""
+def _grid(found: Instrument, names: Sequence[str]) -> list[NDArray[Any]]:
     count = STARTS if len(names) == 1 else max(3, round(STARTS ** (1 / len(names))))
     axes = [np.linspace(*_bounds(found, name), count) for name in names]
-    if len(names) > 1:
-        yield from (np.array(start) for start in product(*axes))
+    return [np.array(point) for point in product(*axes)]
+
+
+def _starts(grid: Sequence[NDArray[Any]], residual: Any) -> Iterator[NDArray[Any]]:
+    """Yield starts: where one residual changes sign, or the grid of several unknowns."""
+    if len(grid[0]) > 1:
+        yield from grid
         return
-    values = [float(residual(v)) for v in axes[0]]
-    for k in range(count - 1):
-        if values[k] * values[k + 1] <= 0:
-            slope = values[k + 1] - values[k]
-            part = -values[k] / slope if slope else 0.5
-            yield np.array([axes[0][k] + part * (axes[0][k + 1] - axes[0][k])])
+    values = [float(residual(v)) for v in grid]
+    for (a, here), (b, there) in pairwise(zip(grid, values, strict=True)):
+        if here * there <= 0:
+            slope = there - here
+            yield a + (-here / slope if slope else 0.5) * (b - a)
 
 
-def _is_root(residual: Any, root: NDArray[Any], start: NDArray[Any]) -> bool:
-    if not np.all(np.isfinite(root)):
-        return False
-    here, there = (np.abs(np.array(residual(p))).max() for p in (root, start))
-    return bool(here <= 1e-9 * max(there, 1e-300) or here < 1e-12)
+def _size(residual: Any, point: NDArray[Any]) -> float:
+    """Return how large the largest residual is, infinite where it is no number."""
+    return largest(np.abs(np.array(residual(point))).ravel())
 
 
 def _within(found: Instrument, names: Sequence[str], root: NDArray[Any]) -> bool:

@@ -22,4 +22,4 @@ def test_a_machine_of_another_kind_is_proved_and_agrees_with_its_cloud(path: Pat
     prove(made)
     found = list(clouds(made, samples(made.known, F64, 2, 0).each))
     assert [v for v in found if v.outcome == "FAILS"] == []
-    assert made.known.scene.steady or any(v.outcome == "holds" for v in found)
+    assert any(v.outcome == "holds" for v in found)

@@ -26,3 +26,15 @@ def test_a_residual_that_does_not_hold_its_unknown_is_refused(tmp_path: Path) ->
     other.write_text(text, encoding="utf-8")
     with pytest.raises(SceneError, match="must depend on W, but it does not"):
         roots(opened(str(other)), GIVEN)
+
+
+def test_a_root_at_zero_is_found_once_and_no_scale_of_the_residual_makes_another(
+    tmp_path: Path,
+) -> None:
+    for scale in ("1", "r^9"):  # a residual near 1e-17 has no other roots
+        text = HOOP.read_text(encoding="utf-8")
+        text += f"vanishes = '{scale}*W*(W - s)'\n"
+        other = tmp_path / "hoop.toml"
+        other.write_text(text, encoding="utf-8")
+        found = [root["W"] for root in roots(opened(str(other)), GIVEN)]
+        assert found == [pytest.approx(0, abs=1e-9), pytest.approx(47)]

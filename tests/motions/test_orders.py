@@ -7,14 +7,14 @@ import pytest
 
 from derive.c_text import F64
 from derive.check.motion import orders
-from derive.convergence import Order, course, exactness, order
+from derive.convergence import Order, closed, course, exactness, order
 from derive.library import Library, library
 from derive.motion_error import with_motion
-from derive.program import Line, Op, Program, Repeat
+from derive.program import Line, Op, Program, Repeat, component_names
 from derive.recorded import needed
 from derive.sample import Sample, samples
-from derive.scene import catalogue, load
-from derive.scene.wanted import moves
+from derive.scene import catalogue, load, parse_scene
+from derive.scene.wanted import STEP_DERIVATIVES, moves
 
 MOVING = [name for name in catalogue() if any(map(moves, load(name).wanted))]
 MUTANTS = 12  # of each step, spread over its sums
@@ -37,20 +37,20 @@ def test_every_step_has_its_order_and_every_flow_is_the_motion(scene: str) -> No
     drawn = samples(made(scene).known, F64, 2, 0).each
     verdicts = list(orders(made(scene), with_motion(made(scene), drawn, F64)))
     assert [v for v in verdicts if v.outcome != "holds"] == []
-    steps = {step for step in load(scene).wanted if moves(step) and step.count("_") == 1}
+    steps = {n for n in load(scene).wanted if moves(n) and n not in STEP_DERIVATIVES}
     assert {v.function for v in verdicts} == steps
 
 
 @pytest.mark.parametrize(
-    ("claimed", "errors"),
+    ("closed", "errors"),
     [
-        (4, (1.6e-7, 5e-9)),
-        (4, (1e-60, 1e-61)),  # a motion in closed form has no error at all
-        (4, (1e-20, 1e-24)),  # or one that rounding covers
+        (False, (1.6e-7, 5e-9)),
+        (True, (1e-60, 1e-61)),  # a motion in closed form has no error at all
+        (True, (1e-20, 1e-24)),  # or one that rounding covers
     ],
 )
-def test_two_errors_of_the_claimed_order_pass(claimed: int, errors: tuple[float, float]) -> None:
-    assert Order(claimed, errors).holds
+def test_two_errors_of_the_claimed_order_pass(*, closed: bool, errors: tuple[float, float]) -> None:
+    assert Order(4, errors, closed).holds
 
 
 @pytest.mark.parametrize(
@@ -59,10 +59,87 @@ def test_two_errors_of_the_claimed_order_pass(claimed: int, errors: tuple[float,
         (4, (1.6e-7, 1e-8)),  # order 3
         (4, (1.6e-7, 1e-9)),  # order 6: then it is not the step that it says it is
         (10, (1e-16, 1e-16)),  # rounding, not convergence
+        (4, (1e-60, 1e-61)),  # no error where there should be one
+        (4, (0.0, 0.0)),
     ],
 )
 def test_two_errors_of_another_order_fail(claimed: int, errors: tuple[float, float]) -> None:
-    assert not Order(claimed, errors).holds
+    assert not Order(claimed, errors, closed=False).holds
+
+
+def test_a_closed_form_with_an_error_is_no_closed_form() -> None:
+    assert not Order(4, (1.6e-7, 5e-9), closed=True).holds
+
+
+def test_a_taylor_step_of_the_order_below_is_not_of_the_order_that_it_claims() -> None:
+    text = load("tumbling_body").text.replace('"step_taylor"', '"step_taylor", "step_taylor19"')
+    whole = library(parse_scene(text, "tumbling_body"))
+    for name, claimed in (("step_taylor", 20), ("step_taylor19", 19)):
+        found = order(whole, name, course(whole, name, one_sample("tumbling_body").values))
+        assert found.claimed == claimed
+        assert found.holds
+        assert replace(found, claimed=20).holds == (claimed == 20)
+
+
+COMPENSATED = '"step_rk4_compensated", "step_lie_compensated", "step_split_compensated"'
+
+
+def test_a_compensated_step_has_the_order_of_its_step() -> None:
+    text = load("tumbling_body").text.replace('"step_taylor"', COMPENSATED)
+    whole = library(parse_scene(text, "tumbling_body"))
+    each = with_motion(whole, (one_sample("tumbling_body"),), F64)
+    found = {v.function: v.outcome for v in orders(whole, each)}
+    assert {found[name] for name in COMPENSATED.replace('"', "").split(", ")} == {"holds"}
+    spoilt = replace(whole, motions=tuple(map(_late, whole.motions)))
+    found = {v.function: v.outcome for v in orders(spoilt, each)}
+    assert {name for name, outcome in found.items() if outcome == "FAILS"} >= {
+        "step_rk4_compensated",
+        "step_lie_compensated",
+    }
+
+
+def _late(program: Program) -> Program:
+    """Return a compensated step that ends with the omega that it began with."""
+    if not program.name.endswith("_compensated"):
+        return program
+    names = component_names(program)
+    kept = dict(zip(names, program.results, strict=True)) | {"omega_x_next": "omega_x"}
+    return replace(program, results=tuple(kept[name] for name in names))
+
+
+SPHERE = """
+title  = "Sphere that tumbles"
+wanted = ["step_dmv", "step_split", "step_lie", "step_rk4"]
+
+[parameters]
+J = { unit = "kg m^2", range = [1, 2], meaning = "moment of inertia" }
+
+[axes]
+fixed_in = "body"
+attitude = "quaternion"
+
+[body]
+kind    = "principal"
+moments = ["J", "J", "J"]
+
+[known]
+angular_velocity = { range = [-10, 10] }
+moment           = [0, 0, 0]
+
+[motion]
+time_step = { range = [0, 0.02] }
+"""
+
+
+def test_only_what_is_in_closed_form_may_be_without_an_order() -> None:
+    sphere = library(parse_scene(SPHERE, "sphere"))
+    steps = ("step_dmv", "step_split", "step_lie")
+    assert [closed(sphere, name) for name in (*steps, "step_rk4")] == [True, True, True, False]
+    assert [closed(made("tumbling_disc"), n) for n in ("step_dmv", "step_lie")] == [True, False]
+    assert not any(closed(made("tumbling_body"), name) for name in steps)
+    assert not closed(made("heavy_body"), "step_split")
+    each = with_motion(sphere, samples(sphere.known, F64, 1, 0).each, F64)
+    assert {v.outcome for v in orders(sphere, each)} == {"holds"}
 
 
 @pytest.mark.parametrize("step", MUTATED)

@@ -21,6 +21,7 @@ from derive.bench.flops import Flops
 from derive.bench.motion.ours import Emission
 from derive.bench.peers import casadi, symforce
 from derive.bench.problem import ATTITUDE, OMEGA, TENSOR, Problem
+from derive.largest import largest
 
 SCENE, FUNCTION = "moment", "step_rk4_jacobian"
 SYMPY = "SymPy cse"
@@ -84,7 +85,7 @@ def entries(made: Emission | None, folder: Path) -> Iterator[Entry]:
 
 def _apart(found: Sequence[Row], first: Sequence[Row]) -> float:
     states = ((x[: len(AFTER)], y[: len(AFTER)]) for x, y in zip(found, first, strict=True))
-    return max(abs(a - b) for x, y in states for a, b in zip(x, y, strict=True))
+    return largest(abs(a - b) for x, y in states for a, b in zip(x, y, strict=True))
 
 
 def _rows() -> list[Row]:
