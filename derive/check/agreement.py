@@ -18,7 +18,6 @@ from derive.arithmetic import LIBM, Table, working
 from derive.check.emitted import Emitted, inputs
 from derive.check.verdict import JUDGED, Outcome, Verdict
 from derive.flows.compact import Compact
-from derive.library import Library
 from derive.measure import Errors, errors, measurement, references, replayed
 from derive.motion_error import motion_errors
 from derive.program import Program
@@ -71,16 +70,10 @@ def _linked(loaded: ctypes.CDLL, symbol: str, dtype: type) -> Callable[..., Any]
 
 def replay(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether the C of every function gives the bits of its program."""
-    uses_libm = any(
-        kind in LIBM for f in emitted.library.printed() for kind in f.count()
-    )
+    uses_libm = any(kind in LIBM for f in emitted.library.printed() for kind in f.count())
     table = linked_arithmetic(emitted) if uses_libm else working(emitted.precision.dtype)
     expected = replayed(emitted.library, each, emitted.precision, table)
     for program in emitted.library.printed():
-        reason = _not_replayed(emitted.library, program)
-        if reason:
-            yield _verdict(emitted, program, "bits of the program", "skipped", reason)
-            continue
         rows = np.array([np.broadcast_to(r, len(each)) for r in expected[program.name]]).T
         worst = [
             s.number
@@ -89,14 +82,6 @@ def replay(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
         ]
         says = f"{len(each)} samples" if not worst else f"{len(worst)} differ, first {worst[0]}"
         yield _verdict(emitted, program, "bits of the program", JUDGED[not worst], says)
-
-
-def _not_replayed(library: Library, program: Program) -> str:
-    """Return why a program's bits cannot be told: sines in pairs of floats are libm's own."""
-    in_pairs = [library.setup] + ([program] if program.arithmetic == "pairs" else [])
-    if any(kind in LIBM for p in in_pairs for kind in p.count()):
-        return "sine or cosine in pairs of floats differ with the platform"
-    return ""
 
 
 def accuracy(
