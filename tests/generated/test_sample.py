@@ -55,7 +55,7 @@ def test_every_corner_is_there_or_counted_as_skipped(name: str) -> None:
 
 def test_the_same_numbers_come_on_every_machine() -> None:
     text = repr([s for p in PRECISIONS for s in drawn("gyrostat", p).each])
-    assert hashlib.sha256(text.encode()).hexdigest()[:16] == "f28e3a53d6a73508"
+    assert hashlib.sha256(text.encode()).hexdigest()[:16] == "a7202084e63f5f5a"
 
 
 def kinds(name: str, kind: str) -> list[dict[str, float]]:

@@ -84,6 +84,7 @@ def test_a_taylor_step_of_the_order_below_is_not_of_the_order_that_it_claims() -
 COMPENSATED = '"step_rk4_compensated", "step_lie_compensated", "step_split_compensated"'
 
 
+@pytest.mark.long
 def test_a_compensated_step_has_the_order_of_its_step() -> None:
     text = load("tumbling_body").text.replace('"step_taylor"', COMPENSATED)
     whole = library(parse_scene(text, "tumbling_body"))
@@ -157,6 +158,7 @@ def test_a_sign_turned_in_a_step_is_noticed_unless_it_is_below_the_order(step: s
     assert len(turned) - len(passed) >= 5
 
 
+@pytest.mark.long
 def test_a_sign_turned_in_the_exact_flow_is_noticed() -> None:
     scene = "tumbling_disc"
     whole, program = made(scene), made(scene)["flow_exact"]
