@@ -19,7 +19,7 @@ from derive.machine.mechanism import Mechanism
 from derive.machine.words import MATRICES
 from derive.reference import BITS, Known, reference
 from derive.sample import Sample
-from derive.scene import Machine
+from derive.scene import Input, Machine
 from derive.scene.machine import Result
 from derive.scene.results import written_out
 from derive.truth import Truth
@@ -78,10 +78,18 @@ def _where_it_lasts(library: Library, each: Sequence[Sample]) -> Iterator[dict[s
         yield from balls
     elif len(steady.unknown) == 1:
         question = equations(library.known, library.truths["steady"])
-        for values in balls:
+        for moving in balls:
+            values = moving | dict.fromkeys(_rates(library), arb(0))
             root = _root(question, values, steady.unknown[0])
             if root is not None:
                 yield values | {steady.unknown[0]: root}
+
+
+def _rates(library: Library) -> list[str]:
+    """Return the rates of a machine's free coordinates, which rest while motion is steady."""
+    scene = library.known.scene
+    coordinates = scene.coordinates if isinstance(scene, Machine) else ()
+    return [c.rate.name for c in coordinates if c.free and isinstance(c.rate, Input)]
 
 
 def _root(question: Equations, values: Mapping[str, Any], name: str) -> Any:
