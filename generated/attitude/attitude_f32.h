@@ -10,7 +10,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 4171ec32b94caf8e.
+ * times the largest component of the output. Body of these files: sha256 0bb554be1983eedf.
  */
 #ifndef ATTITUDE_F32_H
 #define ATTITUDE_F32_H

@@ -10,7 +10,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 f8168ac55b149ff5.
+ * times the largest component of the output. Body of these files: sha256 3850305e9612206b.
  */
 #ifndef ATTITUDE_F64_H
 #define ATTITUDE_F64_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 7076fcb43cecc9a0.
+ * times the largest component of the output. Body of these files: sha256 2f50e2f9434264c8.
  */
 #ifndef CENTRIFUGE_GONDOLA_F64_H
 #define CENTRIFUGE_GONDOLA_F64_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 c2d818811b82765d.
+ * times the largest component of the output. Body of these files: sha256 2d533f29345a8b77.
  */
 #ifndef CHANDLER_RIGID_EARTH_F32_H
 #define CHANDLER_RIGID_EARTH_F32_H

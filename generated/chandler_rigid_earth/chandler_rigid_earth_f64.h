@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 7426a1ff8b0ab24b.
+ * times the largest component of the output. Body of these files: sha256 9bb29c946e7792a7.
  */
 #ifndef CHANDLER_RIGID_EARTH_F64_H
 #define CHANDLER_RIGID_EARTH_F64_H

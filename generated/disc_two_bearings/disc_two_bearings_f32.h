@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 e4d4e790c7ea854c.
+ * times the largest component of the output. Body of these files: sha256 1e46286b5426ea55.
  */
 #ifndef DISC_TWO_BEARINGS_F32_H
 #define DISC_TWO_BEARINGS_F32_H

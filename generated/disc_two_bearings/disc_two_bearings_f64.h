@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 39b6c689adb75545.
+ * times the largest component of the output. Body of these files: sha256 aed5ec8f7500d1eb.
  */
 #ifndef DISC_TWO_BEARINGS_F64_H
 #define DISC_TWO_BEARINGS_F64_H

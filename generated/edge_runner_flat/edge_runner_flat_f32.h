@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 0d9c2c19d7f5ca8a.
+ * times the largest component of the output. Body of these files: sha256 97b0f197d22a3f14.
  */
 #ifndef EDGE_RUNNER_FLAT_F32_H
 #define EDGE_RUNNER_FLAT_F32_H

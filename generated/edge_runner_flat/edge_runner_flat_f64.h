@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 146f6dfe1a7a12a3.
+ * times the largest component of the output. Body of these files: sha256 d95af28342ad0df5.
  */
 #ifndef EDGE_RUNNER_FLAT_F64_H
 #define EDGE_RUNNER_FLAT_F64_H

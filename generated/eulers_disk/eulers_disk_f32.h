@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 0f646730d13306bc.
+ * times the largest component of the output. Body of these files: sha256 066dd1b9a13c82fb.
  */
 #ifndef EULERS_DISK_F32_H
 #define EULERS_DISK_F32_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 65ee416287efb86e.
+ * times the largest component of the output. Body of these files: sha256 b66c442e54187244.
  */
 #ifndef EULERS_DISK_F64_H
 #define EULERS_DISK_F64_H

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 677b400b40733cfe.
+ * times the largest component of the output. Body of these files: sha256 ae197fe0dc59bf2b.
  */
 #ifndef FREE_BODY_PRINCIPAL_F64_H
 #define FREE_BODY_PRINCIPAL_F64_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 1ae4d3749be9f86a.
+ * times the largest component of the output. Body of these files: sha256 2430ce65a8bf91d1.
  */
 #ifndef GYROCOMPASS_F32_H
 #define GYROCOMPASS_F32_H

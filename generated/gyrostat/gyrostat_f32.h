@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 77e804cd362bb67e.
+ * times the largest component of the output. Body of these files: sha256 8062a06ff29d251b.
  */
 #ifndef GYROSTAT_F32_H
 #define GYROSTAT_F32_H

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 6b0224e18b186671.
+ * times the largest component of the output. Body of these files: sha256 9fe0e2ab4ba559e0.
  */
 #ifndef GYROSTAT_F64_H
 #define GYROSTAT_F64_H

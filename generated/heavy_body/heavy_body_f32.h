@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 a2ca0d93a0a8fb13.
+ * times the largest component of the output. Body of these files: sha256 a2318f7d1caf6cdb.
  */
 #ifndef HEAVY_BODY_F32_H
 #define HEAVY_BODY_F32_H

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 d32c4d35ab5a1b33.
+ * times the largest component of the output. Body of these files: sha256 1a35eaad003c778d.
  */
 #ifndef HEAVY_TOP_F32_H
 #define HEAVY_TOP_F32_H

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 33398fa514715086.
+ * times the largest component of the output. Body of these files: sha256 087f5a31ce9e13d2.
  */
 #ifndef HEAVY_TOP_F64_H
 #define HEAVY_TOP_F64_H

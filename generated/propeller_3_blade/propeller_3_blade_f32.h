@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 7145c727d7ec7ada.
+ * times the largest component of the output. Body of these files: sha256 76aab2fbd112603e.
  */
 #ifndef PROPELLER_3_BLADE_F32_H
 #define PROPELLER_3_BLADE_F32_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 d41d1b030e96fec3.
+ * times the largest component of the output. Body of these files: sha256 7df5ee067c7cbcd7.
  */
 #ifndef PROPELLER_3_BLADE_F64_H
 #define PROPELLER_3_BLADE_F64_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 2f3114b315c5c6cc.
+ * times the largest component of the output. Body of these files: sha256 86a3fc77de076c49.
  */
 #ifndef REACTION_WHEEL_SATELLITE_F32_H
 #define REACTION_WHEEL_SATELLITE_F32_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 02da930d8cbffafb.
+ * times the largest component of the output. Body of these files: sha256 3f4857b43e104d4e.
  */
 #ifndef REACTION_WHEEL_SATELLITE_F64_H
 #define REACTION_WHEEL_SATELLITE_F64_H

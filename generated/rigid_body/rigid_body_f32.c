@@ -7,7 +7,7 @@
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
 #error "rigid_body_f32.h: -ffast-math and its parts break the stated errors; compile without"
 #endif
-#if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0
+#if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
 #error "rigid_body_f32.h: needs arithmetic in the type's own precision (for x86: -msse2 -mfpmath=sse)"
 #endif
 

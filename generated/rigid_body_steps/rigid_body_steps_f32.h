@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 7f2b6a2eb4f7e7ef.
+ * times the largest component of the output. Body of these files: sha256 96f1cc0fbeaf9e40.
  */
 #ifndef RIGID_BODY_STEPS_F32_H
 #define RIGID_BODY_STEPS_F32_H

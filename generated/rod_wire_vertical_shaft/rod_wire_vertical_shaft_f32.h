@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 0284100a8dbb4302.
+ * times the largest component of the output. Body of these files: sha256 233a6af0724a9287.
  */
 #ifndef ROD_WIRE_VERTICAL_SHAFT_F32_H
 #define ROD_WIRE_VERTICAL_SHAFT_F32_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 c304c2654909eb07.
+ * times the largest component of the output. Body of these files: sha256 402e99e6e755f37a.
  */
 #ifndef ROD_WIRE_VERTICAL_SHAFT_F64_H
 #define ROD_WIRE_VERTICAL_SHAFT_F64_H

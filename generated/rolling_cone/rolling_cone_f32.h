@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 553620f740760ce1.
+ * times the largest component of the output. Body of these files: sha256 942dc8149bff9dae.
  */
 #ifndef ROLLING_CONE_F32_H
 #define ROLLING_CONE_F32_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 15d5b5d4a038ac2d.
+ * times the largest component of the output. Body of these files: sha256 c335718ea19e2bc8.
  */
 #ifndef ROLLING_CONE_F64_H
 #define ROLLING_CONE_F64_H

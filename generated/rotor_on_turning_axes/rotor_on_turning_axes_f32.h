@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 84be9d83c71cfde9.
+ * times the largest component of the output. Body of these files: sha256 fef48c041080d240.
  */
 #ifndef ROTOR_ON_TURNING_AXES_F32_H
 #define ROTOR_ON_TURNING_AXES_F32_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 9acaa1f1e318a732.
+ * times the largest component of the output. Body of these files: sha256 7178f33850f92858.
  */
 #ifndef ROTOR_ON_TURNING_AXES_F64_H
 #define ROTOR_ON_TURNING_AXES_F64_H

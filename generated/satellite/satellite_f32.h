@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 a57d6f9375ce7b5a.
+ * times the largest component of the output. Body of these files: sha256 d7e5d1c4c489c109.
  */
 #ifndef SATELLITE_F32_H
 #define SATELLITE_F32_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 a89aae0b97354b6e.
+ * times the largest component of the output. Body of these files: sha256 c5fb7fba6e5144e3.
  */
 #ifndef SHIP_TURBINE_THREE_MOTIONS_F32_H
 #define SHIP_TURBINE_THREE_MOTIONS_F32_H

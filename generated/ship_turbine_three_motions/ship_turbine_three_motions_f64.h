@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 bd1da81fd7e0c3ea.
+ * times the largest component of the output. Body of these files: sha256 e5be1d3cdd1efb8b.
  */
 #ifndef SHIP_TURBINE_THREE_MOTIONS_F64_H
 #define SHIP_TURBINE_THREE_MOTIONS_F64_H

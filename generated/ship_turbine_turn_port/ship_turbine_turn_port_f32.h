@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 e224546e5519d5c2.
+ * times the largest component of the output. Body of these files: sha256 0543968bfd7affb7.
  */
 #ifndef SHIP_TURBINE_TURN_PORT_F32_H
 #define SHIP_TURBINE_TURN_PORT_F32_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 6b575b787f42524f.
+ * times the largest component of the output. Body of these files: sha256 d89271db709824d4.
  */
 #ifndef SHIP_TURBINE_TURN_PORT_F64_H
 #define SHIP_TURBINE_TURN_PORT_F64_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 7f65c3b76562102a.
+ * times the largest component of the output. Body of these files: sha256 cf95e8d1382228bd.
  */
 #ifndef SKEWED_DISC_F32_H
 #define SKEWED_DISC_F32_H

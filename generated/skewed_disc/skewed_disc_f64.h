@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 7153fde70db80d38.
+ * times the largest component of the output. Body of these files: sha256 2b47dcde1ee5c3ce.
  */
 #ifndef SKEWED_DISC_F64_H
 #define SKEWED_DISC_F64_H

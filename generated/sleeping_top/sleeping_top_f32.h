@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 22f023e4f142b7b2.
+ * times the largest component of the output. Body of these files: sha256 76315ac243e41530.
  */
 #ifndef SLEEPING_TOP_F32_H
 #define SLEEPING_TOP_F32_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 a0d7ee527f2c9f9e.
+ * times the largest component of the output. Body of these files: sha256 e40311b68a39a0cd.
  */
 #ifndef SLEEPING_TOP_F64_H
 #define SLEEPING_TOP_F64_H

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 55f669f6179e813d.
+ * times the largest component of the output. Body of these files: sha256 66f1325d798b5f5d.
  */
 #ifndef T_HANDLE_FLIP_F32_H
 #define T_HANDLE_FLIP_F32_H

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 45ab6d6ffc27a271.
+ * times the largest component of the output. Body of these files: sha256 15d240e2753373fc.
  */
 #ifndef T_HANDLE_FLIP_F64_H
 #define T_HANDLE_FLIP_F64_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 036b8d8af2043436.
+ * times the largest component of the output. Body of these files: sha256 9c3cf51699185cf1.
  */
 #ifndef TOP_STEADY_PRECESSION_F32_H
 #define TOP_STEADY_PRECESSION_F32_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 9194fede8b929add.
+ * times the largest component of the output. Body of these files: sha256 5dca32b1530aa1b0.
  */
 #ifndef TOP_STEADY_PRECESSION_F64_H
 #define TOP_STEADY_PRECESSION_F64_H

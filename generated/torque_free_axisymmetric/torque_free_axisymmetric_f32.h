@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 d5630080a03a993f.
+ * times the largest component of the output. Body of these files: sha256 6170884b1eddbe70.
  */
 #ifndef TORQUE_FREE_AXISYMMETRIC_F32_H
 #define TORQUE_FREE_AXISYMMETRIC_F32_H

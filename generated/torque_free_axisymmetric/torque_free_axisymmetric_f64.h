@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 be28c72325b503bf.
+ * times the largest component of the output. Body of these files: sha256 9c06f8ea8bdfe024.
  */
 #ifndef TORQUE_FREE_AXISYMMETRIC_F64_H
 #define TORQUE_FREE_AXISYMMETRIC_F64_H

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 aa0994626bdf5852.
+ * times the largest component of the output. Body of these files: sha256 20f88ec0c2e197d5.
  */
 #ifndef TUMBLING_BODY_F32_H
 #define TUMBLING_BODY_F32_H

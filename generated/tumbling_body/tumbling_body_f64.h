@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 a34d3ea778461e50.
+ * times the largest component of the output. Body of these files: sha256 719db7de2bd54370.
  */
 #ifndef TUMBLING_BODY_F64_H
 #define TUMBLING_BODY_F64_H

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 eb743149a8a57327.
+ * times the largest component of the output. Body of these files: sha256 c72ab6f07e3ce62f.
  */
 #ifndef TUMBLING_DISC_F64_H
 #define TUMBLING_DISC_F64_H

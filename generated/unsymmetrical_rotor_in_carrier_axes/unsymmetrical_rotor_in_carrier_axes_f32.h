@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 632716c6a1376f51.
+ * times the largest component of the output. Body of these files: sha256 99ff787a9fa2ad90.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 8865dd332a43406f.
+ * times the largest component of the output. Body of these files: sha256 bdacc86e90f8a0b2.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H

@@ -2,12 +2,14 @@
 
 from functools import cache
 from math import fsum
+from pathlib import Path
 
 import pytest
 
 from derive.arithmetic import working
 from derive.c_text import F32, F64, Precision
 from derive.check.motion import orders, step_slopes
+from derive.cli import main
 from derive.library import Library, library
 from derive.measure import replayed
 from derive.motion_error import with_motion
@@ -125,3 +127,11 @@ def test_a_machine_is_not_moved_by_what_needs_a_single_free_body() -> None:
 def test_a_step_is_no_answer_beside_others() -> None:
     with pytest.raises(SceneError, match="wanted has 'step_rk4' within 'both', but a step stands"):
         two_hubs("both: accelerations, step_rk4")
+
+
+def test_a_machine_may_want_steps_and_nothing_else(tmp_path: Path) -> None:
+    names = TWO_HUBS.format(wanted='"step_rk4"', emission="fast")
+    scene = tmp_path / "two_hubs.toml"
+    scene.write_text(names, encoding="utf-8")
+    assert main(["generate", str(scene), "--out", str(tmp_path / "out")]) == 0
+    assert (tmp_path / "out" / "two_hubs" / "two_hubs_f64.c").is_file()
