@@ -67,9 +67,8 @@ def clouds(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
 def _where_it_lasts(library: Library, each: Sequence[Sample]) -> Iterator[dict[str, Any]]:
     """Yield the values of samples; of a steady motion at a root of its residual, if one is near.
 
-    Quaternions are brought to length 1, which floats have only to their own precision.
-
-    Off the root the balances contradict each other, and each says something else.
+    Off the root the balances contradict each other, and each says something else. Quaternions are
+    brought to length 1, which floats have only to their own precision.
     """
     with ctx.workprec(BITS):
         balls = [unit_attitude(library, {c: arb(x) for c, x in s.values.items()}) for s in each]

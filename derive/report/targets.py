@@ -1,21 +1,22 @@
 """What was to be reached, what was measured, and whether it was."""
 
 import math
-import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from derive.bench.build import O3_NATIVE, BuildError, run
+from derive.bench.build import O3_NATIVE
 from derive.bench.motion.case import cases
-from derive.bench.motion.ours import Emission, emission
+from derive.bench.motion.ours import emission
 from derive.bench.motion.step_jacobian import Entry
 from derive.bench.motion.textbook import DOP853
 from derive.bench.motion.wrong import ROUNDOFF
 from derive.bench.own import AUTHOR
 from derive.largest import largest
 from derive.report.case_run import PRECISIONS, Found
+from derive.report.code_size import code_size
+from derive.report.curve import cost_at, instructions, seconds
 from derive.report.gyroscopic import ASPHERICITIES, Gyroscopic
 from derive.report.gyroscopic import SCENES as FORMS
 from derive.report.hard import ROD, ROD_BOUNDS, SCALED, Hard
@@ -140,32 +141,6 @@ def _hard(
     said = [f"{SAYS[p]} {own}" for p, own in zip(precisions, figures, strict=True)]
     shown = figures[0] if len(precisions) == 1 else "; ".join(said)
     return shown, all(row.holds(p) for p in precisions)
-
-
-def instructions(point: Point) -> float | None:
-    """Return a point's instructions."""
-    return point.instructions
-
-
-def seconds(point: Point) -> float | None:
-    """Return a point's time."""
-    return point.seconds
-
-
-def cost_at(
-    points: Sequence[Point], error: float, cost: Callable[[Point], float | None]
-) -> float | None:
-    """Return the cost of an error along a curve, between its points; None if it is not reached."""
-    pairs = []
-    for p in sorted(points, key=lambda p: -p.value):
-        own = cost(p)
-        if own is not None and p.wrong.state > 0 and math.isfinite(p.wrong.state):
-            pairs.append((p.wrong.state, own))
-    for (e0, c0), (e1, c1) in pairwise(pairs):
-        if e1 <= error < e0:
-            part = math.log(e0 / error) / math.log(e0 / e1)
-            return math.exp(math.log(c0) + part * math.log(c1 / c0))
-    return None
 
 
 def _why_no_cost(
@@ -294,30 +269,6 @@ def _at_most(found: float | None, limit: float, unit: str) -> Verdict:
 def _flops(scene: str) -> dict[str, int | None]:
     functions = emission(scene).manifest["functions"]
     return {f["name"]: f.get("cost", {}).get("flops") for f in functions}
-
-
-ARM = ("arm-none-eabi-gcc", "-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16",
-       "-mfloat-abi=hard", "-Os", "-std=c99")  # fmt: skip
-
-
-def code_size(made: Emission, folder: Path) -> int | None:
-    """Return the bytes of code of ``step_rk4_jacobian`` in float on a Cortex-M4F."""
-    functions = {f["name"]: f for f in made.manifest["functions"]}
-    if not shutil.which(ARM[0]) or "step_rk4_jacobian" not in functions:
-        return None
-    place = folder / "arm"
-    place.mkdir(parents=True, exist_ok=True)
-    for name, text in made.texts.items():
-        (place / name).write_text(text, encoding="utf-8")
-    source = place / made.manifest["files"]["f32"]["source"]
-    try:
-        run((*ARM, "-ffunction-sections", "-c", str(source), "-o", str(place / "step.o")))
-        said = run(("arm-none-eabi-size", "-A", str(place / "step.o"))).decode()
-    except BuildError:
-        return None
-    symbol = functions["step_rk4_jacobian"]["symbols"]["f32"]
-    rows = [line.split() for line in said.splitlines() if line.startswith((".text", ".rodata"))]
-    return sum(int(r[1]) for r in rows if r[0] == ".text" + f".{symbol}" or "rodata" in r[0])
 
 
 def _special() -> Iterator[Target]:
