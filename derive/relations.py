@@ -11,8 +11,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 
-from sympy import Expr, Integer, Poly, Symbol, cos, expand, fraction, groebner, sin, together
-from sympy.polys.polytools import reduced
+from sympy import QQ, Expr, Integer, Poly, Symbol, cos, expand, fraction, groebner, sin, together
+from sympy.polys.orderings import grevlex
+from sympy.polys.rings import PolyRing
 
 _FEW = 15  # symbols up to which a nonlinear Groebner basis takes a fraction of a second
 
@@ -40,13 +41,13 @@ def remainders(
     moving = [each for each in moving if each.free_symbols <= spoken]
     circles = _circles([*given, *moving, *wanted])
     basis = _basis(tuple(sorted({g for g in (*given, *circles) if g != 0}, key=str)))
-    left = tuple(_remainder(each, basis) for each in wanted)
+    left = _remainders(wanted, basis)
     if not any(left) or not any(moving):
         return left
     if len({s for r in (*given, *moving, *circles) for s in r.free_symbols}) <= _FEWER:
         basis = _basis(tuple(sorted({g for g in (*basis, *moving) if g != 0}, key=str)))
-        return tuple(_remainder(each, basis) for each in left)
-    return tuple(_remainder(each, (*basis, *filter(None, moving))) for each in left)
+        return _remainders(left, basis)
+    return _remainders(left, (*basis, *filter(None, moving)))
 
 
 def polynomial(difference: Expr) -> Expr:
@@ -84,8 +85,10 @@ def _basis(relations: tuple[Expr, ...]) -> tuple[Expr, ...]:
     return basis
 
 
-def _remainder(difference: Expr, basis: tuple[Expr, ...]) -> Expr:
-    if difference == 0 or not basis:
-        return difference
-    symbols = {s for each in (difference, *basis) for s in each.free_symbols}
-    return reduced(difference, basis, *sorted(symbols, key=str), order="grevlex")[1]
+def _remainders(differences: Sequence[Expr], basis: tuple[Expr, ...]) -> tuple[Expr, ...]:
+    if not any(differences) or not basis:
+        return tuple(differences)
+    symbols = {s for each in (*differences, *basis) for s in each.free_symbols}
+    polynomials = PolyRing(sorted(symbols, key=str), QQ, grevlex)
+    divisors = [polynomials.from_expr(each) for each in basis]
+    return tuple(polynomials.from_expr(d).rem(divisors).as_expr() for d in differences)

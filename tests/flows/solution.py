@@ -11,10 +11,9 @@ import flint
 
 from derive.flows.series import Series, run_series, series_terms
 from derive.flows.taylor import taylor_step
-from derive.library import library
 from derive.program import Program, Quantity, run
-from derive.scene import load
 from tests.flows.rates import BODY, body, everything, hanging, no_moment
+from tests.made import library_of
 
 U = 2.0**-53
 FLOATS = {
@@ -45,7 +44,7 @@ STATE = [Fraction(n, 16) for n in (12, 7, -5, 6, 9, -7, 20)]
 @cache
 def catalogued(name: str) -> tuple[Series, Program, list[Fraction]]:
     """Return a scene's step, its rate, and values for constants, states and inputs."""
-    made = library(load(name))
+    made = library_of(name)
     rate, words = made["state_rate"], made.known.words
     step = taylor_step(rate, words.states, words.inputs, 20)
     dice = Random(name)

@@ -15,7 +15,8 @@ import mpmath
 from derive.flows.system import System
 from derive.library import Library, library
 from derive.program import Program, run
-from derive.scene import load, parse_scene
+from derive.scene import parse_scene
+from tests.made import library_of
 
 CONTEXT = mpmath.MPContext()
 CONTEXT.dps = 60
@@ -67,10 +68,14 @@ SIXTY_DIGITS: Mapping[str, Any] = {
 Values = Mapping[str, Any]
 
 
-@cache
 def made(name: str) -> Library:
     """Return the programs of a scene."""
-    return library(parse_scene(PRINCIPAL, name) if name == "principal" else load(name))
+    return _principal() if name == "principal" else library_of(name)
+
+
+@cache
+def _principal() -> Library:
+    return library(parse_scene(PRINCIPAL, "principal"))
 
 
 @cache

@@ -3,22 +3,17 @@
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
-from functools import cache
 
 import pytest
 
 from derive.library import Library, library
 from derive.program import Op, Program
 from derive.prove import ProofError, lectured, prove
-from derive.scene import catalogue, load, parse_scene
+from derive.scene import catalogue, parse_scene
 from derive.scene.wanted import JACOBIAN
+from tests.made import library_of
 
 FLIPPED = {"add": "sub", "sub": "add", "mul": "div", "div": "mul", "sin": "cos", "cos": "sin"}
-
-
-@cache
-def scene_library(name: str) -> Library:
-    return library(load(name))
 
 
 LARGE = ("centrifuge_gondola", "gyrostat", "reaction_wheel_satellite", "rigid_body")
@@ -31,7 +26,7 @@ QUICK_FIRST = [
 
 @pytest.mark.parametrize("name", catalogue())
 def test_every_scene_of_the_catalogue_is_proved(name: str) -> None:
-    prove(scene_library(name))
+    prove(library_of(name))
 
 
 def mutants_of(op: Op, unlike: str) -> Iterator[Op]:
@@ -71,7 +66,7 @@ def same_value(op: Op, other: Op) -> bool:
 
 @pytest.mark.parametrize("name", QUICK_FIRST)
 def test_no_mutant_of_any_program_is_proved(name: str) -> None:
-    made = scene_library(name)
+    made = library_of(name)
     survivors = [
         difference(program, mutant)
         for program in made.functions
@@ -89,7 +84,7 @@ def alone(made: Library, program: Program) -> Library:
 
 @pytest.mark.parametrize("name", QUICK_FIRST)
 def test_no_mutant_of_any_set_up_is_proved(name: str) -> None:
-    made = scene_library(name)
+    made = library_of(name)
     made = replace(made, setup=lectured(made))  # what motions need is checked by their orders
     survivors = [
         difference(made.setup, mutant)
@@ -134,7 +129,7 @@ def difference(program: Program, mutant: Program) -> tuple[str, object]:
 
 
 def test_a_fault_is_one_sentence_with_scene_function_step_and_gap() -> None:
-    made = scene_library("free_body_principal")
+    made = library_of("free_body_principal")
     program = made["moment"]
     broken = replace(program, results=(Fraction(0), *program.results[1:]))
     functions = tuple(broken if f.name == "moment" else f for f in made.functions)
@@ -146,7 +141,7 @@ def test_a_fault_is_one_sentence_with_scene_function_step_and_gap() -> None:
 
 
 def test_an_entry_missing_from_a_pattern_is_a_fault() -> None:
-    made = scene_library("heavy_top")
+    made = library_of("heavy_top")
     program = made["state_rate_jacobian"]
     pattern = (program.sparsity or {})["jacobian"]
     last = pattern.colind[-1] - 1

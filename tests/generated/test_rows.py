@@ -9,9 +9,8 @@ from derive.check import check_library
 from derive.check.compiler import find_compiler
 from derive.check.emitted import Files
 from derive.check.verdict import Verdict
-from derive.library import library
-from derive.scene import load
 from tests.generated.mutants import printed
+from tests.made import library_of
 
 FEW = 4
 
@@ -23,7 +22,7 @@ def workshop(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @cache
 def rows(scene: str, workshop: Path) -> tuple[Verdict, ...]:
-    made = library(load(scene))
+    made = library_of(scene)
     texts = Files(printed(made), "made in memory")
     return tuple(check_library(made, texts, workshop, find_compiler(), FEW))
 

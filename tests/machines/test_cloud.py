@@ -16,6 +16,7 @@ from derive.reference import reference
 from derive.sample import samples
 from derive.scene import Machine, catalogue, load, parse_scene
 from derive.solve import opened, roots
+from tests.made import library_of
 
 MACHINES = [name for name in catalogue() if isinstance(load(name), Machine)]
 FEW = 3
@@ -26,7 +27,7 @@ EVERY = [name if name in SHORT else pytest.param(name, marks=pytest.mark.long) f
 
 @pytest.mark.parametrize("name", EVERY)
 def test_every_answer_of_a_machine_agrees_with_its_cloud(name: str) -> None:
-    made = library(load(name))
+    made = library_of(name)
     verdicts = list(clouds(made, samples(made.known, F64, FEW, 0).each))
     assert [v for v in verdicts if v.outcome != "holds"] == []
     assert {v.function for v in verdicts} == set(made.truths)

@@ -6,13 +6,13 @@ import pytest
 
 from derive.gallery import card, gallery
 from derive.gallery.drawing import HEIGHT, WIDTH, drawing
-from derive.library import library
 from derive.scene import Machine, catalogue, load, parse_scene
+from tests.made import library_of
 
 
 @pytest.mark.parametrize("name", catalogue())
 def test_a_scene_has_a_card_with_all_its_parts(name: str) -> None:
-    found = card(library(load(name)))
+    found = card(library_of(name))
     assert found.title
     points = re.findall(r"(-?[0-9.]+),(-?[0-9.]+)", found.drawing)
     assert points
@@ -21,7 +21,7 @@ def test_a_scene_has_a_card_with_all_its_parts(name: str) -> None:
 
 
 def test_a_closed_form_is_shown_where_it_is_short() -> None:
-    found = card(library(load("edge_runner_flat")))
+    found = card(library_of("edge_runner_flat"))
     assert "<mfrac>" in found.equation
     assert found.answer.startswith("N = ")
 

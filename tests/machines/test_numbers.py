@@ -9,9 +9,7 @@ import pytest
 from derive.check.compiler import find_compiler
 from derive.check.emitted import Emitted, Files, loaded
 from derive.files import scene_files
-from derive.library import library
 from derive.sample import Sample
-from derive.scene import load
 from derive.solve import Instrument, frequencies, limits, opened, roots
 from derive.solve.motions import eigenvalues
 from tests.machines.expected import (
@@ -24,6 +22,7 @@ from tests.machines.expected import (
     Case,
     Values,
 )
+from tests.made import library_of
 
 DOUBLE, FLOAT = 1e-9, 2e-5  # the relative differences that are allowed
 EARTH_UNIT = 1e38
@@ -49,7 +48,7 @@ class Built:
 
     def of(self, name: str) -> list[Emitted]:
         if name not in self.found:
-            made = library(load(name))
+            made = library_of(name)
             texts = {p.partition("/")[2]: t for p, t in scene_files(made, ()).items()}
             self.found[name] = list(loaded(made, Files(texts, ""), self.folder, find_compiler()))
         return self.found[name]

@@ -11,11 +11,10 @@ import pytest
 from derive.check.compiler import find_compiler
 from derive.check.emitted import Files, loaded
 from derive.files import scene_files
-from derive.library import library
 from derive.sample import Sample
-from derive.scene import load
 from derive.solve import Instrument, opened
 from tests.machines.expected import DATA, HANDLE_START, HANDLE_TIMES, handle_expected
+from tests.made import library_of
 
 DOUBLE = 1e-9
 Flow = Callable[[float], dict[str, float]]
@@ -82,7 +81,7 @@ FAR = 2.5e-5  # sixty seconds at 15 rad/s: the float next to the given rate turn
 
 @pytest.mark.parametrize("precision", ["f64", "f32"])
 def test_compiled_c_gives_the_expected_rates(precision: str, tmp_path: Path) -> None:
-    made = library(load("t_handle_flip"))
+    made = library_of("t_handle_flip")
     texts = {p.partition("/")[2]: t for p, t in scene_files(made, ()).items()}
     each = loaded(made, Files(texts, ""), tmp_path, find_compiler())
     one = next(e for e in each if e.precision.name == precision)

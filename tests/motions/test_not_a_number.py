@@ -23,7 +23,7 @@ from derive.cloud import Answers, answers
 from derive.convergence import Order
 from derive.files import scene_files
 from derive.largest import largest
-from derive.library import Library, library
+from derive.library import Library
 from derive.measure import Errors, measurement
 from derive.motion_error import motion_figures, with_motion
 from derive.program import Op, Program
@@ -31,19 +31,15 @@ from derive.report.hard import Hard
 from derive.report.hard_top import ANSWERS
 from derive.report.hard_top import _largest as largest_of_top
 from derive.sample import Sample, samples
-from derive.scene import Machine, load
+from derive.scene import Machine
+from tests.made import library_of
 
 NAN, FEW = math.nan, 3
 
 
 @cache
-def made(scene: str) -> Library:
-    return library(load(scene))
-
-
-@cache
 def drawn(scene: str) -> tuple[Sample, ...]:
-    return with_motion(made(scene), samples(made(scene).known, F64, FEW, 0).each, F64)
+    return with_motion(library_of(scene), samples(library_of(scene).known, F64, FEW, 0).each, F64)
 
 
 def without_value(program: Program) -> Program:
@@ -68,7 +64,7 @@ def test_the_largest_of_numbers_is_infinite_if_one_is_none(numbers: Sequence[Any
 
 def test_a_formula_without_a_value_has_an_infinite_error() -> None:
     scene, name = "attitude", "quaternion_product"
-    found = motion_figures(spoilt(made(scene), name), drawn(scene), F64)
+    found = motion_figures(spoilt(library_of(scene), name), drawn(scene), F64)
     assert {m.function: m.worst for m in found}[name] == math.inf
     assert all(math.isfinite(m.worst) for m in found if m.function != name)
 
@@ -80,7 +76,7 @@ def test_an_error_that_is_no_number_is_measured_as_infinite() -> None:
 
 def test_a_step_or_flow_without_a_value_is_no_motion() -> None:
     broken = ("step_rk4", "flow_exact")
-    verdicts = list(orders(spoilt(made("tumbling_disc"), *broken), drawn("tumbling_disc")))
+    verdicts = list(orders(spoilt(library_of("tumbling_disc"), *broken), drawn("tumbling_disc")))
     assert {v.function for v in verdicts if v.outcome == "FAILS"} == set(broken)
 
 
@@ -90,7 +86,7 @@ def test_an_order_of_errors_that_are_no_numbers_does_not_hold() -> None:
 
 def test_a_slope_without_a_value_is_noticed() -> None:
     scene, name = "tumbling_body", "step_rk4_jacobian"
-    whole = made(scene)
+    whole = library_of(scene)
     place = len(next(p for p in whole.motions if p.name == name).results) - 2
     motions = tuple(_without_slope(p, place) if p.name == name else p for p in whole.motions)
     verdicts = list(step_slopes(replace(whole, motions=motions), drawn(scene)))
@@ -110,14 +106,20 @@ def test_an_answer_of_the_cloud_without_a_value_is_noticed(monkeypatch: pytest.M
         return found
 
     monkeypatch.setattr("derive.check.particles.answers", spoilt_answers)
-    found = {v.function: v.outcome for v in clouds(made("sleeping_top"), drawn("sleeping_top"))}
+    found = {
+        v.function: v.outcome for v in clouds(library_of("sleeping_top"), drawn("sleeping_top"))
+    }
     assert found["accelerations"] == "FAILS"
     assert found["energy"] == "holds"
 
 
 def emitted(scene: str, folder: Path) -> Emitted:
-    texts = {path.partition("/")[2]: text for path, text in scene_files(made(scene), ()).items()}
-    return list(loaded(made(scene), Files(texts, "made in memory"), folder, find_compiler()))[-1]
+    texts = {
+        path.partition("/")[2]: text for path, text in scene_files(library_of(scene), ()).items()
+    }
+    return list(loaded(library_of(scene), Files(texts, "made in memory"), folder, find_compiler()))[
+        -1
+    ]
 
 
 def answering(one: Emitted, name: str) -> Emitted:

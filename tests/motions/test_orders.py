@@ -15,6 +15,7 @@ from derive.recorded import needed
 from derive.sample import Sample, samples
 from derive.scene import catalogue, load, parse_scene
 from derive.scene.wanted import STEP_DERIVATIVES, moves
+from tests.made import library_of
 
 MOVING = [name for name in catalogue() if any(map(moves, load(name).wanted))]
 MUTANTS = 12  # of each step, spread over its sums
@@ -22,20 +23,15 @@ MUTATED = ("step_split", "step_rk4", "step_dmv")  # an order of two hides too mu
 
 
 @cache
-def made(scene: str) -> Library:
-    return library(load(scene))
-
-
-@cache
 def one_sample(scene: str) -> Sample:
-    drawn = samples(made(scene).known, F64, 2, 0).each
-    return with_motion(made(scene), drawn, F64)[0]
+    drawn = samples(library_of(scene).known, F64, 2, 0).each
+    return with_motion(library_of(scene), drawn, F64)[0]
 
 
 @pytest.mark.parametrize("scene", MOVING)
 def test_every_step_has_its_order_and_every_flow_is_the_motion(scene: str) -> None:
-    drawn = samples(made(scene).known, F64, 2, 0).each
-    verdicts = list(orders(made(scene), with_motion(made(scene), drawn, F64)))
+    drawn = samples(library_of(scene).known, F64, 2, 0).each
+    verdicts = list(orders(library_of(scene), with_motion(library_of(scene), drawn, F64)))
     assert [v for v in verdicts if v.outcome != "holds"] == []
     steps = {n for n in load(scene).wanted if moves(n) and n not in STEP_DERIVATIVES}
     assert {v.function for v in verdicts} == steps
@@ -136,9 +132,12 @@ def test_only_what_is_in_closed_form_may_be_without_an_order() -> None:
     sphere = library(parse_scene(SPHERE, "sphere"))
     steps = ("step_dmv", "step_split", "step_lie")
     assert [closed(sphere, name) for name in (*steps, "step_rk4")] == [True, True, True, False]
-    assert [closed(made("tumbling_disc"), n) for n in ("step_dmv", "step_lie")] == [True, False]
-    assert not any(closed(made("tumbling_body"), name) for name in steps)
-    assert not closed(made("heavy_body"), "step_split")
+    assert [closed(library_of("tumbling_disc"), n) for n in ("step_dmv", "step_lie")] == [
+        True,
+        False,
+    ]
+    assert not any(closed(library_of("tumbling_body"), name) for name in steps)
+    assert not closed(library_of("heavy_body"), "step_split")
     each = with_motion(sphere, samples(sphere.known, F64, 1, 0).each, F64)
     assert {v.outcome for v in orders(sphere, each)} == {"holds"}
 
@@ -146,7 +145,7 @@ def test_only_what_is_in_closed_form_may_be_without_an_order() -> None:
 @pytest.mark.parametrize("step", MUTATED)
 def test_a_sign_turned_in_a_step_is_noticed_unless_it_is_below_the_order(step: str) -> None:
     scene = "tumbling_body"
-    whole, program = made(scene), made(scene)[step]
+    whole, program = library_of(scene), library_of(scene)[step]
     true = course(whole, step, one_sample(scene).values)
     own = order(whole, step, true)
     state = needed(program.ops, program.results[:7])  # what is carried besides is checked elsewhere
@@ -161,7 +160,7 @@ def test_a_sign_turned_in_a_step_is_noticed_unless_it_is_below_the_order(step: s
 @pytest.mark.long
 def test_a_sign_turned_in_the_exact_flow_is_noticed() -> None:
     scene = "tumbling_disc"
-    whole, program = made(scene), made(scene)["flow_exact"]
+    whole, program = library_of(scene), library_of(scene)["flow_exact"]
     values = one_sample(scene).values
     assert exactness(whole, values) < 1e-40
     turned = [k for k, line in enumerate(program.ops) if _turned(line) != line][::3]

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from derive.check.compiler import find_compiler
-from derive.library import library
 from derive.scene import Machine, catalogue, load
+from tests.made import library_of
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -89,7 +89,7 @@ def test_the_table_counts_what_the_catalogue_gives() -> None:
     assert len(rows) == 6
     for label, flops, divisions in rows:
         scene = label.split("`")[1]
-        made = library(load(scene))
+        made = library_of(scene)
         wanted = "Jacobian" in label
         program = next(p for p in made.functions if p.name.endswith("_jacobian") == wanted)
         count = program.count().get("div", 0)
@@ -114,7 +114,7 @@ def test_the_errors_that_it_states_are_those_of_the_committed_files() -> None:
     for label, _, _ in ROW.findall(README):
         name = label.split("`")[1]
         ends = "Jacobian" in label
-        wanted = [f.name for f in library(load(name)).functions]
+        wanted = [f.name for f in library_of(name).functions]
         table.append(errors(name, [f for f in wanted[:2] if f.endswith("_jacobian") == ends][:1]))
     for name in catalogue():
         scene = load(name)

@@ -16,11 +16,14 @@ from derive.casadi_text import casadi_file
 from derive.emit import c_files
 from derive.library import library
 from derive.manifest import manifest
+from derive.page import lecture_page
+from derive.page.scene import scene_page
 from derive.scene import load
-digest = hashlib.sha256()
-for name in ("gyrostat", "satellite", "tumbling_disc", "unsymmetrical_rotor_in_carrier_axes"):
+digest = hashlib.sha256(lecture_page().encode())
+for name in ("satellite", "tumbling_disc", "unsymmetrical_rotor_in_carrier_axes"):
     made = library(load(name))
-    for text in [*c_files(made, ()).values(), casadi_file(made), manifest(made, ())]:
+    texts = [*c_files(made, ()).values(), casadi_file(made), manifest(made, ())]
+    for text in [*texts, scene_page(made, ())]:
         digest.update(text.encode())
 print(digest.hexdigest())
 """

@@ -1,13 +1,11 @@
 """The hot functions cost no more than the best hand-written forms known, and do nothing twice."""
 
-import functools
-
 import pytest
 
 from derive.arithmetic import TRUTHS
-from derive.library import Library, library
 from derive.program import Op, Program, Repeat, every_op, read_by
 from derive.scene import catalogue, load
+from tests.made import library_of
 
 # Flops (+ - * /), divisions, calls of sin and cos of the best forms written by hand.
 TARGETS = {
@@ -20,30 +18,25 @@ TARGETS = {
 }
 
 
-@functools.cache
-def made(name: str) -> Library:
-    return library(load(name))
-
-
 EVERY = [(name, wanted) for name in catalogue() for wanted in load(name).wanted]
 
 
 @pytest.mark.parametrize(("scene", "function"), TARGETS)
 def test_a_hot_function_costs_at_most_its_target(scene, function):
-    program = made(scene)[function]
+    program = library_of(scene)[function]
     count = program.count()
     calls = count.get("sin", 0) + count.get("cos", 0)
     assert (program.flops(), count.get("div", 0), calls) <= TARGETS[scene, function]
 
 
 def test_the_free_body_has_sixty_six_nonzeros():
-    pattern = made("rigid_body")["state_rate_jacobian"].sparsity["jacobian"]
+    pattern = library_of("rigid_body")["state_rate_jacobian"].sparsity["jacobian"]
     assert (len(pattern.rows), len(pattern.columns), len(pattern.row)) == (13, 19, 66)
 
 
 @pytest.mark.parametrize(("scene", "function"), EVERY)
 def test_no_operation_works_on_parameters_only(scene, function):
-    library_ = made(scene)
+    library_ = library_of(scene)
     program = library_[function]
     fixed = {c for q in program.inputs if q.name == "constants" for c in q.components}
     for op, _ in every_op(program.ops):
@@ -55,7 +48,7 @@ def test_no_operation_works_on_parameters_only(scene, function):
 
 @pytest.mark.parametrize(("scene", "function"), EVERY)
 def test_no_operation_is_done_twice_and_none_is_idle(scene, function):
-    program = made(scene)[function]
+    program = library_of(scene)[function]
     loops = [line.ops for line in program.ops if isinstance(line, Repeat)]
     for ops in ([line for line in program.ops if isinstance(line, Op)], *loops):
         assert len({(op.operator, op.operands) for op in ops}) == len(ops)
@@ -64,14 +57,14 @@ def test_no_operation_is_done_twice_and_none_is_idle(scene, function):
 
 @pytest.mark.parametrize(("scene", "function"), EVERY)
 def test_every_input_is_used(scene, function):
-    program = made(scene)[function]
+    program = library_of(scene)[function]
     read = read_by(program)
     assert all(read & set(q.components) for q in program.inputs)
 
 
 @pytest.mark.parametrize("scene", catalogue())
 def test_every_constant_is_used(scene):
-    library_ = made(scene)
+    library_ = library_of(scene)
     read = {name for p in library_.printed() for name in read_by(p)}
     assert {c.name for c in library_.constants} <= read
 
@@ -81,6 +74,6 @@ def names(program: Program) -> list[str]:
 
 
 def test_inputs_that_do_not_matter_are_not_asked_for():
-    assert names(made("heavy_top")["state_rate"]) == ["constants", "theta", "omega"]
-    assert "position" not in names(made("rigid_body")["state_rate"])
-    assert "psi" not in names(made("gyrostat")["state_rate"])
+    assert names(library_of("heavy_top")["state_rate"]) == ["constants", "theta", "omega"]
+    assert "position" not in names(library_of("rigid_body")["state_rate"])
+    assert "psi" not in names(library_of("gyrostat")["state_rate"])
