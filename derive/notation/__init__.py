@@ -9,7 +9,8 @@ from typing import Any
 from sympy import Expr, Symbol
 
 from derive.notation.layout import Layout
-from derive.notation.mathml import math, row
+from derive.notation.lines import pieces
+from derive.notation.mathml import line, math, row
 from derive.notation.symbolic import symbolic_layout
 from derive.notation.text import plain
 from derive.notation.tree import NotationError, tree_layout
@@ -65,12 +66,12 @@ def mathml(expression: Any) -> str:
     """
     if isinstance(expression, tuple):
         return " ".join(map(mathml, expression))
-    return math(row(_layout(expression)), "")
+    return math(row(_layout(expression)))
 
 
 def equation_mathml(step: Step) -> str:
-    """Return the equation of a lecture step as MathML, one block a claim."""
-    return "\n".join(math(row(claim), "block") for claim in _claims(step))
+    """Return the equation of a lecture step as MathML, a line a claim."""
+    return "\n".join(line(pieces(claim)) for claim in _claims(step))
 
 
 def sympy_text(expression: Expr, names: Mapping[Symbol, str]) -> str:
@@ -80,18 +81,18 @@ def sympy_text(expression: Expr, names: Mapping[Symbol, str]) -> str:
 
 def sympy_mathml(expression: Expr, names: Mapping[Symbol, str]) -> str:
     """Return a SymPy expression as inline MathML, its symbols called as ``names`` says."""
-    return math(row(symbolic_layout(expression, names)), "")
+    return math(row(symbolic_layout(expression, names)))
 
 
 def sympy_equation_mathml(left: Expr, right: Expr, names: Mapping[Symbol, str]) -> str:
     """Return ``left = right`` in SymPy expressions as MathML on a line of its own."""
     sides = symbolic_layout(left, names), symbolic_layout(right, names)
-    return math(row(Layout("equal", sides)), "block")
+    return line(pieces(Layout("equal", sides)))
 
 
 def name_mathml(name: str, style: str) -> str:
     """Return the name of a quantity as inline MathML; style is scalar, vector or tensor."""
-    return math(row(Layout("name", text=name, style=style)), "")
+    return math(row(Layout("name", text=name, style=style)))
 
 
 def _layout(expression: Any) -> Layout:

@@ -18,24 +18,31 @@ _SHORT = 2  # an index has at most two letters; a longer part belongs to a word
 
 @dataclass(frozen=True)
 class Glyph:
-    """A name taken apart: ``base`` with dots or a prime, its indices, and "N" if seen from N."""
+    """A name taken apart: ``base`` with dots or a prime, its indices, and "N" if seen from N.
+
+    by : for a coefficient, the name of the quantity by which it is multiplied
+    """
 
     base: str
     dots: int = 0
     prime: bool = False
     indices: tuple[str, ...] = ()
     seen_from: str = ""
+    by: str = ""
 
 
 def glyph(name: str) -> Glyph:
     """Return a name taken apart.
 
     >>> glyph("omega_dot_x")
-    Glyph(base='omega', dots=1, prime=False, indices=('x',), seen_from='')
+    Glyph(base='omega', dots=1, prime=False, indices=('x',), seen_from='', by='')
     >>> glyph("l_N_dot").seen_from, glyph("mass_1").indices, glyph("top_speed_x").base
     ('N', ('1',), 'top_speed')
+    >>> glyph("F_x_by_alpha_ddot").dots, glyph("F_x_by_alpha_ddot").by
+    (0, 'alpha_ddot')
     """
-    base, parts = _base(name.split("_"))
+    own, _, by = name.partition("_by_")
+    base, parts = _base(own.split("_"))
     seen_from = "N" if any(a == "N" and b in _DOTS for a, b in pairwise(parts)) else ""
     not_indices = (*_DOTS, "prime", "any", seen_from)
     return Glyph(
@@ -44,6 +51,7 @@ def glyph(name: str) -> Glyph:
         "prime" in parts,
         tuple(part for part in parts if part not in not_indices),
         seen_from,
+        by,
     )
 
 

@@ -3,14 +3,15 @@
 Bold letters are characters of their own, since browsers no longer agree on the attribute for them.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from html import escape
+from itertools import pairwise
 
 from derive.notation.glyph import GREEK, Glyph, glyph
 from derive.notation.layout import Layout
 
 _XML = "http://www.w3.org/1998/Math/MathML"
-_SIGNS = {"x": "×", ".": "·"}
+SIGNS = {"x": "×", ".": "·"}
 _UNDER = {
     "body": "<mi>i</mi>",
     "others": "<mi>j</mi><mo>≠</mo><mi>i</mi>",
@@ -27,12 +28,22 @@ _ALPHABETS = {
 _PLACES = (("A", "Z"), ("a", "z"), ("Α", "Ω"), ("α", "ω"))
 _PLANCK = "ℎ"  # the italic small h has its place outside the alphabet
 _BOLD_DIGITS = 0x1D7CE
+BREAK = "&#8203;"  # a space without width: signs bring their own
+DIFFERENTIAL = "dm"  # of two letters, but one symbol
+DOTS = {1: "˙", 2: "¨"}
+"""As accents, browsers draw them into the letter; as an over-script at the letter's own size, clear
+of it."""
 
 
-def math(inside: str, display: str) -> str:
-    """Return one MathML element, inline or, with display "block", on a line of its own."""
-    block = f' display="{display}"' if display else ""
-    return f'<math xmlns="{_XML}"{block}>{inside}</math>'
+def math(inside: str) -> str:
+    """Return one MathML element within a sentence."""
+    return f'<math xmlns="{_XML}">{inside}</math>'
+
+
+def line(pieces: Sequence[str]) -> str:
+    """Return an equation on a line of its own, or on several, broken between its pieces."""
+    each = (f'<math xmlns="{_XML}" displaystyle="true">{inside}</math>' for inside in pieces)
+    return f'<div class="line">{BREAK.join(each)}</div>'
 
 
 def styled(text: str, style: str) -> str:
@@ -54,6 +65,9 @@ def _character(c: str, style: str) -> str:
 
 
 THIN = '<mspace width="0.17em"/>'
+TRANSPOSED = '<mi mathvariant="normal">T</mi>'
+TOUCHING = "<mo>&#8290;</mo>"
+TIMES = '<mo lspace="0.15em" rspace="0.15em">·</mo>'
 
 
 def row(layout: Layout) -> str:
@@ -85,20 +99,45 @@ def _power(layout: Layout) -> str:
 
 
 def _total(layout: Layout) -> str:
+    return f"<mrow>{total_sign(layout)}{_open(layout.parts[0])}</mrow>"
+
+
+def total_sign(layout: Layout) -> str:
+    """Return the sign of a sum over bodies, with what it runs over."""
     under = _UNDER.get(layout.text, f"<mtext>{escape(layout.text)}</mtext>")
-    sign = f'<munder><mo movablelimits="false">∑</mo><mrow>{under}</mrow></munder>'
-    return f"<mrow>{sign}{_open(layout.parts[0])}</mrow>"
+    return f'<munder><mo movablelimits="false">∑</mo><mrow>{under}</mrow></munder>'
 
 
 def _product(layout: Layout) -> str:
-    """Return factors side by side, with a thin space before the name of a function."""
-    first, *rest = layout.parts
-    text = row(first)
-    for factor in rest:
-        base = factor.parts[0] if factor.kind == "power" else factor
-        space = THIN if base.kind == "call" else ""
-        text += f"<mo>&#8290;</mo>{space}{row(factor)}"
+    """Return factors side by side, apart where they would read as one."""
+    text = row(layout.parts[0])
+    for before, factor in pairwise(layout.parts):
+        text += between(before, factor) + row(factor)
     return f"<mrow>{text}</mrow>"
+
+
+def between(before: Layout, after: Layout) -> str:
+    """Return what stands between two factors: a dot beside a word, a thin space beside sin."""
+    if _base(after).kind == "call" and _base(after).text != "sqrt":
+        return TOUCHING + THIN
+    return TIMES if _is_word(before) or _is_word(after) or _is_bare(_base(before)) else TOUCHING
+
+
+def _base(factor: Layout) -> Layout:
+    return factor.parts[0] if factor.kind in ("power", "transposed") else factor
+
+
+def _is_bare(layout: Layout) -> bool:
+    """Return whether a layout is a sine or its like of a single sign, without parentheses."""
+    circular = layout.kind == "call" and layout.text in ("sin", "cos", "tan")
+    return circular and layout.parts[0].kind in ("name", "number")
+
+
+def _is_word(factor: Layout) -> bool:
+    """Return whether a factor is a name of several letters, in which nothing is multiplied."""
+    base = _base(factor)
+    letters = GREEK.get(glyph(base.text).base, glyph(base.text).base)
+    return base.kind == "name" and len(letters) > 1 and letters != DIFFERENTIAL
 
 
 def _joined(sign: str) -> Callable[[Layout], str]:
@@ -106,9 +145,7 @@ def _joined(sign: str) -> Callable[[Layout], str]:
 
 
 def _argument(layout: Layout, inside: str) -> str:
-    circular = layout.text in ("sin", "cos", "tan")
-    bare = circular and layout.parts[0].kind in ("name", "number")
-    return inside if bare else _fenced("(", inside, ")")
+    return inside if _is_bare(layout) else _fenced("(", inside, ")")
 
 
 def _open(part: Layout) -> str:
@@ -132,32 +169,34 @@ def _sum(layout: Layout) -> str:
 def _name(parts: Glyph, style: str) -> str:
     base = _accented(parts, _letter(parts.base, style))
     if parts.seen_from:
-        below = _indices(parts.indices) if parts.indices else "<mrow></mrow>"
+        below = _indices(parts) if parts.indices else "<mrow></mrow>"
         after = f"{below}<mrow></mrow><mprescripts/><mrow></mrow><mi>{parts.seen_from}</mi>"
         return f"<mmultiscripts>{base}{after}</mmultiscripts>"
-    return f"<msub>{base}{_indices(parts.indices)}</msub>" if parts.indices else base
+    return f"<msub>{base}{_indices(parts)}</msub>" if parts.indices or parts.by else base
 
 
 def _accented(parts: Glyph, base: str) -> str:
     if parts.prime:
         base = f"<msup>{base}<mo>′</mo></msup>"
     if parts.dots:
-        accent = "˙" if parts.dots == 1 else "¨"
-        base = f'<mover accent="true">{base}<mo stretchy="false">{accent}</mo></mover>'
+        dots = f'<mo accent="false" stretchy="false" scriptlevel="-1">{DOTS[parts.dots]}</mo>'
+        base = f'<mover accent="false">{base}{dots}</mover>'
     return base
 
 
 def _letter(base: str, style: str) -> str:
     letter = GREEK.get(base, base)
-    if style != "scalar" or base == "dm":
+    if style != "scalar" or base == DIFFERENTIAL:
         letter = styled(letter, style)
     if letter.isdigit():
         return f"<mn>{letter}</mn>"
     return f"<mi>{escape(letter)}</mi>"
 
 
-def _indices(indices: tuple[str, ...]) -> str:
-    items = [_index(index) for index in indices]
+def _indices(parts: Glyph) -> str:
+    items = [_index(index) for index in parts.indices]
+    if parts.by:
+        items.append(f"<mo>∕</mo>{_name(glyph(parts.by), 'scalar')}")
     gap = '<mspace width="0.15em"/>'
     return items[0] if len(items) == 1 else f"<mrow>{gap.join(items)}</mrow>"
 
@@ -175,11 +214,11 @@ _FORMS: dict[str, Callable[[Layout], str]] = {
     "negative": lambda x: f"<mrow><mo>−</mo>{_open(x.parts[0])}</mrow>",
     "sum": _sum,
     "product": _product,
-    "infix": lambda x: _joined(_SIGNS[x.text])(x),
+    "infix": lambda x: _joined(SIGNS[x.text])(x),
     "equal": _joined("="),
     "fraction": lambda x: f"<mfrac>{row(x.parts[0])}{row(x.parts[1])}</mfrac>",
     "power": _power,
-    "transposed": lambda x: f'<msup>{row(x.parts[0])}<mi mathvariant="normal">T</mi></msup>',
+    "transposed": lambda x: f"<msup>{row(x.parts[0])}{TRANSPOSED}</msup>",
     "index": lambda x: f"<msub>{row(x.parts[0])}{_index(x.text)}</msub>",
     "skew": lambda x: f"<msub>{_fenced('[', row(x.parts[0]), ']')}<mo>×</mo></msub>",
     "group": lambda x: _fenced("(", row(x.parts[0]), ")"),

@@ -128,16 +128,15 @@ def written_names(known: Mechanism) -> dict[Symbol, str]:
 
 
 def _written(label: str) -> str:
-    """Return a label as a name.
+    """Return a label as a name: a letter, whose frame or body it belongs to is an index.
 
-    >>> _written("stem.Omega.x.dot.by.alpha_ddot")
-    'stem_Omega_dot_x_by_alpha_ddot'
+    >>> _written("stem.Omega.x.dot.by.alpha_ddot"), _written("balance#2")
+    ('Omega_dot_stem_x_by_alpha_ddot', 'balance_2')
     """
-    if "." not in label:
-        return label
     owner, *rest = label.replace("#", "_").split(".")
-    dots = [part for part in rest if part == "dot"]
-    axis = next((k for k, part in enumerate(rest) if part in ("x", "y", "z")), None)
-    if dots and axis is not None:
-        rest = [*rest[:axis], *dots, rest[axis], *(p for p in rest[axis + 1 :] if p != "dot")]
-    return "_".join([owner, *rest])
+    if not rest:
+        return owner
+    about = rest[:1] if rest[0] == "about" else []
+    letter, *indices = rest[len(about) :]
+    dots = [part for part in indices if part == "dot"]
+    return "_".join([letter, *dots, *about, owner, *(part for part in indices if part != "dot")])
