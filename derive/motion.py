@@ -134,7 +134,12 @@ def motion(scene: Scene, words: Vocabulary) -> Motion:
     Omega = _axes_turning(scene, words, rates)
     closure = None
     if omega_is_given(scene):
-        omega, omega_dot = words.column("omega"), words.column("omega_dot")
+        omega = words.column("omega")
+        given = scene.known["angular_acceleration"].formulas
+        if given is None:
+            omega_dot = words.column("omega_dot")
+        else:
+            omega_dot = Matrix([words.expression(f) for f in given])
         if "coordinate_rates" in words:
             closure = (Omega + relative - omega).applyfunc(reduced)
         Omega = omega if scene.axes.fixed_in_body else Omega
@@ -149,6 +154,9 @@ def _axes_turning(scene: Scene, words: Vocabulary, rates: dict[str, Expr]) -> Ma
         return Matrix([words.expression(f) for f in scene.axes.angular_velocity])
     if scene.axes.turned:
         return turning_seen_after(words, scene.axes.turned, rates)
+    given = scene.known["angular_velocity"].formulas
+    if given is not None:
+        return Matrix([words.expression(f) for f in given])
     return words.column("omega") if "omega" in words else zeros(3, 1)
 
 

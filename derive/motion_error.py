@@ -15,12 +15,13 @@ from flint import arb, ctx
 
 from derive.arithmetic import working
 from derive.c_text import PRECISIONS, Precision
+from derive.flows.carried import REMAINDER
 from derive.largest import largest
 from derive.library import Library
 from derive.measure import Errors, measurement, replayed
 from derive.program import Measurement, Program, Quantity, component_names, run
 from derive.reference import BALLS, BITS
-from derive.sample import Sample, Values, samples, source, uniform
+from derive.sample import Sample, Source, Values, samples, source, uniform
 
 ORDINARY, CORNERS = 24, 2
 PLAN = "plan"
@@ -98,13 +99,23 @@ def with_motion(
     fresh = [q for q in given.values() if not known & set(q.components) and q.name != PLAN]
     dice = source(library.known, precision, "motion")
     own = [(c, q) for q in fresh for c in q.components]
-    drawn = [replace(s, values=s.values | {c: uniform(dice.dice, q) for c, q in own}) for s in each]
+    drawn = [
+        replace(s, values=s.values | {c: _drawn(dice, s, c, q) for c, q in own}) for s in each
+    ]
     rates = _omega_rates(library, drawn, precision)
     kept = tuple(
         replace(s, values={c: dice.held(x) for c, x in _in_reach(s.values, fast).items()})
         for s, fast in zip(drawn, rates, strict=True)
     )
     return tuple(_planned(library, kept, precision)) if PLAN in given else kept
+
+
+def _drawn(of: Source, sample: Sample, component: str, q: Quantity) -> float:
+    """Return a number on a range; a remainder is what rounding may leave of its state."""
+    if q.name != REMAINDER:
+        return uniform(of.dice, q)
+    state = sample.values[component.removeprefix(f"{REMAINDER}_")]
+    return of.precision.unit_roundoff * abs(state) * (2 * of.dice.random() - 1)
 
 
 def _omega_rates(library: Library, each: Sequence[Sample], precision: Precision) -> list[float]:

@@ -29,6 +29,21 @@ class Quantity:
     high: Fraction | None
     meaning: str
 
+    def __post_init__(self) -> None:
+        """Refuse a range of one value: whatever is sampled on it would go unseen."""
+        if self.low is not None and self.high is not None and self.low >= self.high:
+            raise ValueError(f"quantity '{self.name}' ranges over {self.low} to {self.high} only")
+
+    @property
+    def ends(self) -> tuple[Fraction, Fraction]:
+        """Return the range that samples are drawn from.
+
+        Raises ValueError for a quantity that has none.
+        """
+        if self.low is None or self.high is None:
+            raise ValueError(f"quantity '{self.name}' has no range to draw samples from")
+        return self.low, self.high
+
 
 @dataclass(frozen=True)
 class Sparsity:

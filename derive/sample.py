@@ -119,7 +119,7 @@ def varying(known: Known) -> tuple[Quantity, ...]:
 
 def uniform(dice: Random, q: Quantity) -> float:
     """Return a number on the range of a quantity."""
-    low, high = (float(x) if x is not None else 0.0 for x in (q.low, q.high))
+    low, high = map(float, q.ends)
     return low + (high - low) * dice.random()
 
 
@@ -144,7 +144,7 @@ def _large_spin(of: Source, _: int) -> Values | None:
     fast = [q for q in varying(of.known) if q.unit == "rad/s"]
 
     def change(q: Quantity, x: float) -> float:
-        reach = max(abs(float(q.low or 0)), abs(float(q.high or 0))) or 1.0
+        reach = max(abs(float(end)) for end in q.ends)
         return x / reach * LARGE_SPIN if q in fast else x
 
     return _changed(of, change) if fast else None
@@ -166,7 +166,8 @@ def _is_attitude(q: Quantity) -> bool:
 
 
 def _may_vanish(q: Quantity) -> bool:
-    within = (q.low or 0) <= 0 <= (q.high or 0)
+    low, high = q.ends
+    within = low <= 0 <= high
     return not _is_attitude(q) and within
 
 
@@ -199,7 +200,7 @@ def _extremes(of: Source, _: int) -> Values | None:
 
 def _end(of: Source, q: Quantity, which: int) -> float:
     """Return the low (0) or high (1) end of a quantity's range, as a float inside it."""
-    x = float((q.low, q.high)[which] or 0)
+    x = float(q.ends[which])
     inside = x * (1 - 4 * of.precision.unit_roundoff)
     return of.held(x) if abs(of.held(x)) <= abs(x) else of.held(inside)
 

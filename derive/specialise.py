@@ -8,7 +8,7 @@ from sympy import Matrix, zeros
 
 from derive.lecture import LECTURE
 from derive.motion import Motion, motion, reduced, rotation
-from derive.scene import Scene, SceneError
+from derive.scene import Given, Scene, SceneError
 from derive.vectors import Expression, components
 from derive.vocabulary import Vocabulary, vocabulary
 
@@ -36,7 +36,7 @@ def specialise(scene: Scene) -> Specialised:
         "h": zeros(3, 1),
         "h_dot": zeros(3, 1),
         "v_G": words.column("velocity") if "velocity" in words else zeros(3, 1),
-        "F": words.column("force") if "force" in words else zeros(3, 1),
+        "F": _force(scene, words),
     }
     if scene.body.mass is not None:
         bindings["m"] = words.expression(scene.body.mass)
@@ -64,20 +64,28 @@ def law(step: str) -> Expression:
 
 def moment(scene: Scene, words: Vocabulary) -> Matrix:
     """Return the external moment along the axes: formulas of the scene, or inputs."""
-    given = scene.known.get("moment")
-    if given is not None and given.formulas is not None:
+    return given_vector(scene.known["moment"], "moment", words)
+
+
+def given_vector(given: Given, name: str, words: Vocabulary) -> Matrix:
+    """Return a known vector along the axes: its formulas, or the inputs of its name."""
+    if given.formulas is not None:
         return Matrix([words.expression(f) for f in given.formulas])
-    return words.column("moment")
+    return words.column(name)
+
+
+def _force(scene: Scene, words: Vocabulary) -> Matrix:
+    if scene.position is None:
+        return zeros(3, 1)
+    return given_vector(scene.known["force"], "force", words)
 
 
 def _moving_point(scene: Scene, words: Vocabulary) -> dict[str, Any]:
     given, centre = scene.point.acceleration, scene.body.centre
-    if centre is None:
+    if centre is None or given is None:
         raise SceneError(f"scene '{scene.name}': point 'moving' needs body.centre")
     own = Matrix([words.expression(f) for f in centre])
-    a_A = words.column("point_acceleration")
-    if given is not None and given.formulas is not None:
-        a_A = Matrix([words.expression(f) for f in given.formulas])
+    a_A = given_vector(given, "point_acceleration", words)
     return {"rho_G": rotation(words, scene.body.turned) * own, "a_A": a_A}
 
 

@@ -113,7 +113,13 @@ def free_coordinates(scene: Scene) -> tuple[str, ...]:
 
 def omega_is_given(scene: Scene) -> bool:
     """Tell whether omega is a variable of its own and not made of prescribed rates."""
-    return scene.axes.fixed_in_body or bool(free_coordinates(scene))
+    alone = scene.axes.kind == "body" and not _by_formulas(scene.known["angular_velocity"])
+    return alone or bool(free_coordinates(scene))
+
+
+def _by_formulas(given: Given | None) -> bool:
+    """Tell whether a known vector is made of other quantities, and so is none of its own."""
+    return given is not None and given.formulas is not None
 
 
 def _states(scene: Scene) -> tuple[Quantity, ...]:
@@ -161,24 +167,29 @@ def _inputs(scene: Scene) -> tuple[Quantity, ...]:
     for s in scene.speeds:
         each_speed = [i for i in (s, s.rate) if i]
         inputs += [_scalar(i.name, i.unit, i.low, i.high, i.meaning) for i in each_speed]
-    axes = axes_name(scene)
-    if omega_is_given(scene):
+    inputs += [_scalar(i.name, i.unit, i.low, i.high, i.meaning) for i in scene.inputs]
+    axes, known = axes_name(scene), scene.known
+    if omega_is_given(scene) and not _by_formulas(known["angular_acceleration"]):
         given = scene.known.get("angular_acceleration")
         says = "rate of the components of omega along the axes"
         inputs.append(_vector("omega_dot", "rad/s^2", axes, given, says))
     inputs += _wheels(
         scene, "wheel_accelerations", "rad/s^2", "acceleration relative to the carrier"
     )
-    if scene.point.kind == "moving":
+    if scene.point.kind == "moving" and not _by_formulas(scene.point.acceleration):
         says = "acceleration of the moving point in the inertial frame"
         inputs.append(_vector("point_acceleration", "m/s^2", axes, scene.point.acceleration, says))
-    if scene.position is not None:
-        given = scene.known.get("force")
-        inputs.append(_vector("force", "N", axes, given, "resultant external force"))
+    if scene.position is not None and not _by_formulas(known["force"]):
+        inputs.append(_vector("force", "N", axes, known["force"], "resultant external force"))
+    if not _by_formulas(known["moment"]):
+        inputs.append(_moment(scene))
+    return (*inputs, *_wheels(scene, "wheel_torques", "N m", "torque of the motor on the wheel"))
+
+
+def _moment(scene: Scene) -> Quantity:
     says = f"external moment about the {scene.point.kind.replace('_', ' ')}"
     says = says.replace("fixed", "fixed point").replace("moving", "moving point")
-    inputs.append(_vector("moment", "N m", axes, scene.known.get("moment"), says))
-    return (*inputs, *_wheels(scene, "wheel_torques", "N m", "torque of the motor on the wheel"))
+    return _vector("moment", "N m", axes_name(scene), scene.known["moment"], says)
 
 
 def _outputs(scene: Scene) -> tuple[Quantity, ...]:
@@ -195,6 +206,8 @@ def _outputs(scene: Scene) -> tuple[Quantity, ...]:
         ),
         Quantity("kinetic_energy", ("kinetic_energy",), (), "J", "", None, None, "kinetic energy"),
     ]
+    if _by_formulas(scene.known["moment"]):
+        outputs.append(_moment(scene))
     free = free_coordinates(scene)
     if free:
         parts = tuple(f"{name}_dot" for name in free)

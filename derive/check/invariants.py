@@ -11,11 +11,12 @@ from math import frexp, isfinite
 from derive.check.emitted import Emitted
 from derive.check.turning import Turning, turnings
 from derive.check.verdict import JUDGED, Outcome, Verdict
-from derive.formula import FLOATS, Formula, evaluate
+from derive.formula import FLOATS, evaluate
 from derive.largest import largest
 from derive.machine.mechanism import single
 from derive.program import Quantity
 from derive.sample import Sample, Values, varying
+from derive.scene.wanted import JACOBIAN
 from derive.specialise import Specialised
 
 ROUNDING = 256 * 2.0**-53  # of the largest energy or power in the balance
@@ -45,7 +46,7 @@ def _no_balance(emitted: Emitted) -> str:
     known = single(emitted.library.known)
     if "kinetic_energy" not in emitted.functions:
         return "the scene does not ask for the kinetic energy"
-    if not {"acceleration", "state_rate"} & set(emitted.functions):
+    if not _forward(emitted):
         return "the scene does not ask for a forward function"
     moved = {known.words.symbols[c] for q in varying(known) for c in q.components}
     if known.motion.tensor.free_symbols & moved:
@@ -53,6 +54,12 @@ def _no_balance(emitted: Emitted) -> str:
     if known.scene.position is not None and not known.scene.axes.quaternion:
         return "the force is not turned by a quaternion"
     return ""
+
+
+def _forward(emitted: Emitted) -> list[str]:
+    """Return the emitted functions that find the acceleration, those with a Jacobian too."""
+    every = (n + more for n in ("state_rate", "acceleration") for more in ("", JACOBIAN))
+    return [name for name in every if name in emitted.functions]
 
 
 def _power_gap(emitted: Emitted, sample: Sample) -> float:
@@ -83,8 +90,7 @@ def _energy(emitted: Emitted, sample: Sample, moved: Values) -> float:
 
 def _rates(emitted: Emitted, sample: Sample) -> dict[str, float]:
     """Return the rate of every state's component, from the forward function."""
-    name = "state_rate" if "state_rate" in emitted.functions else "acceleration"
-    program, words = emitted.library[name], emitted.library.known.words
+    program, words = emitted.library[_forward(emitted)[0]], emitted.library.known.words
     components = [c for q in program.outputs for c in q.components]
     found = dict(zip(components, emitted.results(program, sample), strict=True))
     pairs = [(q, words[RATES[q.name]]) for q in words.states if q.name in RATES]
@@ -98,26 +104,24 @@ def _rates(emitted: Emitted, sample: Sample) -> dict[str, float]:
 
 def _powers(known: Specialised, values: Values) -> list[float]:
     """Return the powers of the moment, the motors and the force, term by term."""
-    given = known.scene.known["moment"].formulas
     numbers = values | {n: float(x) for n, x in known.words.numbers.items()}
-    moment = _moment(known, numbers, given)
+    moment = _known(known, numbers, "moment")
     omega = [values[c] for c in known.words["omega"].components]
     powers = [m * w for m, w in zip(moment, omega, strict=True)]
     powers += [values[w.torque.name] * values[w.speed.name] for w in known.scene.wheels]
-    if "force" in known.words:
-        force, velocity = (
-            [values[c] for c in known.words[n].components] for n in ("force", "velocity")
-        )
+    if known.scene.position is not None:
+        force = _known(known, numbers, "force")
+        velocity = [values[c] for c in known.words["velocity"].components]
         turned = _turned([values[c] for c in known.words["attitude"].components], force)
         powers += [f * v for f, v in zip(turned, velocity, strict=True)]
     return powers
 
 
-def _moment(
-    known: Specialised, numbers: Mapping[str, float], given: Sequence[Formula] | None
-) -> list[float]:
+def _known(known: Specialised, numbers: Mapping[str, float], name: str) -> list[float]:
+    """Return a known moment or force along the axes, as the scene has it."""
+    given = known.scene.known[name].formulas
     if given is None:
-        return [numbers[c] for c in known.words["moment"].components]
+        return [numbers[c] for c in known.words[name].components]
     return [evaluate(f, numbers, FLOATS) for f in given]
 
 

@@ -7,7 +7,6 @@ quaternion: it changes its length, which the next step mends, and never its dire
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
 
 from derive.flows.attitude_stages import norm_squared
 from derive.flows.compensated import compensated_add
@@ -17,13 +16,15 @@ from derive.program import Quantity
 from derive.trace import Number
 
 Row = list[Number]
+REMAINDER = "remainder"
+"""The quantity that carries what rounding left; it has no range but that of rounding."""
 
 
 def remainder(states: Sequence[Quantity]) -> Quantity:
     """Return the quantity that carries what rounding left of earlier steps: zeros at the start."""
     parts = tuple(f"remainder_{c}" for q in states for c in q.components)
     says = "what rounding left of earlier steps, zeros at the start"
-    return Quantity("remainder", parts, (len(parts),), "", "", Fraction(0), Fraction(0), says)
+    return Quantity(REMAINDER, parts, (len(parts),), "", "", None, None, says)
 
 
 def carried_on(system: System, start: Row, increments: Row, remainders: Row) -> tuple[Row, Row]:

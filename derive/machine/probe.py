@@ -83,14 +83,14 @@ def at_rest(words: Words) -> Probe:
     """Return the first trial point with everything that varies at zero where it may be zero."""
     found, book = point(words, 0), words.vocabulary
     for q in (*book.states, *book.inputs):
-        if q.shape == () and (q.low or 0) <= 0 <= (q.high or 0):
+        low, high = q.ends
+        if q.shape == () and low <= 0 <= high:
             found.values[book.symbols[q.name]] = mpf(0)
     return Probe(found.values)
 
 
 def _within(dice: Random, q: Quantity) -> Any:
-    low, high = (mpf(int(x.numerator)) / int(x.denominator) if x is not None else mpf(0)
-                 for x in (q.low, q.high))  # fmt: skip
+    low, high = (mpf(int(x.numerator)) / int(x.denominator) for x in q.ends)
     return _between(dice, low, high)
 
 

@@ -63,6 +63,9 @@ def _loads(scene: Scene) -> list[str]:
     moment = scene.known.get("moment")
     if moment is not None and moment.formulas is not None:
         found.append(f"The external moment is {_column(moment.formulas)}.")
+    force = scene.known.get("force")
+    if force is not None and force.formulas is not None:
+        found.append(f"The external force is {_column(force.formulas)}.")
     acceleration: Given | None = scene.point.acceleration
     if acceleration is not None and acceleration.formulas is not None:
         found.append(f"The point accelerates at {_column(acceleration.formulas)}.")

@@ -124,10 +124,10 @@ class Wheel:
 
 @dataclass(frozen=True)
 class Given:
-    """A known vector: formulas, or a range for three fresh inputs."""
+    """A known vector: formulas, or else a range for three fresh inputs."""
 
-    low: Fraction
-    high: Fraction
+    low: Fraction | None
+    high: Fraction | None
     formulas: Triple | None
 
 
@@ -149,6 +149,7 @@ class Scene:
     parameters: tuple[Parameter, ...]
     coordinates: tuple[Coordinate, ...]
     speeds: tuple[Speed, ...]
+    inputs: tuple[Input, ...]
     axes: Axes
     body: Body
     wheels: tuple[Wheel, ...]

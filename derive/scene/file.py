@@ -44,8 +44,10 @@ from derive.unit import (
     ANGULAR_VELOCITY,
     FORCE,
     INERTIA,
+    LENGTH,
     MOMENT,
     NONE,
+    VELOCITY,
     Dimension,
 )
 
@@ -53,8 +55,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 TABLES = (
-    *("parameters", "coordinates", "speeds", "axes", "body", "point", "known", "position"),
-    "motion",
+    *("parameters", "coordinates", "speeds", "inputs", "axes", "body", "point", "known"),
+    *("position", "motion"),
 )
 LATER = ("frames", "bodies", "loads")
 KNOWN: Mapping[str, tuple[Dimension, int]] = {
@@ -73,7 +75,8 @@ def read_scene(document: dict[str, object], name: str, source: str) -> Scene:
     _top_level(document)
     part = {key: table(document.get(key, {}), key) for key in TABLES}
     keys(part["motion"], (), tuple(TIMES))
-    symbols = read_symbols(part["parameters"], part["coordinates"], part["speeds"])
+    scalars = ("parameters", "coordinates", "speeds", "inputs")
+    symbols = read_symbols(*(part[key] for key in scalars))
     wheels = _wheels(document.get("wheels", []), symbols)
     distinct(_declared(symbols, wheels))
     scope = anything(symbols, wheels)
@@ -87,11 +90,12 @@ def read_scene(document: dict[str, object], name: str, source: str) -> Scene:
         parameters=symbols.parameters,
         coordinates=symbols.coordinates,
         speeds=symbols.speeds,
+        inputs=symbols.inputs,
         axes=axes,
         body=read_body(part["body"], point.kind, symbols),
         wheels=wheels,
         point=point,
-        known=_known(part["known"], scope, symbols, axes),
+        known=_known(part["known"], scope, symbols, _state(axes, "position" in document)),
         position=ranges[0],
         velocity=ranges[1],
         wanted=read_wanted(document["wanted"]),
@@ -166,6 +170,7 @@ def _declared(symbols: Symbols, wheels: tuple[Wheel, ...]) -> list[tuple[str, st
     found = [(entry.name, f"parameter '{entry.name}'") for entry in symbols.parameters]
     found += [(entry.name, f"coordinate '{entry.name}'") for entry in symbols.coordinates]
     found += [(entry.name, f"speed '{entry.name}'") for entry in symbols.speeds]
+    found += [(entry.name, f"input '{entry.name}'") for entry in symbols.inputs]
     derived = [entry.name for entry in (*rates(symbols), *accelerations(symbols))]
     free = [entry.name for entry in symbols.coordinates if entry.motion == "free"]
     derived += [f"{name}_{dots}" for name in free for dots in ("dot", "ddot", "next")]
@@ -193,19 +198,29 @@ def _point(given: Table, scope: Scope) -> Point:
 
 def _given(value: object, label: str, scope: Scope, expected: Dimension) -> Given:
     if isinstance(value, list):
-        return Given(Fraction(0), Fraction(0), triple(value, label, scope, expected))
+        return Given(None, None, triple(value, label, scope, expected))
     inner = table(value, label)
     keys(inner, ("range",), ())
     return Given(*interval(inner.entries["range"], f"{label}.range"), None)
 
 
-def _known(given: Table, scope: Scope, symbols: Symbols, axes: Axes) -> Mapping[str, Given]:
+def _state(axes: Axes, position: bool) -> Mapping[str, Dimension]:  # noqa: FBT001
+    """Return the components of the state that a known moment or force may depend on."""
+    state = {f"attitude_{part}": NONE for part in "wxyz" if axes.quaternion}
+    state |= {f"omega_{part}": ANGULAR_VELOCITY for part in "xyz" if axes.fixed_in_body}
+    moving = {"position": LENGTH, "velocity": VELOCITY} if position else {}
+    return state | {f"{name}_{part}": unit for name, unit in moving.items() for part in "xyz"}
+
+
+def _known(
+    given: Table, scope: Scope, symbols: Symbols, state: Mapping[str, Dimension]
+) -> Mapping[str, Given]:
     keys(given, (), KNOWN)
     result = {}
     for name, (expected, end) in KNOWN.items():
         allowed = motions(symbols) if name == "angular_velocity" else scope
         if name in given.entries:
-            wider = with_state(allowed, axes) if name in ("moment", "force") else allowed
+            wider = with_state(allowed, state) if name in ("moment", "force") else allowed
             result[name] = _given(given.entries[name], f"known.{name}", wider, expected)
         else:
             result[name] = Given(Fraction(-end), Fraction(end), None)

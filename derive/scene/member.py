@@ -48,7 +48,7 @@ class _Substance:
 
 def read_member(name: str, given: Table, frames: tuple[Frame, ...], scalars: Scalars) -> Member:
     """Return a body of the machine."""
-    entries, fixed = given.entries, Symbols(scalars.parameters, (), ())
+    entries, fixed = given.entries, Symbols(scalars.parameters, (), (), ())
     if "frame" not in entries:
         raise SceneError(f"{given.label} needs 'frame'")
     frame = word(entries["frame"], f"{given.label}.frame", [f.name for f in frames])

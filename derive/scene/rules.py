@@ -20,6 +20,7 @@ from derive.scene.numbers import (
     inexact_axis,
     merges,
 )
+from derive.scene.wanted import moves
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -130,12 +131,22 @@ def _attitude(scene: Scene) -> None:
 
 
 def _known(scene: Scene, said: tuple[str, ...]) -> None:
-    """A known vector must not be given twice."""
+    """A known vector must not be given twice, nor made of what is no state."""
     reason = _prescribed(scene)
-    own = reason.startswith("known.")
+    own = reason.startswith("known.") and scene.axes.kind == "body"
     for name in ROTATIONAL:
         if name in said and reason and not (own and name == "angular_velocity"):
             raise SceneError(f"known.{name} follows from the rest: {reason}")
+    for name in ("moment", "force"):
+        for part in scene.known[name].formulas or ():
+            found = [s for s in sorted(symbols(part)) if s.startswith("omega_")]
+            if found and reason:
+                raise SceneError(f"known.{name} uses '{found[0]}', which is no state: {reason}")
+    if scene.known["angular_acceleration"].formulas:
+        for name in scene.wanted:
+            if name.removesuffix("_jacobian") in FORWARD or moves(name):
+                rule = "finds the angular acceleration, but known.angular_acceleration gives it"
+                raise SceneError(f"'{name}' {rule} by formulas")
     if "force" in said and scene.position is None:
         raise SceneError(
             "known.force needs [position]: without it the centre's motion is not asked"
@@ -210,10 +221,13 @@ def _unused(scene: Scene, said: tuple[str, ...]) -> Iterator[str]:
     for name in turning + [entry.name for entry in scene.speeds]:
         if name not in used and f"{name}_dot" not in used:
             yield f"'{name}' is declared, but nothing turns with it"
-    if "moment" in said and not any(
-        name.startswith((*FORWARD, "step_", "flow_")) for name in scene.wanted
-    ):
-        yield "known.moment is given, but no acceleration or state_rate is wanted"
+    for one in scene.inputs:
+        if one.name not in used:
+            yield f"input '{one.name}' is not used"
+    for name, users in (("moment", (*FORWARD, "step_", "flow_")), ("force", FORWARD[1:])):
+        if name in said and not any(w.startswith((*users, "step_")) for w in scene.wanted):
+            asked = "acceleration or state_rate" if name == "moment" else "state_rate or step"
+            yield f"known.{name} is given, but no {asked} is wanted"
 
 
 def _formulas(scene: Scene) -> Iterator[Formula]:

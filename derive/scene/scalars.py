@@ -45,7 +45,7 @@ class Scalars:
 def read_scalars(part: Mapping[str, Table]) -> Scalars:
     """Return the scalars declared in the tables parameters, coordinates, speeds and inputs."""
     empty = Table("", {})
-    parameters = read_symbols(part["parameters"], empty, empty).parameters
+    parameters = read_symbols(part["parameters"], empty, empty, empty).parameters
     fixed = {p.name: dimension(p.unit) for p in parameters}
     speeds = tuple(_speed(name, given) for name, given in _entries(part["speeds"], "speed"))
     for s in speeds:

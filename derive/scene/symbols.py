@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, cast
 
 from derive.scene.declaration import (
-    Axes,
     Axis,
     Coordinate,
     Input,
@@ -48,14 +47,16 @@ class Symbols:
     parameters: tuple[Parameter, ...]
     coordinates: tuple[Coordinate, ...]
     speeds: tuple[Speed, ...]
+    inputs: tuple[Input, ...]
 
 
-def read_symbols(parameters: Table, coordinates: Table, speeds: Table) -> Symbols:
-    """Return the scalars declared in the three tables."""
+def read_symbols(parameters: Table, coordinates: Table, speeds: Table, inputs: Table) -> Symbols:
+    """Return the scalars declared in the four tables."""
     return Symbols(
         tuple(_parameter(*entry) for entry in _entries(parameters, "parameter")),
         tuple(_coordinate(*entry) for entry in _entries(coordinates, "coordinate")),
         tuple(_speed(*entry) for entry in _entries(speeds, "speed")),
+        tuple(_input(*entry) for entry in _entries(inputs, "input")),
     )
 
 
@@ -131,6 +132,13 @@ def _speed(name: str, given: Table) -> Speed:
     return Speed(name, "rad/s", low, high, _meaning(given), rate)
 
 
+def _input(name: str, given: Table) -> Input:
+    keys(given, ("unit", "range"), ("meaning",))
+    unit(given)
+    low, high = interval(given.entries["range"], f"{given.label}: range")
+    return Input(name, str(given.entries["unit"]), low, high, _meaning(given))
+
+
 def _require_unit(given: Table, expected: Dimension, spelling: str) -> None:
     if unit(given) != expected:
         raise SceneError(f"{given.label} must be in {spelling}, not {spelled(unit(given))}")
@@ -171,6 +179,7 @@ def constants(symbols: Symbols) -> Scope:
     others = {
         **{entry.name: "a coordinate" for entry in symbols.coordinates},
         **{entry.name: "a speed" for entry in symbols.speeds},
+        **{entry.name: "an input" for entry in symbols.inputs},
         **{entry.name: "a rate" for entry in (*rates(symbols), *accelerations(symbols))},
     }
     dimensions = {entry.name: dimension(entry.unit) for entry in symbols.parameters}
@@ -184,6 +193,7 @@ def motions(symbols: Symbols) -> Scope:
     others = {
         **{entry.name: "a free coordinate" for entry in free},
         **{entry.name: "an acceleration" for entry in accelerations(symbols)},
+        **{entry.name: "an input, whose rate is not known" for entry in symbols.inputs},
     }
     rule = "only parameters, speeds, prescribed coordinates and their rates may stand here"
     scalars: tuple[Scalar, ...] = (*symbols.parameters, *usable, *symbols.speeds, *rates(symbols))
@@ -203,16 +213,15 @@ def anything(symbols: Symbols, wheels: tuple[Wheel, ...]) -> Scope:
         *symbols.speeds,
         *rates(symbols),
         *accelerations(symbols),
+        *symbols.inputs,
         *(wheel.speed for wheel in wheels),
     )
-    rule = "a known vector is a formula of parameters, coordinates, speeds and given rates"
+    rule = "a known vector is a formula of parameters, coordinates, speeds, inputs and given rates"
     return Scope(_dimensions(scalars), others, rule)
 
 
-def with_state(scope: Scope, axes: Axes) -> Scope:
-    """Return the scope of a moment or force that depends on attitude and angular velocity."""
-    state = {f"attitude_{part}": NONE for part in "wxyz" if axes.quaternion}
-    state |= {f"omega_{part}": ANGULAR_VELOCITY for part in "xyz" if axes.fixed_in_body}
+def with_state(scope: Scope, state: Mapping[str, Dimension]) -> Scope:
+    """Return the scope of a moment or force that depends on components of the state."""
     return Scope({**scope.dimensions, **state}, scope.others, scope.rule)
 
 

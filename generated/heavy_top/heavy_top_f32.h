@@ -53,8 +53,8 @@ int heavy_top_setup_f32(float A, float C, float m, float g, float l,
  *            omega_dot[3]  rad/s^2  along xyz  rate of the components of omega along the axes
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.35, largest 3 u of the largest term (sampled: 123 points, worst at omega_dot,
- *            point 87).
+ * Error: median 0.36, largest 4 u of the largest term (sampled: 123 points, worst at omega_dot,
+ *            point 81).
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -72,8 +72,8 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
  *            jacobian[13]  nonzeros of the Jacobian, in compressed-column order
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.46, largest 5.4 u of the largest term (sampled: 123 points, worst at jacobian,
- *            point 71).
+ * Error: median 0.48, largest 5.7 u of the largest term (sampled: 123 points, worst at jacobian,
+ *            point 81).
  * Cost: 1 add, 5 sub, 17 mul, 1 div, 4 neg, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -91,8 +91,8 @@ void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *cons
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.63, largest 4.2 u of the largest term (sampled: 123 points, worst at
- *            kinetic_energy, point 62).
+ * Error: median 0.79, largest 5.7 u of the largest term (sampled: 123 points, worst at
+ *            kinetic_energy, point 27).
  * Cost: 2 add, 5 mul.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
  */
@@ -104,8 +104,8 @@ void heavy_top_kinetic_energy_f32(const heavy_top_constants_f32 *constants, cons
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
- * Error: median 0.33, largest 1 u of the largest term (sampled: 123 points, worst at
- *            angular_momentum, point 104).
+ * Error: median 0.34, largest 0.96 u of the largest term (sampled: 123 points, worst at
+ *            angular_momentum, point 2).
  * Cost: 3 mul.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */

@@ -53,8 +53,8 @@ int heavy_top_setup_f64(double A, double C, double m, double g, double l,
  *            omega_dot[3]  rad/s^2  along xyz  rate of the components of omega along the axes
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.28, largest 3.5 u of the largest term (sampled: 123 points, worst at omega_dot,
- *            point 16).
+ * Error: median 0.3, largest 4.5 u of the largest term (sampled: 123 points, worst at omega_dot,
+ *            point 120).
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -91,8 +91,8 @@ void heavy_top_state_rate_jacobian_dense_f64(const heavy_top_constants_f64 *cons
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.73, largest 3.5 u of the largest term (sampled: 123 points, worst at
- *            kinetic_energy, point 3).
+ * Error: median 0.75, largest 4.3 u of the largest term (sampled: 123 points, worst at
+ *            kinetic_energy, point 65).
  * Cost: 2 add, 5 mul.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
  */
@@ -104,8 +104,8 @@ void heavy_top_kinetic_energy_f64(const heavy_top_constants_f64 *constants, cons
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
- * Error: median 0.36, largest 0.97 u of the largest term (sampled: 123 points, worst at
- *            angular_momentum, point 114).
+ * Error: median 0.32, largest 0.97 u of the largest term (sampled: 123 points, worst at
+ *            angular_momentum, point 87).
  * Cost: 3 mul.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */

@@ -68,8 +68,8 @@ void t_handle_flip_setup_f64(double I_xx, double I_yy, double I_zz,
  *            omega[3]  rad/s  along B  -15 .. 15  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.81, largest 3 u of the largest term (sampled: 123 points, worst at
- *            kinetic_energy, point 98).
+ * Error: median 0.78, largest 2.8 u of the largest term (sampled: 123 points, worst at
+ *            kinetic_energy, point 36).
  * Cost: 2 add, 6 mul.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
  */
@@ -81,8 +81,8 @@ void t_handle_flip_kinetic_energy_f64(const t_handle_flip_constants_f64 *constan
  *            omega[3]  rad/s  along B  -15 .. 15  angular velocity of the body in the inertial frame
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
- * Error: median 0.35, largest 0.99 u of the largest term (sampled: 123 points, worst at
- *            angular_momentum, point 83).
+ * Error: median 0.35, largest 0.97 u of the largest term (sampled: 123 points, worst at
+ *            angular_momentum, point 104).
  * Cost: 3 mul.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
@@ -96,8 +96,8 @@ void t_handle_flip_angular_momentum_f64(const t_handle_flip_constants_f64 *const
  *            time  s  -60 .. 60  time from the given to the new state
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- * Error: median 25, largest 6.3e+02 u of the largest component, by rounding alone (sampled: 42
- *            points, worst at attitude_next, point 33).
+ * Error: median 26, largest 5e+02 u of the largest component, by rounding alone (sampled: 42
+ *            points, worst at attitude_next, point 23).
  * Cost: 168 add, 50 sub, 385 mul, 106 div, 1 neg, 29 sqrt, 2 sin, 2 cos, 8 abs, 2 at_most, 1 both,
  *            8 less, 1 power_of_two, 29 select.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,

@@ -19,7 +19,7 @@ EXAMPLE = re.compile(r"^```toml\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 EXAMPLES = EXAMPLE.findall(PAGE)
 REFUSED = [text for text in EXAMPLES if text.startswith("# scene 'example': ")]
 ACCEPTED = [text for text in EXAMPLES if text not in REFUSED]
-LONGEST_PAGE = 220
+LONGEST_PAGE = 260
 """Lines, examples included: one page, read in a sitting."""
 
 
@@ -36,7 +36,7 @@ def test_a_refused_example_of_the_page_is_refused_by_the_sentence_above_it(text:
 
 
 def test_the_page_has_its_examples_and_is_one_page() -> None:
-    assert (len(ACCEPTED), len(REFUSED)) == (4, 2)
+    assert (len(ACCEPTED), len(REFUSED)) == (5, 2)
     assert len(PAGE.splitlines()) <= LONGEST_PAGE
 
 
