@@ -13,6 +13,7 @@ from fractions import Fraction
 
 from derive.flows.principal_axes import Three, quotient, root
 from derive.operations import absolute, at_most, both, less, select, sqrt
+from derive.rotations.lengths import hypotenuse
 from derive.trace import Number, named, number
 
 NEARLY_ZERO = Fraction(1, 2**100)
@@ -96,8 +97,8 @@ class Orbit:
     @property
     def modulus_squared(self) -> Number:
         """Return k^2, with all its digits where it is small."""
-        ratio = self.middle / self.divisor
-        return self.c.part * (ratio * ratio)
+        ratio = self.c.root * self.across / self.divisor * self.a.inverse_root
+        return ratio * ratio
 
     def back(self, v: Three) -> list[Number]:
         """Return the components along 1, 2, 3 of a vector along a, b, c."""
@@ -109,25 +110,27 @@ def orbit(one: Role, three: Role, omega: Three) -> Orbit:
     """Return the orbit of an angular velocity along axes 1, 2, 3.
 
     Source: Celledoni, Fasso, Saefstroem and Zanna, SIAM J. Sci. Comput. 30 (2008) 2084, section 2,
-    with k'^2 = |part_1 m_1^2 - part_3 m_3^2| / (r A)^2 for their 1 - k^2.
+    with k'^2 = |part_1 m_1^2 - part_3 m_3^2| / (r A)^2 for their 1 - k^2, as a product of roots:
+    a rate may be so small beside the others that its square vanishes, and yet it turns the body.
     """
     m_1, m_b, m_3 = one.moment * omega[0], omega[1], three.moment * omega[2]
-    distance_1, distance_3 = one.part * (m_1 * m_1), three.part * (m_3 * m_3)
-    a_is_1 = at_most(distance_3, distance_1)
+    pull_1, pull_3 = one.root * absolute(m_1), three.root * absolute(m_3)
+    a_is_1 = at_most(pull_3, pull_1)
     a, c = _chosen(a_is_1, one, three), _chosen(a_is_1, three, one)
     spin, m_a, m_c = (select(a_is_1, *v) for v in ((omega[0], omega[2]), (m_1, m_3), (m_3, m_1)))
     sign = select(less(spin, 0), -1, 1)
-    m_a, m_c, square_b = absolute(m_a), m_c * sign, m_b * m_b
-    high, across = m_a * m_a + c.part * square_b, m_c * m_c + a.part * square_b
-    gap, scale = absolute(distance_1 - distance_3), a.part * high
+    m_a, m_c, b = absolute(m_a), m_c * sign, absolute(m_b)
+    high, across = hypotenuse(m_a, c.root * b), hypotenuse(absolute(m_c), a.root * b)
+    gap, scale = absolute(pull_1 - pull_3), a.root * high
     some = less(0, scale)
-    complement = sqrt(select(some, gap / select(some, scale, 1), 1))
+    scale = select(some, scale, 1)
+    complement = select(some, sqrt(gap / scale) * sqrt((pull_1 + pull_3) / scale), 1)
     separatrix = both(some, at_most(gap, 0))
     complement = select(separatrix, NEARLY_ZERO, complement)
-    lengths = sqrt(high), sqrt(across), sqrt(high + across)
     hand = select(a_is_1, 1, -1)
-    m = m_a, m_b, m_c
-    return Orbit(m, absolute(spin), a, c, *lengths, complement, a_is_1, separatrix, hand, sign)
+    m, length = (m_a, m_b, m_c), hypotenuse(high, across)
+    found = a, c, high, across, length, complement, a_is_1, separatrix, hand, sign
+    return Orbit(m, absolute(spin), *found)
 
 
 def _chosen(condition: Number, yes: Role, no: Role) -> Role:

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from derive.flows.principal_axes import Three
-from derive.operations import cos, sin, sqrt
-from derive.rotations.lengths import squares
+from derive.operations import absolute, cos, sin, sqrt
+from derive.rotations.lengths import hypotenuse, squares
 from derive.rotations.quaternion import product
 from derive.trace import Number, named, number
 
 
 def spun(omega: Three, time: Number) -> list[Number]:
     """Return the turn (4,) of a body whose angular velocity stays as it is, and is not zero."""
-    rate = sqrt(squares(omega))
+    return _turned(omega, sqrt(squares(omega)), time)
+
+
+def _turned(omega: Three, rate: Number, time: Number) -> list[Number]:
+    """Return the turn about ``omega`` of length ``rate``, over any scale."""
     half = rate * time / 2
     along = sin(half) / rate
     return [cos(half), *(along * w for w in omega)]
@@ -34,7 +38,9 @@ def precess(
     half = lag * omega[axis] * time / 2
     cosine, sine = cos(half), sin(half)
     about = [cosine, *(sine if k == axis else number(0) for k in range(3))]
-    turn = product(spun((momentum[0], momentum[1], momentum[2]), time), about)
+    x, y, z = momentum
+    length = hypotenuse(hypotenuse(absolute(x), absolute(y)), absolute(z))
+    turn = product(_turned((x, y, z), length, time), about)
     c, s = cosine * cosine - sine * sine, 2 * cosine * sine
     after = list(omega)
     after[i], after[j] = c * omega[i] + s * omega[j], c * omega[j] - s * omega[i]

@@ -12,7 +12,8 @@ from fractions import Fraction
 from derive.flows.elliptic import HALF, Angle, Complex, Ladder, Values, angle, functions, ladder
 from derive.flows.orbit import Orbit, orbit, role_of_a
 from derive.flows.principal_axes import Three
-from derive.operations import absolute, cos, less, select, sin, sqrt
+from derive.operations import absolute, cos, less, power_of_two, select, sin, sqrt
+from derive.rotations.lengths import largest
 from derive.trace import Number
 
 OVER = Fraction(40)
@@ -51,15 +52,17 @@ def _until_over(path: Orbit, time: Number) -> tuple[Number, Number]:
 def _added(path: Orbit, at: Values) -> Three:
     """Return the momentum after the motion, along a, b, c.
 
-    Source: DLMF 22.8(i), with 1 - k^2 sn^2 sn^2 as cn^2 + sn^2 dn^2, times A, C / r and C.
+    Source: DLMF 22.8(i), with 1 - k^2 sn^2 sn^2 as cn^2 + sn^2 dn^2, times A, C / r and C. That
+    may be as small as k'^2, so all is worked out over a power of two near cn or sn dn.
     """
-    a, b, c = path.m
     s, n, d = at.sn, at.cn, at.dn
-    t = s * (a / path.divisor)
+    t = s * (path.m[0] / path.divisor)
+    size = power_of_two(largest((n, t)))
+    (a, c, n, t, d), b = (x / size for x in (path.m[0], path.m[2], n, t, d)), path.m[1]
     scale = 1 / (n * n + t * t)
-    tilt = path.c.part * path.a.inverse_root / path.divisor
+    tilt = path.c.root * path.a.inverse_root * (path.c.root * b / path.divisor)
     return (
-        (a * d - tilt * (b * c) * (s * n)) * scale,
+        (a * d - tilt * c * (s * n)) * scale,
         (b * n * d + path.a.inverse_root * c * t) * scale,
         (c * n - path.a.root * b * (t * d)) * scale,
     )
@@ -107,7 +110,7 @@ def _added_angle(path: Orbit, at: Values, after: Three) -> Complex:
     g, high = path.length, path.high
     start, end = path.m[0] / path.divisor, after[0] / path.divisor
     x = (1 + at.dn) * (1 + start * (after[0] / g)) + (start + end) * (1 + high / g * at.dn)
-    y = path.modulus_squared * path.a.root * path.m[1] * after[1] * at.sn / (g * (g + high))
+    y = path.modulus_squared * path.a.root * (path.m[1] / g) * (after[1] / (g + high)) * at.sn
     return x, -y
 
 
@@ -116,14 +119,14 @@ def _product(p: Complex, q: Complex) -> Complex:
 
 
 def _turn(path: Orbit, after: Three, half: Complex) -> list[Number]:
-    """Return P(m)^-1 exp(psi / 2) P(m'), P(m) = (|m| + m_a, 0, m_c, -m_b), of length 1.
+    """Return P(m)^-1 exp(psi / 2) P(m') of length 1, P(m) = (1 + m_a, 0, m_c, -m_b), |m| = 1.
 
     Counted as if a, b, c were right-handed: else the vector part has the wrong sign.
     """
-    _, b, c = path.m
-    g0, g1 = path.length + path.m[0], path.length + after[0]
+    (a, b, c), (p, q, r) = ([v / path.length for v in m] for m in (path.m, after))
+    g0, g1 = 1 + a, 1 + p
     cosine, sine = half
-    y, z = cosine * after[2] + sine * after[1], sine * after[2] - cosine * after[1]
+    y, z = cosine * r + sine * q, sine * r - cosine * q
     w, x = cosine * g1, sine * g1
     turn = [
         g0 * w + c * y - b * z,

@@ -47,6 +47,14 @@ def squares(values: Sequence[Number]) -> Number:
     return terms[0]
 
 
+def hypotenuse(x: Number, y: Number) -> Number:
+    """Return the root of x^2 + y^2 for x, y >= 0: no square overflows, or vanishes and matters."""
+    x_is_longer = less(y, x)
+    longer, shorter = select(x_is_longer, x, y), select(x_is_longer, y, x)
+    ratio = shorter / select(less(0, longer), longer, 1)
+    return longer * sqrt(1 + ratio * ratio)
+
+
 def length_and_rest(tape: Tape, v: Sequence[Number], vanishing: Number) -> tuple[Number, Number]:
     """Return the rounded length h of ``v``, and l with h + l right to u times the root of u.
 

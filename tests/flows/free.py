@@ -136,18 +136,22 @@ def errors(found: Sequence[Any], true: Sequence[flint.arb]) -> tuple[float, floa
     A quaternion and its negative are one attitude, but not one continuous motion.
     """
     with flint.ctx.workprec(DIGITS):
-        got = [flint.arb(float(x)) for x in found]
-        (a, b, c, d), (p, q, r, s) = true[:4], got[:4]
-        w = a * p + b * q + c * r + d * s
-        x, y, z = (
-            a * q - b * p - c * s + d * r,
-            a * r - c * p - d * q + b * s,
-            a * s - d * p - b * r + c * q,
-        )
-        angle = 2 * flint.arb.atan2((x * x + y * y + z * z).sqrt(), w)
-        wrong = sum(((g - t) ** 2 for g, t in zip(got[4:], true[4:], strict=True)), flint.arb(0))
-        size = sum((t * t for t in true[4:]), flint.arb(0))
-        return float(angle.mid()), float((wrong / size).sqrt().mid())
+        return apart([flint.arb(float(x)) for x in found], true)
+
+
+def apart(got: Sequence[flint.arb], true: Sequence[flint.arb]) -> tuple[float, float]:
+    """Return the same of numbers of many digits, in the precision that is set."""
+    (a, b, c, d), (p, q, r, s) = true[:4], got[:4]
+    w = a * p + b * q + c * r + d * s
+    x, y, z = (
+        a * q - b * p - c * s + d * r,
+        a * r - c * p - d * q + b * s,
+        a * s - d * p - b * r + c * q,
+    )
+    angle = 2 * flint.arb.atan2((x * x + y * y + z * z).mid().sqrt(), w)
+    wrong = sum(((g - t) ** 2 for g, t in zip(got[4:], true[4:], strict=True)), flint.arb(0))
+    size = sum((t * t for t in true[4:]), flint.arb(0))
+    return float(angle.mid()), float((wrong / size).sqrt().mid())
 
 
 def share(case: Case, dtype: type, found: Sequence[Any]) -> float:
