@@ -171,6 +171,7 @@ def extended(dtype: type) -> Table:
         "either": np.logical_or,
         "select": pair_select,
         "pi": lambda: number(PI),
+        "unit_roundoff": lambda: number(Fraction(1, 2 ** MANTISSA[dtype])),
     }
 
 

@@ -35,10 +35,10 @@ def arrange(known: Specialised, fact: Truth) -> tuple[Arrangement, ...]:
 
 
 def _arranged(known: Specialised, fact: Truth, ways: Mapping[str, Way]) -> Arrangement:
-    draft = Draft(known, [], [])
+    draft = Draft(known, [])
     by_output = ways[fact.name](draft, bindings_of(draft))
     outputs = [v for output in fact.outputs for v in by_output[output.name]]
-    return Arrangement(tuple(draft.stages), tuple(outputs), tuple(draft.positive))
+    return Arrangement(tuple(draft.stages), tuple(outputs))
 
 
 def bindings_of(draft: Draft) -> Bindings:

@@ -10,6 +10,7 @@ from derive.arithmetic import TRUTHS, pair_of, rounded
 from derive.pair_sine import PI
 from derive.pairs import splitter
 from derive.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
+from derive.status import CONSTANT, PARAMETER, RIGHT, computed
 
 UNSIGNED_CHAR = 255
 
@@ -240,17 +241,35 @@ def _rounded(operand: Operand, names: set[str], precision: Precision) -> str:
     return operand if operand in names else f"{operand}.high"
 
 
-def admissible(program: Program, precision: Precision) -> list[str]:
-    """Return the C conditions on set-up's parameters, none if they are always admissible.
+def status(program: Program, precision: Precision) -> list[str]:
+    """Return the C lines by which set-up tells whether its parameters are admissible.
 
     What is infinite or no number fails ``x - x >= 0``.
     """
     names = [c for q in program.inputs for c in q.components]
     zero = literal(Fraction(0), precision)
-    positive = dict.fromkeys(_rounded(p, set(names), precision) for p in program.positive)
-    tests = [f"{p} > {zero}" for p in positive]
-    finite = [f"{c} - {c} >= {zero}" for c in names]
-    return tests + finite if tests else []
+    broken: dict[int, list[str]] = {}
+    for rule in program.rules:
+        sign = "<=" if rule.relation == "positive" else "<"
+        test = f"{_rounded(rule.value, set(names), precision)} {sign} {zero}"
+        broken.setdefault(rule.status, []).append(test)
+    made = dict.fromkeys((*(rule.value for rule in program.rules), *computed(program)))
+    rest = [_rounded(r, set(names), precision) for r in made if r not in names]
+    lines = _refused(_finite(names, zero), PARAMETER)
+    for number, tests in sorted(broken.items()):
+        lines += _refused(tests, number)
+    return [*lines, *_refused(_finite(rest, zero), CONSTANT), f"return {RIGHT};"]
+
+
+def _finite(names: Sequence[str], zero: str) -> list[str]:
+    return [f"!({name} - {name} >= {zero})" for name in names]
+
+
+def _refused(tests: Sequence[str], number: int) -> list[str]:
+    if not tests:
+        return []
+    condition = "\n    || ".join(tests)
+    return [f"if ({condition}) {{", f"    return {number};", "}"]
 
 
 RESTS_ON: dict[str, tuple[str, ...]] = {
@@ -267,6 +286,7 @@ RESTS_ON: dict[str, tuple[str, ...]] = {
     "cos": ("neg", "add", "two_product", "mul", "sine"),
     "power_of_two": (),
     "pi": (),
+    "unit_roundoff": (),
     "abs": ("neg",),
     "less": (),
     "at_most": (),

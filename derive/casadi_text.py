@@ -1,7 +1,9 @@
 """The scene's functions as CasADi: Python that builds them, operation by operation as the C."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
+
+import numpy as np
 
 from derive.arithmetic import pair_of, rounded
 from derive.c_text import F64, machine_number, pair_functions
@@ -12,6 +14,7 @@ from derive.library import Library
 from derive.pair_sine import quarter_turn, series
 from derive.program import Line, Op, Operand, Program, Quantity, Repeat
 from derive.series_text import series_casadi
+from derive.status import CONSTANT, PARAMETER, computed, possible
 
 Text = Callable[[Operand], str]
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/", "less": "<", "at_most": "<="}
@@ -94,7 +97,28 @@ def _setup(program: Program, scene: str) -> dict[str, object]:
         "constants": _components(program.outputs),
         "lines": lines,
         "results": [stored(r) for r in program.results],
+        "says": possible(program),
+        "status": list(_status(program, stored)),
+        "largest": repr(float(np.finfo(F64.dtype).max)),
     }
+
+
+def _status(program: Program, stored: Text) -> Iterator[str]:
+    """Yield the lines that find the status; the rule that counts most is tried last."""
+    rules, names = program.rules, _components(program.inputs)
+    made = dict.fromkeys((*(rule.value for rule in rules), *computed(program)))
+    yield from _refused(CONSTANT, [f"_endless({stored(r)})" for r in made if r not in names])
+    for number in sorted({rule.status for rule in rules}, reverse=True):
+        own = [rule for rule in rules if rule.status == number]
+        signs = ["<=" if rule.relation == "positive" else "<" for rule in own]
+        tests = [f"{stored(rule.value)} {sign} 0.0" for rule, sign in zip(own, signs, strict=True)]
+        yield from _refused(number, tests)
+    yield from _refused(PARAMETER, [f"_endless({stored(name)})" for name in names])
+
+
+def _refused(number: int, tests: Sequence[str]) -> Iterator[str]:
+    if tests:
+        yield f"status = _refused(status, {number}, {', '.join(tests)})"
 
 
 def _components(quantities: tuple[Quantity, ...]) -> list[str]:

@@ -6,6 +6,7 @@ from textwrap import wrap
 from derive.lecture import LECTURE
 from derive.notation import equation_text
 from derive.program import Measurement, Program, Quantity
+from derive.status import possible
 
 WIDTH = 96
 
@@ -31,9 +32,8 @@ def _labelled(label: str, text: str) -> list[str]:
 
 def _setup(program: Program) -> list[str]:
     lines = [program.says, *_arguments(program)]
-    if program.positive:
-        says = "0, or 1 if the inertia is not positive definite or a parameter is not finite."
-        lines += _labelled("Returns:", says)
+    says = "; ".join(f"{number} {words}" for number, words in possible(program).items())
+    lines += _labelled("Returns:", f"{says}.")
     lines += _labelled(
         "Error:", "each constant is rounded once from twice the working precision; at most 1 ulp."
     )

@@ -18,11 +18,10 @@ class Stage:
 
 @dataclass(frozen=True)
 class Arrangement:
-    """Stages in order, the output components, and what must be positive for them to exist."""
+    """Stages in order, and the output components."""
 
     stages: tuple[Stage, ...]
     outputs: tuple[Expr, ...]
-    positive: tuple[Expr, ...] = ()
 
 
 @dataclass
@@ -31,7 +30,6 @@ class Draft:
 
     known: Specialised
     stages: list[Stage]
-    positive: list[Expr]
 
     def named(self, kind: str, name: str, value: Expr) -> Expr:
         """Return a symbol for ``value``, unless it is plain already."""

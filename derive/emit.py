@@ -13,10 +13,10 @@ from derive.c_text import (
     MATH,
     PRECISIONS,
     Precision,
-    admissible,
     literal,
     pair_body,
     pair_functions,
+    status,
     table,
 )
 from derive.comment import comment
@@ -192,6 +192,7 @@ def _pair_function(name: str, names: Names, precision: Precision) -> str:
             one_less=literal(1 - Fraction(1, 2**bits), precision),
             pi_high=literal(pi_high, precision),
             pi_low=literal(pi_low, precision),
+            roundoff=literal(Fraction(1, 2**bits), precision),
             **_sine(precision) if name == "sine" else {},
             **precision.functions,
         )
@@ -224,12 +225,8 @@ def _sine(precision: Precision) -> dict[str, object]:
 
 
 def _setup_definition(program: Program, names: Names, precision: Precision) -> str:
-    lines = pair_body(program, names.scene, precision)
-    tests = admissible(program, precision)
-    if tests:
-        condition = "\n        && ".join(tests)
-        lines.append(f"return ({condition}) ? 0 : 1;")
-    text = "\n".join(f"    {line}" for line in lines)
+    lines = [*pair_body(program, names.scene, precision), *status(program, precision)]
+    text = "\n".join(f"    {line}" for part in lines for line in part.splitlines())
     return f"{prototype(program, names, precision)}\n{{\n{text}\n}}"
 
 

@@ -16,7 +16,7 @@ def example(library: Library, names: Names, precision: Precision) -> list[str]:
         given = ", ".join(literal(_middle(q), precision) for q in library.setup.inputs)
         call = f"{names.symbol('setup', precision)}({given}, &constants)"
         lines.append(f"{names.scene}_constants_{precision.name} constants;")
-        lines.append(f"if ({call} != 0) {{ return 1; }}" if library.setup.positive else f"{call};")
+        lines.append(f"if ({call} != 0) {{ return 1; }}")
     arrays = [q for q in program.inputs if q.shape and q.name != "constants"]
     if arrays:
         lines.append(

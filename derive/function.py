@@ -40,7 +40,6 @@ class Arranged:
 
     fact: Truth
     outputs: tuple[tuple[Value, ...], ...]
-    positive: tuple[Value, ...]
 
 
 def graphed(known: Known) -> Graphed:
@@ -73,12 +72,12 @@ def _ways(known: Known, fact: Truth) -> tuple[Arrangement, ...]:
 
 
 def _lowered(scene: Graphed, fact: Truth, way: Arrangement) -> Arranged:
-    values, positive = lower(scene.graph, way, scene.by_symbol())
+    values = lower(scene.graph, way, scene.by_symbol())
     outputs, place = [], 0
     for quantity in fact.outputs:
         outputs.append(tuple(values[place : place + len(quantity.components)]))
         place += len(quantity.components)
-    return Arranged(fact, tuple(outputs), tuple(positive))
+    return Arranged(fact, tuple(outputs))
 
 
 def _best(graph: Graph, wanted: Arranged) -> list[Value]:

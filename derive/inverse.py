@@ -17,7 +17,6 @@ def inverse(draft: Draft, tensor: Matrix) -> Matrix:
         part = tensor.extract(block, block)
         if len(block) == 1:
             J[block[0], block[0]] = 1 / part[0]
-            draft.positive.append(part[0])
             continue
         for (i, k), value in _block_inverse(draft, part).items():
             name = f"J_{'xyz'[block[i]]}{'xyz'[block[k]]}"
@@ -52,5 +51,4 @@ def _block_inverse(draft: Draft, part: Matrix) -> dict[tuple[int, int], Expr]:
     }
     determinant = sum((unit[0, k] * cofactor[0, k] for k in range(n)), Integer(0))
     volume = draft.named("cut", "det", scale * determinant)
-    draft.positive += [unit[0, 0], cofactor[n - 1, n - 1], volume]
     return {place: value / volume for place, value in cofactor.items()}

@@ -1,12 +1,13 @@
 """All programs of a scene: one set-up, and for every wanted function its hot part."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from derive.admission import tried
 from derive.flows.compact import Compact
 from derive.flows.series import Series
-from derive.function import Arranged, Graphed, arranged, function, graphed
+from derive.function import Graphed, arranged, function, graphed
 from derive.graph import Graph, Value
 from derive.machine.mechanism import Known, in_terms
 from derive.motions import motions, needs
@@ -17,7 +18,7 @@ from derive.setting import Setting, applied_moment, traced, with_names
 from derive.stage import (
     Constant,
     Traced,
-    exact_number,
+    Tried,
     in_pairs,
     setup,
     with_low_parts,
@@ -70,7 +71,7 @@ def library(scene: Scene | Machine) -> Library:
     wanted = {base: arranged(terms, base) for base in bases}
     every = {n: function(terms, wanted[base_of(n)], n) for n in (*asked, *hidden)}
     moved = _moved(terms, every)
-    made = _set_up(terms, wanted.values(), moved.traced)
+    made = _set_up(terms, moved.traced)
     if scene.form == "accurate" and made.outputs:
         made = with_low_parts(made)
     functions = _in_parameters(made, tuple(every.values()))
@@ -109,12 +110,12 @@ def _moved(scene: Graphed, rates: Mapping[str, Program]) -> Moved:
     return Moved(programs, replace(part, names=names), meanings)
 
 
-def _set_up(scene: Graphed, wanted: Iterable[Arranged], part: Traced) -> Program:
-    """Return the program of set-up, which also tests what must be positive."""
-    graph = scene.graph
-    required = dict.fromkeys(p for one in wanted for p in one.positive if graph.fixed[p[1]])
-    positive = [p for p in required if exact_number(graph, p) is None]
-    return setup(graph, scene.constants, scene.known.words.parameters, positive, part)
+def _set_up(scene: Graphed, part: Traced) -> Program:
+    """Return the program of set-up, which also tries whether its parameters are admissible."""
+    parameters = scene.known.words.parameters
+    bare = setup(scene.graph, scene.constants, parameters, part, Tried())
+    used = {c for q in bare.inputs for c in q.components}
+    return setup(scene.graph, scene.constants, parameters, part, tried(scene, used))
 
 
 def _constants(made: Program, meanings: Mapping[str, str]) -> tuple[Constant, ...]:

@@ -11,8 +11,8 @@ from derive.graph import Graph, Value
 
 def lower(
     graph: Graph, arrangement: Arrangement, leaves: Mapping[Symbol, Value]
-) -> tuple[list[Value], list[Value]]:
-    """Return the values of the outputs, and of what must be positive, in ``graph``.
+) -> list[Value]:
+    """Return the values of the outputs in ``graph``.
 
     leaves : the graph's value of every input's symbol
     """
@@ -20,10 +20,7 @@ def lower(
     for stage in arrangement.stages:
         named = graph.let if stage.kind == "let" else graph.cut
         known[stage.symbol] = named(stage.symbol.name, value_of(graph, stage.value, known))
-    return (
-        [value_of(graph, e, known) for e in arrangement.outputs],
-        [value_of(graph, e, known) for e in arrangement.positive],
-    )
+    return [value_of(graph, e, known) for e in arrangement.outputs]
 
 
 def value_of(graph: Graph, e: Expr, known: Mapping[Symbol, Value]) -> Value:

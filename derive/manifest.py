@@ -17,6 +17,7 @@ from derive.program import Measurement, Program, Quantity, Sparsity
 from derive.scene import argument
 from derive.scene.wanted import JACOBIAN
 from derive.signature import Names, dense
+from derive.status import possible
 
 
 def manifest(library: Library, figures: Sequence[Measurement]) -> str:
@@ -105,10 +106,9 @@ def _setup(library: Library) -> dict[str, Any]:
     return {
         "name": "setup",
         "says": program.says,
-        "symbols": _symbols(library, "setup", "setup"),
-        "returns": "int: 0, or 1 if the inertia is not positive definite or a parameter not finite"
-        if program.positive
-        else "void",
+        "symbols": _symbols(library, "setup", "setup") | {"casadi_status": "setup_status"},
+        "returns": "int: 0, or the first rule that the parameters break; see status",
+        "status": {str(number): says for number, says in possible(program).items()},
         "arguments": given + returned,
         "cost": cost | program.count(),
         "error": "each constant is rounded once from twice the working precision; at most 1 ulp",

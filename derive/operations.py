@@ -10,6 +10,11 @@ def splitter(tape: Tape) -> Number:
     return Number(tape, tape.record("splitter", ()))
 
 
+def unit_roundoff(tape: Tape) -> Number:
+    """Return u of the working precision."""
+    return Number(tape, tape.record("unit_roundoff", ()))
+
+
 def sqrt(x: Number) -> Number:
     """Return the square root."""
     return operation("sqrt", x)

@@ -108,12 +108,25 @@ class Loops(Protocol):
 
 
 @dataclass(frozen=True)
+class Rule:
+    """What set-up's parameters must keep: a value above zero, or not below it.
+
+    status : what set-up returns if not        says : the rule in words, with its quantity
+    """
+
+    status: int
+    says: str
+    value: Operand
+    relation: Literal["positive", "not negative"]
+
+
+@dataclass(frozen=True)
 class Program:
     """A function without branches, ready for any arithmetic; its loops have an end known before.
 
     ``results`` are the values of the outputs' components in order; ``sparsity`` gives the pattern
-    of an output that holds the nonzeros of a matrix; ``positive`` are results of ``ops`` that
-    must be above zero for the inputs to be admissible. In ``arithmetic`` "pairs" every operation
+    of an output that holds the nonzeros of a matrix; ``rules`` are what ``ops`` find out about
+    the inputs of set-up. In ``arithmetic`` "pairs" every operation
     works on pairs of floats, and results are rounded once. With ``loops`` there are no ``ops``.
     """
 
@@ -126,7 +139,7 @@ class Program:
     steps: tuple[str, ...] = ()
     assumptions: tuple[str, ...] = ()
     sparsity: Mapping[str, Sparsity] | None = None
-    positive: tuple[Operand, ...] = ()
+    rules: tuple[Rule, ...] = ()
     arithmetic: Literal["working", "pairs"] = "working"
     loops: Loops | None = None
 

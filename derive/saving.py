@@ -1,7 +1,7 @@
 """What choosing balances saves: the same answers body by body, about mass centres."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from derive.forms import cost
 from derive.graph import Graph
@@ -77,5 +77,4 @@ def _plain(known: Mechanism, base: str) -> int | None:
     leaves |= {s: graph.parameter(what) for s, what in known.made.hidden.items()}
     varying = [c for q in (*words.states, *words.inputs) for c in q.components]
     leaves |= {words.symbols[c]: graph.variable(c) for c in varying}
-    values, _ = lower(graph, replace(way, positive=()), leaves)
-    return cost(graph, values)[0]
+    return cost(graph, lower(graph, way, leaves))[0]

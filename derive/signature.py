@@ -50,7 +50,7 @@ def _given(q: Quantity, scene: str, precision: Precision) -> str:
 
 def prototype(program: Program, names: Names, precision: Precision) -> str:
     """Return the declaration of a function without its semicolon."""
-    result = "int" if program.name == "setup" and program.positive else "void"
+    result = "int" if program.name == "setup" else "void"
     arguments = parameters(program, names.scene, precision) or ["void"]
     return declaration(f"{result} {names.symbol(program.name, precision)}", arguments)
 

@@ -17,6 +17,7 @@ from derive.program import (
     Operand,
     Program,
     Quantity,
+    Rule,
     Sparsity,
     every_op,
     operands_of,
@@ -93,6 +94,18 @@ class Traced:
 
 
 @dataclass(frozen=True)
+class Tried:
+    """The part of set-up that finds out whether its parameters are admissible.
+
+    given : the graph's value of each input of the tape
+    """
+
+    ops: tuple[Line, ...] = ()
+    given: Mapping[str, Value] = field(default_factory=dict)
+    rules: tuple[Rule, ...] = ()
+
+
+@dataclass(frozen=True)
 class Constant:
     """One named constant and the formula it is made by."""
 
@@ -147,14 +160,15 @@ def setup(
     graph: Graph,
     constants: Constants,
     parameters: Sequence[Quantity],
-    positive: Sequence[Value],
     traced: Traced,
+    tried: Tried,
 ) -> Program:
     """Return the program that makes the constants from the parameters.
 
     traced : what the formulas of motion need, worked out after the graph's constants
+    tried  : what is found out about the parameters, last
     """
-    values = [*constants.names, *traced.given.values(), *positive]
+    values = [*constants.names, *traced.given.values(), *tried.given.values()]
 
     def number(value: Value) -> Fraction:
         return value[0]
@@ -164,9 +178,12 @@ def setup(
     )
     own, given = len(constants.names), len(traced.given)
     placed = dict(zip(traced.given, results[own : own + given], strict=True))
-    whole = (*ops, *renamed(traced.ops, placed))
+    asked = dict(zip(tried.given, results[own + given :], strict=True))
+    rules = tuple(replace(r, value=asked.get(str(r.value), r.value)) for r in tried.rules)
+    whole = (*ops, *renamed(traced.ops, placed), *renamed(tried.ops, asked))
     made = [placed.get(o, o) for o in traced.names]
-    whole = needed(whole, (*results, *made))  # a trace may hold what no constant rests on
+    # a trace may hold what no constant rests on
+    whole = needed(whole, (*results, *made, *(rule.value for rule in rules)))
     names = (*constants.names.values(), *traced.names.values())
     says = "constants made of parameters only, for the functions of this scene"
     output = Quantity("constants", names, (len(names),), "", "", None, None, says)
@@ -179,7 +196,7 @@ def setup(
         (output,) if names else (),
         whole,
         (*results[:own], *made),
-        positive=results[own + given :],
+        rules=rules,
     )
 
 

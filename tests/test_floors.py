@@ -14,7 +14,7 @@ FLOORS = (
         "largest",
     ),
     (
-        *("particles", "pairs", "pair_sine", "arithmetic"),
+        *("particles", "pairs", "pair_sine", "arithmetic", "status"),
         *("trace", "operations", "recorded", "rotations", "tree", "rate", "facts", "relations"),
     ),
     ("expand", "derivative", "table", "share", "write"),
@@ -24,7 +24,7 @@ FLOORS = (
     ("machine",),
     ("lower", "forms", "stage", "function"),
     ("flows",),
-    ("setting", "motions", "library"),
+    ("setting", "admission", "motions", "library"),
     ("saving",),
     (
         *("c_text", "series_text", "compact_text", "definition", "comment", "signature", "example"),

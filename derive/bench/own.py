@@ -109,7 +109,7 @@ def _setup(problem: Problem, manifest: Mapping[str, Any]) -> str:
     setup = _named(manifest["functions"], "setup")
     given = [a["name"] for a in setup["arguments"] if a["direction"] == "in"]
     passed = ", ".join(f"p[{problem.parameters.index(name)}]" for name in given)
-    return f"{setup['symbols']['f64']}({passed}, &given->k);"
+    return f"(void){setup['symbols']['f64']}({passed}, &given->k);"
 
 
 def _passed(arguments: Sequence[Mapping[str, Any]]) -> list[str]:

@@ -15,7 +15,6 @@ from derive.check.agreement import (
     casadi_bits,
     dense,
     motion_accuracy,
-    refusal,
     replay,
 )
 from derive.check.attitudes import definitions
@@ -24,6 +23,7 @@ from derive.check.emitted import Emitted, Files, casadi_module, files, is_double
 from derive.check.invariants import power_balance, turned_axes
 from derive.check.motion import orders, step_slopes
 from derive.check.particles import clouds
+from derive.check.refusals import casadi_status, refusal
 from derive.check.verdict import JUDGED, Verdict
 from derive.library import Library, library
 from derive.machine.mechanism import Mechanism
@@ -115,11 +115,14 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
     yield from replay(one, each)
     yield from dense(one, few)
     yield from aliasing(one, few)
-    yield from refusal(one, few)
+    yield refusal(one, few)
     if is_double(one):
         yield from orders(one.library, each)
         yield from step_slopes(one.library, each)
-        yield from casadi_bits(one, casadi_module(one.library, found, workshop), each)
+        module = casadi_module(one.library, found, workshop)
+        yield from casadi_bits(one, module, each)
+        if one.library.constants:
+            yield casadi_status(one, module)
         plain = [s for s in each if s.kind == "ordinary"][: FEW * FEW]
         if isinstance(one.library.known, Mechanism):
             yield from clouds(one.library, plain[:FEW])

@@ -8,7 +8,6 @@ import ctypes
 import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import inf, nan
 from typing import Any
 
 import casadi
@@ -242,28 +241,6 @@ def aliasing(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
 def _same_over(function: Any, values: Mapping[str, Any], output: str, over: str) -> bool:
     apart, joint = function(values), function.over(values, output, over)
     return all(same_bits(apart[name], joint[name]) for name in apart)
-
-
-def refusal(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
-    """Yield whether set-up refuses parameters that are no body's or not finite, and no others."""
-    setup, check_ = emitted.library.setup, "refuses what is no body"
-    reason = "" if setup.positive else "set-up has no condition that parameters could break"
-    reason = reason if emitted.library.constants else "there is no set-up to refuse anything"
-    if reason:
-        yield _verdict(emitted, setup, check_, "skipped", reason)
-        return
-    good = [emitted.constants(s)["status"] == [0.0] for s in each]
-    names = [c for q in setup.inputs for c in q.components]
-    endless = [_with(s, s.values | {c: x}) for s in each for c in names for x in (inf, -inf, nan)]
-    turned = [_with(s, {name: -x for name, x in s.values.items()}) for s in each]
-    bad = [emitted.constants(s)["status"] == [1.0] for s in (*endless, *turned)]
-    says = f"{sum(good)} of {len(good)} bodies taken, {sum(bad)} of {len(bad)} others refused"
-    outcome = JUDGED[all(good) and all(bad)]
-    yield _verdict(emitted, setup, check_, outcome, says)
-
-
-def _with(sample: Sample, values: dict[str, float]) -> Sample:
-    return Sample(sample.number, sample.kind, values)
 
 
 def dense(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:

@@ -27,6 +27,7 @@ KINDS: Mapping[str, tuple[str, ...]] = {
 }
 """What each kind of body must say; general and principal ones also their moments."""
 COMMON = ("mass", "centre", "turned", "spin")
+LENGTHS = ("radius", "length", "height", "inner", "outer")
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,22 @@ def read_body(given: Table, point: str, symbols: Symbols) -> Body:
         read.axis,
         turns(entries["turned"], "body.turned", symbols) if "turned" in entries else (),
         spin,
+        lengths(given, constants(symbols)),
     )
+
+
+def lengths(given: Table, scope: Scope) -> dict[str, Formula]:
+    """Return the lengths of a shape, by which it is drawn and which must be positive."""
+    entries = given.entries
+    found = {
+        key: formula(entries[key], f"{given.label}.{key}", scope, LENGTH)
+        for key in LENGTHS
+        if key in entries
+    }
+    listed = entries.get("lengths")
+    for n, part in enumerate(listed if isinstance(listed, list) else (), 1):
+        found[f"length_{n}"] = formula(part, f"{given.label}.lengths", scope, LENGTH)
+    return found
 
 
 def _positive(given: Table, key: str, expected: Dimension, symbols: Symbols) -> Formula:

@@ -109,6 +109,7 @@ class Body:
     axis: Axis | None
     turned: tuple[Turn, ...]
     spin: Formula | None
+    lengths: Mapping[str, Formula]
 
 
 @dataclass(frozen=True)

@@ -10,14 +10,14 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, cast
 
 from derive.formula import ZERO, Formula, number
-from derive.scene.body import AXES, KINDS, read_body
+from derive.scene.body import AXES, KINDS, lengths, read_body
 from derive.scene.declaration import Axis, SceneError, Sextuple, Triple
 from derive.scene.machine import Entries, Frame, Member, Turning
 from derive.scene.numbers import check_member, positive
 from derive.scene.scalars import Scalars, motions, places, turnings
 from derive.scene.shape import CONE_CENTRE, SHAPES, about_axis, box, diagonal, moved
 from derive.scene.symbols import Symbols, constants
-from derive.scene.table import Scope, Table, formula, keys, shown, triple, word
+from derive.scene.table import Table, formula, keys, shown, triple, word
 from derive.unit import ANGULAR_VELOCITY, INERTIA, LENGTH, MASS, Dimension
 
 if TYPE_CHECKING:
@@ -32,7 +32,6 @@ MORE_SHAPES: Mapping[str, tuple[str, ...]] = {
 }
 """Shapes beside those of a single body, and what each must say besides its mass."""
 NEXT: Mapping[str, Axis] = {"x": "y", "y": "z", "z": "x"}
-LENGTHS = ("radius", "length", "height", "inner", "outer")
 
 
 @dataclass(frozen=True)
@@ -66,7 +65,7 @@ def read_member(name: str, given: Table, frames: tuple[Frame, ...], scalars: Sca
     relative = _angular_velocity(given, centre, made, scalars)
     return Member(
         name, frame, made.mass, made.inertia, centre, made.axis, turned,
-        spins.get("spin"), spins.get("axial_speed"), relative, made.look, _lengths(given, scope),
+        spins.get("spin"), spins.get("axial_speed"), relative, made.look, lengths(given, scope),
     )  # fmt: skip
 
 
@@ -100,20 +99,6 @@ def _angular_velocity(
         )
     label = f"{given.label}.angular_velocity"
     return triple(given.entries["angular_velocity"], label, motions(scalars), ANGULAR_VELOCITY)
-
-
-def _lengths(given: Table, scope: Scope) -> dict[str, Formula]:
-    """Return the lengths that a body is drawn by."""
-    entries = given.entries
-    found = {
-        key: formula(entries[key], f"{given.label}.{key}", scope, LENGTH)
-        for key in LENGTHS
-        if key in entries
-    }
-    listed = entries.get("lengths")
-    for n, part in enumerate(listed if isinstance(listed, list) else (), 1):
-        found[f"length_{n}"] = formula(part, f"{given.label}.lengths", scope, LENGTH)
-    return found
 
 
 def _about(

@@ -2,7 +2,7 @@
 
 import argparse
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite, nan, pi
 from pathlib import Path
 
@@ -22,10 +22,14 @@ FACTORS = {"deg": pi / 180, "rpm": 2 * pi / 60}
 
 @dataclass(frozen=True)
 class Solved:
-    """Rows of what, where from, value and unit; and what stays unanswered, a clause a function."""
+    """Rows of what, where from, value and unit; what stays unanswered, a clause a function; doubts.
+
+    doubts : warnings about the values that were set
+    """
 
     rows: list[Row]
     unanswered: list[str]
+    doubts: tuple[str, ...] = ()
 
 
 def options(command: argparse.ArgumentParser) -> None:
@@ -76,6 +80,10 @@ def solved(given: argparse.Namespace) -> Solved:
     _require_one_question(given)
     found = opened(given.scene)
     values = settings(found, [text for group in given.set for text in group])
+    return replace(_solved(given, found, values), doubts=found.doubts(values))
+
+
+def _solved(given: argparse.Namespace, found: Instrument, values: dict[str, float]) -> Solved:
     if given.until is not None:
         return Solved(_moved(given, found, values), [])
     try:

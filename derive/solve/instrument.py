@@ -1,7 +1,8 @@
 """A scene as something to read numbers from: its emitted CasADi functions, called by name."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import ModuleType
@@ -14,7 +15,9 @@ from derive.casadi_text import casadi_file
 from derive.library import Library, library
 from derive.machine.mechanism import Mechanism, depends_on
 from derive.program import Program, Quantity
-from derive.scene import SceneError, load
+from derive.scene import Machine, SceneError, load
+from derive.scene.numbers import doubts, member_doubts
+from derive.status import refusal
 
 Values = Mapping[str, Any]
 
@@ -54,8 +57,30 @@ class Instrument:
         missing = [c for c in self.needed(function) if c not in given]
         if missing:
             raise SceneError(f"scene '{self.name}': '{function}' needs {', '.join(missing)}")
+        self.require_admissible(given)
         found = self._called(program, given)
         return dict(zip([c for q in program.outputs for c in q.components], found, strict=True))
+
+    def require_admissible(self, given: Values) -> None:
+        """Raise SceneError for parameters that set-up refuses; symbols are not tried."""
+        setup = self.library.setup
+        values = [self._value(q, q.name, given) for q in setup.inputs]
+        if all(isinstance(x, int | float) for x in values) and (why := refusal(setup, values)):
+            raise SceneError(f"scene '{self.name}': {why}")
+
+    def doubts(self, given: Values) -> tuple[str, ...]:
+        """Return warnings about parameters that set-up takes: inertias that no masses can have."""
+        scene = self.library.known.scene
+        pinned = tuple(
+            replace(p, low=Fraction(x), high=Fraction(x))
+            if isinstance(x := given.get(p.name), int | float) and p.value is None
+            else replace(p, low=(p.low + p.high) / 2, high=(p.low + p.high) / 2)
+            for p in scene.parameters
+        )
+        if not isinstance(scene, Machine):
+            return tuple(doubts(scene.body, pinned))
+        each = ((f"body '{body.name}'", body.inertia) for body in scene.bodies)
+        return tuple(says for label, own in each for says in member_doubts(label, own, pinned))
 
     def _called(self, program: Program, given: Values) -> list[Any]:
         built = getattr(self.module, program.name)()
@@ -64,9 +89,14 @@ class Instrument:
             of_setup = [self._value(q, q.name, given) for q in self.library.setup.inputs]
             arguments.insert(0, casadi.vertcat(*of_setup))
         results = built.call(arguments)
-        if all(isinstance(r, casadi.DM) for r in results):
-            return [float(x) for r in results for x in r.elements()]
-        return [x for r in results for x in casadi.vertsplit(r)]
+        sparse = program.sparsity or {}
+        found = [
+            x
+            for q, r in zip(program.outputs, results, strict=True)
+            for x in (r.nonzeros() if q.name in sparse else casadi.vertsplit(r))
+        ]
+        numbers = all(isinstance(r, casadi.DM) for r in results)
+        return [float(x) for x in found] if numbers else found
 
     def _column(self, q: Quantity, given: Values) -> Any:
         return casadi.vertcat(*(self._value(q, c, given) for c in q.components))

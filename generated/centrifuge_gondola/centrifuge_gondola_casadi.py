@@ -12,6 +12,7 @@ import casadi as ca
 
 PARAMETERS = ['m', 'I_xx', 'I_yy', 'I_zz', 'I_xz', 'e_x', 'e_z']
 CONSTANTS = ['m', 'e_x', 'e_z', 'k1', 'k2', 'k3', 'm_e_z', 'k4', 'm_e_x', 'k5', 'k6']
+SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 2: 'a mass is not positive', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
 def _built(build):
@@ -90,6 +91,10 @@ def _pi():
     return 3.141592653589793, 1.2246467991473532e-16
 
 
+def _unit_roundoff():
+    return 1.1102230246251565e-16, 0.0
+
+
 def _abs(a):
     return _select(a[0] < 0.0, _neg(a), a)
 
@@ -107,11 +112,31 @@ def _select(condition, yes, no):
 
 
 def setup():
-    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS."""
+    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS.
+
+    Where ``setup_status`` is not 0, all constants are NaN.
+    """
     return _built(_setup)
 
 
+def setup_status():
+    """Return the Function parameters -> status, whose words are in SETUP_STATUS: 0 is right."""
+    return _built(_setup_status)
+
+
 def _setup():
+    parameters, constants, status = _tried()
+    spoilt = ca.if_else(status > 0.0, float("nan"), 0.0)
+    outputs = [constants + spoilt]
+    return ca.Function("centrifuge_gondola_setup", [parameters], outputs, ["parameters"], ["constants"])
+
+
+def _setup_status():
+    parameters, _, status = _tried()
+    return ca.Function("centrifuge_gondola_setup_status", [parameters], [status], ["parameters"], ["status"])
+
+
+def _tried():
     parameters = ca.SX.sym("parameters", 7)
     s0 = _mul((parameters[5], 0.0), (parameters[5], 0.0))
     s1 = _mul((parameters[6], 0.0), (parameters[6], 0.0))
@@ -128,8 +153,36 @@ def _setup():
     s12 = _mul((parameters[6], 0.0), s11)
     s13 = _add((parameters[1], 0.0), s12)
     s14 = _sub(s13, s4)
+    r0 = _neg((parameters[4], 0.0))
+    r1 = _add((parameters[1], 0.0), (parameters[3], 0.0))
+    r2 = _unit_roundoff()
+    r3 = _mul(r2, (4.0, 0.0))
+    r4 = _mul(r3, r1)
+    r5 = _less((0.0, 0.0), r1)
+    r6 = _select(r5, r4, (7.888609052210118e-31, 0.0))
+    r7 = _add((parameters[1], 0.0), r6)
+    r8 = _add((parameters[3], 0.0), r6)
+    r9 = _div(r0, r7)
+    r10 = _mul(r9, r0)
+    r11 = _sub(r8, r10)
     constants = ca.vertcat(parameters[0], parameters[5], parameters[6], s4[0], s7[0], s10[0], s11[0], s14[0], s5[0], s9[0], s13[0])
-    return ca.Function("centrifuge_gondola_setup", [parameters], [constants], ["parameters"], ["constants"])
+    status = ca.SX(0)
+    status = _refused(status, 5, _endless(r7[0]), _endless(r11[0]), _endless(s4[0]), _endless(s7[0]), _endless(s10[0]), _endless(s11[0]), _endless(s14[0]), _endless(s5[0]), _endless(s9[0]), _endless(s13[0]))
+    status = _refused(status, 4, parameters[1] < 0.0, parameters[3] < 0.0, r7[0] < 0.0, r11[0] < 0.0, parameters[2] < 0.0)
+    status = _refused(status, 2, parameters[0] <= 0.0)
+    status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]), _endless(parameters[3]), _endless(parameters[4]), _endless(parameters[5]), _endless(parameters[6]))
+    return parameters, constants, status
+
+
+def _refused(status, number, *broken):
+    """Return ``number`` where one of these is true, else ``status``."""
+    for condition in broken:
+        status = ca.if_else(condition, number, status)
+    return status
+
+
+def _endless(x):
+    return ca.logic_not(ca.fabs(x) <= 1.7976931348623157e+308)
 
 
 def _from_parameters(hot, name):

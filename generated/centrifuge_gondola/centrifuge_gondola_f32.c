@@ -74,8 +74,29 @@ static centrifuge_gondola_pair_f32 centrifuge_gondola_mul_f32(centrifuge_gondola
     return (centrifuge_gondola_pair_f32){high, e - (high - p.high)};
 }
 
-void centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xz,
-    float e_x, float e_z, centrifuge_gondola_constants_f32 *constants)
+/* Long division, three digits of working precision each. */
+static centrifuge_gondola_pair_f32 centrifuge_gondola_div_f32(centrifuge_gondola_pair_f32 a, centrifuge_gondola_pair_f32 b)
+{
+    const centrifuge_gondola_pair_f32 q1 = {a.high / b.high, 0.0F};
+    const centrifuge_gondola_pair_f32 r1 = centrifuge_gondola_add_f32(a, centrifuge_gondola_neg_f32(centrifuge_gondola_mul_f32(q1, b)));
+    const centrifuge_gondola_pair_f32 q2 = {r1.high / b.high, 0.0F};
+    const centrifuge_gondola_pair_f32 r2 = centrifuge_gondola_add_f32(r1, centrifuge_gondola_neg_f32(centrifuge_gondola_mul_f32(q2, b)));
+    const centrifuge_gondola_pair_f32 q3 = {r2.high / b.high, 0.0F};
+    return centrifuge_gondola_add_f32(centrifuge_gondola_add_f32(q1, q2), q3);
+}
+
+static centrifuge_gondola_pair_f32 centrifuge_gondola_unit_roundoff_f32(void)
+{
+    return (centrifuge_gondola_pair_f32){5.96046448e-08F, 0.0F};
+}
+
+static int centrifuge_gondola_less_f32(const centrifuge_gondola_pair_f32 a, const centrifuge_gondola_pair_f32 b)
+{
+    return a.high < b.high || (a.high <= b.high && a.low < b.low);
+}
+
+int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xz, float e_x,
+    float e_z, centrifuge_gondola_constants_f32 *constants)
 {
     const centrifuge_gondola_pair_f32 s0 = centrifuge_gondola_mul_f32((centrifuge_gondola_pair_f32){e_x, 0.0F}, (centrifuge_gondola_pair_f32){e_x, 0.0F});
     const centrifuge_gondola_pair_f32 s1 = centrifuge_gondola_mul_f32((centrifuge_gondola_pair_f32){e_z, 0.0F}, (centrifuge_gondola_pair_f32){e_z, 0.0F});
@@ -92,6 +113,18 @@ void centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, f
     const centrifuge_gondola_pair_f32 s12 = centrifuge_gondola_mul_f32((centrifuge_gondola_pair_f32){e_z, 0.0F}, s11);
     const centrifuge_gondola_pair_f32 s13 = centrifuge_gondola_add_f32((centrifuge_gondola_pair_f32){I_xx, 0.0F}, s12);
     const centrifuge_gondola_pair_f32 s14 = centrifuge_gondola_sub_f32(s13, s4);
+    const centrifuge_gondola_pair_f32 r0 = centrifuge_gondola_neg_f32((centrifuge_gondola_pair_f32){I_xz, 0.0F});
+    const centrifuge_gondola_pair_f32 r1 = centrifuge_gondola_add_f32((centrifuge_gondola_pair_f32){I_xx, 0.0F}, (centrifuge_gondola_pair_f32){I_zz, 0.0F});
+    const centrifuge_gondola_pair_f32 r2 = centrifuge_gondola_unit_roundoff_f32();
+    const centrifuge_gondola_pair_f32 r3 = centrifuge_gondola_mul_f32(r2, (centrifuge_gondola_pair_f32){4.0F, 0.0F});
+    const centrifuge_gondola_pair_f32 r4 = centrifuge_gondola_mul_f32(r3, r1);
+    const int r5 = centrifuge_gondola_less_f32((centrifuge_gondola_pair_f32){0.0F, 0.0F}, r1);
+    const centrifuge_gondola_pair_f32 r6 = r5 ? r4 : (centrifuge_gondola_pair_f32){7.88860905e-31F, 0.0F};
+    const centrifuge_gondola_pair_f32 r7 = centrifuge_gondola_add_f32((centrifuge_gondola_pair_f32){I_xx, 0.0F}, r6);
+    const centrifuge_gondola_pair_f32 r8 = centrifuge_gondola_add_f32((centrifuge_gondola_pair_f32){I_zz, 0.0F}, r6);
+    const centrifuge_gondola_pair_f32 r9 = centrifuge_gondola_div_f32(r0, r7);
+    const centrifuge_gondola_pair_f32 r10 = centrifuge_gondola_mul_f32(r9, r0);
+    const centrifuge_gondola_pair_f32 r11 = centrifuge_gondola_sub_f32(r8, r10);
     constants->m = m;
     constants->e_x = e_x;
     constants->e_z = e_z;
@@ -103,6 +136,38 @@ void centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, f
     constants->m_e_x = s5.high;
     constants->k5 = s9.high;
     constants->k6 = s13.high;
+    if (!(m - m >= 0.0F)
+        || !(I_xx - I_xx >= 0.0F)
+        || !(I_yy - I_yy >= 0.0F)
+        || !(I_zz - I_zz >= 0.0F)
+        || !(I_xz - I_xz >= 0.0F)
+        || !(e_x - e_x >= 0.0F)
+        || !(e_z - e_z >= 0.0F)) {
+        return 1;
+    }
+    if (m <= 0.0F) {
+        return 2;
+    }
+    if (I_xx < 0.0F
+        || I_zz < 0.0F
+        || r7.high < 0.0F
+        || r11.high < 0.0F
+        || I_yy < 0.0F) {
+        return 4;
+    }
+    if (!(r7.high - r7.high >= 0.0F)
+        || !(r11.high - r11.high >= 0.0F)
+        || !(s4.high - s4.high >= 0.0F)
+        || !(s7.high - s7.high >= 0.0F)
+        || !(s10.high - s10.high >= 0.0F)
+        || !(s11.high - s11.high >= 0.0F)
+        || !(s14.high - s14.high >= 0.0F)
+        || !(s5.high - s5.high >= 0.0F)
+        || !(s9.high - s9.high >= 0.0F)
+        || !(s13.high - s13.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

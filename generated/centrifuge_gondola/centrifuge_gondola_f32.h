@@ -4,14 +4,14 @@
  *
  * Use:
  *     centrifuge_gondola_constants_f32 constants;
- *     centrifuge_gondola_setup_f32(450.0F, 300.0F, 375.0F, 350.0F, 0.0F, 0.0500000007F, (-0.150000006F), &constants);
+ *     if (centrifuge_gondola_setup_f32(450.0F, 300.0F, 375.0F, 350.0F, 0.0F, 0.0500000007F, (-0.150000006F), &constants) != 0) { return 1; }
  *     float F[3];
  *     centrifuge_gondola_F_f32(&constants, 0.0F, 2.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, F);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 ae3f049bf863ef5c.
+ * times the largest component of the output. Body of these files: sha256 a6c60385a9259908.
  */
 #ifndef CENTRIFUGE_GONDOLA_F32_H
 #define CENTRIFUGE_GONDOLA_F32_H
@@ -44,11 +44,13 @@ typedef struct {
  *            e_x  m  0 .. 0.1  mass centre from the pivot, along x
  *            e_z  m  -0.2 .. -0.1  mass centre from the pivot, along z
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
+ *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
- * Cost: once; 15 operations on pairs.
+ * Cost: once; 23 operations on pairs.
  */
-void centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xz,
-    float e_x, float e_z, centrifuge_gondola_constants_f32 *constants);
+int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xz, float e_x,
+    float e_z, centrifuge_gondola_constants_f32 *constants);
 
 /* Force of pivot.
  * Given:     constants  constants made of parameters only, for the functions of this scene

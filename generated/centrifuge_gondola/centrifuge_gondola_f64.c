@@ -74,7 +74,28 @@ static centrifuge_gondola_pair_f64 centrifuge_gondola_mul_f64(centrifuge_gondola
     return (centrifuge_gondola_pair_f64){high, e - (high - p.high)};
 }
 
-void centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xz,
+/* Long division, three digits of working precision each. */
+static centrifuge_gondola_pair_f64 centrifuge_gondola_div_f64(centrifuge_gondola_pair_f64 a, centrifuge_gondola_pair_f64 b)
+{
+    const centrifuge_gondola_pair_f64 q1 = {a.high / b.high, 0.0};
+    const centrifuge_gondola_pair_f64 r1 = centrifuge_gondola_add_f64(a, centrifuge_gondola_neg_f64(centrifuge_gondola_mul_f64(q1, b)));
+    const centrifuge_gondola_pair_f64 q2 = {r1.high / b.high, 0.0};
+    const centrifuge_gondola_pair_f64 r2 = centrifuge_gondola_add_f64(r1, centrifuge_gondola_neg_f64(centrifuge_gondola_mul_f64(q2, b)));
+    const centrifuge_gondola_pair_f64 q3 = {r2.high / b.high, 0.0};
+    return centrifuge_gondola_add_f64(centrifuge_gondola_add_f64(q1, q2), q3);
+}
+
+static centrifuge_gondola_pair_f64 centrifuge_gondola_unit_roundoff_f64(void)
+{
+    return (centrifuge_gondola_pair_f64){1.1102230246251565e-16, 0.0};
+}
+
+static int centrifuge_gondola_less_f64(const centrifuge_gondola_pair_f64 a, const centrifuge_gondola_pair_f64 b)
+{
+    return a.high < b.high || (a.high <= b.high && a.low < b.low);
+}
+
+int centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xz,
     double e_x, double e_z, centrifuge_gondola_constants_f64 *constants)
 {
     const centrifuge_gondola_pair_f64 s0 = centrifuge_gondola_mul_f64((centrifuge_gondola_pair_f64){e_x, 0.0}, (centrifuge_gondola_pair_f64){e_x, 0.0});
@@ -92,6 +113,18 @@ void centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_z
     const centrifuge_gondola_pair_f64 s12 = centrifuge_gondola_mul_f64((centrifuge_gondola_pair_f64){e_z, 0.0}, s11);
     const centrifuge_gondola_pair_f64 s13 = centrifuge_gondola_add_f64((centrifuge_gondola_pair_f64){I_xx, 0.0}, s12);
     const centrifuge_gondola_pair_f64 s14 = centrifuge_gondola_sub_f64(s13, s4);
+    const centrifuge_gondola_pair_f64 r0 = centrifuge_gondola_neg_f64((centrifuge_gondola_pair_f64){I_xz, 0.0});
+    const centrifuge_gondola_pair_f64 r1 = centrifuge_gondola_add_f64((centrifuge_gondola_pair_f64){I_xx, 0.0}, (centrifuge_gondola_pair_f64){I_zz, 0.0});
+    const centrifuge_gondola_pair_f64 r2 = centrifuge_gondola_unit_roundoff_f64();
+    const centrifuge_gondola_pair_f64 r3 = centrifuge_gondola_mul_f64(r2, (centrifuge_gondola_pair_f64){4.0, 0.0});
+    const centrifuge_gondola_pair_f64 r4 = centrifuge_gondola_mul_f64(r3, r1);
+    const int r5 = centrifuge_gondola_less_f64((centrifuge_gondola_pair_f64){0.0, 0.0}, r1);
+    const centrifuge_gondola_pair_f64 r6 = r5 ? r4 : (centrifuge_gondola_pair_f64){7.888609052210118e-31, 0.0};
+    const centrifuge_gondola_pair_f64 r7 = centrifuge_gondola_add_f64((centrifuge_gondola_pair_f64){I_xx, 0.0}, r6);
+    const centrifuge_gondola_pair_f64 r8 = centrifuge_gondola_add_f64((centrifuge_gondola_pair_f64){I_zz, 0.0}, r6);
+    const centrifuge_gondola_pair_f64 r9 = centrifuge_gondola_div_f64(r0, r7);
+    const centrifuge_gondola_pair_f64 r10 = centrifuge_gondola_mul_f64(r9, r0);
+    const centrifuge_gondola_pair_f64 r11 = centrifuge_gondola_sub_f64(r8, r10);
     constants->m = m;
     constants->e_x = e_x;
     constants->e_z = e_z;
@@ -103,6 +136,38 @@ void centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_z
     constants->m_e_x = s5.high;
     constants->k5 = s9.high;
     constants->k6 = s13.high;
+    if (!(m - m >= 0.0)
+        || !(I_xx - I_xx >= 0.0)
+        || !(I_yy - I_yy >= 0.0)
+        || !(I_zz - I_zz >= 0.0)
+        || !(I_xz - I_xz >= 0.0)
+        || !(e_x - e_x >= 0.0)
+        || !(e_z - e_z >= 0.0)) {
+        return 1;
+    }
+    if (m <= 0.0) {
+        return 2;
+    }
+    if (I_xx < 0.0
+        || I_zz < 0.0
+        || r7.high < 0.0
+        || r11.high < 0.0
+        || I_yy < 0.0) {
+        return 4;
+    }
+    if (!(r7.high - r7.high >= 0.0)
+        || !(r11.high - r11.high >= 0.0)
+        || !(s4.high - s4.high >= 0.0)
+        || !(s7.high - s7.high >= 0.0)
+        || !(s10.high - s10.high >= 0.0)
+        || !(s11.high - s11.high >= 0.0)
+        || !(s14.high - s14.high >= 0.0)
+        || !(s5.high - s5.high >= 0.0)
+        || !(s9.high - s9.high >= 0.0)
+        || !(s13.high - s13.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -4,14 +4,14 @@
  *
  * Use:
  *     centrifuge_gondola_constants_f64 constants;
- *     centrifuge_gondola_setup_f64(450.0, 300.0, 375.0, 350.0, 0.0, 0.05, (-0.15), &constants);
+ *     if (centrifuge_gondola_setup_f64(450.0, 300.0, 375.0, 350.0, 0.0, 0.05, (-0.15), &constants) != 0) { return 1; }
  *     double F[3];
  *     centrifuge_gondola_F_f64(&constants, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, F);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 2f50e2f9434264c8.
+ * times the largest component of the output. Body of these files: sha256 3b8df1e1b3755862.
  */
 #ifndef CENTRIFUGE_GONDOLA_F64_H
 #define CENTRIFUGE_GONDOLA_F64_H
@@ -44,10 +44,12 @@ typedef struct {
  *            e_x  m  0 .. 0.1  mass centre from the pivot, along x
  *            e_z  m  -0.2 .. -0.1  mass centre from the pivot, along z
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
+ *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
- * Cost: once; 15 operations on pairs.
+ * Cost: once; 23 operations on pairs.
  */
-void centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xz,
+int centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xz,
     double e_x, double e_z, centrifuge_gondola_constants_f64 *constants);
 
 /* Force of pivot.

@@ -88,7 +88,7 @@ static chandler_rigid_earth_pair_f32 chandler_rigid_earth_pi_f32(void)
     return (chandler_rigid_earth_pair_f32){3.14159274F, (-8.74227766e-08F)};
 }
 
-void chandler_rigid_earth_setup_f32(float A, float C, float rate,
+int chandler_rigid_earth_setup_f32(float A, float C, float rate,
     chandler_rigid_earth_constants_f32 *constants)
 {
     const chandler_rigid_earth_pair_f32 s0 = chandler_rigid_earth_pi_f32();
@@ -98,6 +98,19 @@ void chandler_rigid_earth_setup_f32(float A, float C, float rate,
     const chandler_rigid_earth_pair_f32 s4 = chandler_rigid_earth_div_f32(s3, (chandler_rigid_earth_pair_f32){A, 0.0F});
     const chandler_rigid_earth_pair_f32 s5 = chandler_rigid_earth_div_f32(s1, s4);
     constants->k1 = s5.high;
+    if (!(A - A >= 0.0F)
+        || !(C - C >= 0.0F)
+        || !(rate - rate >= 0.0F)) {
+        return 1;
+    }
+    if (A < 0.0F
+        || C < 0.0F) {
+        return 4;
+    }
+    if (!(s5.high - s5.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

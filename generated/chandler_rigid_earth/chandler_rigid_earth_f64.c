@@ -88,7 +88,7 @@ static chandler_rigid_earth_pair_f64 chandler_rigid_earth_pi_f64(void)
     return (chandler_rigid_earth_pair_f64){3.141592653589793, 1.2246467991473532e-16};
 }
 
-void chandler_rigid_earth_setup_f64(double A, double C, double rate,
+int chandler_rigid_earth_setup_f64(double A, double C, double rate,
     chandler_rigid_earth_constants_f64 *constants)
 {
     const chandler_rigid_earth_pair_f64 s0 = chandler_rigid_earth_pi_f64();
@@ -98,6 +98,19 @@ void chandler_rigid_earth_setup_f64(double A, double C, double rate,
     const chandler_rigid_earth_pair_f64 s4 = chandler_rigid_earth_div_f64(s3, (chandler_rigid_earth_pair_f64){A, 0.0});
     const chandler_rigid_earth_pair_f64 s5 = chandler_rigid_earth_div_f64(s1, s4);
     constants->k1 = s5.high;
+    if (!(A - A >= 0.0)
+        || !(C - C >= 0.0)
+        || !(rate - rate >= 0.0)) {
+        return 1;
+    }
+    if (A < 0.0
+        || C < 0.0) {
+        return 4;
+    }
+    if (!(s5.high - s5.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -4,14 +4,14 @@
  *
  * Use:
  *     chandler_rigid_earth_constants_f64 constants;
- *     chandler_rigid_earth_setup_f64(0.801, 0.804, 7.3e-05, &constants);
+ *     if (chandler_rigid_earth_setup_f64(0.801, 0.804, 7.3e-05, &constants) != 0) { return 1; }
  *     double period_days;
  *     chandler_rigid_earth_period_days_f64(&constants, &period_days);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 9bb29c946e7792a7.
+ * times the largest component of the output. Body of these files: sha256 8588ec4eb8753961.
  */
 #ifndef CHANDLER_RIGID_EARTH_F64_H
 #define CHANDLER_RIGID_EARTH_F64_H
@@ -30,10 +30,12 @@ typedef struct {
  *            C  kg m^2  0.803 .. 0.805  polar moment; only A/(C - A) matters
  *            rate  rad/s  7.2e-05 .. 7.4e-05  rate of the Earth
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
+ *            5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 5 operations on pairs.
  */
-void chandler_rigid_earth_setup_f64(double A, double C, double rate,
+int chandler_rigid_earth_setup_f64(double A, double C, double rate,
     chandler_rigid_earth_constants_f64 *constants);
 
 /* -2*pi*w_y/w_x_dot/86400.

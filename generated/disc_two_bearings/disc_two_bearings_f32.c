@@ -83,7 +83,7 @@ static disc_two_bearings_pair_f32 disc_two_bearings_div_f32(disc_two_bearings_pa
     return disc_two_bearings_add_f32(disc_two_bearings_add_f32(q1, q2), q3);
 }
 
-void disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, float g,
+int disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, float g,
     disc_two_bearings_constants_f32 *constants)
 {
     const disc_two_bearings_pair_f32 s0 = disc_two_bearings_mul_f32((disc_two_bearings_pair_f32){r, 0.0F}, (disc_two_bearings_pair_f32){w, 0.0F});
@@ -101,6 +101,26 @@ void disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, fl
     constants->s0010 = s4.high;
     constants->k1 = s9.high;
     constants->s0008 = s11.high;
+    if (!(m - m >= 0.0F)
+        || !(r - r >= 0.0F)
+        || !(w - w >= 0.0F)
+        || !(W - W >= 0.0F)
+        || !(d - d >= 0.0F)
+        || !(g - g >= 0.0F)) {
+        return 1;
+    }
+    if (m <= 0.0F) {
+        return 2;
+    }
+    if (r <= 0.0F) {
+        return 3;
+    }
+    if (!(s4.high - s4.high >= 0.0F)
+        || !(s9.high - s9.high >= 0.0F)
+        || !(s11.high - s11.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -4,14 +4,14 @@
  *
  * Use:
  *     disc_two_bearings_constants_f32 constants;
- *     disc_two_bearings_setup_f32(5.0F, 0.075000003F, 105.0F, 6.0F, 0.100000001F, 9.80000019F, &constants);
+ *     if (disc_two_bearings_setup_f32(5.0F, 0.075000003F, 105.0F, 6.0F, 0.100000001F, 9.80000019F, &constants) != 0) { return 1; }
  *     float couple;
  *     disc_two_bearings_couple_f32(&constants, &couple);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 1e46286b5426ea55.
+ * times the largest component of the output. Body of these files: sha256 744c6a2034f2c3d5.
  */
 #ifndef DISC_TWO_BEARINGS_F32_H
 #define DISC_TWO_BEARINGS_F32_H
@@ -35,10 +35,12 @@ typedef struct {
  *            d  m  0.08 .. 0.12  distance of the bearings
  *            g  m/s^2  9.7 .. 9.9  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 12 operations on pairs.
  */
-void disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, float g,
+int disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, float g,
     disc_two_bearings_constants_f32 *constants);
 
 /* (R_up + R_down)*d/2.

@@ -83,7 +83,7 @@ static disc_two_bearings_pair_f64 disc_two_bearings_div_f64(disc_two_bearings_pa
     return disc_two_bearings_add_f64(disc_two_bearings_add_f64(q1, q2), q3);
 }
 
-void disc_two_bearings_setup_f64(double m, double r, double w, double W, double d, double g,
+int disc_two_bearings_setup_f64(double m, double r, double w, double W, double d, double g,
     disc_two_bearings_constants_f64 *constants)
 {
     const disc_two_bearings_pair_f64 s0 = disc_two_bearings_mul_f64((disc_two_bearings_pair_f64){r, 0.0}, (disc_two_bearings_pair_f64){w, 0.0});
@@ -101,6 +101,26 @@ void disc_two_bearings_setup_f64(double m, double r, double w, double W, double 
     constants->s0010 = s4.high;
     constants->k1 = s9.high;
     constants->s0008 = s11.high;
+    if (!(m - m >= 0.0)
+        || !(r - r >= 0.0)
+        || !(w - w >= 0.0)
+        || !(W - W >= 0.0)
+        || !(d - d >= 0.0)
+        || !(g - g >= 0.0)) {
+        return 1;
+    }
+    if (m <= 0.0) {
+        return 2;
+    }
+    if (r <= 0.0) {
+        return 3;
+    }
+    if (!(s4.high - s4.high >= 0.0)
+        || !(s9.high - s9.high >= 0.0)
+        || !(s11.high - s11.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -4,14 +4,14 @@
  *
  * Use:
  *     disc_two_bearings_constants_f64 constants;
- *     disc_two_bearings_setup_f64(5.0, 0.075, 105.0, 6.0, 0.1, 9.8, &constants);
+ *     if (disc_two_bearings_setup_f64(5.0, 0.075, 105.0, 6.0, 0.1, 9.8, &constants) != 0) { return 1; }
  *     double couple;
  *     disc_two_bearings_couple_f64(&constants, &couple);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 aed5ec8f7500d1eb.
+ * times the largest component of the output. Body of these files: sha256 4fb2438bb33df2e5.
  */
 #ifndef DISC_TWO_BEARINGS_F64_H
 #define DISC_TWO_BEARINGS_F64_H
@@ -35,10 +35,12 @@ typedef struct {
  *            d  m  0.08 .. 0.12  distance of the bearings
  *            g  m/s^2  9.7 .. 9.9  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 12 operations on pairs.
  */
-void disc_two_bearings_setup_f64(double m, double r, double w, double W, double d, double g,
+int disc_two_bearings_setup_f64(double m, double r, double w, double W, double d, double g,
     disc_two_bearings_constants_f64 *constants);
 
 /* (R_up + R_down)*d/2.

@@ -78,7 +78,7 @@ static edge_runner_flat_pair_f32 edge_runner_flat_div_f32(edge_runner_flat_pair_
     return edge_runner_flat_add_f32(edge_runner_flat_add_f32(q1, q2), q3);
 }
 
-void edge_runner_flat_setup_f32(float m, float r, float L, float g,
+int edge_runner_flat_setup_f32(float m, float r, float L, float g,
     edge_runner_flat_constants_f32 *constants)
 {
     const edge_runner_flat_pair_f32 s0 = edge_runner_flat_mul_f32((edge_runner_flat_pair_f32){r, 0.0F}, (edge_runner_flat_pair_f32){0.5F, 0.0F});
@@ -96,6 +96,27 @@ void edge_runner_flat_setup_f32(float m, float r, float L, float g,
     constants->minus_L_over_r = s5.high;
     constants->minus_m_L = s7.high;
     constants->k1 = s8.high;
+    if (!(m - m >= 0.0F)
+        || !(r - r >= 0.0F)
+        || !(L - L >= 0.0F)
+        || !(g - g >= 0.0F)) {
+        return 1;
+    }
+    if (m <= 0.0F) {
+        return 2;
+    }
+    if (r <= 0.0F) {
+        return 3;
+    }
+    if (!(s1.high - s1.high >= 0.0F)
+        || !(s2.high - s2.high >= 0.0F)
+        || !(s3.high - s3.high >= 0.0F)
+        || !(s5.high - s5.high >= 0.0F)
+        || !(s7.high - s7.high >= 0.0F)
+        || !(s8.high - s8.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -4,14 +4,14 @@
  *
  * Use:
  *     edge_runner_flat_constants_f32 constants;
- *     edge_runner_flat_setup_f32(1200.0F, 0.600000024F, 0.949999988F, 9.80000019F, &constants);
+ *     if (edge_runner_flat_setup_f32(1200.0F, 0.600000024F, 0.949999988F, 9.80000019F, &constants) != 0) { return 1; }
  *     float N;
  *     edge_runner_flat_N_f32(&constants, 3.0F, &N);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 97b0f197d22a3f14.
+ * times the largest component of the output. Body of these files: sha256 cd0b0bee239bdf29.
  */
 #ifndef EDGE_RUNNER_FLAT_F32_H
 #define EDGE_RUNNER_FLAT_F32_H
@@ -36,10 +36,12 @@ typedef struct {
  *            L  m  0.7 .. 1.2  from the hinge to the middle of the roller
  *            g  m/s^2  9.7 .. 9.9  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 6 operations on pairs.
  */
-void edge_runner_flat_setup_f32(float m, float r, float L, float g,
+int edge_runner_flat_setup_f32(float m, float r, float L, float g,
     edge_runner_flat_constants_f32 *constants);
 
 /* Force of ground.

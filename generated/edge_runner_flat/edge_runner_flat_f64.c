@@ -78,7 +78,7 @@ static edge_runner_flat_pair_f64 edge_runner_flat_div_f64(edge_runner_flat_pair_
     return edge_runner_flat_add_f64(edge_runner_flat_add_f64(q1, q2), q3);
 }
 
-void edge_runner_flat_setup_f64(double m, double r, double L, double g,
+int edge_runner_flat_setup_f64(double m, double r, double L, double g,
     edge_runner_flat_constants_f64 *constants)
 {
     const edge_runner_flat_pair_f64 s0 = edge_runner_flat_mul_f64((edge_runner_flat_pair_f64){r, 0.0}, (edge_runner_flat_pair_f64){0.5, 0.0});
@@ -96,6 +96,27 @@ void edge_runner_flat_setup_f64(double m, double r, double L, double g,
     constants->minus_L_over_r = s5.high;
     constants->minus_m_L = s7.high;
     constants->k1 = s8.high;
+    if (!(m - m >= 0.0)
+        || !(r - r >= 0.0)
+        || !(L - L >= 0.0)
+        || !(g - g >= 0.0)) {
+        return 1;
+    }
+    if (m <= 0.0) {
+        return 2;
+    }
+    if (r <= 0.0) {
+        return 3;
+    }
+    if (!(s1.high - s1.high >= 0.0)
+        || !(s2.high - s2.high >= 0.0)
+        || !(s3.high - s3.high >= 0.0)
+        || !(s5.high - s5.high >= 0.0)
+        || !(s7.high - s7.high >= 0.0)
+        || !(s8.high - s8.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

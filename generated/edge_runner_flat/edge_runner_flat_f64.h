@@ -4,14 +4,14 @@
  *
  * Use:
  *     edge_runner_flat_constants_f64 constants;
- *     edge_runner_flat_setup_f64(1200.0, 0.6, 0.95, 9.8, &constants);
+ *     if (edge_runner_flat_setup_f64(1200.0, 0.6, 0.95, 9.8, &constants) != 0) { return 1; }
  *     double N;
  *     edge_runner_flat_N_f64(&constants, 3.0, &N);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 d95af28342ad0df5.
+ * times the largest component of the output. Body of these files: sha256 440684dcbb39e9a9.
  */
 #ifndef EDGE_RUNNER_FLAT_F64_H
 #define EDGE_RUNNER_FLAT_F64_H
@@ -36,10 +36,12 @@ typedef struct {
  *            L  m  0.7 .. 1.2  from the hinge to the middle of the roller
  *            g  m/s^2  9.7 .. 9.9  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 6 operations on pairs.
  */
-void edge_runner_flat_setup_f64(double m, double r, double L, double g,
+int edge_runner_flat_setup_f64(double m, double r, double L, double g,
     edge_runner_flat_constants_f64 *constants);
 
 /* Force of ground.

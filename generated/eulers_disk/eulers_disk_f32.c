@@ -122,7 +122,7 @@ static eulers_disk_pair_f32 eulers_disk_cos_f32(eulers_disk_pair_f32 a)
     return eulers_disk_sine_f32(a, 1.0F);
 }
 
-void eulers_disk_setup_f32(float m, float r, float tilt, float g,
+int eulers_disk_setup_f32(float m, float r, float tilt, float g,
     eulers_disk_constants_f32 *constants)
 {
     const eulers_disk_pair_f32 s0 = eulers_disk_cos_f32((eulers_disk_pair_f32){tilt, 0.0F});
@@ -140,6 +140,25 @@ void eulers_disk_setup_f32(float m, float r, float tilt, float g,
     constants->k2 = s6.high;
     constants->k3 = s7.high;
     constants->k4 = s10.high;
+    if (!(m - m >= 0.0F)
+        || !(r - r >= 0.0F)
+        || !(tilt - tilt >= 0.0F)
+        || !(g - g >= 0.0F)) {
+        return 1;
+    }
+    if (m <= 0.0F) {
+        return 2;
+    }
+    if (r <= 0.0F) {
+        return 3;
+    }
+    if (!(s2.high - s2.high >= 0.0F)
+        || !(s6.high - s6.high >= 0.0F)
+        || !(s7.high - s7.high >= 0.0F)
+        || !(s10.high - s10.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

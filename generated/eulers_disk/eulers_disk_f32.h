@@ -4,14 +4,14 @@
  *
  * Use:
  *     eulers_disk_constants_f32 constants;
- *     eulers_disk_setup_f32(0.400000006F, 0.0399999991F, 0.275000006F, 9.80000019F, &constants);
+ *     if (eulers_disk_setup_f32(0.400000006F, 0.0399999991F, 0.275000006F, 9.80000019F, &constants) != 0) { return 1; }
  *     float steady;
  *     eulers_disk_steady_f32(&constants, 105.0F, &steady);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 066dd1b9a13c82fb.
+ * times the largest component of the output. Body of these files: sha256 435c936b8290b521.
  */
 #ifndef EULERS_DISK_F32_H
 #define EULERS_DISK_F32_H
@@ -34,10 +34,12 @@ typedef struct {
  *            tilt  rad  0.05 .. 0.5  between disc and floor
  *            g  m/s^2  9.7 .. 9.9  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 7 operations on pairs.
  */
-void eulers_disk_setup_f32(float m, float r, float tilt, float g,
+int eulers_disk_setup_f32(float m, float r, float tilt, float g,
     eulers_disk_constants_f32 *constants);
 
 /* What vanishes in a steady motion.

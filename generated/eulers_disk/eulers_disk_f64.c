@@ -134,7 +134,7 @@ static eulers_disk_pair_f64 eulers_disk_cos_f64(eulers_disk_pair_f64 a)
     return eulers_disk_sine_f64(a, 1.0);
 }
 
-void eulers_disk_setup_f64(double m, double r, double tilt, double g,
+int eulers_disk_setup_f64(double m, double r, double tilt, double g,
     eulers_disk_constants_f64 *constants)
 {
     const eulers_disk_pair_f64 s0 = eulers_disk_cos_f64((eulers_disk_pair_f64){tilt, 0.0});
@@ -152,6 +152,25 @@ void eulers_disk_setup_f64(double m, double r, double tilt, double g,
     constants->k2 = s6.high;
     constants->k3 = s7.high;
     constants->k4 = s10.high;
+    if (!(m - m >= 0.0)
+        || !(r - r >= 0.0)
+        || !(tilt - tilt >= 0.0)
+        || !(g - g >= 0.0)) {
+        return 1;
+    }
+    if (m <= 0.0) {
+        return 2;
+    }
+    if (r <= 0.0) {
+        return 3;
+    }
+    if (!(s2.high - s2.high >= 0.0)
+        || !(s6.high - s6.high >= 0.0)
+        || !(s7.high - s7.high >= 0.0)
+        || !(s10.high - s10.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

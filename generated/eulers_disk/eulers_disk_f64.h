@@ -4,14 +4,14 @@
  *
  * Use:
  *     eulers_disk_constants_f64 constants;
- *     eulers_disk_setup_f64(0.4, 0.04, 0.275, 9.8, &constants);
+ *     if (eulers_disk_setup_f64(0.4, 0.04, 0.275, 9.8, &constants) != 0) { return 1; }
  *     double steady;
  *     eulers_disk_steady_f64(&constants, 105.0, &steady);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 b66c442e54187244.
+ * times the largest component of the output. Body of these files: sha256 77a7f72989174643.
  */
 #ifndef EULERS_DISK_F64_H
 #define EULERS_DISK_F64_H
@@ -34,10 +34,12 @@ typedef struct {
  *            tilt  rad  0.05 .. 0.5  between disc and floor
  *            g  m/s^2  9.7 .. 9.9  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 7 operations on pairs.
  */
-void eulers_disk_setup_f64(double m, double r, double tilt, double g,
+int eulers_disk_setup_f64(double m, double r, double tilt, double g,
     eulers_disk_constants_f64 *constants);
 
 /* What vanishes in a steady motion.

@@ -12,6 +12,7 @@ import casadi as ca
 
 PARAMETERS = ['I_xx', 'I_yy', 'I_zz', 'I_xy', 'I_xz', 'I_yz']
 CONSTANTS = ['I_yy_minus_I_zz', 'I_xz', 'I_yz', 'I_xy', 'J_xx', 'I_xx_minus_I_yy', 'J_xy', 'J_xz', 'J_yy', 'J_yz', 'J_zz', 'k1', 'k2', 'k3', 'k4', 'k5', 'k6', 'k7', 'k8', 'k9', 'k10', 'k11', 'k12', 'k13', 'k14', 'k15', 'k16', 'k17', 'k18', 'I_xx', 'I_yy', 'I_zz', 'half_I_zz', 'half_I_xx', 'half_I_yy']
+SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
 def _built(build):
@@ -90,6 +91,10 @@ def _pi():
     return 3.141592653589793, 1.2246467991473532e-16
 
 
+def _unit_roundoff():
+    return 1.1102230246251565e-16, 0.0
+
+
 def _abs(a):
     return _select(a[0] < 0.0, _neg(a), a)
 
@@ -107,11 +112,31 @@ def _select(condition, yes, no):
 
 
 def setup():
-    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS."""
+    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS.
+
+    Where ``setup_status`` is not 0, all constants are NaN.
+    """
     return _built(_setup)
 
 
+def setup_status():
+    """Return the Function parameters -> status, whose words are in SETUP_STATUS: 0 is right."""
+    return _built(_setup_status)
+
+
 def _setup():
+    parameters, constants, status = _tried()
+    spoilt = ca.if_else(status > 0.0, float("nan"), 0.0)
+    outputs = [constants + spoilt]
+    return ca.Function("free_body_setup", [parameters], outputs, ["parameters"], ["constants"])
+
+
+def _setup_status():
+    parameters, _, status = _tried()
+    return ca.Function("free_body_setup_status", [parameters], [status], ["parameters"], ["status"])
+
+
+def _tried():
     parameters = ca.SX.sym("parameters", 6)
     s0 = _add((parameters[0], 0.0), (parameters[1], 0.0))
     s1 = _add(s0, (parameters[2], 0.0))
@@ -223,8 +248,37 @@ def _setup():
     s107 = _mul((parameters[2], 0.0), (0.5, 0.0))
     s108 = _mul((parameters[0], 0.0), (0.5, 0.0))
     s109 = _mul((parameters[1], 0.0), (0.5, 0.0))
+    r0 = _neg((parameters[3], 0.0))
+    r1 = _neg((parameters[4], 0.0))
+    r2 = _neg((parameters[5], 0.0))
+    r3 = _div(r0, (parameters[0], 0.0))
+    r4 = _mul(r3, r0)
+    r5 = _sub((parameters[1], 0.0), r4)
+    r6 = _mul(r3, r1)
+    r7 = _sub(r2, r6)
+    r8 = _div(r1, (parameters[0], 0.0))
+    r9 = _mul(r8, r1)
+    r10 = _sub((parameters[2], 0.0), r9)
+    r11 = _div(r7, r5)
+    r12 = _mul(r11, r7)
+    r13 = _sub(r10, r12)
     constants = ca.vertcat(s26[0], parameters[4], parameters[5], parameters[3], s27[0], s28[0], s29[0], s30[0], s34[0], s38[0], s42[0], s47[0], s53[0], s57[0], s62[0], s65[0], s67[0], s71[0], s75[0], s79[0], s84[0], s86[0], s88[0], s91[0], s95[0], s98[0], s102[0], s104[0], s106[0], parameters[0], parameters[1], parameters[2], s107[0], s108[0], s109[0])
-    return ca.Function("free_body_setup", [parameters], [constants], ["parameters"], ["constants"])
+    status = ca.SX(0)
+    status = _refused(status, 5, _endless(r5[0]), _endless(r13[0]), _endless(s26[0]), _endless(s27[0]), _endless(s28[0]), _endless(s29[0]), _endless(s30[0]), _endless(s34[0]), _endless(s38[0]), _endless(s42[0]), _endless(s47[0]), _endless(s53[0]), _endless(s57[0]), _endless(s62[0]), _endless(s65[0]), _endless(s67[0]), _endless(s71[0]), _endless(s75[0]), _endless(s79[0]), _endless(s84[0]), _endless(s86[0]), _endless(s88[0]), _endless(s91[0]), _endless(s95[0]), _endless(s98[0]), _endless(s102[0]), _endless(s104[0]), _endless(s106[0]), _endless(s107[0]), _endless(s108[0]), _endless(s109[0]))
+    status = _refused(status, 4, parameters[0] <= 0.0, r5[0] <= 0.0, r13[0] <= 0.0)
+    status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]), _endless(parameters[3]), _endless(parameters[4]), _endless(parameters[5]))
+    return parameters, constants, status
+
+
+def _refused(status, number, *broken):
+    """Return ``number`` where one of these is true, else ``status``."""
+    for condition in broken:
+        status = ca.if_else(condition, number, status)
+    return status
+
+
+def _endless(x):
+    return ca.logic_not(ca.fabs(x) <= 1.7976931348623157e+308)
 
 
 def _from_parameters(hot, name):

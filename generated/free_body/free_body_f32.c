@@ -203,6 +203,20 @@ int free_body_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_
     const free_body_pair_f32 s107 = free_body_mul_f32((free_body_pair_f32){I_zz, 0.0F}, (free_body_pair_f32){0.5F, 0.0F});
     const free_body_pair_f32 s108 = free_body_mul_f32((free_body_pair_f32){I_xx, 0.0F}, (free_body_pair_f32){0.5F, 0.0F});
     const free_body_pair_f32 s109 = free_body_mul_f32((free_body_pair_f32){I_yy, 0.0F}, (free_body_pair_f32){0.5F, 0.0F});
+    const free_body_pair_f32 r0 = free_body_neg_f32((free_body_pair_f32){I_xy, 0.0F});
+    const free_body_pair_f32 r1 = free_body_neg_f32((free_body_pair_f32){I_xz, 0.0F});
+    const free_body_pair_f32 r2 = free_body_neg_f32((free_body_pair_f32){I_yz, 0.0F});
+    const free_body_pair_f32 r3 = free_body_div_f32(r0, (free_body_pair_f32){I_xx, 0.0F});
+    const free_body_pair_f32 r4 = free_body_mul_f32(r3, r0);
+    const free_body_pair_f32 r5 = free_body_sub_f32((free_body_pair_f32){I_yy, 0.0F}, r4);
+    const free_body_pair_f32 r6 = free_body_mul_f32(r3, r1);
+    const free_body_pair_f32 r7 = free_body_sub_f32(r2, r6);
+    const free_body_pair_f32 r8 = free_body_div_f32(r1, (free_body_pair_f32){I_xx, 0.0F});
+    const free_body_pair_f32 r9 = free_body_mul_f32(r8, r1);
+    const free_body_pair_f32 r10 = free_body_sub_f32((free_body_pair_f32){I_zz, 0.0F}, r9);
+    const free_body_pair_f32 r11 = free_body_div_f32(r7, r5);
+    const free_body_pair_f32 r12 = free_body_mul_f32(r11, r7);
+    const free_body_pair_f32 r13 = free_body_sub_f32(r10, r12);
     constants->I_yy_minus_I_zz = s26.high;
     constants->I_xz = I_xz;
     constants->I_yz = I_yz;
@@ -238,15 +252,53 @@ int free_body_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_
     constants->half_I_zz = s107.high;
     constants->half_I_xx = s108.high;
     constants->half_I_yy = s109.high;
-    return (s10.high > 0.0F
-        && s41.high > 0.0F
-        && s24.high > 0.0F
-        && I_xx - I_xx >= 0.0F
-        && I_yy - I_yy >= 0.0F
-        && I_zz - I_zz >= 0.0F
-        && I_xy - I_xy >= 0.0F
-        && I_xz - I_xz >= 0.0F
-        && I_yz - I_yz >= 0.0F) ? 0 : 1;
+    if (!(I_xx - I_xx >= 0.0F)
+        || !(I_yy - I_yy >= 0.0F)
+        || !(I_zz - I_zz >= 0.0F)
+        || !(I_xy - I_xy >= 0.0F)
+        || !(I_xz - I_xz >= 0.0F)
+        || !(I_yz - I_yz >= 0.0F)) {
+        return 1;
+    }
+    if (I_xx <= 0.0F
+        || r5.high <= 0.0F
+        || r13.high <= 0.0F) {
+        return 4;
+    }
+    if (!(r5.high - r5.high >= 0.0F)
+        || !(r13.high - r13.high >= 0.0F)
+        || !(s26.high - s26.high >= 0.0F)
+        || !(s27.high - s27.high >= 0.0F)
+        || !(s28.high - s28.high >= 0.0F)
+        || !(s29.high - s29.high >= 0.0F)
+        || !(s30.high - s30.high >= 0.0F)
+        || !(s34.high - s34.high >= 0.0F)
+        || !(s38.high - s38.high >= 0.0F)
+        || !(s42.high - s42.high >= 0.0F)
+        || !(s47.high - s47.high >= 0.0F)
+        || !(s53.high - s53.high >= 0.0F)
+        || !(s57.high - s57.high >= 0.0F)
+        || !(s62.high - s62.high >= 0.0F)
+        || !(s65.high - s65.high >= 0.0F)
+        || !(s67.high - s67.high >= 0.0F)
+        || !(s71.high - s71.high >= 0.0F)
+        || !(s75.high - s75.high >= 0.0F)
+        || !(s79.high - s79.high >= 0.0F)
+        || !(s84.high - s84.high >= 0.0F)
+        || !(s86.high - s86.high >= 0.0F)
+        || !(s88.high - s88.high >= 0.0F)
+        || !(s91.high - s91.high >= 0.0F)
+        || !(s95.high - s95.high >= 0.0F)
+        || !(s98.high - s98.high >= 0.0F)
+        || !(s102.high - s102.high >= 0.0F)
+        || !(s104.high - s104.high >= 0.0F)
+        || !(s106.high - s106.high >= 0.0F)
+        || !(s107.high - s107.high >= 0.0F)
+        || !(s108.high - s108.high >= 0.0F)
+        || !(s109.high - s109.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

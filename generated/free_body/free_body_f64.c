@@ -203,6 +203,20 @@ int free_body_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doub
     const free_body_pair_f64 s107 = free_body_mul_f64((free_body_pair_f64){I_zz, 0.0}, (free_body_pair_f64){0.5, 0.0});
     const free_body_pair_f64 s108 = free_body_mul_f64((free_body_pair_f64){I_xx, 0.0}, (free_body_pair_f64){0.5, 0.0});
     const free_body_pair_f64 s109 = free_body_mul_f64((free_body_pair_f64){I_yy, 0.0}, (free_body_pair_f64){0.5, 0.0});
+    const free_body_pair_f64 r0 = free_body_neg_f64((free_body_pair_f64){I_xy, 0.0});
+    const free_body_pair_f64 r1 = free_body_neg_f64((free_body_pair_f64){I_xz, 0.0});
+    const free_body_pair_f64 r2 = free_body_neg_f64((free_body_pair_f64){I_yz, 0.0});
+    const free_body_pair_f64 r3 = free_body_div_f64(r0, (free_body_pair_f64){I_xx, 0.0});
+    const free_body_pair_f64 r4 = free_body_mul_f64(r3, r0);
+    const free_body_pair_f64 r5 = free_body_sub_f64((free_body_pair_f64){I_yy, 0.0}, r4);
+    const free_body_pair_f64 r6 = free_body_mul_f64(r3, r1);
+    const free_body_pair_f64 r7 = free_body_sub_f64(r2, r6);
+    const free_body_pair_f64 r8 = free_body_div_f64(r1, (free_body_pair_f64){I_xx, 0.0});
+    const free_body_pair_f64 r9 = free_body_mul_f64(r8, r1);
+    const free_body_pair_f64 r10 = free_body_sub_f64((free_body_pair_f64){I_zz, 0.0}, r9);
+    const free_body_pair_f64 r11 = free_body_div_f64(r7, r5);
+    const free_body_pair_f64 r12 = free_body_mul_f64(r11, r7);
+    const free_body_pair_f64 r13 = free_body_sub_f64(r10, r12);
     constants->I_yy_minus_I_zz = s26.high;
     constants->I_xz = I_xz;
     constants->I_yz = I_yz;
@@ -238,15 +252,53 @@ int free_body_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doub
     constants->half_I_zz = s107.high;
     constants->half_I_xx = s108.high;
     constants->half_I_yy = s109.high;
-    return (s10.high > 0.0
-        && s41.high > 0.0
-        && s24.high > 0.0
-        && I_xx - I_xx >= 0.0
-        && I_yy - I_yy >= 0.0
-        && I_zz - I_zz >= 0.0
-        && I_xy - I_xy >= 0.0
-        && I_xz - I_xz >= 0.0
-        && I_yz - I_yz >= 0.0) ? 0 : 1;
+    if (!(I_xx - I_xx >= 0.0)
+        || !(I_yy - I_yy >= 0.0)
+        || !(I_zz - I_zz >= 0.0)
+        || !(I_xy - I_xy >= 0.0)
+        || !(I_xz - I_xz >= 0.0)
+        || !(I_yz - I_yz >= 0.0)) {
+        return 1;
+    }
+    if (I_xx <= 0.0
+        || r5.high <= 0.0
+        || r13.high <= 0.0) {
+        return 4;
+    }
+    if (!(r5.high - r5.high >= 0.0)
+        || !(r13.high - r13.high >= 0.0)
+        || !(s26.high - s26.high >= 0.0)
+        || !(s27.high - s27.high >= 0.0)
+        || !(s28.high - s28.high >= 0.0)
+        || !(s29.high - s29.high >= 0.0)
+        || !(s30.high - s30.high >= 0.0)
+        || !(s34.high - s34.high >= 0.0)
+        || !(s38.high - s38.high >= 0.0)
+        || !(s42.high - s42.high >= 0.0)
+        || !(s47.high - s47.high >= 0.0)
+        || !(s53.high - s53.high >= 0.0)
+        || !(s57.high - s57.high >= 0.0)
+        || !(s62.high - s62.high >= 0.0)
+        || !(s65.high - s65.high >= 0.0)
+        || !(s67.high - s67.high >= 0.0)
+        || !(s71.high - s71.high >= 0.0)
+        || !(s75.high - s75.high >= 0.0)
+        || !(s79.high - s79.high >= 0.0)
+        || !(s84.high - s84.high >= 0.0)
+        || !(s86.high - s86.high >= 0.0)
+        || !(s88.high - s88.high >= 0.0)
+        || !(s91.high - s91.high >= 0.0)
+        || !(s95.high - s95.high >= 0.0)
+        || !(s98.high - s98.high >= 0.0)
+        || !(s102.high - s102.high >= 0.0)
+        || !(s104.high - s104.high >= 0.0)
+        || !(s106.high - s106.high >= 0.0)
+        || !(s107.high - s107.high >= 0.0)
+        || !(s108.high - s108.high >= 0.0)
+        || !(s109.high - s109.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

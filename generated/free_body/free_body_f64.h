@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 1a3d47805eb89d12.
+ * times the largest component of the output. Body of these files: sha256 3128b62a81a0b9f9.
  */
 #ifndef FREE_BODY_F64_H
 #define FREE_BODY_F64_H
@@ -68,9 +68,10 @@ typedef struct {
  *            I_xz  kg m^2  -0.2 .. 0.2  product of inertia, +sum x z dm
  *            I_yz  kg m^2  -0.2 .. 0.2  product of inertia, +sum y z dm
  * Returned:  constants  constants made of parameters only, for the functions of this scene
- * Returns: 0, or 1 if the inertia is not positive definite or a parameter is not finite.
+ * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
+ *            5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
- * Cost: once; 109 operations on pairs.
+ * Cost: once; 120 operations on pairs.
  */
 int free_body_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, double I_xz,
     double I_yz, free_body_constants_f64 *constants);

@@ -114,12 +114,31 @@ int free_body_principal_setup_f32(float I_xx, float I_yy, float I_zz,
     constants->half_I_xx = s10.high;
     constants->half_I_yy = s11.high;
     constants->half_I_zz = s12.high;
-    return (I_xx > 0.0F
-        && I_yy > 0.0F
-        && I_zz > 0.0F
-        && I_xx - I_xx >= 0.0F
-        && I_yy - I_yy >= 0.0F
-        && I_zz - I_zz >= 0.0F) ? 0 : 1;
+    if (!(I_xx - I_xx >= 0.0F)
+        || !(I_yy - I_yy >= 0.0F)
+        || !(I_zz - I_zz >= 0.0F)) {
+        return 1;
+    }
+    if (I_xx <= 0.0F
+        || I_yy <= 0.0F
+        || I_zz <= 0.0F) {
+        return 4;
+    }
+    if (!(s3.high - s3.high >= 0.0F)
+        || !(s0.high - s0.high >= 0.0F)
+        || !(s4.high - s4.high >= 0.0F)
+        || !(s1.high - s1.high >= 0.0F)
+        || !(s5.high - s5.high >= 0.0F)
+        || !(s2.high - s2.high >= 0.0F)
+        || !(s6.high - s6.high >= 0.0F)
+        || !(s8.high - s8.high >= 0.0F)
+        || !(s9.high - s9.high >= 0.0F)
+        || !(s10.high - s10.high >= 0.0F)
+        || !(s11.high - s11.high >= 0.0F)
+        || !(s12.high - s12.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -147,7 +147,7 @@ static gyrocompass_pair_f32 gyrocompass_pi_f32(void)
     return (gyrocompass_pair_f32){3.14159274F, (-8.74227766e-08F)};
 }
 
-void gyrocompass_setup_f32(float m, float r, float w3, float lat, float we,
+int gyrocompass_setup_f32(float m, float r, float w3, float lat, float we,
     gyrocompass_constants_f32 *constants)
 {
     const gyrocompass_pair_f32 s0 = gyrocompass_cos_f32((gyrocompass_pair_f32){lat, 0.0F});
@@ -177,6 +177,27 @@ void gyrocompass_setup_f32(float m, float r, float w3, float lat, float we,
     constants->k3 = s14.high;
     constants->k4 = s17.high;
     constants->k5 = s21.high;
+    if (!(m - m >= 0.0F)
+        || !(r - r >= 0.0F)
+        || !(w3 - w3 >= 0.0F)
+        || !(lat - lat >= 0.0F)
+        || !(we - we >= 0.0F)) {
+        return 1;
+    }
+    if (m <= 0.0F) {
+        return 2;
+    }
+    if (r <= 0.0F) {
+        return 3;
+    }
+    if (!(s2.high - s2.high >= 0.0F)
+        || !(s4.high - s4.high >= 0.0F)
+        || !(s14.high - s14.high >= 0.0F)
+        || !(s17.high - s17.high >= 0.0F)
+        || !(s21.high - s21.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

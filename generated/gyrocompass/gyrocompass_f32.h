@@ -4,14 +4,14 @@
  *
  * Use:
  *     gyrocompass_constants_f32 constants;
- *     gyrocompass_setup_f32(5.0F, 0.100000001F, 2000.0F, 0.699999988F, 7.24999991e-05F, &constants);
+ *     if (gyrocompass_setup_f32(5.0F, 0.100000001F, 2000.0F, 0.699999988F, 7.24999991e-05F, &constants) != 0) { return 1; }
  *     float alpha_ddot;
  *     gyrocompass_alpha_ddot_f32(&constants, 0.0F, &alpha_ddot);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 2430ce65a8bf91d1.
+ * times the largest component of the output. Body of these files: sha256 ae706bcac61a6fb7.
  */
 #ifndef GYROCOMPASS_F32_H
 #define GYROCOMPASS_F32_H
@@ -36,10 +36,12 @@ typedef struct {
  *            lat  rad  0.2 .. 1.2  latitude
  *            we  rad/s  7e-05 .. 7.5e-05  rate of the Earth
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 18 operations on pairs.
  */
-void gyrocompass_setup_f32(float m, float r, float w3, float lat, float we,
+int gyrocompass_setup_f32(float m, float r, float w3, float lat, float we,
     gyrocompass_constants_f32 *constants);
 
 /* Acceleration of alpha.

@@ -159,7 +159,7 @@ static gyrocompass_pair_f64 gyrocompass_pi_f64(void)
     return (gyrocompass_pair_f64){3.141592653589793, 1.2246467991473532e-16};
 }
 
-void gyrocompass_setup_f64(double m, double r, double w3, double lat, double we,
+int gyrocompass_setup_f64(double m, double r, double w3, double lat, double we,
     gyrocompass_constants_f64 *constants)
 {
     const gyrocompass_pair_f64 s0 = gyrocompass_cos_f64((gyrocompass_pair_f64){lat, 0.0});
@@ -189,6 +189,27 @@ void gyrocompass_setup_f64(double m, double r, double w3, double lat, double we,
     constants->k3 = s14.high;
     constants->k4 = s17.high;
     constants->k5 = s21.high;
+    if (!(m - m >= 0.0)
+        || !(r - r >= 0.0)
+        || !(w3 - w3 >= 0.0)
+        || !(lat - lat >= 0.0)
+        || !(we - we >= 0.0)) {
+        return 1;
+    }
+    if (m <= 0.0) {
+        return 2;
+    }
+    if (r <= 0.0) {
+        return 3;
+    }
+    if (!(s2.high - s2.high >= 0.0)
+        || !(s4.high - s4.high >= 0.0)
+        || !(s14.high - s14.high >= 0.0)
+        || !(s17.high - s17.high >= 0.0)
+        || !(s21.high - s21.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

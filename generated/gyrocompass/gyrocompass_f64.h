@@ -4,14 +4,14 @@
  *
  * Use:
  *     gyrocompass_constants_f64 constants;
- *     gyrocompass_setup_f64(5.0, 0.1, 2000.0, 0.7, 7.25e-05, &constants);
+ *     if (gyrocompass_setup_f64(5.0, 0.1, 2000.0, 0.7, 7.25e-05, &constants) != 0) { return 1; }
  *     double alpha_ddot;
  *     gyrocompass_alpha_ddot_f64(&constants, 0.0, &alpha_ddot);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 58529b5c1ed7bbda.
+ * times the largest component of the output. Body of these files: sha256 b35ca862b2d0b783.
  */
 #ifndef GYROCOMPASS_F64_H
 #define GYROCOMPASS_F64_H
@@ -36,10 +36,12 @@ typedef struct {
  *            lat  rad  0.2 .. 1.2  latitude
  *            we  rad/s  7e-05 .. 7.5e-05  rate of the Earth
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 18 operations on pairs.
  */
-void gyrocompass_setup_f64(double m, double r, double w3, double lat, double we,
+int gyrocompass_setup_f64(double m, double r, double w3, double lat, double we,
     gyrocompass_constants_f64 *constants);
 
 /* Acceleration of alpha.

@@ -12,6 +12,7 @@ import casadi as ca
 
 PARAMETERS = ['I_xx', 'I_yy', 'I_zz', 'I_xy', 'I_xz', 'I_yz', 'C_1', 'C_2', 'C_3']
 CONSTANTS = ['C_2', 'I_xy', 'I_yz', 'C_3', 'I_yy_minus_I_zz', 'I_xz', 'J_xx', 'C_1', 'I_xx_minus_I_yy', 'J_xy', 'J_xz', 'J_yy', 'J_yz', 'J_zz', 'one_over_C_1', 'one_over_C_2', 'one_over_C_3', 'C_1_J_xy', 'C_1_J_xz', 'C_1_J_yy', 'C_1_J_yz', 'C_1_J_zz', 'C_2_J_xx', 'C_2_J_xz', 'C_2_J_xy', 'C_2_J_yz', 'C_2_J_zz', 'C_3_J_xx', 'C_3_J_xy', 'C_3_J_yy', 'C_3_J_xz', 'C_3_J_yz', 'minus_J_xx', 'minus_J_xy', 'minus_J_xz', 'minus_J_yy', 'minus_J_yz', 'minus_J_zz', 'k1', 'k2', 'k3', 'half_C_1', 'half_C_2', 'half_C_3', 'half_I_xx', 'half_I_yy', 'half_I_zz', 'I_xx', 'I_yy', 'I_zz']
+SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
 def _built(build):
@@ -90,6 +91,10 @@ def _pi():
     return 3.141592653589793, 1.2246467991473532e-16
 
 
+def _unit_roundoff():
+    return 1.1102230246251565e-16, 0.0
+
+
 def _abs(a):
     return _select(a[0] < 0.0, _neg(a), a)
 
@@ -107,37 +112,57 @@ def _select(condition, yes, no):
 
 
 def setup():
-    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS."""
+    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS.
+
+    Where ``setup_status`` is not 0, all constants are NaN.
+    """
     return _built(_setup)
 
 
+def setup_status():
+    """Return the Function parameters -> status, whose words are in SETUP_STATUS: 0 is right."""
+    return _built(_setup_status)
+
+
 def _setup():
+    parameters, constants, status = _tried()
+    spoilt = ca.if_else(status > 0.0, float("nan"), 0.0)
+    outputs = [constants + spoilt]
+    return ca.Function("gyrostat_setup", [parameters], outputs, ["parameters"], ["constants"])
+
+
+def _setup_status():
+    parameters, _, status = _tried()
+    return ca.Function("gyrostat_setup_status", [parameters], [status], ["parameters"], ["status"])
+
+
+def _tried():
     parameters = ca.SX.sym("parameters", 9)
-    s0 = _sub((parameters[0], 0.0), (parameters[6], 0.0))
-    s1 = _sub((parameters[7], 0.0), (parameters[1], 0.0))
-    s2 = _sub(s0, s1)
-    s3 = _sub((parameters[8], 0.0), (parameters[2], 0.0))
-    s4 = _sub(s2, s3)
+    s0 = _sub((parameters[1], 0.0), (parameters[7], 0.0))
+    s1 = _sub((parameters[2], 0.0), (parameters[8], 0.0))
+    s2 = _add(s0, s1)
+    s3 = _sub((parameters[0], 0.0), (parameters[6], 0.0))
+    s4 = _add(s2, s3)
     s5 = _power_of_two(s4)
     s6 = _div((1.0, 0.0), s5)
-    s7 = _mul(s6, s1)
-    s8 = _mul(s6, s3)
+    s7 = _mul(s6, s0)
+    s8 = _mul(s6, s1)
     s9 = _mul(s7, s8)
     s10 = _mul((parameters[5], 0.0), s6)
     s11 = _mul(s10, s10)
     s12 = _sub(s9, s11)
-    s13 = _mul(s6, s0)
+    s13 = _mul(s6, s3)
     s14 = _mul(s12, s13)
     s15 = _mul((parameters[3], 0.0), s6)
     s16 = _mul((parameters[4], 0.0), s6)
     s17 = _mul(s10, s16)
     s18 = _mul(s8, s15)
-    s19 = _sub(s17, s18)
+    s19 = _add(s17, s18)
     s20 = _mul(s15, s19)
     s21 = _sub(s14, s20)
     s22 = _mul(s10, s15)
     s23 = _mul(s7, s16)
-    s24 = _sub(s22, s23)
+    s24 = _add(s22, s23)
     s25 = _mul(s16, s24)
     s26 = _sub(s21, s25)
     s27 = _mul(s5, s26)
@@ -147,55 +172,82 @@ def _setup():
     s31 = _sub((parameters[0], 0.0), (parameters[1], 0.0))
     s32 = _mul(s19, s28)
     s33 = _mul(s24, s28)
-    s34 = _mul(s16, s16)
-    s35 = _mul(s8, s13)
-    s36 = _add(s34, s35)
-    s37 = _neg(s36)
-    s38 = _mul(s28, s37)
-    s39 = _mul(s15, s16)
-    s40 = _mul(s10, s13)
-    s41 = _add(s39, s40)
-    s42 = _mul(s28, s41)
+    s34 = _mul(s8, s13)
+    s35 = _mul(s16, s16)
+    s36 = _sub(s34, s35)
+    s37 = _mul(s28, s36)
+    s38 = _mul(s15, s16)
+    s39 = _mul(s10, s13)
+    s40 = _add(s38, s39)
+    s41 = _mul(s28, s40)
+    s42 = _mul(s7, s13)
     s43 = _mul(s15, s15)
-    s44 = _mul(s7, s13)
-    s45 = _add(s43, s44)
-    s46 = _neg(s45)
-    s47 = _mul(s28, s46)
-    s48 = _div((1.0, 0.0), (parameters[6], 0.0))
-    s49 = _div((1.0, 0.0), (parameters[7], 0.0))
-    s50 = _div((1.0, 0.0), (parameters[8], 0.0))
-    s51 = _mul((parameters[6], 0.0), s32)
-    s52 = _mul((parameters[6], 0.0), s33)
-    s53 = _mul((parameters[6], 0.0), s38)
-    s54 = _mul((parameters[6], 0.0), s42)
-    s55 = _mul((parameters[6], 0.0), s47)
-    s56 = _mul((parameters[7], 0.0), s30)
-    s57 = _mul((parameters[7], 0.0), s33)
-    s58 = _mul((parameters[7], 0.0), s32)
-    s59 = _mul((parameters[7], 0.0), s42)
-    s60 = _mul((parameters[7], 0.0), s47)
-    s61 = _mul((parameters[8], 0.0), s30)
-    s62 = _mul((parameters[8], 0.0), s32)
-    s63 = _mul((parameters[8], 0.0), s38)
-    s64 = _mul((parameters[8], 0.0), s33)
-    s65 = _mul((parameters[8], 0.0), s42)
-    s66 = _neg(s30)
-    s67 = _neg(s32)
-    s68 = _neg(s33)
-    s69 = _neg(s38)
-    s70 = _neg(s42)
-    s71 = _neg(s47)
-    s72 = _add(s30, s48)
-    s73 = _add(s38, s49)
-    s74 = _add(s47, s50)
-    s75 = _mul((parameters[6], 0.0), (0.5, 0.0))
-    s76 = _mul((parameters[7], 0.0), (0.5, 0.0))
-    s77 = _mul((parameters[8], 0.0), (0.5, 0.0))
-    s78 = _mul((parameters[0], 0.0), (0.5, 0.0))
-    s79 = _mul((parameters[1], 0.0), (0.5, 0.0))
-    s80 = _mul((parameters[2], 0.0), (0.5, 0.0))
-    constants = ca.vertcat(parameters[7], parameters[3], parameters[5], parameters[8], s29[0], parameters[4], s30[0], parameters[6], s31[0], s32[0], s33[0], s38[0], s42[0], s47[0], s48[0], s49[0], s50[0], s51[0], s52[0], s53[0], s54[0], s55[0], s56[0], s57[0], s58[0], s59[0], s60[0], s61[0], s62[0], s63[0], s64[0], s65[0], s66[0], s67[0], s68[0], s69[0], s70[0], s71[0], s72[0], s73[0], s74[0], s75[0], s76[0], s77[0], s78[0], s79[0], s80[0], parameters[0], parameters[1], parameters[2])
-    return ca.Function("gyrostat_setup", [parameters], [constants], ["parameters"], ["constants"])
+    s44 = _sub(s42, s43)
+    s45 = _mul(s28, s44)
+    s46 = _div((1.0, 0.0), (parameters[6], 0.0))
+    s47 = _div((1.0, 0.0), (parameters[7], 0.0))
+    s48 = _div((1.0, 0.0), (parameters[8], 0.0))
+    s49 = _mul((parameters[6], 0.0), s32)
+    s50 = _mul((parameters[6], 0.0), s33)
+    s51 = _mul((parameters[6], 0.0), s37)
+    s52 = _mul((parameters[6], 0.0), s41)
+    s53 = _mul((parameters[6], 0.0), s45)
+    s54 = _mul((parameters[7], 0.0), s30)
+    s55 = _mul((parameters[7], 0.0), s33)
+    s56 = _mul((parameters[7], 0.0), s32)
+    s57 = _mul((parameters[7], 0.0), s41)
+    s58 = _mul((parameters[7], 0.0), s45)
+    s59 = _mul((parameters[8], 0.0), s30)
+    s60 = _mul((parameters[8], 0.0), s32)
+    s61 = _mul((parameters[8], 0.0), s37)
+    s62 = _mul((parameters[8], 0.0), s33)
+    s63 = _mul((parameters[8], 0.0), s41)
+    s64 = _neg(s30)
+    s65 = _neg(s32)
+    s66 = _neg(s33)
+    s67 = _neg(s37)
+    s68 = _neg(s41)
+    s69 = _neg(s45)
+    s70 = _add(s30, s46)
+    s71 = _add(s37, s47)
+    s72 = _add(s45, s48)
+    s73 = _mul((parameters[6], 0.0), (0.5, 0.0))
+    s74 = _mul((parameters[7], 0.0), (0.5, 0.0))
+    s75 = _mul((parameters[8], 0.0), (0.5, 0.0))
+    s76 = _mul((parameters[0], 0.0), (0.5, 0.0))
+    s77 = _mul((parameters[1], 0.0), (0.5, 0.0))
+    s78 = _mul((parameters[2], 0.0), (0.5, 0.0))
+    r0 = _neg((parameters[3], 0.0))
+    r1 = _neg((parameters[4], 0.0))
+    r2 = _neg((parameters[5], 0.0))
+    r3 = _div(r0, s3)
+    r4 = _mul(r3, r0)
+    r5 = _sub(s0, r4)
+    r6 = _mul(r3, r1)
+    r7 = _sub(r2, r6)
+    r8 = _div(r1, s3)
+    r9 = _mul(r8, r1)
+    r10 = _sub(s1, r9)
+    r11 = _div(r7, r5)
+    r12 = _mul(r11, r7)
+    r13 = _sub(r10, r12)
+    constants = ca.vertcat(parameters[7], parameters[3], parameters[5], parameters[8], s29[0], parameters[4], s30[0], parameters[6], s31[0], s32[0], s33[0], s37[0], s41[0], s45[0], s46[0], s47[0], s48[0], s49[0], s50[0], s51[0], s52[0], s53[0], s54[0], s55[0], s56[0], s57[0], s58[0], s59[0], s60[0], s61[0], s62[0], s63[0], s64[0], s65[0], s66[0], s67[0], s68[0], s69[0], s70[0], s71[0], s72[0], s73[0], s74[0], s75[0], s76[0], s77[0], s78[0], parameters[0], parameters[1], parameters[2])
+    status = ca.SX(0)
+    status = _refused(status, 5, _endless(s3[0]), _endless(r5[0]), _endless(r13[0]), _endless(s29[0]), _endless(s30[0]), _endless(s31[0]), _endless(s32[0]), _endless(s33[0]), _endless(s37[0]), _endless(s41[0]), _endless(s45[0]), _endless(s46[0]), _endless(s47[0]), _endless(s48[0]), _endless(s49[0]), _endless(s50[0]), _endless(s51[0]), _endless(s52[0]), _endless(s53[0]), _endless(s54[0]), _endless(s55[0]), _endless(s56[0]), _endless(s57[0]), _endless(s58[0]), _endless(s59[0]), _endless(s60[0]), _endless(s61[0]), _endless(s62[0]), _endless(s63[0]), _endless(s64[0]), _endless(s65[0]), _endless(s66[0]), _endless(s67[0]), _endless(s68[0]), _endless(s69[0]), _endless(s70[0]), _endless(s71[0]), _endless(s72[0]), _endless(s73[0]), _endless(s74[0]), _endless(s75[0]), _endless(s76[0]), _endless(s77[0]), _endless(s78[0]))
+    status = _refused(status, 4, parameters[6] <= 0.0, parameters[7] <= 0.0, parameters[8] <= 0.0, s3[0] <= 0.0, r5[0] <= 0.0, r13[0] <= 0.0)
+    status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]), _endless(parameters[3]), _endless(parameters[4]), _endless(parameters[5]), _endless(parameters[6]), _endless(parameters[7]), _endless(parameters[8]))
+    return parameters, constants, status
+
+
+def _refused(status, number, *broken):
+    """Return ``number`` where one of these is true, else ``status``."""
+    for condition in broken:
+        status = ca.if_else(condition, number, status)
+    return status
+
+
+def _endless(x):
+    return ca.logic_not(ca.fabs(x) <= 1.7976931348623157e+308)
 
 
 def _from_parameters(hot, name):

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 8062a06ff29d251b.
+ * times the largest component of the output. Body of these files: sha256 95e797a6611859bf.
  */
 #ifndef GYROSTAT_F32_H
 #define GYROSTAT_F32_H
@@ -86,9 +86,10 @@ typedef struct {
  *            C_2  kg m^2  0.005 .. 0.02  axial moment of wheel 2
  *            C_3  kg m^2  0.005 .. 0.02  axial moment of wheel 3
  * Returned:  constants  constants made of parameters only, for the functions of this scene
- * Returns: 0, or 1 if the inertia is not positive definite or a parameter is not finite.
+ * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
+ *            5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
- * Cost: once; 72 operations on pairs.
+ * Cost: once; 83 operations on pairs.
  */
 int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_xz, float I_yz,
     float C_1, float C_2, float C_3, gyrostat_constants_f32 *constants);

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 9fe0e2ab4ba559e0.
+ * times the largest component of the output. Body of these files: sha256 ed681df5498e0d64.
  */
 #ifndef GYROSTAT_F64_H
 #define GYROSTAT_F64_H
@@ -86,9 +86,10 @@ typedef struct {
  *            C_2  kg m^2  0.005 .. 0.02  axial moment of wheel 2
  *            C_3  kg m^2  0.005 .. 0.02  axial moment of wheel 3
  * Returned:  constants  constants made of parameters only, for the functions of this scene
- * Returns: 0, or 1 if the inertia is not positive definite or a parameter is not finite.
+ * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
+ *            5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
- * Cost: once; 72 operations on pairs.
+ * Cost: once; 83 operations on pairs.
  */
 int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, double I_xz, double I_yz,
     double C_1, double C_2, double C_3, gyrostat_constants_f64 *constants);

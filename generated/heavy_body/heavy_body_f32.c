@@ -154,13 +154,38 @@ int heavy_body_setup_f32(float I_xx, float I_yy, float I_zz, float w,
     constants->compliance = p26.high;
     constants->inverse_a = p27.high;
     constants->inverse_c = p28.high;
-    return (I_xx > 0.0F
-        && I_yy > 0.0F
-        && I_zz > 0.0F
-        && I_xx - I_xx >= 0.0F
-        && I_yy - I_yy >= 0.0F
-        && I_zz - I_zz >= 0.0F
-        && w - w >= 0.0F) ? 0 : 1;
+    if (!(I_xx - I_xx >= 0.0F)
+        || !(I_yy - I_yy >= 0.0F)
+        || !(I_zz - I_zz >= 0.0F)
+        || !(w - w >= 0.0F)) {
+        return 1;
+    }
+    if (I_xx <= 0.0F
+        || I_yy <= 0.0F
+        || I_zz <= 0.0F) {
+        return 4;
+    }
+    if (!(s2.high - s2.high >= 0.0F)
+        || !(s3.high - s3.high >= 0.0F)
+        || !(s4.high - s4.high >= 0.0F)
+        || !(s6.high - s6.high >= 0.0F)
+        || !(s8.high - s8.high >= 0.0F)
+        || !(s10.high - s10.high >= 0.0F)
+        || !(s11.high - s11.high >= 0.0F)
+        || !(s13.high - s13.high >= 0.0F)
+        || !(s7.high - s7.high >= 0.0F)
+        || !(p7.high - p7.high >= 0.0F)
+        || !(p13.high - p13.high >= 0.0F)
+        || !(p20.high - p20.high >= 0.0F)
+        || !(p21.high - p21.high >= 0.0F)
+        || !(p23.high - p23.high >= 0.0F)
+        || !(p25.high - p25.high >= 0.0F)
+        || !(p26.high - p26.high >= 0.0F)
+        || !(p27.high - p27.high >= 0.0F)
+        || !(p28.high - p28.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

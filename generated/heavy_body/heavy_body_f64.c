@@ -154,13 +154,38 @@ int heavy_body_setup_f64(double I_xx, double I_yy, double I_zz, double w,
     constants->compliance = p26.high;
     constants->inverse_a = p27.high;
     constants->inverse_c = p28.high;
-    return (I_xx > 0.0
-        && I_yy > 0.0
-        && I_zz > 0.0
-        && I_xx - I_xx >= 0.0
-        && I_yy - I_yy >= 0.0
-        && I_zz - I_zz >= 0.0
-        && w - w >= 0.0) ? 0 : 1;
+    if (!(I_xx - I_xx >= 0.0)
+        || !(I_yy - I_yy >= 0.0)
+        || !(I_zz - I_zz >= 0.0)
+        || !(w - w >= 0.0)) {
+        return 1;
+    }
+    if (I_xx <= 0.0
+        || I_yy <= 0.0
+        || I_zz <= 0.0) {
+        return 4;
+    }
+    if (!(s2.high - s2.high >= 0.0)
+        || !(s3.high - s3.high >= 0.0)
+        || !(s4.high - s4.high >= 0.0)
+        || !(s6.high - s6.high >= 0.0)
+        || !(s8.high - s8.high >= 0.0)
+        || !(s10.high - s10.high >= 0.0)
+        || !(s11.high - s11.high >= 0.0)
+        || !(s13.high - s13.high >= 0.0)
+        || !(s7.high - s7.high >= 0.0)
+        || !(p7.high - p7.high >= 0.0)
+        || !(p13.high - p13.high >= 0.0)
+        || !(p20.high - p20.high >= 0.0)
+        || !(p21.high - p21.high >= 0.0)
+        || !(p23.high - p23.high >= 0.0)
+        || !(p25.high - p25.high >= 0.0)
+        || !(p26.high - p26.high >= 0.0)
+        || !(p27.high - p27.high >= 0.0)
+        || !(p28.high - p28.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -96,13 +96,24 @@ int heavy_top_setup_f32(float A, float C, float m, float g, float l,
     constants->half_C = s6.high;
     constants->A = A;
     constants->C = C;
-    return (A > 0.0F
-        && C > 0.0F
-        && A - A >= 0.0F
-        && C - C >= 0.0F
-        && m - m >= 0.0F
-        && g - g >= 0.0F
-        && l - l >= 0.0F) ? 0 : 1;
+    if (!(A - A >= 0.0F)
+        || !(C - C >= 0.0F)
+        || !(m - m >= 0.0F)
+        || !(g - g >= 0.0F)
+        || !(l - l >= 0.0F)) {
+        return 1;
+    }
+    if (A <= 0.0F
+        || C <= 0.0F) {
+        return 4;
+    }
+    if (!(s3.high - s3.high >= 0.0F)
+        || !(s4.high - s4.high >= 0.0F)
+        || !(s5.high - s5.high >= 0.0F)
+        || !(s6.high - s6.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -96,13 +96,24 @@ int heavy_top_setup_f64(double A, double C, double m, double g, double l,
     constants->half_C = s6.high;
     constants->A = A;
     constants->C = C;
-    return (A > 0.0
-        && C > 0.0
-        && A - A >= 0.0
-        && C - C >= 0.0
-        && m - m >= 0.0
-        && g - g >= 0.0
-        && l - l >= 0.0) ? 0 : 1;
+    if (!(A - A >= 0.0)
+        || !(C - C >= 0.0)
+        || !(m - m >= 0.0)
+        || !(g - g >= 0.0)
+        || !(l - l >= 0.0)) {
+        return 1;
+    }
+    if (A <= 0.0
+        || C <= 0.0) {
+        return 4;
+    }
+    if (!(s3.high - s3.high >= 0.0)
+        || !(s4.high - s4.high >= 0.0)
+        || !(s5.high - s5.high >= 0.0)
+        || !(s6.high - s6.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

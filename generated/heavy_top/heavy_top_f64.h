@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 087f5a31ce9e13d2.
+ * times the largest component of the output. Body of these files: sha256 fbc06a2a1918c342.
  */
 #ifndef HEAVY_TOP_F64_H
 #define HEAVY_TOP_F64_H
@@ -38,7 +38,8 @@ typedef struct {
  *            g  m/s^2  9.7 .. 9.9  gravity
  *            l  m  0.02 .. 0.06  distance of the mass centre from the fixed point
  * Returned:  constants  constants made of parameters only, for the functions of this scene
- * Returns: 0, or 1 if the inertia is not positive definite or a parameter is not finite.
+ * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
+ *            5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 7 operations on pairs.
  */

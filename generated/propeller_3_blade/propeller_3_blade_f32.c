@@ -46,14 +46,39 @@ static propeller_3_blade_pair_f32 propeller_3_blade_mul_f32(propeller_3_blade_pa
     return (propeller_3_blade_pair_f32){high, e - (high - p.high)};
 }
 
-void propeller_3_blade_setup_f32(float blade_mass, float blade_length, float p, float W,
+int propeller_3_blade_setup_f32(float blade_mass, float blade_length, float p, float W,
     propeller_3_blade_constants_f32 *constants)
 {
-    const propeller_3_blade_pair_f32 s0 = propeller_3_blade_mul_f32((propeller_3_blade_pair_f32){blade_mass, 0.0F}, (propeller_3_blade_pair_f32){blade_length, 0.0F});
-    const propeller_3_blade_pair_f32 s1 = propeller_3_blade_mul_f32(s0, (propeller_3_blade_pair_f32){blade_length, 0.0F});
-    const propeller_3_blade_pair_f32 s2 = propeller_3_blade_mul_f32(s1, (propeller_3_blade_pair_f32){p, 0.0F});
-    const propeller_3_blade_pair_f32 s3 = propeller_3_blade_mul_f32(s2, (propeller_3_blade_pair_f32){W, 0.0F});
+    const propeller_3_blade_pair_f32 s0 = propeller_3_blade_mul_f32((propeller_3_blade_pair_f32){p, 0.0F}, (propeller_3_blade_pair_f32){W, 0.0F});
+    const propeller_3_blade_pair_f32 s1 = propeller_3_blade_mul_f32((propeller_3_blade_pair_f32){blade_mass, 0.0F}, (propeller_3_blade_pair_f32){blade_length, 0.0F});
+    const propeller_3_blade_pair_f32 s2 = propeller_3_blade_mul_f32((propeller_3_blade_pair_f32){blade_length, 0.0F}, s1);
+    const propeller_3_blade_pair_f32 s3 = propeller_3_blade_mul_f32(s0, s2);
+    const propeller_3_blade_pair_f32 s4 = propeller_3_blade_mul_f32((propeller_3_blade_pair_f32){blade_mass, 0.0F}, (propeller_3_blade_pair_f32){3.0F, 0.0F});
+    const propeller_3_blade_pair_f32 s5 = propeller_3_blade_mul_f32(s2, (propeller_3_blade_pair_f32){0.5F, 0.0F});
     constants->s0008 = s3.high;
+    if (!(blade_mass - blade_mass >= 0.0F)
+        || !(blade_length - blade_length >= 0.0F)
+        || !(p - p >= 0.0F)
+        || !(W - W >= 0.0F)) {
+        return 1;
+    }
+    if (s4.high <= 0.0F) {
+        return 2;
+    }
+    if (blade_length <= 0.0F) {
+        return 3;
+    }
+    if (s2.high < 0.0F
+        || s5.high < 0.0F) {
+        return 4;
+    }
+    if (!(s4.high - s4.high >= 0.0F)
+        || !(s2.high - s2.high >= 0.0F)
+        || !(s5.high - s5.high >= 0.0F)
+        || !(s3.high - s3.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

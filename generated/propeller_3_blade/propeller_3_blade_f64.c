@@ -46,14 +46,39 @@ static propeller_3_blade_pair_f64 propeller_3_blade_mul_f64(propeller_3_blade_pa
     return (propeller_3_blade_pair_f64){high, e - (high - p.high)};
 }
 
-void propeller_3_blade_setup_f64(double blade_mass, double blade_length, double p, double W,
+int propeller_3_blade_setup_f64(double blade_mass, double blade_length, double p, double W,
     propeller_3_blade_constants_f64 *constants)
 {
-    const propeller_3_blade_pair_f64 s0 = propeller_3_blade_mul_f64((propeller_3_blade_pair_f64){blade_mass, 0.0}, (propeller_3_blade_pair_f64){blade_length, 0.0});
-    const propeller_3_blade_pair_f64 s1 = propeller_3_blade_mul_f64(s0, (propeller_3_blade_pair_f64){blade_length, 0.0});
-    const propeller_3_blade_pair_f64 s2 = propeller_3_blade_mul_f64(s1, (propeller_3_blade_pair_f64){p, 0.0});
-    const propeller_3_blade_pair_f64 s3 = propeller_3_blade_mul_f64(s2, (propeller_3_blade_pair_f64){W, 0.0});
+    const propeller_3_blade_pair_f64 s0 = propeller_3_blade_mul_f64((propeller_3_blade_pair_f64){p, 0.0}, (propeller_3_blade_pair_f64){W, 0.0});
+    const propeller_3_blade_pair_f64 s1 = propeller_3_blade_mul_f64((propeller_3_blade_pair_f64){blade_mass, 0.0}, (propeller_3_blade_pair_f64){blade_length, 0.0});
+    const propeller_3_blade_pair_f64 s2 = propeller_3_blade_mul_f64((propeller_3_blade_pair_f64){blade_length, 0.0}, s1);
+    const propeller_3_blade_pair_f64 s3 = propeller_3_blade_mul_f64(s0, s2);
+    const propeller_3_blade_pair_f64 s4 = propeller_3_blade_mul_f64((propeller_3_blade_pair_f64){blade_mass, 0.0}, (propeller_3_blade_pair_f64){3.0, 0.0});
+    const propeller_3_blade_pair_f64 s5 = propeller_3_blade_mul_f64(s2, (propeller_3_blade_pair_f64){0.5, 0.0});
     constants->s0008 = s3.high;
+    if (!(blade_mass - blade_mass >= 0.0)
+        || !(blade_length - blade_length >= 0.0)
+        || !(p - p >= 0.0)
+        || !(W - W >= 0.0)) {
+        return 1;
+    }
+    if (s4.high <= 0.0) {
+        return 2;
+    }
+    if (blade_length <= 0.0) {
+        return 3;
+    }
+    if (s2.high < 0.0
+        || s5.high < 0.0) {
+        return 4;
+    }
+    if (!(s4.high - s4.high >= 0.0)
+        || !(s2.high - s2.high >= 0.0)
+        || !(s5.high - s5.high >= 0.0)
+        || !(s3.high - s3.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

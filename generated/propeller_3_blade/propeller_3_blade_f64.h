@@ -4,14 +4,14 @@
  *
  * Use:
  *     propeller_3_blade_constants_f64 constants;
- *     propeller_3_blade_setup_f64(12.5, 1.1, 250.0, 0.5, &constants);
+ *     if (propeller_3_blade_setup_f64(12.5, 1.1, 250.0, 0.5, &constants) != 0) { return 1; }
  *     double M[3];
  *     propeller_3_blade_M_f64(&constants, M);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 7df5ee067c7cbcd7.
+ * times the largest component of the output. Body of these files: sha256 4f168fcd9a5cb5ec.
  */
 #ifndef PROPELLER_3_BLADE_F64_H
 #define PROPELLER_3_BLADE_F64_H
@@ -31,10 +31,13 @@ typedef struct {
  *            p  rad/s  200 .. 300  spin
  *            W  rad/s  0.2 .. 0.8  rate of yaw
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 4 an inertia is none that a body can have; 5 a constant is not
+ *            finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
- * Cost: once; 4 operations on pairs.
+ * Cost: once; 6 operations on pairs.
  */
-void propeller_3_blade_setup_f64(double blade_mass, double blade_length, double p, double W,
+int propeller_3_blade_setup_f64(double blade_mass, double blade_length, double p, double W,
     propeller_3_blade_constants_f64 *constants);
 
 /* Couple of hub.

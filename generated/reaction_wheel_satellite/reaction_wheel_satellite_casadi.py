@@ -12,6 +12,7 @@ import casadi as ca
 
 PARAMETERS = ['J_xx', 'J_yy', 'J_zz', 'J_xy', 'J_xz', 'J_yz', 'I_w']
 CONSTANTS = ['I_w', 'J_xy', 'J_yz', 'J_xx_minus_J_yy', 'J_xz', 'k1', 'J_yy_minus_J_zz', 'k2', 'k3', 'minus_inverse_det', 'k4', 'k5', 'k6', 'inverse_det', 'one_over_I_w']
+SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
 def _built(build):
@@ -90,6 +91,10 @@ def _pi():
     return 3.141592653589793, 1.2246467991473532e-16
 
 
+def _unit_roundoff():
+    return 1.1102230246251565e-16, 0.0
+
+
 def _abs(a):
     return _select(a[0] < 0.0, _neg(a), a)
 
@@ -107,11 +112,31 @@ def _select(condition, yes, no):
 
 
 def setup():
-    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS."""
+    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS.
+
+    Where ``setup_status`` is not 0, all constants are NaN.
+    """
     return _built(_setup)
 
 
+def setup_status():
+    """Return the Function parameters -> status, whose words are in SETUP_STATUS: 0 is right."""
+    return _built(_setup_status)
+
+
 def _setup():
+    parameters, constants, status = _tried()
+    spoilt = ca.if_else(status > 0.0, float("nan"), 0.0)
+    outputs = [constants + spoilt]
+    return ca.Function("reaction_wheel_satellite_setup", [parameters], outputs, ["parameters"], ["constants"])
+
+
+def _setup_status():
+    parameters, _, status = _tried()
+    return ca.Function("reaction_wheel_satellite_setup_status", [parameters], [status], ["parameters"], ["status"])
+
+
+def _tried():
     parameters = ca.SX.sym("parameters", 7)
     s0 = _sub((parameters[0], 0.0), (parameters[1], 0.0))
     s1 = _mul((parameters[6], 0.0), (parameters[4], 0.0))
@@ -184,8 +209,50 @@ def _setup():
     s68 = _sub(s66, s67)
     s69 = _sub(s68, s19)
     s70 = _div((1.0, 0.0), (parameters[6], 0.0))
+    s71 = _sub((parameters[0], 0.0), (parameters[6], 0.0))
+    s72 = _sub((parameters[1], 0.0), (parameters[6], 0.0))
+    s73 = _sub((parameters[2], 0.0), (parameters[6], 0.0))
+    r0 = _neg((parameters[3], 0.0))
+    r1 = _neg((parameters[4], 0.0))
+    r2 = _neg((parameters[5], 0.0))
+    r3 = _add(s71, s72)
+    r4 = _add(r3, s73)
+    r5 = _unit_roundoff()
+    r6 = _mul(r5, (4.0, 0.0))
+    r7 = _mul(r6, r4)
+    r8 = _less((0.0, 0.0), r4)
+    r9 = _select(r8, r7, (7.888609052210118e-31, 0.0))
+    r10 = _add(s71, r9)
+    r11 = _add(s72, r9)
+    r12 = _add(s73, r9)
+    r13 = _div(r0, r10)
+    r14 = _mul(r13, r0)
+    r15 = _sub(r11, r14)
+    r16 = _mul(r13, r1)
+    r17 = _sub(r2, r16)
+    r18 = _div(r1, r10)
+    r19 = _mul(r18, r1)
+    r20 = _sub(r12, r19)
+    r21 = _div(r17, r15)
+    r22 = _mul(r21, r17)
+    r23 = _sub(r20, r22)
     constants = ca.vertcat(parameters[6], parameters[3], parameters[5], s0[0], parameters[4], s5[0], s6[0], s11[0], s20[0], s55[0], s60[0], s65[0], s69[0], s54[0], s70[0])
-    return ca.Function("reaction_wheel_satellite_setup", [parameters], [constants], ["parameters"], ["constants"])
+    status = ca.SX(0)
+    status = _refused(status, 5, _endless(s71[0]), _endless(s72[0]), _endless(s73[0]), _endless(r10[0]), _endless(r15[0]), _endless(r23[0]), _endless(s0[0]), _endless(s5[0]), _endless(s6[0]), _endless(s11[0]), _endless(s20[0]), _endless(s55[0]), _endless(s60[0]), _endless(s65[0]), _endless(s69[0]), _endless(s54[0]), _endless(s70[0]))
+    status = _refused(status, 4, s71[0] < 0.0, s72[0] < 0.0, s73[0] < 0.0, r10[0] < 0.0, r15[0] < 0.0, r23[0] < 0.0, parameters[6] < 0.0)
+    status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]), _endless(parameters[3]), _endless(parameters[4]), _endless(parameters[5]), _endless(parameters[6]))
+    return parameters, constants, status
+
+
+def _refused(status, number, *broken):
+    """Return ``number`` where one of these is true, else ``status``."""
+    for condition in broken:
+        status = ca.if_else(condition, number, status)
+    return status
+
+
+def _endless(x):
+    return ca.logic_not(ca.fabs(x) <= 1.7976931348623157e+308)
 
 
 def _from_parameters(hot, name):

@@ -83,7 +83,17 @@ static reaction_wheel_satellite_pair_f32 reaction_wheel_satellite_div_f32(reacti
     return reaction_wheel_satellite_add_f32(reaction_wheel_satellite_add_f32(q1, q2), q3);
 }
 
-void reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float J_xy, float J_xz,
+static reaction_wheel_satellite_pair_f32 reaction_wheel_satellite_unit_roundoff_f32(void)
+{
+    return (reaction_wheel_satellite_pair_f32){5.96046448e-08F, 0.0F};
+}
+
+static int reaction_wheel_satellite_less_f32(const reaction_wheel_satellite_pair_f32 a, const reaction_wheel_satellite_pair_f32 b)
+{
+    return a.high < b.high || (a.high <= b.high && a.low < b.low);
+}
+
+int reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float J_xy, float J_xz,
     float J_yz, float I_w, reaction_wheel_satellite_constants_f32 *constants)
 {
     const reaction_wheel_satellite_pair_f32 s0 = reaction_wheel_satellite_sub_f32((reaction_wheel_satellite_pair_f32){J_xx, 0.0F}, (reaction_wheel_satellite_pair_f32){J_yy, 0.0F});
@@ -157,6 +167,33 @@ void reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, floa
     const reaction_wheel_satellite_pair_f32 s68 = reaction_wheel_satellite_sub_f32(s66, s67);
     const reaction_wheel_satellite_pair_f32 s69 = reaction_wheel_satellite_sub_f32(s68, s19);
     const reaction_wheel_satellite_pair_f32 s70 = reaction_wheel_satellite_div_f32((reaction_wheel_satellite_pair_f32){1.0F, 0.0F}, (reaction_wheel_satellite_pair_f32){I_w, 0.0F});
+    const reaction_wheel_satellite_pair_f32 s71 = reaction_wheel_satellite_sub_f32((reaction_wheel_satellite_pair_f32){J_xx, 0.0F}, (reaction_wheel_satellite_pair_f32){I_w, 0.0F});
+    const reaction_wheel_satellite_pair_f32 s72 = reaction_wheel_satellite_sub_f32((reaction_wheel_satellite_pair_f32){J_yy, 0.0F}, (reaction_wheel_satellite_pair_f32){I_w, 0.0F});
+    const reaction_wheel_satellite_pair_f32 s73 = reaction_wheel_satellite_sub_f32((reaction_wheel_satellite_pair_f32){J_zz, 0.0F}, (reaction_wheel_satellite_pair_f32){I_w, 0.0F});
+    const reaction_wheel_satellite_pair_f32 r0 = reaction_wheel_satellite_neg_f32((reaction_wheel_satellite_pair_f32){J_xy, 0.0F});
+    const reaction_wheel_satellite_pair_f32 r1 = reaction_wheel_satellite_neg_f32((reaction_wheel_satellite_pair_f32){J_xz, 0.0F});
+    const reaction_wheel_satellite_pair_f32 r2 = reaction_wheel_satellite_neg_f32((reaction_wheel_satellite_pair_f32){J_yz, 0.0F});
+    const reaction_wheel_satellite_pair_f32 r3 = reaction_wheel_satellite_add_f32(s71, s72);
+    const reaction_wheel_satellite_pair_f32 r4 = reaction_wheel_satellite_add_f32(r3, s73);
+    const reaction_wheel_satellite_pair_f32 r5 = reaction_wheel_satellite_unit_roundoff_f32();
+    const reaction_wheel_satellite_pair_f32 r6 = reaction_wheel_satellite_mul_f32(r5, (reaction_wheel_satellite_pair_f32){4.0F, 0.0F});
+    const reaction_wheel_satellite_pair_f32 r7 = reaction_wheel_satellite_mul_f32(r6, r4);
+    const int r8 = reaction_wheel_satellite_less_f32((reaction_wheel_satellite_pair_f32){0.0F, 0.0F}, r4);
+    const reaction_wheel_satellite_pair_f32 r9 = r8 ? r7 : (reaction_wheel_satellite_pair_f32){7.88860905e-31F, 0.0F};
+    const reaction_wheel_satellite_pair_f32 r10 = reaction_wheel_satellite_add_f32(s71, r9);
+    const reaction_wheel_satellite_pair_f32 r11 = reaction_wheel_satellite_add_f32(s72, r9);
+    const reaction_wheel_satellite_pair_f32 r12 = reaction_wheel_satellite_add_f32(s73, r9);
+    const reaction_wheel_satellite_pair_f32 r13 = reaction_wheel_satellite_div_f32(r0, r10);
+    const reaction_wheel_satellite_pair_f32 r14 = reaction_wheel_satellite_mul_f32(r13, r0);
+    const reaction_wheel_satellite_pair_f32 r15 = reaction_wheel_satellite_sub_f32(r11, r14);
+    const reaction_wheel_satellite_pair_f32 r16 = reaction_wheel_satellite_mul_f32(r13, r1);
+    const reaction_wheel_satellite_pair_f32 r17 = reaction_wheel_satellite_sub_f32(r2, r16);
+    const reaction_wheel_satellite_pair_f32 r18 = reaction_wheel_satellite_div_f32(r1, r10);
+    const reaction_wheel_satellite_pair_f32 r19 = reaction_wheel_satellite_mul_f32(r18, r1);
+    const reaction_wheel_satellite_pair_f32 r20 = reaction_wheel_satellite_sub_f32(r12, r19);
+    const reaction_wheel_satellite_pair_f32 r21 = reaction_wheel_satellite_div_f32(r17, r15);
+    const reaction_wheel_satellite_pair_f32 r22 = reaction_wheel_satellite_mul_f32(r21, r17);
+    const reaction_wheel_satellite_pair_f32 r23 = reaction_wheel_satellite_sub_f32(r20, r22);
     constants->I_w = I_w;
     constants->J_xy = J_xy;
     constants->J_yz = J_yz;
@@ -172,6 +209,44 @@ void reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, floa
     constants->k6 = s69.high;
     constants->inverse_det = s54.high;
     constants->one_over_I_w = s70.high;
+    if (!(J_xx - J_xx >= 0.0F)
+        || !(J_yy - J_yy >= 0.0F)
+        || !(J_zz - J_zz >= 0.0F)
+        || !(J_xy - J_xy >= 0.0F)
+        || !(J_xz - J_xz >= 0.0F)
+        || !(J_yz - J_yz >= 0.0F)
+        || !(I_w - I_w >= 0.0F)) {
+        return 1;
+    }
+    if (s71.high < 0.0F
+        || s72.high < 0.0F
+        || s73.high < 0.0F
+        || r10.high < 0.0F
+        || r15.high < 0.0F
+        || r23.high < 0.0F
+        || I_w < 0.0F) {
+        return 4;
+    }
+    if (!(s71.high - s71.high >= 0.0F)
+        || !(s72.high - s72.high >= 0.0F)
+        || !(s73.high - s73.high >= 0.0F)
+        || !(r10.high - r10.high >= 0.0F)
+        || !(r15.high - r15.high >= 0.0F)
+        || !(r23.high - r23.high >= 0.0F)
+        || !(s0.high - s0.high >= 0.0F)
+        || !(s5.high - s5.high >= 0.0F)
+        || !(s6.high - s6.high >= 0.0F)
+        || !(s11.high - s11.high >= 0.0F)
+        || !(s20.high - s20.high >= 0.0F)
+        || !(s55.high - s55.high >= 0.0F)
+        || !(s60.high - s60.high >= 0.0F)
+        || !(s65.high - s65.high >= 0.0F)
+        || !(s69.high - s69.high >= 0.0F)
+        || !(s54.high - s54.high >= 0.0F)
+        || !(s70.high - s70.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

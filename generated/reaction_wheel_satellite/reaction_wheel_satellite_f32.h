@@ -4,14 +4,14 @@
  *
  * Use:
  *     reaction_wheel_satellite_constants_f32 constants;
- *     reaction_wheel_satellite_setup_f32(1.20000005F, 1.5F, 0.899999976F, 0.0F, 0.0F, 0.0F, 0.00200000009F, &constants);
+ *     if (reaction_wheel_satellite_setup_f32(1.20000005F, 1.5F, 0.899999976F, 0.0F, 0.0F, 0.0F, 0.00200000009F, &constants) != 0) { return 1; }
  *     float w_x_dot, w_y_dot, w_z_dot;
  *     reaction_wheel_satellite_body_f32(&constants, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, &w_x_dot, &w_y_dot, &w_z_dot);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 86a3fc77de076c49.
+ * times the largest component of the output. Body of these files: sha256 9b28f2ca7fb64f32.
  */
 #ifndef REACTION_WHEEL_SATELLITE_F32_H
 #define REACTION_WHEEL_SATELLITE_F32_H
@@ -48,10 +48,12 @@ typedef struct {
  *            J_yz  kg m^2  -0.1 .. 0.1  product, +sum y z dm
  *            I_w  kg m^2  0.001 .. 0.003  axial moment of a wheel
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
+ *            5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
- * Cost: once; 70 operations on pairs.
+ * Cost: once; 91 operations on pairs.
  */
-void reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float J_xy, float J_xz,
+int reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float J_xy, float J_xz,
     float J_yz, float I_w, reaction_wheel_satellite_constants_f32 *constants);
 
 /* Acceleration of w_x, acceleration of w_y and acceleration of w_z.

@@ -83,7 +83,17 @@ static reaction_wheel_satellite_pair_f64 reaction_wheel_satellite_div_f64(reacti
     return reaction_wheel_satellite_add_f64(reaction_wheel_satellite_add_f64(q1, q2), q3);
 }
 
-void reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, double J_xy,
+static reaction_wheel_satellite_pair_f64 reaction_wheel_satellite_unit_roundoff_f64(void)
+{
+    return (reaction_wheel_satellite_pair_f64){1.1102230246251565e-16, 0.0};
+}
+
+static int reaction_wheel_satellite_less_f64(const reaction_wheel_satellite_pair_f64 a, const reaction_wheel_satellite_pair_f64 b)
+{
+    return a.high < b.high || (a.high <= b.high && a.low < b.low);
+}
+
+int reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, double J_xy,
     double J_xz, double J_yz, double I_w, reaction_wheel_satellite_constants_f64 *constants)
 {
     const reaction_wheel_satellite_pair_f64 s0 = reaction_wheel_satellite_sub_f64((reaction_wheel_satellite_pair_f64){J_xx, 0.0}, (reaction_wheel_satellite_pair_f64){J_yy, 0.0});
@@ -157,6 +167,33 @@ void reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, d
     const reaction_wheel_satellite_pair_f64 s68 = reaction_wheel_satellite_sub_f64(s66, s67);
     const reaction_wheel_satellite_pair_f64 s69 = reaction_wheel_satellite_sub_f64(s68, s19);
     const reaction_wheel_satellite_pair_f64 s70 = reaction_wheel_satellite_div_f64((reaction_wheel_satellite_pair_f64){1.0, 0.0}, (reaction_wheel_satellite_pair_f64){I_w, 0.0});
+    const reaction_wheel_satellite_pair_f64 s71 = reaction_wheel_satellite_sub_f64((reaction_wheel_satellite_pair_f64){J_xx, 0.0}, (reaction_wheel_satellite_pair_f64){I_w, 0.0});
+    const reaction_wheel_satellite_pair_f64 s72 = reaction_wheel_satellite_sub_f64((reaction_wheel_satellite_pair_f64){J_yy, 0.0}, (reaction_wheel_satellite_pair_f64){I_w, 0.0});
+    const reaction_wheel_satellite_pair_f64 s73 = reaction_wheel_satellite_sub_f64((reaction_wheel_satellite_pair_f64){J_zz, 0.0}, (reaction_wheel_satellite_pair_f64){I_w, 0.0});
+    const reaction_wheel_satellite_pair_f64 r0 = reaction_wheel_satellite_neg_f64((reaction_wheel_satellite_pair_f64){J_xy, 0.0});
+    const reaction_wheel_satellite_pair_f64 r1 = reaction_wheel_satellite_neg_f64((reaction_wheel_satellite_pair_f64){J_xz, 0.0});
+    const reaction_wheel_satellite_pair_f64 r2 = reaction_wheel_satellite_neg_f64((reaction_wheel_satellite_pair_f64){J_yz, 0.0});
+    const reaction_wheel_satellite_pair_f64 r3 = reaction_wheel_satellite_add_f64(s71, s72);
+    const reaction_wheel_satellite_pair_f64 r4 = reaction_wheel_satellite_add_f64(r3, s73);
+    const reaction_wheel_satellite_pair_f64 r5 = reaction_wheel_satellite_unit_roundoff_f64();
+    const reaction_wheel_satellite_pair_f64 r6 = reaction_wheel_satellite_mul_f64(r5, (reaction_wheel_satellite_pair_f64){4.0, 0.0});
+    const reaction_wheel_satellite_pair_f64 r7 = reaction_wheel_satellite_mul_f64(r6, r4);
+    const int r8 = reaction_wheel_satellite_less_f64((reaction_wheel_satellite_pair_f64){0.0, 0.0}, r4);
+    const reaction_wheel_satellite_pair_f64 r9 = r8 ? r7 : (reaction_wheel_satellite_pair_f64){7.888609052210118e-31, 0.0};
+    const reaction_wheel_satellite_pair_f64 r10 = reaction_wheel_satellite_add_f64(s71, r9);
+    const reaction_wheel_satellite_pair_f64 r11 = reaction_wheel_satellite_add_f64(s72, r9);
+    const reaction_wheel_satellite_pair_f64 r12 = reaction_wheel_satellite_add_f64(s73, r9);
+    const reaction_wheel_satellite_pair_f64 r13 = reaction_wheel_satellite_div_f64(r0, r10);
+    const reaction_wheel_satellite_pair_f64 r14 = reaction_wheel_satellite_mul_f64(r13, r0);
+    const reaction_wheel_satellite_pair_f64 r15 = reaction_wheel_satellite_sub_f64(r11, r14);
+    const reaction_wheel_satellite_pair_f64 r16 = reaction_wheel_satellite_mul_f64(r13, r1);
+    const reaction_wheel_satellite_pair_f64 r17 = reaction_wheel_satellite_sub_f64(r2, r16);
+    const reaction_wheel_satellite_pair_f64 r18 = reaction_wheel_satellite_div_f64(r1, r10);
+    const reaction_wheel_satellite_pair_f64 r19 = reaction_wheel_satellite_mul_f64(r18, r1);
+    const reaction_wheel_satellite_pair_f64 r20 = reaction_wheel_satellite_sub_f64(r12, r19);
+    const reaction_wheel_satellite_pair_f64 r21 = reaction_wheel_satellite_div_f64(r17, r15);
+    const reaction_wheel_satellite_pair_f64 r22 = reaction_wheel_satellite_mul_f64(r21, r17);
+    const reaction_wheel_satellite_pair_f64 r23 = reaction_wheel_satellite_sub_f64(r20, r22);
     constants->I_w = I_w;
     constants->J_xy = J_xy;
     constants->J_yz = J_yz;
@@ -172,6 +209,44 @@ void reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, d
     constants->k6 = s69.high;
     constants->inverse_det = s54.high;
     constants->one_over_I_w = s70.high;
+    if (!(J_xx - J_xx >= 0.0)
+        || !(J_yy - J_yy >= 0.0)
+        || !(J_zz - J_zz >= 0.0)
+        || !(J_xy - J_xy >= 0.0)
+        || !(J_xz - J_xz >= 0.0)
+        || !(J_yz - J_yz >= 0.0)
+        || !(I_w - I_w >= 0.0)) {
+        return 1;
+    }
+    if (s71.high < 0.0
+        || s72.high < 0.0
+        || s73.high < 0.0
+        || r10.high < 0.0
+        || r15.high < 0.0
+        || r23.high < 0.0
+        || I_w < 0.0) {
+        return 4;
+    }
+    if (!(s71.high - s71.high >= 0.0)
+        || !(s72.high - s72.high >= 0.0)
+        || !(s73.high - s73.high >= 0.0)
+        || !(r10.high - r10.high >= 0.0)
+        || !(r15.high - r15.high >= 0.0)
+        || !(r23.high - r23.high >= 0.0)
+        || !(s0.high - s0.high >= 0.0)
+        || !(s5.high - s5.high >= 0.0)
+        || !(s6.high - s6.high >= 0.0)
+        || !(s11.high - s11.high >= 0.0)
+        || !(s20.high - s20.high >= 0.0)
+        || !(s55.high - s55.high >= 0.0)
+        || !(s60.high - s60.high >= 0.0)
+        || !(s65.high - s65.high >= 0.0)
+        || !(s69.high - s69.high >= 0.0)
+        || !(s54.high - s54.high >= 0.0)
+        || !(s70.high - s70.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

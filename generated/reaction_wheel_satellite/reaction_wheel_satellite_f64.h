@@ -4,14 +4,14 @@
  *
  * Use:
  *     reaction_wheel_satellite_constants_f64 constants;
- *     reaction_wheel_satellite_setup_f64(1.2, 1.5, 0.9, 0.0, 0.0, 0.0, 0.002, &constants);
+ *     if (reaction_wheel_satellite_setup_f64(1.2, 1.5, 0.9, 0.0, 0.0, 0.0, 0.002, &constants) != 0) { return 1; }
  *     double w_x_dot, w_y_dot, w_z_dot;
  *     reaction_wheel_satellite_body_f64(&constants, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, &w_x_dot, &w_y_dot, &w_z_dot);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 3f4857b43e104d4e.
+ * times the largest component of the output. Body of these files: sha256 bf868b27511dda08.
  */
 #ifndef REACTION_WHEEL_SATELLITE_F64_H
 #define REACTION_WHEEL_SATELLITE_F64_H
@@ -48,10 +48,12 @@ typedef struct {
  *            J_yz  kg m^2  -0.1 .. 0.1  product, +sum y z dm
  *            I_w  kg m^2  0.001 .. 0.003  axial moment of a wheel
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
+ *            5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
- * Cost: once; 70 operations on pairs.
+ * Cost: once; 91 operations on pairs.
  */
-void reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, double J_xy,
+int reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, double J_xy,
     double J_xz, double J_yz, double I_w, reaction_wheel_satellite_constants_f64 *constants);
 
 /* Acceleration of w_x, acceleration of w_y and acceleration of w_z.

@@ -12,6 +12,7 @@ import casadi as ca
 
 PARAMETERS = ['m', 'I_xx', 'I_yy', 'I_zz', 'I_xy', 'I_xz', 'I_yz']
 CONSTANTS = ['one_over_m', 'I_yy_minus_I_zz', 'I_xz', 'I_yz', 'I_xy', 'J_xx', 'I_xx_minus_I_yy', 'J_xy', 'J_xz', 'J_yy', 'J_yz', 'J_zz', 'two_over_m', 'k1', 'k2', 'k3', 'k4', 'k5', 'k6', 'k7', 'k8', 'k9', 'k10', 'k11', 'k12', 'k13', 'k14', 'k15', 'k16', 'k17', 'k18']
+SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 2: 'a mass is not positive', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
 def _built(build):
@@ -90,6 +91,10 @@ def _pi():
     return 3.141592653589793, 1.2246467991473532e-16
 
 
+def _unit_roundoff():
+    return 1.1102230246251565e-16, 0.0
+
+
 def _abs(a):
     return _select(a[0] < 0.0, _neg(a), a)
 
@@ -107,11 +112,31 @@ def _select(condition, yes, no):
 
 
 def setup():
-    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS."""
+    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS.
+
+    Where ``setup_status`` is not 0, all constants are NaN.
+    """
     return _built(_setup)
 
 
+def setup_status():
+    """Return the Function parameters -> status, whose words are in SETUP_STATUS: 0 is right."""
+    return _built(_setup_status)
+
+
 def _setup():
+    parameters, constants, status = _tried()
+    spoilt = ca.if_else(status > 0.0, float("nan"), 0.0)
+    outputs = [constants + spoilt]
+    return ca.Function("rigid_body_steps_setup", [parameters], outputs, ["parameters"], ["constants"])
+
+
+def _setup_status():
+    parameters, _, status = _tried()
+    return ca.Function("rigid_body_steps_setup_status", [parameters], [status], ["parameters"], ["status"])
+
+
+def _tried():
     parameters = ca.SX.sym("parameters", 7)
     s0 = _div((1.0, 0.0), (parameters[0], 0.0))
     s1 = _add((parameters[1], 0.0), (parameters[2], 0.0))
@@ -222,8 +247,38 @@ def _setup():
     s106 = _mul(s105, (2.0, 0.0))
     s107 = _sub(s54, s85)
     s108 = _mul(s107, (2.0, 0.0))
+    r0 = _neg((parameters[4], 0.0))
+    r1 = _neg((parameters[5], 0.0))
+    r2 = _neg((parameters[6], 0.0))
+    r3 = _div(r0, (parameters[1], 0.0))
+    r4 = _mul(r3, r0)
+    r5 = _sub((parameters[2], 0.0), r4)
+    r6 = _mul(r3, r1)
+    r7 = _sub(r2, r6)
+    r8 = _div(r1, (parameters[1], 0.0))
+    r9 = _mul(r8, r1)
+    r10 = _sub((parameters[3], 0.0), r9)
+    r11 = _div(r7, r5)
+    r12 = _mul(r11, r7)
+    r13 = _sub(r10, r12)
     constants = ca.vertcat(s0[0], s27[0], parameters[5], parameters[6], parameters[4], s28[0], s29[0], s30[0], s31[0], s35[0], s39[0], s43[0], s44[0], s49[0], s55[0], s59[0], s64[0], s67[0], s69[0], s73[0], s77[0], s81[0], s86[0], s88[0], s90[0], s93[0], s97[0], s100[0], s104[0], s106[0], s108[0])
-    return ca.Function("rigid_body_steps_setup", [parameters], [constants], ["parameters"], ["constants"])
+    status = ca.SX(0)
+    status = _refused(status, 5, _endless(r5[0]), _endless(r13[0]), _endless(s0[0]), _endless(s27[0]), _endless(s28[0]), _endless(s29[0]), _endless(s30[0]), _endless(s31[0]), _endless(s35[0]), _endless(s39[0]), _endless(s43[0]), _endless(s44[0]), _endless(s49[0]), _endless(s55[0]), _endless(s59[0]), _endless(s64[0]), _endless(s67[0]), _endless(s69[0]), _endless(s73[0]), _endless(s77[0]), _endless(s81[0]), _endless(s86[0]), _endless(s88[0]), _endless(s90[0]), _endless(s93[0]), _endless(s97[0]), _endless(s100[0]), _endless(s104[0]), _endless(s106[0]), _endless(s108[0]))
+    status = _refused(status, 4, parameters[1] <= 0.0, r5[0] <= 0.0, r13[0] <= 0.0)
+    status = _refused(status, 2, parameters[0] <= 0.0)
+    status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]), _endless(parameters[3]), _endless(parameters[4]), _endless(parameters[5]), _endless(parameters[6]))
+    return parameters, constants, status
+
+
+def _refused(status, number, *broken):
+    """Return ``number`` where one of these is true, else ``status``."""
+    for condition in broken:
+        status = ca.if_else(condition, number, status)
+    return status
+
+
+def _endless(x):
+    return ca.logic_not(ca.fabs(x) <= 1.7976931348623157e+308)
 
 
 def _from_parameters(hot, name):

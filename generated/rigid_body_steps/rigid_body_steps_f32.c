@@ -204,6 +204,20 @@ int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, floa
     const rigid_body_steps_pair_f32 s106 = rigid_body_steps_mul_f32(s105, (rigid_body_steps_pair_f32){2.0F, 0.0F});
     const rigid_body_steps_pair_f32 s107 = rigid_body_steps_sub_f32(s54, s85);
     const rigid_body_steps_pair_f32 s108 = rigid_body_steps_mul_f32(s107, (rigid_body_steps_pair_f32){2.0F, 0.0F});
+    const rigid_body_steps_pair_f32 r0 = rigid_body_steps_neg_f32((rigid_body_steps_pair_f32){I_xy, 0.0F});
+    const rigid_body_steps_pair_f32 r1 = rigid_body_steps_neg_f32((rigid_body_steps_pair_f32){I_xz, 0.0F});
+    const rigid_body_steps_pair_f32 r2 = rigid_body_steps_neg_f32((rigid_body_steps_pair_f32){I_yz, 0.0F});
+    const rigid_body_steps_pair_f32 r3 = rigid_body_steps_div_f32(r0, (rigid_body_steps_pair_f32){I_xx, 0.0F});
+    const rigid_body_steps_pair_f32 r4 = rigid_body_steps_mul_f32(r3, r0);
+    const rigid_body_steps_pair_f32 r5 = rigid_body_steps_sub_f32((rigid_body_steps_pair_f32){I_yy, 0.0F}, r4);
+    const rigid_body_steps_pair_f32 r6 = rigid_body_steps_mul_f32(r3, r1);
+    const rigid_body_steps_pair_f32 r7 = rigid_body_steps_sub_f32(r2, r6);
+    const rigid_body_steps_pair_f32 r8 = rigid_body_steps_div_f32(r1, (rigid_body_steps_pair_f32){I_xx, 0.0F});
+    const rigid_body_steps_pair_f32 r9 = rigid_body_steps_mul_f32(r8, r1);
+    const rigid_body_steps_pair_f32 r10 = rigid_body_steps_sub_f32((rigid_body_steps_pair_f32){I_zz, 0.0F}, r9);
+    const rigid_body_steps_pair_f32 r11 = rigid_body_steps_div_f32(r7, r5);
+    const rigid_body_steps_pair_f32 r12 = rigid_body_steps_mul_f32(r11, r7);
+    const rigid_body_steps_pair_f32 r13 = rigid_body_steps_sub_f32(r10, r12);
     constants->one_over_m = s0.high;
     constants->I_yy_minus_I_zz = s27.high;
     constants->I_xz = I_xz;
@@ -235,16 +249,56 @@ int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, floa
     constants->k16 = s104.high;
     constants->k17 = s106.high;
     constants->k18 = s108.high;
-    return (s11.high > 0.0F
-        && s42.high > 0.0F
-        && s25.high > 0.0F
-        && m - m >= 0.0F
-        && I_xx - I_xx >= 0.0F
-        && I_yy - I_yy >= 0.0F
-        && I_zz - I_zz >= 0.0F
-        && I_xy - I_xy >= 0.0F
-        && I_xz - I_xz >= 0.0F
-        && I_yz - I_yz >= 0.0F) ? 0 : 1;
+    if (!(m - m >= 0.0F)
+        || !(I_xx - I_xx >= 0.0F)
+        || !(I_yy - I_yy >= 0.0F)
+        || !(I_zz - I_zz >= 0.0F)
+        || !(I_xy - I_xy >= 0.0F)
+        || !(I_xz - I_xz >= 0.0F)
+        || !(I_yz - I_yz >= 0.0F)) {
+        return 1;
+    }
+    if (m <= 0.0F) {
+        return 2;
+    }
+    if (I_xx <= 0.0F
+        || r5.high <= 0.0F
+        || r13.high <= 0.0F) {
+        return 4;
+    }
+    if (!(r5.high - r5.high >= 0.0F)
+        || !(r13.high - r13.high >= 0.0F)
+        || !(s0.high - s0.high >= 0.0F)
+        || !(s27.high - s27.high >= 0.0F)
+        || !(s28.high - s28.high >= 0.0F)
+        || !(s29.high - s29.high >= 0.0F)
+        || !(s30.high - s30.high >= 0.0F)
+        || !(s31.high - s31.high >= 0.0F)
+        || !(s35.high - s35.high >= 0.0F)
+        || !(s39.high - s39.high >= 0.0F)
+        || !(s43.high - s43.high >= 0.0F)
+        || !(s44.high - s44.high >= 0.0F)
+        || !(s49.high - s49.high >= 0.0F)
+        || !(s55.high - s55.high >= 0.0F)
+        || !(s59.high - s59.high >= 0.0F)
+        || !(s64.high - s64.high >= 0.0F)
+        || !(s67.high - s67.high >= 0.0F)
+        || !(s69.high - s69.high >= 0.0F)
+        || !(s73.high - s73.high >= 0.0F)
+        || !(s77.high - s77.high >= 0.0F)
+        || !(s81.high - s81.high >= 0.0F)
+        || !(s86.high - s86.high >= 0.0F)
+        || !(s88.high - s88.high >= 0.0F)
+        || !(s90.high - s90.high >= 0.0F)
+        || !(s93.high - s93.high >= 0.0F)
+        || !(s97.high - s97.high >= 0.0F)
+        || !(s100.high - s100.high >= 0.0F)
+        || !(s104.high - s104.high >= 0.0F)
+        || !(s106.high - s106.high >= 0.0F)
+        || !(s108.high - s108.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -204,6 +204,20 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
     const rigid_body_steps_pair_f64 s106 = rigid_body_steps_mul_f64(s105, (rigid_body_steps_pair_f64){2.0, 0.0});
     const rigid_body_steps_pair_f64 s107 = rigid_body_steps_sub_f64(s54, s85);
     const rigid_body_steps_pair_f64 s108 = rigid_body_steps_mul_f64(s107, (rigid_body_steps_pair_f64){2.0, 0.0});
+    const rigid_body_steps_pair_f64 r0 = rigid_body_steps_neg_f64((rigid_body_steps_pair_f64){I_xy, 0.0});
+    const rigid_body_steps_pair_f64 r1 = rigid_body_steps_neg_f64((rigid_body_steps_pair_f64){I_xz, 0.0});
+    const rigid_body_steps_pair_f64 r2 = rigid_body_steps_neg_f64((rigid_body_steps_pair_f64){I_yz, 0.0});
+    const rigid_body_steps_pair_f64 r3 = rigid_body_steps_div_f64(r0, (rigid_body_steps_pair_f64){I_xx, 0.0});
+    const rigid_body_steps_pair_f64 r4 = rigid_body_steps_mul_f64(r3, r0);
+    const rigid_body_steps_pair_f64 r5 = rigid_body_steps_sub_f64((rigid_body_steps_pair_f64){I_yy, 0.0}, r4);
+    const rigid_body_steps_pair_f64 r6 = rigid_body_steps_mul_f64(r3, r1);
+    const rigid_body_steps_pair_f64 r7 = rigid_body_steps_sub_f64(r2, r6);
+    const rigid_body_steps_pair_f64 r8 = rigid_body_steps_div_f64(r1, (rigid_body_steps_pair_f64){I_xx, 0.0});
+    const rigid_body_steps_pair_f64 r9 = rigid_body_steps_mul_f64(r8, r1);
+    const rigid_body_steps_pair_f64 r10 = rigid_body_steps_sub_f64((rigid_body_steps_pair_f64){I_zz, 0.0}, r9);
+    const rigid_body_steps_pair_f64 r11 = rigid_body_steps_div_f64(r7, r5);
+    const rigid_body_steps_pair_f64 r12 = rigid_body_steps_mul_f64(r11, r7);
+    const rigid_body_steps_pair_f64 r13 = rigid_body_steps_sub_f64(r10, r12);
     constants->one_over_m = s0.high;
     constants->I_yy_minus_I_zz = s27.high;
     constants->I_xz = I_xz;
@@ -235,16 +249,56 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
     constants->k16 = s104.high;
     constants->k17 = s106.high;
     constants->k18 = s108.high;
-    return (s11.high > 0.0
-        && s42.high > 0.0
-        && s25.high > 0.0
-        && m - m >= 0.0
-        && I_xx - I_xx >= 0.0
-        && I_yy - I_yy >= 0.0
-        && I_zz - I_zz >= 0.0
-        && I_xy - I_xy >= 0.0
-        && I_xz - I_xz >= 0.0
-        && I_yz - I_yz >= 0.0) ? 0 : 1;
+    if (!(m - m >= 0.0)
+        || !(I_xx - I_xx >= 0.0)
+        || !(I_yy - I_yy >= 0.0)
+        || !(I_zz - I_zz >= 0.0)
+        || !(I_xy - I_xy >= 0.0)
+        || !(I_xz - I_xz >= 0.0)
+        || !(I_yz - I_yz >= 0.0)) {
+        return 1;
+    }
+    if (m <= 0.0) {
+        return 2;
+    }
+    if (I_xx <= 0.0
+        || r5.high <= 0.0
+        || r13.high <= 0.0) {
+        return 4;
+    }
+    if (!(r5.high - r5.high >= 0.0)
+        || !(r13.high - r13.high >= 0.0)
+        || !(s0.high - s0.high >= 0.0)
+        || !(s27.high - s27.high >= 0.0)
+        || !(s28.high - s28.high >= 0.0)
+        || !(s29.high - s29.high >= 0.0)
+        || !(s30.high - s30.high >= 0.0)
+        || !(s31.high - s31.high >= 0.0)
+        || !(s35.high - s35.high >= 0.0)
+        || !(s39.high - s39.high >= 0.0)
+        || !(s43.high - s43.high >= 0.0)
+        || !(s44.high - s44.high >= 0.0)
+        || !(s49.high - s49.high >= 0.0)
+        || !(s55.high - s55.high >= 0.0)
+        || !(s59.high - s59.high >= 0.0)
+        || !(s64.high - s64.high >= 0.0)
+        || !(s67.high - s67.high >= 0.0)
+        || !(s69.high - s69.high >= 0.0)
+        || !(s73.high - s73.high >= 0.0)
+        || !(s77.high - s77.high >= 0.0)
+        || !(s81.high - s81.high >= 0.0)
+        || !(s86.high - s86.high >= 0.0)
+        || !(s88.high - s88.high >= 0.0)
+        || !(s90.high - s90.high >= 0.0)
+        || !(s93.high - s93.high >= 0.0)
+        || !(s97.high - s97.high >= 0.0)
+        || !(s100.high - s100.high >= 0.0)
+        || !(s104.high - s104.high >= 0.0)
+        || !(s106.high - s106.high >= 0.0)
+        || !(s108.high - s108.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

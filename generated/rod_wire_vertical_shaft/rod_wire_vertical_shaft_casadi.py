@@ -12,6 +12,7 @@ import casadi as ca
 
 PARAMETERS = ['W', 'L', 'beta', 'w', 'g']
 CONSTANTS = ['s0008', 's0005', 'W']
+SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 2: 'a mass is not positive', 3: 'a length of a body is not positive', 5: 'a constant is not finite'}
 
 
 def _built(build):
@@ -88,6 +89,10 @@ def _power_of_two(a):
 
 def _pi():
     return 3.141592653589793, 1.2246467991473532e-16
+
+
+def _unit_roundoff():
+    return 1.1102230246251565e-16, 0.0
 
 
 def _abs(a):
@@ -169,33 +174,71 @@ def _cos(a):
 
 
 def setup():
-    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS."""
+    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS.
+
+    Where ``setup_status`` is not 0, all constants are NaN.
+    """
     return _built(_setup)
 
 
+def setup_status():
+    """Return the Function parameters -> status, whose words are in SETUP_STATUS: 0 is right."""
+    return _built(_setup_status)
+
+
 def _setup():
+    parameters, constants, status = _tried()
+    spoilt = ca.if_else(status > 0.0, float("nan"), 0.0)
+    outputs = [constants + spoilt]
+    return ca.Function("rod_wire_vertical_shaft_setup", [parameters], outputs, ["parameters"], ["constants"])
+
+
+def _setup_status():
+    parameters, _, status = _tried()
+    return ca.Function("rod_wire_vertical_shaft_setup_status", [parameters], [status], ["parameters"], ["status"])
+
+
+def _tried():
     parameters = ca.SX.sym("parameters", 5)
     s0 = _div((1.0, 0.0), (parameters[1], 0.0))
     s1 = _sin((parameters[2], 0.0))
     s2 = _div((1.0, 0.0), s1)
-    s3 = _mul(s0, s2)
-    s4 = _cos((parameters[2], 0.0))
-    s5 = _mul((parameters[1], 0.0), (parameters[0], 0.0))
-    s6 = _mul(s4, s5)
-    s7 = _mul(s6, (0.5, 0.0))
-    s8 = _div(s6, (parameters[4], 0.0))
-    s9 = _mul((parameters[1], 0.0), s1)
-    s10 = _mul((parameters[3], 0.0), (parameters[3], 0.0))
-    s11 = _mul(s9, s10)
-    s12 = _mul(s8, s11)
-    s13 = _mul(s12, (0.16666666666666666, 9.25185853854297e-18))
-    s14 = _add(s7, s13)
-    s15 = _add(s14, s13)
-    s16 = _mul(s3, s15)
-    s17 = _sub(s7, s13)
-    s18 = _mul(s3, s17)
-    constants = ca.vertcat(s16[0], s18[0], parameters[0])
-    return ca.Function("rod_wire_vertical_shaft_setup", [parameters], [constants], ["parameters"], ["constants"])
+    s3 = _div((1.0, 0.0), (parameters[4], 0.0))
+    s4 = _mul(s0, s2)
+    s5 = _cos((parameters[2], 0.0))
+    s6 = _mul((parameters[1], 0.0), (parameters[0], 0.0))
+    s7 = _mul(s5, s6)
+    s8 = _mul(s7, (0.5, 0.0))
+    s9 = _mul(s3, s7)
+    s10 = _mul((parameters[1], 0.0), s1)
+    s11 = _mul((parameters[3], 0.0), (parameters[3], 0.0))
+    s12 = _mul(s10, s11)
+    s13 = _mul(s9, s12)
+    s14 = _mul(s13, (0.16666666666666666, 9.25185853854297e-18))
+    s15 = _add(s8, s14)
+    s16 = _add(s15, s14)
+    s17 = _mul(s4, s16)
+    s18 = _sub(s8, s14)
+    s19 = _mul(s4, s18)
+    s20 = _mul((parameters[0], 0.0), s3)
+    constants = ca.vertcat(s17[0], s19[0], parameters[0])
+    status = ca.SX(0)
+    status = _refused(status, 5, _endless(s20[0]), _endless(s17[0]), _endless(s19[0]))
+    status = _refused(status, 3, parameters[1] <= 0.0)
+    status = _refused(status, 2, s20[0] <= 0.0)
+    status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]), _endless(parameters[3]), _endless(parameters[4]))
+    return parameters, constants, status
+
+
+def _refused(status, number, *broken):
+    """Return ``number`` where one of these is true, else ``status``."""
+    for condition in broken:
+        status = ca.if_else(condition, number, status)
+    return status
+
+
+def _endless(x):
+    return ca.logic_not(ca.fabs(x) <= 1.7976931348623157e+308)
 
 
 def _from_parameters(hot, name):

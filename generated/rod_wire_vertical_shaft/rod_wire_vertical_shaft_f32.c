@@ -138,31 +138,52 @@ static rod_wire_vertical_shaft_pair_f32 rod_wire_vertical_shaft_cos_f32(rod_wire
     return rod_wire_vertical_shaft_sine_f32(a, 1.0F);
 }
 
-void rod_wire_vertical_shaft_setup_f32(float W, float L, float beta, float w, float g,
+int rod_wire_vertical_shaft_setup_f32(float W, float L, float beta, float w, float g,
     rod_wire_vertical_shaft_constants_f32 *constants)
 {
     const rod_wire_vertical_shaft_pair_f32 s0 = rod_wire_vertical_shaft_div_f32((rod_wire_vertical_shaft_pair_f32){1.0F, 0.0F}, (rod_wire_vertical_shaft_pair_f32){L, 0.0F});
     const rod_wire_vertical_shaft_pair_f32 s1 = rod_wire_vertical_shaft_sin_f32((rod_wire_vertical_shaft_pair_f32){beta, 0.0F});
     const rod_wire_vertical_shaft_pair_f32 s2 = rod_wire_vertical_shaft_div_f32((rod_wire_vertical_shaft_pair_f32){1.0F, 0.0F}, s1);
-    const rod_wire_vertical_shaft_pair_f32 s3 = rod_wire_vertical_shaft_mul_f32(s0, s2);
-    const rod_wire_vertical_shaft_pair_f32 s4 = rod_wire_vertical_shaft_cos_f32((rod_wire_vertical_shaft_pair_f32){beta, 0.0F});
-    const rod_wire_vertical_shaft_pair_f32 s5 = rod_wire_vertical_shaft_mul_f32((rod_wire_vertical_shaft_pair_f32){L, 0.0F}, (rod_wire_vertical_shaft_pair_f32){W, 0.0F});
-    const rod_wire_vertical_shaft_pair_f32 s6 = rod_wire_vertical_shaft_mul_f32(s4, s5);
-    const rod_wire_vertical_shaft_pair_f32 s7 = rod_wire_vertical_shaft_mul_f32(s6, (rod_wire_vertical_shaft_pair_f32){0.5F, 0.0F});
-    const rod_wire_vertical_shaft_pair_f32 s8 = rod_wire_vertical_shaft_div_f32(s6, (rod_wire_vertical_shaft_pair_f32){g, 0.0F});
-    const rod_wire_vertical_shaft_pair_f32 s9 = rod_wire_vertical_shaft_mul_f32((rod_wire_vertical_shaft_pair_f32){L, 0.0F}, s1);
-    const rod_wire_vertical_shaft_pair_f32 s10 = rod_wire_vertical_shaft_mul_f32((rod_wire_vertical_shaft_pair_f32){w, 0.0F}, (rod_wire_vertical_shaft_pair_f32){w, 0.0F});
-    const rod_wire_vertical_shaft_pair_f32 s11 = rod_wire_vertical_shaft_mul_f32(s9, s10);
-    const rod_wire_vertical_shaft_pair_f32 s12 = rod_wire_vertical_shaft_mul_f32(s8, s11);
-    const rod_wire_vertical_shaft_pair_f32 s13 = rod_wire_vertical_shaft_mul_f32(s12, (rod_wire_vertical_shaft_pair_f32){0.166666672F, (-4.96705388e-09F)});
-    const rod_wire_vertical_shaft_pair_f32 s14 = rod_wire_vertical_shaft_add_f32(s7, s13);
-    const rod_wire_vertical_shaft_pair_f32 s15 = rod_wire_vertical_shaft_add_f32(s14, s13);
-    const rod_wire_vertical_shaft_pair_f32 s16 = rod_wire_vertical_shaft_mul_f32(s3, s15);
-    const rod_wire_vertical_shaft_pair_f32 s17 = rod_wire_vertical_shaft_sub_f32(s7, s13);
-    const rod_wire_vertical_shaft_pair_f32 s18 = rod_wire_vertical_shaft_mul_f32(s3, s17);
-    constants->s0008 = s16.high;
-    constants->s0005 = s18.high;
+    const rod_wire_vertical_shaft_pair_f32 s3 = rod_wire_vertical_shaft_div_f32((rod_wire_vertical_shaft_pair_f32){1.0F, 0.0F}, (rod_wire_vertical_shaft_pair_f32){g, 0.0F});
+    const rod_wire_vertical_shaft_pair_f32 s4 = rod_wire_vertical_shaft_mul_f32(s0, s2);
+    const rod_wire_vertical_shaft_pair_f32 s5 = rod_wire_vertical_shaft_cos_f32((rod_wire_vertical_shaft_pair_f32){beta, 0.0F});
+    const rod_wire_vertical_shaft_pair_f32 s6 = rod_wire_vertical_shaft_mul_f32((rod_wire_vertical_shaft_pair_f32){L, 0.0F}, (rod_wire_vertical_shaft_pair_f32){W, 0.0F});
+    const rod_wire_vertical_shaft_pair_f32 s7 = rod_wire_vertical_shaft_mul_f32(s5, s6);
+    const rod_wire_vertical_shaft_pair_f32 s8 = rod_wire_vertical_shaft_mul_f32(s7, (rod_wire_vertical_shaft_pair_f32){0.5F, 0.0F});
+    const rod_wire_vertical_shaft_pair_f32 s9 = rod_wire_vertical_shaft_mul_f32(s3, s7);
+    const rod_wire_vertical_shaft_pair_f32 s10 = rod_wire_vertical_shaft_mul_f32((rod_wire_vertical_shaft_pair_f32){L, 0.0F}, s1);
+    const rod_wire_vertical_shaft_pair_f32 s11 = rod_wire_vertical_shaft_mul_f32((rod_wire_vertical_shaft_pair_f32){w, 0.0F}, (rod_wire_vertical_shaft_pair_f32){w, 0.0F});
+    const rod_wire_vertical_shaft_pair_f32 s12 = rod_wire_vertical_shaft_mul_f32(s10, s11);
+    const rod_wire_vertical_shaft_pair_f32 s13 = rod_wire_vertical_shaft_mul_f32(s9, s12);
+    const rod_wire_vertical_shaft_pair_f32 s14 = rod_wire_vertical_shaft_mul_f32(s13, (rod_wire_vertical_shaft_pair_f32){0.166666672F, (-4.96705388e-09F)});
+    const rod_wire_vertical_shaft_pair_f32 s15 = rod_wire_vertical_shaft_add_f32(s8, s14);
+    const rod_wire_vertical_shaft_pair_f32 s16 = rod_wire_vertical_shaft_add_f32(s15, s14);
+    const rod_wire_vertical_shaft_pair_f32 s17 = rod_wire_vertical_shaft_mul_f32(s4, s16);
+    const rod_wire_vertical_shaft_pair_f32 s18 = rod_wire_vertical_shaft_sub_f32(s8, s14);
+    const rod_wire_vertical_shaft_pair_f32 s19 = rod_wire_vertical_shaft_mul_f32(s4, s18);
+    const rod_wire_vertical_shaft_pair_f32 s20 = rod_wire_vertical_shaft_mul_f32((rod_wire_vertical_shaft_pair_f32){W, 0.0F}, s3);
+    constants->s0008 = s17.high;
+    constants->s0005 = s19.high;
     constants->W = W;
+    if (!(W - W >= 0.0F)
+        || !(L - L >= 0.0F)
+        || !(beta - beta >= 0.0F)
+        || !(w - w >= 0.0F)
+        || !(g - g >= 0.0F)) {
+        return 1;
+    }
+    if (s20.high <= 0.0F) {
+        return 2;
+    }
+    if (L <= 0.0F) {
+        return 3;
+    }
+    if (!(s20.high - s20.high >= 0.0F)
+        || !(s17.high - s17.high >= 0.0F)
+        || !(s19.high - s19.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

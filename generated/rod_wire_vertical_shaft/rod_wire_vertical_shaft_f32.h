@@ -4,14 +4,14 @@
  *
  * Use:
  *     rod_wire_vertical_shaft_constants_f32 constants;
- *     rod_wire_vertical_shaft_setup_f32(40.0F, 8.0F, 1.0F, 15.0F, 21.0F, &constants);
+ *     if (rod_wire_vertical_shaft_setup_f32(40.0F, 8.0F, 1.0F, 15.0F, 21.0F, &constants) != 0) { return 1; }
  *     float T;
  *     rod_wire_vertical_shaft_T_f32(&constants, &T);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 233a6af0724a9287.
+ * times the largest component of the output. Body of these files: sha256 6327ed64325f7108.
  */
 #ifndef ROD_WIRE_VERTICAL_SHAFT_F32_H
 #define ROD_WIRE_VERTICAL_SHAFT_F32_H
@@ -34,10 +34,12 @@ typedef struct {
  *            w  rad/s  10 .. 20  speed of the axle
  *            g  m/s^2  9 .. 33  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
- * Cost: once; 17 operations on pairs.
+ * Cost: once; 19 operations on pairs.
  */
-void rod_wire_vertical_shaft_setup_f32(float W, float L, float beta, float w, float g,
+int rod_wire_vertical_shaft_setup_f32(float W, float L, float beta, float w, float g,
     rod_wire_vertical_shaft_constants_f32 *constants);
 
 /* Force of wire.

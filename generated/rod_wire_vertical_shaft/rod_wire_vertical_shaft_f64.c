@@ -150,31 +150,52 @@ static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_cos_f64(rod_wire
     return rod_wire_vertical_shaft_sine_f64(a, 1.0);
 }
 
-void rod_wire_vertical_shaft_setup_f64(double W, double L, double beta, double w, double g,
+int rod_wire_vertical_shaft_setup_f64(double W, double L, double beta, double w, double g,
     rod_wire_vertical_shaft_constants_f64 *constants)
 {
     const rod_wire_vertical_shaft_pair_f64 s0 = rod_wire_vertical_shaft_div_f64((rod_wire_vertical_shaft_pair_f64){1.0, 0.0}, (rod_wire_vertical_shaft_pair_f64){L, 0.0});
     const rod_wire_vertical_shaft_pair_f64 s1 = rod_wire_vertical_shaft_sin_f64((rod_wire_vertical_shaft_pair_f64){beta, 0.0});
     const rod_wire_vertical_shaft_pair_f64 s2 = rod_wire_vertical_shaft_div_f64((rod_wire_vertical_shaft_pair_f64){1.0, 0.0}, s1);
-    const rod_wire_vertical_shaft_pair_f64 s3 = rod_wire_vertical_shaft_mul_f64(s0, s2);
-    const rod_wire_vertical_shaft_pair_f64 s4 = rod_wire_vertical_shaft_cos_f64((rod_wire_vertical_shaft_pair_f64){beta, 0.0});
-    const rod_wire_vertical_shaft_pair_f64 s5 = rod_wire_vertical_shaft_mul_f64((rod_wire_vertical_shaft_pair_f64){L, 0.0}, (rod_wire_vertical_shaft_pair_f64){W, 0.0});
-    const rod_wire_vertical_shaft_pair_f64 s6 = rod_wire_vertical_shaft_mul_f64(s4, s5);
-    const rod_wire_vertical_shaft_pair_f64 s7 = rod_wire_vertical_shaft_mul_f64(s6, (rod_wire_vertical_shaft_pair_f64){0.5, 0.0});
-    const rod_wire_vertical_shaft_pair_f64 s8 = rod_wire_vertical_shaft_div_f64(s6, (rod_wire_vertical_shaft_pair_f64){g, 0.0});
-    const rod_wire_vertical_shaft_pair_f64 s9 = rod_wire_vertical_shaft_mul_f64((rod_wire_vertical_shaft_pair_f64){L, 0.0}, s1);
-    const rod_wire_vertical_shaft_pair_f64 s10 = rod_wire_vertical_shaft_mul_f64((rod_wire_vertical_shaft_pair_f64){w, 0.0}, (rod_wire_vertical_shaft_pair_f64){w, 0.0});
-    const rod_wire_vertical_shaft_pair_f64 s11 = rod_wire_vertical_shaft_mul_f64(s9, s10);
-    const rod_wire_vertical_shaft_pair_f64 s12 = rod_wire_vertical_shaft_mul_f64(s8, s11);
-    const rod_wire_vertical_shaft_pair_f64 s13 = rod_wire_vertical_shaft_mul_f64(s12, (rod_wire_vertical_shaft_pair_f64){0.16666666666666666, 9.25185853854297e-18});
-    const rod_wire_vertical_shaft_pair_f64 s14 = rod_wire_vertical_shaft_add_f64(s7, s13);
-    const rod_wire_vertical_shaft_pair_f64 s15 = rod_wire_vertical_shaft_add_f64(s14, s13);
-    const rod_wire_vertical_shaft_pair_f64 s16 = rod_wire_vertical_shaft_mul_f64(s3, s15);
-    const rod_wire_vertical_shaft_pair_f64 s17 = rod_wire_vertical_shaft_sub_f64(s7, s13);
-    const rod_wire_vertical_shaft_pair_f64 s18 = rod_wire_vertical_shaft_mul_f64(s3, s17);
-    constants->s0008 = s16.high;
-    constants->s0005 = s18.high;
+    const rod_wire_vertical_shaft_pair_f64 s3 = rod_wire_vertical_shaft_div_f64((rod_wire_vertical_shaft_pair_f64){1.0, 0.0}, (rod_wire_vertical_shaft_pair_f64){g, 0.0});
+    const rod_wire_vertical_shaft_pair_f64 s4 = rod_wire_vertical_shaft_mul_f64(s0, s2);
+    const rod_wire_vertical_shaft_pair_f64 s5 = rod_wire_vertical_shaft_cos_f64((rod_wire_vertical_shaft_pair_f64){beta, 0.0});
+    const rod_wire_vertical_shaft_pair_f64 s6 = rod_wire_vertical_shaft_mul_f64((rod_wire_vertical_shaft_pair_f64){L, 0.0}, (rod_wire_vertical_shaft_pair_f64){W, 0.0});
+    const rod_wire_vertical_shaft_pair_f64 s7 = rod_wire_vertical_shaft_mul_f64(s5, s6);
+    const rod_wire_vertical_shaft_pair_f64 s8 = rod_wire_vertical_shaft_mul_f64(s7, (rod_wire_vertical_shaft_pair_f64){0.5, 0.0});
+    const rod_wire_vertical_shaft_pair_f64 s9 = rod_wire_vertical_shaft_mul_f64(s3, s7);
+    const rod_wire_vertical_shaft_pair_f64 s10 = rod_wire_vertical_shaft_mul_f64((rod_wire_vertical_shaft_pair_f64){L, 0.0}, s1);
+    const rod_wire_vertical_shaft_pair_f64 s11 = rod_wire_vertical_shaft_mul_f64((rod_wire_vertical_shaft_pair_f64){w, 0.0}, (rod_wire_vertical_shaft_pair_f64){w, 0.0});
+    const rod_wire_vertical_shaft_pair_f64 s12 = rod_wire_vertical_shaft_mul_f64(s10, s11);
+    const rod_wire_vertical_shaft_pair_f64 s13 = rod_wire_vertical_shaft_mul_f64(s9, s12);
+    const rod_wire_vertical_shaft_pair_f64 s14 = rod_wire_vertical_shaft_mul_f64(s13, (rod_wire_vertical_shaft_pair_f64){0.16666666666666666, 9.25185853854297e-18});
+    const rod_wire_vertical_shaft_pair_f64 s15 = rod_wire_vertical_shaft_add_f64(s8, s14);
+    const rod_wire_vertical_shaft_pair_f64 s16 = rod_wire_vertical_shaft_add_f64(s15, s14);
+    const rod_wire_vertical_shaft_pair_f64 s17 = rod_wire_vertical_shaft_mul_f64(s4, s16);
+    const rod_wire_vertical_shaft_pair_f64 s18 = rod_wire_vertical_shaft_sub_f64(s8, s14);
+    const rod_wire_vertical_shaft_pair_f64 s19 = rod_wire_vertical_shaft_mul_f64(s4, s18);
+    const rod_wire_vertical_shaft_pair_f64 s20 = rod_wire_vertical_shaft_mul_f64((rod_wire_vertical_shaft_pair_f64){W, 0.0}, s3);
+    constants->s0008 = s17.high;
+    constants->s0005 = s19.high;
     constants->W = W;
+    if (!(W - W >= 0.0)
+        || !(L - L >= 0.0)
+        || !(beta - beta >= 0.0)
+        || !(w - w >= 0.0)
+        || !(g - g >= 0.0)) {
+        return 1;
+    }
+    if (s20.high <= 0.0) {
+        return 2;
+    }
+    if (L <= 0.0) {
+        return 3;
+    }
+    if (!(s20.high - s20.high >= 0.0)
+        || !(s17.high - s17.high >= 0.0)
+        || !(s19.high - s19.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

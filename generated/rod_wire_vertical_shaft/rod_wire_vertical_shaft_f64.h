@@ -4,14 +4,14 @@
  *
  * Use:
  *     rod_wire_vertical_shaft_constants_f64 constants;
- *     rod_wire_vertical_shaft_setup_f64(40.0, 8.0, 1.0, 15.0, 21.0, &constants);
+ *     if (rod_wire_vertical_shaft_setup_f64(40.0, 8.0, 1.0, 15.0, 21.0, &constants) != 0) { return 1; }
  *     double T;
  *     rod_wire_vertical_shaft_T_f64(&constants, &T);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 402e99e6e755f37a.
+ * times the largest component of the output. Body of these files: sha256 ab87076d4cdad207.
  */
 #ifndef ROD_WIRE_VERTICAL_SHAFT_F64_H
 #define ROD_WIRE_VERTICAL_SHAFT_F64_H
@@ -34,10 +34,12 @@ typedef struct {
  *            w  rad/s  10 .. 20  speed of the axle
  *            g  m/s^2  9 .. 33  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
- * Cost: once; 17 operations on pairs.
+ * Cost: once; 19 operations on pairs.
  */
-void rod_wire_vertical_shaft_setup_f64(double W, double L, double beta, double w, double g,
+int rod_wire_vertical_shaft_setup_f64(double W, double L, double beta, double w, double g,
     rod_wire_vertical_shaft_constants_f64 *constants);
 
 /* Force of wire.

@@ -138,7 +138,7 @@ static rolling_cone_pair_f32 rolling_cone_cos_f32(rolling_cone_pair_f32 a)
     return rolling_cone_sine_f32(a, 1.0F);
 }
 
-void rolling_cone_setup_f32(float m, float h, float r, float a, float g,
+int rolling_cone_setup_f32(float m, float h, float r, float a, float g,
     rolling_cone_constants_f32 *constants)
 {
     const rolling_cone_pair_f32 s0 = rolling_cone_mul_f32((rolling_cone_pair_f32){h, 0.0F}, (rolling_cone_pair_f32){h, 0.0F});
@@ -178,6 +178,27 @@ void rolling_cone_setup_f32(float m, float h, float r, float a, float g,
     constants->k2 = s28.high;
     constants->k3 = s30.high;
     constants->k4 = s32.high;
+    if (!(m - m >= 0.0F)
+        || !(h - h >= 0.0F)
+        || !(r - r >= 0.0F)
+        || !(a - a >= 0.0F)
+        || !(g - g >= 0.0F)) {
+        return 1;
+    }
+    if (m <= 0.0F) {
+        return 2;
+    }
+    if (r <= 0.0F
+        || h <= 0.0F) {
+        return 3;
+    }
+    if (!(s19.high - s19.high >= 0.0F)
+        || !(s28.high - s28.high >= 0.0F)
+        || !(s30.high - s30.high >= 0.0F)
+        || !(s32.high - s32.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

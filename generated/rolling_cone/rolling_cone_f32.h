@@ -4,14 +4,14 @@
  *
  * Use:
  *     rolling_cone_constants_f32 constants;
- *     rolling_cone_setup_f32(3.0F, 0.25F, 0.150000006F, 0.5F, 9.80000019F, &constants);
+ *     if (rolling_cone_setup_f32(3.0F, 0.25F, 0.150000006F, 0.5F, 9.80000019F, &constants) != 0) { return 1; }
  *     float kinetic_energy;
  *     rolling_cone_kinetic_energy_f32(&constants, 10.5F, &kinetic_energy);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 942dc8149bff9dae.
+ * times the largest component of the output. Body of these files: sha256 4fe085bce8bc9eed.
  */
 #ifndef ROLLING_CONE_F32_H
 #define ROLLING_CONE_F32_H
@@ -35,10 +35,12 @@ typedef struct {
  *            a  rad  0.4 .. 0.6  half angle, with tan(a) = r/h
  *            g  m/s^2  9.7 .. 9.9  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 31 operations on pairs.
  */
-void rolling_cone_setup_f32(float m, float h, float r, float a, float g,
+int rolling_cone_setup_f32(float m, float h, float r, float a, float g,
     rolling_cone_constants_f32 *constants);
 
 /* Kinetic energy.

@@ -150,7 +150,7 @@ static rolling_cone_pair_f64 rolling_cone_cos_f64(rolling_cone_pair_f64 a)
     return rolling_cone_sine_f64(a, 1.0);
 }
 
-void rolling_cone_setup_f64(double m, double h, double r, double a, double g,
+int rolling_cone_setup_f64(double m, double h, double r, double a, double g,
     rolling_cone_constants_f64 *constants)
 {
     const rolling_cone_pair_f64 s0 = rolling_cone_mul_f64((rolling_cone_pair_f64){h, 0.0}, (rolling_cone_pair_f64){h, 0.0});
@@ -190,6 +190,27 @@ void rolling_cone_setup_f64(double m, double h, double r, double a, double g,
     constants->k2 = s28.high;
     constants->k3 = s30.high;
     constants->k4 = s32.high;
+    if (!(m - m >= 0.0)
+        || !(h - h >= 0.0)
+        || !(r - r >= 0.0)
+        || !(a - a >= 0.0)
+        || !(g - g >= 0.0)) {
+        return 1;
+    }
+    if (m <= 0.0) {
+        return 2;
+    }
+    if (r <= 0.0
+        || h <= 0.0) {
+        return 3;
+    }
+    if (!(s19.high - s19.high >= 0.0)
+        || !(s28.high - s28.high >= 0.0)
+        || !(s30.high - s30.high >= 0.0)
+        || !(s32.high - s32.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -4,14 +4,14 @@
  *
  * Use:
  *     rolling_cone_constants_f64 constants;
- *     rolling_cone_setup_f64(3.0, 0.25, 0.15, 0.5, 9.8, &constants);
+ *     if (rolling_cone_setup_f64(3.0, 0.25, 0.15, 0.5, 9.8, &constants) != 0) { return 1; }
  *     double kinetic_energy;
  *     rolling_cone_kinetic_energy_f64(&constants, 10.5, &kinetic_energy);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 c335718ea19e2bc8.
+ * times the largest component of the output. Body of these files: sha256 5aacb0c9e7be66c3.
  */
 #ifndef ROLLING_CONE_F64_H
 #define ROLLING_CONE_F64_H
@@ -35,10 +35,12 @@ typedef struct {
  *            a  rad  0.4 .. 0.6  half angle, with tan(a) = r/h
  *            g  m/s^2  9.7 .. 9.9  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 31 operations on pairs.
  */
-void rolling_cone_setup_f64(double m, double h, double r, double a, double g,
+int rolling_cone_setup_f64(double m, double h, double r, double a, double g,
     rolling_cone_constants_f64 *constants);
 
 /* Kinetic energy.

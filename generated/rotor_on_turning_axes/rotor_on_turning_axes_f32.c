@@ -51,13 +51,25 @@ static rotor_on_turning_axes_pair_f32 rotor_on_turning_axes_sub_f32(rotor_on_tur
     return rotor_on_turning_axes_add_f32(a, rotor_on_turning_axes_neg_f32(b));
 }
 
-void rotor_on_turning_axes_setup_f32(float A, float C,
+int rotor_on_turning_axes_setup_f32(float A, float C,
     rotor_on_turning_axes_constants_f32 *constants)
 {
     const rotor_on_turning_axes_pair_f32 s0 = rotor_on_turning_axes_sub_f32((rotor_on_turning_axes_pair_f32){A, 0.0F}, (rotor_on_turning_axes_pair_f32){C, 0.0F});
     constants->C = C;
     constants->A = A;
     constants->A_minus_C = s0.high;
+    if (!(A - A >= 0.0F)
+        || !(C - C >= 0.0F)) {
+        return 1;
+    }
+    if (C <= 0.0F
+        || A <= 0.0F) {
+        return 4;
+    }
+    if (!(s0.high - s0.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

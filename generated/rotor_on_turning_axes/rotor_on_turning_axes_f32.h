@@ -4,14 +4,14 @@
  *
  * Use:
  *     rotor_on_turning_axes_constants_f32 constants;
- *     rotor_on_turning_axes_setup_f32(0.800000012F, 0.949999988F, &constants);
+ *     if (rotor_on_turning_axes_setup_f32(0.800000012F, 0.949999988F, &constants) != 0) { return 1; }
  *     float moment[3];
  *     rotor_on_turning_axes_moment_f32(&constants, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, moment);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 fef48c041080d240.
+ * times the largest component of the output. Body of these files: sha256 69be3848859707cf.
  */
 #ifndef ROTOR_ON_TURNING_AXES_F32_H
 #define ROTOR_ON_TURNING_AXES_F32_H
@@ -31,10 +31,12 @@ typedef struct {
  * Given:     A  kg m^2  0.6 .. 1  transverse moment of inertia
  *            C  kg m^2  0.8 .. 1.1  axial moment of inertia
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
+ *            5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 1 operations on pairs.
  */
-void rotor_on_turning_axes_setup_f32(float A, float C,
+int rotor_on_turning_axes_setup_f32(float A, float C,
     rotor_on_turning_axes_constants_f32 *constants);
 
 /* External moment that the motion needs (inverse dynamics).

@@ -51,13 +51,25 @@ static rotor_on_turning_axes_pair_f64 rotor_on_turning_axes_sub_f64(rotor_on_tur
     return rotor_on_turning_axes_add_f64(a, rotor_on_turning_axes_neg_f64(b));
 }
 
-void rotor_on_turning_axes_setup_f64(double A, double C,
+int rotor_on_turning_axes_setup_f64(double A, double C,
     rotor_on_turning_axes_constants_f64 *constants)
 {
     const rotor_on_turning_axes_pair_f64 s0 = rotor_on_turning_axes_sub_f64((rotor_on_turning_axes_pair_f64){A, 0.0}, (rotor_on_turning_axes_pair_f64){C, 0.0});
     constants->C = C;
     constants->A = A;
     constants->A_minus_C = s0.high;
+    if (!(A - A >= 0.0)
+        || !(C - C >= 0.0)) {
+        return 1;
+    }
+    if (C <= 0.0
+        || A <= 0.0) {
+        return 4;
+    }
+    if (!(s0.high - s0.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 d7e5d1c4c489c109.
+ * times the largest component of the output. Body of these files: sha256 87ddc3377c5d45d6.
  */
 #ifndef SATELLITE_F32_H
 #define SATELLITE_F32_H
@@ -54,7 +54,8 @@ typedef struct {
  *            I_yy  kg m^2  1.4 .. 1.8  principal moment of inertia about y
  *            I_zz  kg m^2  1.6 .. 2  principal moment of inertia about z
  * Returned:  constants  constants made of parameters only, for the functions of this scene
- * Returns: 0, or 1 if the inertia is not positive definite or a parameter is not finite.
+ * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
+ *            5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 24 operations on pairs.
  */

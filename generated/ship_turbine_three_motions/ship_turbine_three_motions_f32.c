@@ -83,7 +83,7 @@ static ship_turbine_three_motions_pair_f32 ship_turbine_three_motions_div_f32(sh
     return ship_turbine_three_motions_add_f32(ship_turbine_three_motions_add_f32(q1, q2), q3);
 }
 
-void ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, float b, float g,
+int ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, float b, float g,
     float turn, float pitch, ship_turbine_three_motions_constants_f32 *constants)
 {
     const ship_turbine_three_motions_pair_f32 s0 = ship_turbine_three_motions_add_f32((ship_turbine_three_motions_pair_f32){a, 0.0F}, (ship_turbine_three_motions_pair_f32){b, 0.0F});
@@ -94,8 +94,8 @@ void ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, 
     const ship_turbine_three_motions_pair_f32 s5 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){b, 0.0F}, s2);
     const ship_turbine_three_motions_pair_f32 s6 = ship_turbine_three_motions_mul_f32(s1, s5);
     const ship_turbine_three_motions_pair_f32 s7 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){m, 0.0F}, (ship_turbine_three_motions_pair_f32){kz, 0.0F});
-    const ship_turbine_three_motions_pair_f32 s8 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){kz, 0.0F}, (ship_turbine_three_motions_pair_f32){ws, 0.0F});
-    const ship_turbine_three_motions_pair_f32 s9 = ship_turbine_three_motions_mul_f32(s7, s8);
+    const ship_turbine_three_motions_pair_f32 s8 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){kz, 0.0F}, s7);
+    const ship_turbine_three_motions_pair_f32 s9 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){ws, 0.0F}, s8);
     const ship_turbine_three_motions_pair_f32 s10 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){turn, 0.0F}, s9);
     const ship_turbine_three_motions_pair_f32 s11 = ship_turbine_three_motions_sub_f32(s3, s10);
     const ship_turbine_three_motions_pair_f32 s12 = ship_turbine_three_motions_mul_f32(s1, s11);
@@ -108,6 +108,31 @@ void ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, 
     constants->s0016 = s12.high;
     constants->s0018 = s14.high;
     constants->s0020 = s16.high;
+    if (!(m - m >= 0.0F)
+        || !(kz - kz >= 0.0F)
+        || !(ws - ws >= 0.0F)
+        || !(a - a >= 0.0F)
+        || !(b - b >= 0.0F)
+        || !(g - g >= 0.0F)
+        || !(turn - turn >= 0.0F)
+        || !(pitch - pitch >= 0.0F)) {
+        return 1;
+    }
+    if (m <= 0.0F) {
+        return 2;
+    }
+    if (s8.high < 0.0F) {
+        return 4;
+    }
+    if (!(s8.high - s8.high >= 0.0F)
+        || !(s4.high - s4.high >= 0.0F)
+        || !(s6.high - s6.high >= 0.0F)
+        || !(s12.high - s12.high >= 0.0F)
+        || !(s14.high - s14.high >= 0.0F)
+        || !(s16.high - s16.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -4,14 +4,14 @@
  *
  * Use:
  *     ship_turbine_three_motions_constants_f32 constants;
- *     ship_turbine_three_motions_setup_f32(400.0F, 0.300000012F, 200.0F, 0.800000012F, 1.29999995F, 9.80000019F, 0.800000012F, 1.35000002F, &constants);
+ *     if (ship_turbine_three_motions_setup_f32(400.0F, 0.300000012F, 200.0F, 0.800000012F, 1.29999995F, 9.80000019F, 0.800000012F, 1.35000002F, &constants) != 0) { return 1; }
  *     float A_roll, B_roll;
  *     ship_turbine_three_motions_roll_case_f32(&constants, &A_roll, &B_roll);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 c5fb7fba6e5144e3.
+ * times the largest component of the output. Body of these files: sha256 a249e49f19357e50.
  */
 #ifndef SHIP_TURBINE_THREE_MOTIONS_F32_H
 #define SHIP_TURBINE_THREE_MOTIONS_F32_H
@@ -39,10 +39,12 @@ typedef struct {
  *            turn  rad/s  0.4 .. 1.2  rate of turning, about z, up
  *            pitch  rad/s  0.7 .. 2  rate of pitching, about y
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
+ *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 16 operations on pairs.
  */
-void ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, float b, float g,
+int ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, float b, float g,
     float turn, float pitch, ship_turbine_three_motions_constants_f32 *constants);
 
 /* Force of A_rolling and force of B_rolling.

@@ -83,7 +83,7 @@ static ship_turbine_three_motions_pair_f64 ship_turbine_three_motions_div_f64(sh
     return ship_turbine_three_motions_add_f64(ship_turbine_three_motions_add_f64(q1, q2), q3);
 }
 
-void ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double a, double b,
+int ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double a, double b,
     double g, double turn, double pitch, ship_turbine_three_motions_constants_f64 *constants)
 {
     const ship_turbine_three_motions_pair_f64 s0 = ship_turbine_three_motions_add_f64((ship_turbine_three_motions_pair_f64){a, 0.0}, (ship_turbine_three_motions_pair_f64){b, 0.0});
@@ -94,8 +94,8 @@ void ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double
     const ship_turbine_three_motions_pair_f64 s5 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){b, 0.0}, s2);
     const ship_turbine_three_motions_pair_f64 s6 = ship_turbine_three_motions_mul_f64(s1, s5);
     const ship_turbine_three_motions_pair_f64 s7 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){m, 0.0}, (ship_turbine_three_motions_pair_f64){kz, 0.0});
-    const ship_turbine_three_motions_pair_f64 s8 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){kz, 0.0}, (ship_turbine_three_motions_pair_f64){ws, 0.0});
-    const ship_turbine_three_motions_pair_f64 s9 = ship_turbine_three_motions_mul_f64(s7, s8);
+    const ship_turbine_three_motions_pair_f64 s8 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){kz, 0.0}, s7);
+    const ship_turbine_three_motions_pair_f64 s9 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){ws, 0.0}, s8);
     const ship_turbine_three_motions_pair_f64 s10 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){turn, 0.0}, s9);
     const ship_turbine_three_motions_pair_f64 s11 = ship_turbine_three_motions_sub_f64(s3, s10);
     const ship_turbine_three_motions_pair_f64 s12 = ship_turbine_three_motions_mul_f64(s1, s11);
@@ -108,6 +108,31 @@ void ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double
     constants->s0016 = s12.high;
     constants->s0018 = s14.high;
     constants->s0020 = s16.high;
+    if (!(m - m >= 0.0)
+        || !(kz - kz >= 0.0)
+        || !(ws - ws >= 0.0)
+        || !(a - a >= 0.0)
+        || !(b - b >= 0.0)
+        || !(g - g >= 0.0)
+        || !(turn - turn >= 0.0)
+        || !(pitch - pitch >= 0.0)) {
+        return 1;
+    }
+    if (m <= 0.0) {
+        return 2;
+    }
+    if (s8.high < 0.0) {
+        return 4;
+    }
+    if (!(s8.high - s8.high >= 0.0)
+        || !(s4.high - s4.high >= 0.0)
+        || !(s6.high - s6.high >= 0.0)
+        || !(s12.high - s12.high >= 0.0)
+        || !(s14.high - s14.high >= 0.0)
+        || !(s16.high - s16.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -4,14 +4,14 @@
  *
  * Use:
  *     ship_turbine_three_motions_constants_f64 constants;
- *     ship_turbine_three_motions_setup_f64(400.0, 0.3, 200.0, 0.8, 1.3, 9.8, 0.8, 1.35, &constants);
+ *     if (ship_turbine_three_motions_setup_f64(400.0, 0.3, 200.0, 0.8, 1.3, 9.8, 0.8, 1.35, &constants) != 0) { return 1; }
  *     double A_roll, B_roll;
  *     ship_turbine_three_motions_roll_case_f64(&constants, &A_roll, &B_roll);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 e5be1d3cdd1efb8b.
+ * times the largest component of the output. Body of these files: sha256 c73cc66b04fec6e7.
  */
 #ifndef SHIP_TURBINE_THREE_MOTIONS_F64_H
 #define SHIP_TURBINE_THREE_MOTIONS_F64_H
@@ -39,10 +39,12 @@ typedef struct {
  *            turn  rad/s  0.4 .. 1.2  rate of turning, about z, up
  *            pitch  rad/s  0.7 .. 2  rate of pitching, about y
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
+ *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 16 operations on pairs.
  */
-void ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double a, double b,
+int ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double a, double b,
     double g, double turn, double pitch, ship_turbine_three_motions_constants_f64 *constants);
 
 /* Force of A_rolling and force of B_rolling.

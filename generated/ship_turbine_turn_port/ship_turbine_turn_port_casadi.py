@@ -12,6 +12,7 @@ import casadi as ca
 
 PARAMETERS = ['m', 'k', 'p', 'v', 'R', 'a', 'b', 'g']
 CONSTANTS = ['s0010', 's0012', 'minus_s0012']
+SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 2: 'a mass is not positive', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
 def _built(build):
@@ -90,6 +91,10 @@ def _pi():
     return 3.141592653589793, 1.2246467991473532e-16
 
 
+def _unit_roundoff():
+    return 1.1102230246251565e-16, 0.0
+
+
 def _abs(a):
     return _select(a[0] < 0.0, _neg(a), a)
 
@@ -107,18 +112,38 @@ def _select(condition, yes, no):
 
 
 def setup():
-    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS."""
+    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS.
+
+    Where ``setup_status`` is not 0, all constants are NaN.
+    """
     return _built(_setup)
 
 
+def setup_status():
+    """Return the Function parameters -> status, whose words are in SETUP_STATUS: 0 is right."""
+    return _built(_setup_status)
+
+
 def _setup():
+    parameters, constants, status = _tried()
+    spoilt = ca.if_else(status > 0.0, float("nan"), 0.0)
+    outputs = [constants + spoilt]
+    return ca.Function("ship_turbine_turn_port_setup", [parameters], outputs, ["parameters"], ["constants"])
+
+
+def _setup_status():
+    parameters, _, status = _tried()
+    return ca.Function("ship_turbine_turn_port_setup_status", [parameters], [status], ["parameters"], ["status"])
+
+
+def _tried():
     parameters = ca.SX.sym("parameters", 8)
     s0 = _add((parameters[5], 0.0), (parameters[6], 0.0))
     s1 = _div((1.0, 0.0), s0)
-    s2 = _mul((parameters[0], 0.0), (parameters[1], 0.0))
-    s3 = _mul(s2, (parameters[1], 0.0))
-    s4 = _mul(s3, (parameters[2], 0.0))
-    s5 = _mul(s4, (parameters[3], 0.0))
+    s2 = _mul((parameters[2], 0.0), (parameters[3], 0.0))
+    s3 = _mul((parameters[0], 0.0), (parameters[1], 0.0))
+    s4 = _mul((parameters[1], 0.0), s3)
+    s5 = _mul(s2, s4)
     s6 = _div(s5, (parameters[4], 0.0))
     s7 = _mul((parameters[0], 0.0), (parameters[7], 0.0))
     s8 = _mul((parameters[6], 0.0), s7)
@@ -128,7 +153,23 @@ def _setup():
     s12 = _sub(s11, s6)
     s13 = _mul(s1, s12)
     constants = ca.vertcat(s10[0], s13[0], s6[0])
-    return ca.Function("ship_turbine_turn_port_setup", [parameters], [constants], ["parameters"], ["constants"])
+    status = ca.SX(0)
+    status = _refused(status, 5, _endless(s4[0]), _endless(s10[0]), _endless(s13[0]), _endless(s6[0]))
+    status = _refused(status, 4, s4[0] < 0.0)
+    status = _refused(status, 2, parameters[0] <= 0.0)
+    status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]), _endless(parameters[3]), _endless(parameters[4]), _endless(parameters[5]), _endless(parameters[6]), _endless(parameters[7]))
+    return parameters, constants, status
+
+
+def _refused(status, number, *broken):
+    """Return ``number`` where one of these is true, else ``status``."""
+    for condition in broken:
+        status = ca.if_else(condition, number, status)
+    return status
+
+
+def _endless(x):
+    return ca.logic_not(ca.fabs(x) <= 1.7976931348623157e+308)
 
 
 def _from_parameters(hot, name):

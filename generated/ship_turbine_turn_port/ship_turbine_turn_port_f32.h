@@ -4,14 +4,14 @@
  *
  * Use:
  *     ship_turbine_turn_port_constants_f32 constants;
- *     ship_turbine_turn_port_setup_f32(1000.0F, 0.200000003F, 500.0F, 12.0F, 400.0F, 0.600000024F, 0.899999976F, 9.80000019F, &constants);
+ *     if (ship_turbine_turn_port_setup_f32(1000.0F, 0.200000003F, 500.0F, 12.0F, 400.0F, 0.600000024F, 0.899999976F, 9.80000019F, &constants) != 0) { return 1; }
  *     float R_A, R_B;
  *     ship_turbine_turn_port_reactions_f32(&constants, &R_A, &R_B);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 0543968bfd7affb7.
+ * times the largest component of the output. Body of these files: sha256 3c7731ad97192ca1.
  */
 #ifndef SHIP_TURBINE_TURN_PORT_F32_H
 #define SHIP_TURBINE_TURN_PORT_F32_H
@@ -37,10 +37,12 @@ typedef struct {
  *            b  m  0.8 .. 1  to the aft bearing B
  *            g  m/s^2  9.7 .. 9.9  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
+ *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 14 operations on pairs.
  */
-void ship_turbine_turn_port_setup_f32(float m, float k, float p, float v, float R, float a, float b,
+int ship_turbine_turn_port_setup_f32(float m, float k, float p, float v, float R, float a, float b,
     float g, ship_turbine_turn_port_constants_f32 *constants);
 
 /* Force of A and force of B.

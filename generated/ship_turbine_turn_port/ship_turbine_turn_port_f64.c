@@ -83,15 +83,15 @@ static ship_turbine_turn_port_pair_f64 ship_turbine_turn_port_div_f64(ship_turbi
     return ship_turbine_turn_port_add_f64(ship_turbine_turn_port_add_f64(q1, q2), q3);
 }
 
-void ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, double R, double a,
+int ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, double R, double a,
     double b, double g, ship_turbine_turn_port_constants_f64 *constants)
 {
     const ship_turbine_turn_port_pair_f64 s0 = ship_turbine_turn_port_add_f64((ship_turbine_turn_port_pair_f64){a, 0.0}, (ship_turbine_turn_port_pair_f64){b, 0.0});
     const ship_turbine_turn_port_pair_f64 s1 = ship_turbine_turn_port_div_f64((ship_turbine_turn_port_pair_f64){1.0, 0.0}, s0);
-    const ship_turbine_turn_port_pair_f64 s2 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){m, 0.0}, (ship_turbine_turn_port_pair_f64){k, 0.0});
-    const ship_turbine_turn_port_pair_f64 s3 = ship_turbine_turn_port_mul_f64(s2, (ship_turbine_turn_port_pair_f64){k, 0.0});
-    const ship_turbine_turn_port_pair_f64 s4 = ship_turbine_turn_port_mul_f64(s3, (ship_turbine_turn_port_pair_f64){p, 0.0});
-    const ship_turbine_turn_port_pair_f64 s5 = ship_turbine_turn_port_mul_f64(s4, (ship_turbine_turn_port_pair_f64){v, 0.0});
+    const ship_turbine_turn_port_pair_f64 s2 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){p, 0.0}, (ship_turbine_turn_port_pair_f64){v, 0.0});
+    const ship_turbine_turn_port_pair_f64 s3 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){m, 0.0}, (ship_turbine_turn_port_pair_f64){k, 0.0});
+    const ship_turbine_turn_port_pair_f64 s4 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){k, 0.0}, s3);
+    const ship_turbine_turn_port_pair_f64 s5 = ship_turbine_turn_port_mul_f64(s2, s4);
     const ship_turbine_turn_port_pair_f64 s6 = ship_turbine_turn_port_div_f64(s5, (ship_turbine_turn_port_pair_f64){R, 0.0});
     const ship_turbine_turn_port_pair_f64 s7 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){m, 0.0}, (ship_turbine_turn_port_pair_f64){g, 0.0});
     const ship_turbine_turn_port_pair_f64 s8 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){b, 0.0}, s7);
@@ -103,6 +103,29 @@ void ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, do
     constants->s0010 = s10.high;
     constants->s0012 = s13.high;
     constants->minus_s0012 = s6.high;
+    if (!(m - m >= 0.0)
+        || !(k - k >= 0.0)
+        || !(p - p >= 0.0)
+        || !(v - v >= 0.0)
+        || !(R - R >= 0.0)
+        || !(a - a >= 0.0)
+        || !(b - b >= 0.0)
+        || !(g - g >= 0.0)) {
+        return 1;
+    }
+    if (m <= 0.0) {
+        return 2;
+    }
+    if (s4.high < 0.0) {
+        return 4;
+    }
+    if (!(s4.high - s4.high >= 0.0)
+        || !(s10.high - s10.high >= 0.0)
+        || !(s13.high - s13.high >= 0.0)
+        || !(s6.high - s6.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

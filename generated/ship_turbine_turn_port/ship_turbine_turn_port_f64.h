@@ -4,14 +4,14 @@
  *
  * Use:
  *     ship_turbine_turn_port_constants_f64 constants;
- *     ship_turbine_turn_port_setup_f64(1000.0, 0.2, 500.0, 12.0, 400.0, 0.6, 0.9, 9.8, &constants);
+ *     if (ship_turbine_turn_port_setup_f64(1000.0, 0.2, 500.0, 12.0, 400.0, 0.6, 0.9, 9.8, &constants) != 0) { return 1; }
  *     double R_A, R_B;
  *     ship_turbine_turn_port_reactions_f64(&constants, &R_A, &R_B);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 d89271db709824d4.
+ * times the largest component of the output. Body of these files: sha256 5de08a0f639c0c17.
  */
 #ifndef SHIP_TURBINE_TURN_PORT_F64_H
 #define SHIP_TURBINE_TURN_PORT_F64_H
@@ -37,10 +37,12 @@ typedef struct {
  *            b  m  0.8 .. 1  to the aft bearing B
  *            g  m/s^2  9.7 .. 9.9  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
+ *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 14 operations on pairs.
  */
-void ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, double R, double a,
+int ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, double R, double a,
     double b, double g, ship_turbine_turn_port_constants_f64 *constants);
 
 /* Force of A and force of B.

@@ -133,7 +133,7 @@ static skewed_disc_pair_f32 skewed_disc_cos_f32(skewed_disc_pair_f32 a)
     return skewed_disc_sine_f32(a, 1.0F);
 }
 
-void skewed_disc_setup_f32(float m, float r, float skew, float b,
+int skewed_disc_setup_f32(float m, float r, float skew, float b,
     skewed_disc_constants_f32 *constants)
 {
     const skewed_disc_pair_f32 s0 = skewed_disc_sin_f32((skewed_disc_pair_f32){skew, 0.0F});
@@ -147,6 +147,23 @@ void skewed_disc_setup_f32(float m, float r, float skew, float b,
     const skewed_disc_pair_f32 s8 = skewed_disc_div_f32(s7, (skewed_disc_pair_f32){b, 0.0F});
     constants->k1 = s6.high;
     constants->k2 = s8.high;
+    if (!(m - m >= 0.0F)
+        || !(r - r >= 0.0F)
+        || !(skew - skew >= 0.0F)
+        || !(b - b >= 0.0F)) {
+        return 1;
+    }
+    if (m <= 0.0F) {
+        return 2;
+    }
+    if (r <= 0.0F) {
+        return 3;
+    }
+    if (!(s6.high - s6.high >= 0.0F)
+        || !(s8.high - s8.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -4,14 +4,14 @@
  *
  * Use:
  *     skewed_disc_constants_f32 constants;
- *     skewed_disc_setup_f32(10.0F, 0.200000003F, 0.0549999997F, 0.25F, &constants);
+ *     if (skewed_disc_setup_f32(10.0F, 0.200000003F, 0.0549999997F, 0.25F, &constants) != 0) { return 1; }
  *     float M_x, M_y, M_z;
  *     skewed_disc_M_f32(&constants, 300.0F, &M_x, &M_y, &M_z);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 cf95e8d1382228bd.
+ * times the largest component of the output. Body of these files: sha256 9570fea982a0e608.
  */
 #ifndef SKEWED_DISC_F32_H
 #define SKEWED_DISC_F32_H
@@ -32,10 +32,12 @@ typedef struct {
  *            skew  rad  0.01 .. 0.1  between its normal and the shaft
  *            b  m  0.2 .. 0.3  from the disc to each bearing
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 7 operations on pairs.
  */
-void skewed_disc_setup_f32(float m, float r, float skew, float b,
+int skewed_disc_setup_f32(float m, float r, float skew, float b,
     skewed_disc_constants_f32 *constants);
 
 /* B*(B_y - A_y), b*(A_x - B_x) and couple of A.

@@ -145,7 +145,7 @@ static skewed_disc_pair_f64 skewed_disc_cos_f64(skewed_disc_pair_f64 a)
     return skewed_disc_sine_f64(a, 1.0);
 }
 
-void skewed_disc_setup_f64(double m, double r, double skew, double b,
+int skewed_disc_setup_f64(double m, double r, double skew, double b,
     skewed_disc_constants_f64 *constants)
 {
     const skewed_disc_pair_f64 s0 = skewed_disc_sin_f64((skewed_disc_pair_f64){skew, 0.0});
@@ -159,6 +159,23 @@ void skewed_disc_setup_f64(double m, double r, double skew, double b,
     const skewed_disc_pair_f64 s8 = skewed_disc_div_f64(s7, (skewed_disc_pair_f64){b, 0.0});
     constants->k1 = s6.high;
     constants->k2 = s8.high;
+    if (!(m - m >= 0.0)
+        || !(r - r >= 0.0)
+        || !(skew - skew >= 0.0)
+        || !(b - b >= 0.0)) {
+        return 1;
+    }
+    if (m <= 0.0) {
+        return 2;
+    }
+    if (r <= 0.0) {
+        return 3;
+    }
+    if (!(s6.high - s6.high >= 0.0)
+        || !(s8.high - s8.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

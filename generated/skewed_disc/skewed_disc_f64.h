@@ -4,14 +4,14 @@
  *
  * Use:
  *     skewed_disc_constants_f64 constants;
- *     skewed_disc_setup_f64(10.0, 0.2, 0.055, 0.25, &constants);
+ *     if (skewed_disc_setup_f64(10.0, 0.2, 0.055, 0.25, &constants) != 0) { return 1; }
  *     double M_x, M_y, M_z;
  *     skewed_disc_M_f64(&constants, 300.0, &M_x, &M_y, &M_z);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 2b47dcde1ee5c3ce.
+ * times the largest component of the output. Body of these files: sha256 52cebf6c2168da5c.
  */
 #ifndef SKEWED_DISC_F64_H
 #define SKEWED_DISC_F64_H
@@ -32,10 +32,12 @@ typedef struct {
  *            skew  rad  0.01 .. 0.1  between its normal and the shaft
  *            b  m  0.2 .. 0.3  from the disc to each bearing
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 7 operations on pairs.
  */
-void skewed_disc_setup_f64(double m, double r, double skew, double b,
+int skewed_disc_setup_f64(double m, double r, double skew, double b,
     skewed_disc_constants_f64 *constants);
 
 /* B*(B_y - A_y), b*(A_x - B_x) and couple of A.

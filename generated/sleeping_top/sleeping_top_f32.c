@@ -80,7 +80,7 @@ static sleeping_top_pair_f32 sleeping_top_div_f32(sleeping_top_pair_f32 a, sleep
     return sleeping_top_add_f32(sleeping_top_add_f32(q1, q2), q3);
 }
 
-void sleeping_top_setup_f32(float m, float r, float l, float n, float g,
+int sleeping_top_setup_f32(float m, float r, float l, float n, float g,
     sleeping_top_constants_f32 *constants)
 {
     const sleeping_top_pair_f32 s0 = sleeping_top_mul_f32((sleeping_top_pair_f32){l, 0.0F}, (sleeping_top_pair_f32){l, 0.0F});
@@ -121,6 +121,35 @@ void sleeping_top_setup_f32(float m, float r, float l, float n, float g,
     constants->m_l_g = s14.high;
     constants->k7 = s21.high;
     constants->k8 = s24.high;
+    if (!(m - m >= 0.0F)
+        || !(r - r >= 0.0F)
+        || !(l - l >= 0.0F)
+        || !(n - n >= 0.0F)
+        || !(g - g >= 0.0F)) {
+        return 1;
+    }
+    if (m <= 0.0F) {
+        return 2;
+    }
+    if (r <= 0.0F) {
+        return 3;
+    }
+    if (!(s9.high - s9.high >= 0.0F)
+        || !(s12.high - s12.high >= 0.0F)
+        || !(s11.high - s11.high >= 0.0F)
+        || !(s15.high - s15.high >= 0.0F)
+        || !(s13.high - s13.high >= 0.0F)
+        || !(s16.high - s16.high >= 0.0F)
+        || !(s17.high - s17.high >= 0.0F)
+        || !(s3.high - s3.high >= 0.0F)
+        || !(s18.high - s18.high >= 0.0F)
+        || !(s19.high - s19.high >= 0.0F)
+        || !(s14.high - s14.high >= 0.0F)
+        || !(s21.high - s21.high >= 0.0F)
+        || !(s24.high - s24.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -80,7 +80,7 @@ static sleeping_top_pair_f64 sleeping_top_div_f64(sleeping_top_pair_f64 a, sleep
     return sleeping_top_add_f64(sleeping_top_add_f64(q1, q2), q3);
 }
 
-void sleeping_top_setup_f64(double m, double r, double l, double n, double g,
+int sleeping_top_setup_f64(double m, double r, double l, double n, double g,
     sleeping_top_constants_f64 *constants)
 {
     const sleeping_top_pair_f64 s0 = sleeping_top_mul_f64((sleeping_top_pair_f64){l, 0.0}, (sleeping_top_pair_f64){l, 0.0});
@@ -121,6 +121,35 @@ void sleeping_top_setup_f64(double m, double r, double l, double n, double g,
     constants->m_l_g = s14.high;
     constants->k7 = s21.high;
     constants->k8 = s24.high;
+    if (!(m - m >= 0.0)
+        || !(r - r >= 0.0)
+        || !(l - l >= 0.0)
+        || !(n - n >= 0.0)
+        || !(g - g >= 0.0)) {
+        return 1;
+    }
+    if (m <= 0.0) {
+        return 2;
+    }
+    if (r <= 0.0) {
+        return 3;
+    }
+    if (!(s9.high - s9.high >= 0.0)
+        || !(s12.high - s12.high >= 0.0)
+        || !(s11.high - s11.high >= 0.0)
+        || !(s15.high - s15.high >= 0.0)
+        || !(s13.high - s13.high >= 0.0)
+        || !(s16.high - s16.high >= 0.0)
+        || !(s17.high - s17.high >= 0.0)
+        || !(s3.high - s3.high >= 0.0)
+        || !(s18.high - s18.high >= 0.0)
+        || !(s19.high - s19.high >= 0.0)
+        || !(s14.high - s14.high >= 0.0)
+        || !(s21.high - s21.high >= 0.0)
+        || !(s24.high - s24.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

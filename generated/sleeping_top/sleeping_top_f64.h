@@ -4,14 +4,14 @@
  *
  * Use:
  *     sleeping_top_constants_f64 constants;
- *     sleeping_top_setup_f64(0.5, 0.05, 0.06, 110.0, 9.8, &constants);
+ *     if (sleeping_top_setup_f64(0.5, 0.05, 0.06, 110.0, 9.8, &constants) != 0) { return 1; }
  *     double mass_matrix[4], damping_matrix[4], stiffness_matrix[4];
  *     sleeping_top_linearised_f64(&constants, mass_matrix, damping_matrix, stiffness_matrix);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 e40311b68a39a0cd.
+ * times the largest component of the output. Body of these files: sha256 a1efd0beb2724c74.
  */
 #ifndef SLEEPING_TOP_F64_H
 #define SLEEPING_TOP_F64_H
@@ -44,10 +44,12 @@ typedef struct {
  *            n  rad/s  20 .. 200  spin, all of omega along the axis
  *            g  m/s^2  9.7 .. 9.9  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
+ *            body is not positive; 5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 23 operations on pairs.
  */
-void sleeping_top_setup_f64(double m, double r, double l, double n, double g,
+int sleeping_top_setup_f64(double m, double r, double l, double n, double g,
     sleeping_top_constants_f64 *constants);
 
 /* Forces by acceleration, column by column, for alpha, beta, forces by velocity, gyroscopic terms included, column by column, for alpha, beta and forces by displacement, column by column, for alpha, beta.

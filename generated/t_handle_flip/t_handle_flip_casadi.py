@@ -12,6 +12,7 @@ import casadi as ca
 
 PARAMETERS = ['I_xx', 'I_yy', 'I_zz']
 CONSTANTS = ['half_I_xx', 'half_I_yy', 'half_I_zz', 'I_xx', 'I_yy', 'I_zz', 'axis_1_x', 'axis_1_y', 'axis_1_z', 'axis_2_x', 'axis_2_y', 'axis_2_z', 'axis_3_x', 'axis_3_y', 'axis_3_z', 'moment_1', 'inverse_moment_1', 'part_1', 'root_1', 'inverse_root_1', 'speed_1', 'moment_3', 'inverse_moment_3', 'part_3', 'root_3', 'inverse_root_3', 'speed_3']
+SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
 def _built(build):
@@ -90,6 +91,10 @@ def _pi():
     return 3.141592653589793, 1.2246467991473532e-16
 
 
+def _unit_roundoff():
+    return 1.1102230246251565e-16, 0.0
+
+
 def _abs(a):
     return _select(a[0] < 0.0, _neg(a), a)
 
@@ -107,11 +112,31 @@ def _select(condition, yes, no):
 
 
 def setup():
-    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS."""
+    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS.
+
+    Where ``setup_status`` is not 0, all constants are NaN.
+    """
     return _built(_setup)
 
 
+def setup_status():
+    """Return the Function parameters -> status, whose words are in SETUP_STATUS: 0 is right."""
+    return _built(_setup_status)
+
+
 def _setup():
+    parameters, constants, status = _tried()
+    spoilt = ca.if_else(status > 0.0, float("nan"), 0.0)
+    outputs = [constants + spoilt]
+    return ca.Function("t_handle_flip_setup", [parameters], outputs, ["parameters"], ["constants"])
+
+
+def _setup_status():
+    parameters, _, status = _tried()
+    return ca.Function("t_handle_flip_setup_status", [parameters], [status], ["parameters"], ["status"])
+
+
+def _tried():
     parameters = ca.SX.sym("parameters", 3)
     s0 = _mul((parameters[0], 0.0), (0.5, 0.0))
     s1 = _mul((parameters[1], 0.0), (0.5, 0.0))
@@ -180,7 +205,22 @@ def _setup():
     p61 = _select(p58, p60, (0.0, 0.0))
     p62 = _mul(p57, p46)
     constants = ca.vertcat(s0[0], s1[0], s2[0], parameters[0], parameters[1], parameters[2], p26[0], p27[0], p28[0], p29[0], p31[0], p32[0], p19[0], p21[0], p22[0], p47[0], p48[0], p40[0], p49[0], p53[0], p54[0], p55[0], p56[0], p44[0], p57[0], p61[0], p62[0])
-    return ca.Function("t_handle_flip_setup", [parameters], [constants], ["parameters"], ["constants"])
+    status = ca.SX(0)
+    status = _refused(status, 5, _endless(s0[0]), _endless(s1[0]), _endless(s2[0]), _endless(p26[0]), _endless(p27[0]), _endless(p28[0]), _endless(p29[0]), _endless(p31[0]), _endless(p32[0]), _endless(p19[0]), _endless(p21[0]), _endless(p22[0]), _endless(p47[0]), _endless(p48[0]), _endless(p40[0]), _endless(p49[0]), _endless(p53[0]), _endless(p54[0]), _endless(p55[0]), _endless(p56[0]), _endless(p44[0]), _endless(p57[0]), _endless(p61[0]), _endless(p62[0]))
+    status = _refused(status, 4, parameters[0] <= 0.0, parameters[1] <= 0.0, parameters[2] <= 0.0)
+    status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]))
+    return parameters, constants, status
+
+
+def _refused(status, number, *broken):
+    """Return ``number`` where one of these is true, else ``status``."""
+    for condition in broken:
+        status = ca.if_else(condition, number, status)
+    return status
+
+
+def _endless(x):
+    return ca.logic_not(ca.fabs(x) <= 1.7976931348623157e+308)
 
 
 def _from_parameters(hot, name):

@@ -4,7 +4,7 @@
  *
  * Use:
  *     t_handle_flip_constants_f32 constants;
- *     t_handle_flip_setup_f32(0.300000012F, 0.349999994F, 0.400000006F, &constants);
+ *     if (t_handle_flip_setup_f32(0.300000012F, 0.349999994F, 0.400000006F, &constants) != 0) { return 1; }
  *     float omega[3] = {1.0F, 0.0F, 0.0F};
  *     float kinetic_energy;
  *     t_handle_flip_kinetic_energy_f32(&constants, omega, &kinetic_energy);
@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 87b23025e9636ebe.
+ * times the largest component of the output. Body of these files: sha256 6055224dd9152ef2.
  */
 #ifndef T_HANDLE_FLIP_F32_H
 #define T_HANDLE_FLIP_F32_H
@@ -57,10 +57,12 @@ typedef struct {
  *            I_yy  kg m^2  0.34 .. 0.36  middle principal moment
  *            I_zz  kg m^2  0.38 .. 0.42  largest principal moment
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
+ *            5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 26 operations on pairs.
  */
-void t_handle_flip_setup_f32(float I_xx, float I_yy, float I_zz,
+int t_handle_flip_setup_f32(float I_xx, float I_yy, float I_zz,
     t_handle_flip_constants_f32 *constants);
 
 /* Kinetic energy.

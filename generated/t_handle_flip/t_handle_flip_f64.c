@@ -106,7 +106,7 @@ static int t_handle_flip_less_f64(const t_handle_flip_pair_f64 a, const t_handle
     return a.high < b.high || (a.high <= b.high && a.low < b.low);
 }
 
-void t_handle_flip_setup_f64(double I_xx, double I_yy, double I_zz,
+int t_handle_flip_setup_f64(double I_xx, double I_yy, double I_zz,
     t_handle_flip_constants_f64 *constants)
 {
     const t_handle_flip_pair_f64 s0 = t_handle_flip_mul_f64((t_handle_flip_pair_f64){I_xx, 0.0}, (t_handle_flip_pair_f64){0.5, 0.0});
@@ -202,6 +202,43 @@ void t_handle_flip_setup_f64(double I_xx, double I_yy, double I_zz,
     constants->root_3 = p57.high;
     constants->inverse_root_3 = p61.high;
     constants->speed_3 = p62.high;
+    if (!(I_xx - I_xx >= 0.0)
+        || !(I_yy - I_yy >= 0.0)
+        || !(I_zz - I_zz >= 0.0)) {
+        return 1;
+    }
+    if (I_xx <= 0.0
+        || I_yy <= 0.0
+        || I_zz <= 0.0) {
+        return 4;
+    }
+    if (!(s0.high - s0.high >= 0.0)
+        || !(s1.high - s1.high >= 0.0)
+        || !(s2.high - s2.high >= 0.0)
+        || !(p26.high - p26.high >= 0.0)
+        || !(p27.high - p27.high >= 0.0)
+        || !(p28.high - p28.high >= 0.0)
+        || !(p29.high - p29.high >= 0.0)
+        || !(p31.high - p31.high >= 0.0)
+        || !(p32.high - p32.high >= 0.0)
+        || !(p19.high - p19.high >= 0.0)
+        || !(p21.high - p21.high >= 0.0)
+        || !(p22.high - p22.high >= 0.0)
+        || !(p47.high - p47.high >= 0.0)
+        || !(p48.high - p48.high >= 0.0)
+        || !(p40.high - p40.high >= 0.0)
+        || !(p49.high - p49.high >= 0.0)
+        || !(p53.high - p53.high >= 0.0)
+        || !(p54.high - p54.high >= 0.0)
+        || !(p55.high - p55.high >= 0.0)
+        || !(p56.high - p56.high >= 0.0)
+        || !(p44.high - p44.high >= 0.0)
+        || !(p57.high - p57.high >= 0.0)
+        || !(p61.high - p61.high >= 0.0)
+        || !(p62.high - p62.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

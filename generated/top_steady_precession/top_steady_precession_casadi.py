@@ -12,6 +12,7 @@ import casadi as ca
 
 PARAMETERS = ['r', 'l', 'theta', 'n', 'g']
 CONSTANTS = ['k1', 'k2', 'k3']
+SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 3: 'a length of a body is not positive', 5: 'a constant is not finite'}
 
 
 def _built(build):
@@ -88,6 +89,10 @@ def _power_of_two(a):
 
 def _pi():
     return 3.141592653589793, 1.2246467991473532e-16
+
+
+def _unit_roundoff():
+    return 1.1102230246251565e-16, 0.0
 
 
 def _abs(a):
@@ -169,11 +174,31 @@ def _cos(a):
 
 
 def setup():
-    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS."""
+    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS.
+
+    Where ``setup_status`` is not 0, all constants are NaN.
+    """
     return _built(_setup)
 
 
+def setup_status():
+    """Return the Function parameters -> status, whose words are in SETUP_STATUS: 0 is right."""
+    return _built(_setup_status)
+
+
 def _setup():
+    parameters, constants, status = _tried()
+    spoilt = ca.if_else(status > 0.0, float("nan"), 0.0)
+    outputs = [constants + spoilt]
+    return ca.Function("top_steady_precession_setup", [parameters], outputs, ["parameters"], ["constants"])
+
+
+def _setup_status():
+    parameters, _, status = _tried()
+    return ca.Function("top_steady_precession_setup_status", [parameters], [status], ["parameters"], ["status"])
+
+
+def _tried():
     parameters = ca.SX.sym("parameters", 5)
     s0 = _sin((parameters[2], 0.0))
     s1 = _mul((parameters[3], 0.0), s0)
@@ -189,7 +214,22 @@ def _setup():
     s11 = _mul(s0, (parameters[1], 0.0))
     s12 = _mul(s11, (parameters[4], 0.0))
     constants = ca.vertcat(s4[0], s10[0], s12[0])
-    return ca.Function("top_steady_precession_setup", [parameters], [constants], ["parameters"], ["constants"])
+    status = ca.SX(0)
+    status = _refused(status, 5, _endless(s4[0]), _endless(s10[0]), _endless(s12[0]))
+    status = _refused(status, 3, parameters[0] <= 0.0)
+    status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]), _endless(parameters[3]), _endless(parameters[4]))
+    return parameters, constants, status
+
+
+def _refused(status, number, *broken):
+    """Return ``number`` where one of these is true, else ``status``."""
+    for condition in broken:
+        status = ca.if_else(condition, number, status)
+    return status
+
+
+def _endless(x):
+    return ca.logic_not(ca.fabs(x) <= 1.7976931348623157e+308)
 
 
 def _from_parameters(hot, name):

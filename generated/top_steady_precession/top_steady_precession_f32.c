@@ -122,7 +122,7 @@ static top_steady_precession_pair_f32 top_steady_precession_cos_f32(top_steady_p
     return top_steady_precession_sine_f32(a, 1.0F);
 }
 
-void top_steady_precession_setup_f32(float r, float l, float theta, float n, float g,
+int top_steady_precession_setup_f32(float r, float l, float theta, float n, float g,
     top_steady_precession_constants_f32 *constants)
 {
     const top_steady_precession_pair_f32 s0 = top_steady_precession_sin_f32((top_steady_precession_pair_f32){theta, 0.0F});
@@ -141,6 +141,22 @@ void top_steady_precession_setup_f32(float r, float l, float theta, float n, flo
     constants->k1 = s4.high;
     constants->k2 = s10.high;
     constants->k3 = s12.high;
+    if (!(r - r >= 0.0F)
+        || !(l - l >= 0.0F)
+        || !(theta - theta >= 0.0F)
+        || !(n - n >= 0.0F)
+        || !(g - g >= 0.0F)) {
+        return 1;
+    }
+    if (r <= 0.0F) {
+        return 3;
+    }
+    if (!(s4.high - s4.high >= 0.0F)
+        || !(s10.high - s10.high >= 0.0F)
+        || !(s12.high - s12.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

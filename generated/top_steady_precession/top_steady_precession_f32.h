@@ -4,14 +4,14 @@
  *
  * Use:
  *     top_steady_precession_constants_f32 constants;
- *     top_steady_precession_setup_f32(0.0500000007F, 0.0599999987F, 0.649999976F, 250.0F, 9.80000019F, &constants);
+ *     if (top_steady_precession_setup_f32(0.0500000007F, 0.0599999987F, 0.649999976F, 250.0F, 9.80000019F, &constants) != 0) { return 1; }
  *     float steady;
  *     top_steady_precession_steady_f32(&constants, 100.050003F, &steady);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 9c3cf51699185cf1.
+ * times the largest component of the output. Body of these files: sha256 2ced6768cc952340.
  */
 #ifndef TOP_STEADY_PRECESSION_F32_H
 #define TOP_STEADY_PRECESSION_F32_H
@@ -34,10 +34,12 @@ typedef struct {
  *            n  rad/s  200 .. 300  spin, all of omega along the axis
  *            g  m/s^2  9.7 .. 9.9  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 3 a length of a body is not positive; 5 a
+ *            constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 11 operations on pairs.
  */
-void top_steady_precession_setup_f32(float r, float l, float theta, float n, float g,
+int top_steady_precession_setup_f32(float r, float l, float theta, float n, float g,
     top_steady_precession_constants_f32 *constants);
 
 /* What vanishes in a steady motion.

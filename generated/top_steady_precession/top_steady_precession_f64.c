@@ -134,7 +134,7 @@ static top_steady_precession_pair_f64 top_steady_precession_cos_f64(top_steady_p
     return top_steady_precession_sine_f64(a, 1.0);
 }
 
-void top_steady_precession_setup_f64(double r, double l, double theta, double n, double g,
+int top_steady_precession_setup_f64(double r, double l, double theta, double n, double g,
     top_steady_precession_constants_f64 *constants)
 {
     const top_steady_precession_pair_f64 s0 = top_steady_precession_sin_f64((top_steady_precession_pair_f64){theta, 0.0});
@@ -153,6 +153,22 @@ void top_steady_precession_setup_f64(double r, double l, double theta, double n,
     constants->k1 = s4.high;
     constants->k2 = s10.high;
     constants->k3 = s12.high;
+    if (!(r - r >= 0.0)
+        || !(l - l >= 0.0)
+        || !(theta - theta >= 0.0)
+        || !(n - n >= 0.0)
+        || !(g - g >= 0.0)) {
+        return 1;
+    }
+    if (r <= 0.0) {
+        return 3;
+    }
+    if (!(s4.high - s4.high >= 0.0)
+        || !(s10.high - s10.high >= 0.0)
+        || !(s12.high - s12.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

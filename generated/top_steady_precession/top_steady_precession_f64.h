@@ -4,14 +4,14 @@
  *
  * Use:
  *     top_steady_precession_constants_f64 constants;
- *     top_steady_precession_setup_f64(0.05, 0.06, 0.65, 250.0, 9.8, &constants);
+ *     if (top_steady_precession_setup_f64(0.05, 0.06, 0.65, 250.0, 9.8, &constants) != 0) { return 1; }
  *     double steady;
  *     top_steady_precession_steady_f64(&constants, 100.05, &steady);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 5dca32b1530aa1b0.
+ * times the largest component of the output. Body of these files: sha256 f538cb6c04d69a66.
  */
 #ifndef TOP_STEADY_PRECESSION_F64_H
 #define TOP_STEADY_PRECESSION_F64_H
@@ -34,10 +34,12 @@ typedef struct {
  *            n  rad/s  200 .. 300  spin, all of omega along the axis
  *            g  m/s^2  9.7 .. 9.9  gravity
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 3 a length of a body is not positive; 5 a
+ *            constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 11 operations on pairs.
  */
-void top_steady_precession_setup_f64(double r, double l, double theta, double n, double g,
+int top_steady_precession_setup_f64(double r, double l, double theta, double n, double g,
     top_steady_precession_constants_f64 *constants);
 
 /* What vanishes in a steady motion.

@@ -85,7 +85,7 @@ static torque_free_axisymmetric_pair_f32 torque_free_axisymmetric_div_f32(torque
     return torque_free_axisymmetric_add_f32(torque_free_axisymmetric_add_f32(q1, q2), q3);
 }
 
-void torque_free_axisymmetric_setup_f32(float A, float C,
+int torque_free_axisymmetric_setup_f32(float A, float C,
     torque_free_axisymmetric_constants_f32 *constants)
 {
     const torque_free_axisymmetric_pair_f32 s0 = torque_free_axisymmetric_sub_f32((torque_free_axisymmetric_pair_f32){A, 0.0F}, (torque_free_axisymmetric_pair_f32){C, 0.0F});
@@ -93,6 +93,18 @@ void torque_free_axisymmetric_setup_f32(float A, float C,
     constants->C = C;
     constants->A = A;
     constants->k1 = s1.high;
+    if (!(A - A >= 0.0F)
+        || !(C - C >= 0.0F)) {
+        return 1;
+    }
+    if (A < 0.0F
+        || C < 0.0F) {
+        return 4;
+    }
+    if (!(s1.high - s1.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

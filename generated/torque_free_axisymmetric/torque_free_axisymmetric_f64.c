@@ -85,7 +85,7 @@ static torque_free_axisymmetric_pair_f64 torque_free_axisymmetric_div_f64(torque
     return torque_free_axisymmetric_add_f64(torque_free_axisymmetric_add_f64(q1, q2), q3);
 }
 
-void torque_free_axisymmetric_setup_f64(double A, double C,
+int torque_free_axisymmetric_setup_f64(double A, double C,
     torque_free_axisymmetric_constants_f64 *constants)
 {
     const torque_free_axisymmetric_pair_f64 s0 = torque_free_axisymmetric_sub_f64((torque_free_axisymmetric_pair_f64){A, 0.0}, (torque_free_axisymmetric_pair_f64){C, 0.0});
@@ -93,6 +93,18 @@ void torque_free_axisymmetric_setup_f64(double A, double C,
     constants->C = C;
     constants->A = A;
     constants->k1 = s1.high;
+    if (!(A - A >= 0.0)
+        || !(C - C >= 0.0)) {
+        return 1;
+    }
+    if (A < 0.0
+        || C < 0.0) {
+        return 4;
+    }
+    if (!(s1.high - s1.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

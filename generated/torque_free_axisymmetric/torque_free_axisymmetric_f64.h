@@ -4,14 +4,14 @@
  *
  * Use:
  *     torque_free_axisymmetric_constants_f64 constants;
- *     torque_free_axisymmetric_setup_f64(0.875, 1.3, &constants);
+ *     if (torque_free_axisymmetric_setup_f64(0.875, 1.3, &constants) != 0) { return 1; }
  *     double precession;
  *     torque_free_axisymmetric_precession_f64(&constants, 0.05, 1.5, 6.0, &precession);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 9c06f8ea8bdfe024.
+ * times the largest component of the output. Body of these files: sha256 9ca751f070696995.
  */
 #ifndef TORQUE_FREE_AXISYMMETRIC_F64_H
 #define TORQUE_FREE_AXISYMMETRIC_F64_H
@@ -31,10 +31,12 @@ typedef struct {
  * Given:     A  kg m^2  0.75 .. 1  transverse moment of inertia
  *            C  kg m^2  1.1 .. 1.5  axial moment of inertia
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
+ *            5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 2 operations on pairs.
  */
-void torque_free_axisymmetric_setup_f64(double A, double C,
+int torque_free_axisymmetric_setup_f64(double A, double C,
     torque_free_axisymmetric_constants_f64 *constants);
 
 /* Rate of the axis about L.

@@ -12,6 +12,7 @@ import casadi as ca
 
 PARAMETERS = ['I_xx', 'I_yy', 'I_zz']
 CONSTANTS = ['half_I_xx', 'half_I_yy', 'half_I_zz', 'k1', 'k2', 'k3', 'axis_1_x', 'axis_1_y', 'axis_1_z', 'axis_2_x', 'axis_2_y', 'axis_2_z', 'axis_3_x', 'axis_3_y', 'axis_3_z', 'moment_1', 'inverse_moment_1', 'part_1', 'root_1', 'inverse_root_1', 'speed_1', 'moment_3', 'inverse_moment_3', 'part_3', 'root_3', 'inverse_root_3', 'speed_3', 'moment_x', 'moment_y', 'moment_z', 'spread_x', 'energy_x', 'spread_y', 'energy_y', 'spread_z', 'energy_z', 's10', 's11', 's20', 's21', 's22', 's30', 's31', 's32', 's33', 's40', 's41', 's42', 's43', 's44', 'd11', 'd20', 'd21', 'd22', 'd30', 'd31', 'd32', 'd33', 'd40', 'd41', 'd42', 'd43', 'd44', 'asymmetry_x', 'asymmetry_y', 'asymmetry_z', 'from_x', 'from_y', 'ratio_a', 'ratio_c', 'spin_a', 'spin_c', 'inverse_a', 'inverse_c']
+SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
 def _built(build):
@@ -90,6 +91,10 @@ def _pi():
     return 3.141592653589793, 1.2246467991473532e-16
 
 
+def _unit_roundoff():
+    return 1.1102230246251565e-16, 0.0
+
+
 def _abs(a):
     return _select(a[0] < 0.0, _neg(a), a)
 
@@ -107,11 +112,31 @@ def _select(condition, yes, no):
 
 
 def setup():
-    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS."""
+    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS.
+
+    Where ``setup_status`` is not 0, all constants are NaN.
+    """
     return _built(_setup)
 
 
+def setup_status():
+    """Return the Function parameters -> status, whose words are in SETUP_STATUS: 0 is right."""
+    return _built(_setup_status)
+
+
 def _setup():
+    parameters, constants, status = _tried()
+    spoilt = ca.if_else(status > 0.0, float("nan"), 0.0)
+    outputs = [constants + spoilt]
+    return ca.Function("tumbling_body_setup", [parameters], outputs, ["parameters"], ["constants"])
+
+
+def _setup_status():
+    parameters, _, status = _tried()
+    return ca.Function("tumbling_body_setup_status", [parameters], [status], ["parameters"], ["status"])
+
+
+def _tried():
     parameters = ca.SX.sym("parameters", 3)
     s0 = _mul((parameters[0], 0.0), (0.5, 0.0))
     s1 = _mul((parameters[1], 0.0), (0.5, 0.0))
@@ -533,7 +558,22 @@ def _setup():
     p408 = _div(p399, p397)
     p409 = _div(p399, p401)
     constants = ca.vertcat(s0[0], s1[0], s2[0], s4[0], s6[0], s8[0], p26[0], p27[0], p28[0], p29[0], p31[0], p32[0], p19[0], p21[0], p22[0], p47[0], p48[0], p40[0], p49[0], p53[0], p54[0], p55[0], p56[0], p44[0], p57[0], p61[0], p62[0], p72[0], p73[0], p74[0], p84[0], p85[0], p88[0], p89[0], p92[0], p93[0], p96[0], p99[0], p106[0], p112[0], p117[0], p132[0], p147[0], p158[0], p165[0], p188[0], p210[0], p231[0], p246[0], p254[0], p255[0], p258[0], p263[0], p266[0], p275[0], p286[0], p296[0], p301[0], p316[0], p334[0], p353[0], p367[0], p375[0], p377[0], p379[0], p381[0], p389[0], p395[0], p402[0], p403[0], p405[0], p407[0], p408[0], p409[0])
-    return ca.Function("tumbling_body_setup", [parameters], [constants], ["parameters"], ["constants"])
+    status = ca.SX(0)
+    status = _refused(status, 5, _endless(s0[0]), _endless(s1[0]), _endless(s2[0]), _endless(s4[0]), _endless(s6[0]), _endless(s8[0]), _endless(p26[0]), _endless(p27[0]), _endless(p28[0]), _endless(p29[0]), _endless(p31[0]), _endless(p32[0]), _endless(p19[0]), _endless(p21[0]), _endless(p22[0]), _endless(p47[0]), _endless(p48[0]), _endless(p40[0]), _endless(p49[0]), _endless(p53[0]), _endless(p54[0]), _endless(p55[0]), _endless(p56[0]), _endless(p44[0]), _endless(p57[0]), _endless(p61[0]), _endless(p62[0]), _endless(p72[0]), _endless(p73[0]), _endless(p74[0]), _endless(p84[0]), _endless(p85[0]), _endless(p88[0]), _endless(p89[0]), _endless(p92[0]), _endless(p93[0]), _endless(p96[0]), _endless(p99[0]), _endless(p106[0]), _endless(p112[0]), _endless(p117[0]), _endless(p132[0]), _endless(p147[0]), _endless(p158[0]), _endless(p165[0]), _endless(p188[0]), _endless(p210[0]), _endless(p231[0]), _endless(p246[0]), _endless(p254[0]), _endless(p255[0]), _endless(p258[0]), _endless(p263[0]), _endless(p266[0]), _endless(p275[0]), _endless(p286[0]), _endless(p296[0]), _endless(p301[0]), _endless(p316[0]), _endless(p334[0]), _endless(p353[0]), _endless(p367[0]), _endless(p375[0]), _endless(p377[0]), _endless(p379[0]), _endless(p381[0]), _endless(p389[0]), _endless(p395[0]), _endless(p402[0]), _endless(p403[0]), _endless(p405[0]), _endless(p407[0]), _endless(p408[0]), _endless(p409[0]))
+    status = _refused(status, 4, parameters[0] <= 0.0, parameters[1] <= 0.0, parameters[2] <= 0.0)
+    status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]))
+    return parameters, constants, status
+
+
+def _refused(status, number, *broken):
+    """Return ``number`` where one of these is true, else ``status``."""
+    for condition in broken:
+        status = ca.if_else(condition, number, status)
+    return status
+
+
+def _endless(x):
+    return ca.logic_not(ca.fabs(x) <= 1.7976931348623157e+308)
 
 
 def _from_parameters(hot, name):

@@ -607,12 +607,93 @@ int tumbling_body_setup_f32(float I_xx, float I_yy, float I_zz,
     constants->spin_c = p407.high;
     constants->inverse_a = p408.high;
     constants->inverse_c = p409.high;
-    return (I_xx > 0.0F
-        && I_yy > 0.0F
-        && I_zz > 0.0F
-        && I_xx - I_xx >= 0.0F
-        && I_yy - I_yy >= 0.0F
-        && I_zz - I_zz >= 0.0F) ? 0 : 1;
+    if (!(I_xx - I_xx >= 0.0F)
+        || !(I_yy - I_yy >= 0.0F)
+        || !(I_zz - I_zz >= 0.0F)) {
+        return 1;
+    }
+    if (I_xx <= 0.0F
+        || I_yy <= 0.0F
+        || I_zz <= 0.0F) {
+        return 4;
+    }
+    if (!(s0.high - s0.high >= 0.0F)
+        || !(s1.high - s1.high >= 0.0F)
+        || !(s2.high - s2.high >= 0.0F)
+        || !(s4.high - s4.high >= 0.0F)
+        || !(s6.high - s6.high >= 0.0F)
+        || !(s8.high - s8.high >= 0.0F)
+        || !(p26.high - p26.high >= 0.0F)
+        || !(p27.high - p27.high >= 0.0F)
+        || !(p28.high - p28.high >= 0.0F)
+        || !(p29.high - p29.high >= 0.0F)
+        || !(p31.high - p31.high >= 0.0F)
+        || !(p32.high - p32.high >= 0.0F)
+        || !(p19.high - p19.high >= 0.0F)
+        || !(p21.high - p21.high >= 0.0F)
+        || !(p22.high - p22.high >= 0.0F)
+        || !(p47.high - p47.high >= 0.0F)
+        || !(p48.high - p48.high >= 0.0F)
+        || !(p40.high - p40.high >= 0.0F)
+        || !(p49.high - p49.high >= 0.0F)
+        || !(p53.high - p53.high >= 0.0F)
+        || !(p54.high - p54.high >= 0.0F)
+        || !(p55.high - p55.high >= 0.0F)
+        || !(p56.high - p56.high >= 0.0F)
+        || !(p44.high - p44.high >= 0.0F)
+        || !(p57.high - p57.high >= 0.0F)
+        || !(p61.high - p61.high >= 0.0F)
+        || !(p62.high - p62.high >= 0.0F)
+        || !(p72.high - p72.high >= 0.0F)
+        || !(p73.high - p73.high >= 0.0F)
+        || !(p74.high - p74.high >= 0.0F)
+        || !(p84.high - p84.high >= 0.0F)
+        || !(p85.high - p85.high >= 0.0F)
+        || !(p88.high - p88.high >= 0.0F)
+        || !(p89.high - p89.high >= 0.0F)
+        || !(p92.high - p92.high >= 0.0F)
+        || !(p93.high - p93.high >= 0.0F)
+        || !(p96.high - p96.high >= 0.0F)
+        || !(p99.high - p99.high >= 0.0F)
+        || !(p106.high - p106.high >= 0.0F)
+        || !(p112.high - p112.high >= 0.0F)
+        || !(p117.high - p117.high >= 0.0F)
+        || !(p132.high - p132.high >= 0.0F)
+        || !(p147.high - p147.high >= 0.0F)
+        || !(p158.high - p158.high >= 0.0F)
+        || !(p165.high - p165.high >= 0.0F)
+        || !(p188.high - p188.high >= 0.0F)
+        || !(p210.high - p210.high >= 0.0F)
+        || !(p231.high - p231.high >= 0.0F)
+        || !(p246.high - p246.high >= 0.0F)
+        || !(p254.high - p254.high >= 0.0F)
+        || !(p255.high - p255.high >= 0.0F)
+        || !(p258.high - p258.high >= 0.0F)
+        || !(p263.high - p263.high >= 0.0F)
+        || !(p266.high - p266.high >= 0.0F)
+        || !(p275.high - p275.high >= 0.0F)
+        || !(p286.high - p286.high >= 0.0F)
+        || !(p296.high - p296.high >= 0.0F)
+        || !(p301.high - p301.high >= 0.0F)
+        || !(p316.high - p316.high >= 0.0F)
+        || !(p334.high - p334.high >= 0.0F)
+        || !(p353.high - p353.high >= 0.0F)
+        || !(p367.high - p367.high >= 0.0F)
+        || !(p375.high - p375.high >= 0.0F)
+        || !(p377.high - p377.high >= 0.0F)
+        || !(p379.high - p379.high >= 0.0F)
+        || !(p381.high - p381.high >= 0.0F)
+        || !(p389.high - p389.high >= 0.0F)
+        || !(p395.high - p395.high >= 0.0F)
+        || !(p402.high - p402.high >= 0.0F)
+        || !(p403.high - p403.high >= 0.0F)
+        || !(p405.high - p405.high >= 0.0F)
+        || !(p407.high - p407.high >= 0.0F)
+        || !(p408.high - p408.high >= 0.0F)
+        || !(p409.high - p409.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

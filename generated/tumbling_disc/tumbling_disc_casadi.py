@@ -12,6 +12,7 @@ import casadi as ca
 
 PARAMETERS = ['A', 'C']
 CONSTANTS = ['k1', 'moment_ratio', 'lag', 'spin_c']
+SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
 def _built(build):
@@ -90,6 +91,10 @@ def _pi():
     return 3.141592653589793, 1.2246467991473532e-16
 
 
+def _unit_roundoff():
+    return 1.1102230246251565e-16, 0.0
+
+
 def _abs(a):
     return _select(a[0] < 0.0, _neg(a), a)
 
@@ -107,11 +112,31 @@ def _select(condition, yes, no):
 
 
 def setup():
-    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS."""
+    """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS.
+
+    Where ``setup_status`` is not 0, all constants are NaN.
+    """
     return _built(_setup)
 
 
+def setup_status():
+    """Return the Function parameters -> status, whose words are in SETUP_STATUS: 0 is right."""
+    return _built(_setup_status)
+
+
 def _setup():
+    parameters, constants, status = _tried()
+    spoilt = ca.if_else(status > 0.0, float("nan"), 0.0)
+    outputs = [constants + spoilt]
+    return ca.Function("tumbling_disc_setup", [parameters], outputs, ["parameters"], ["constants"])
+
+
+def _setup_status():
+    parameters, _, status = _tried()
+    return ca.Function("tumbling_disc_setup_status", [parameters], [status], ["parameters"], ["status"])
+
+
+def _tried():
     parameters = ca.SX.sym("parameters", 2)
     s0 = _sub((parameters[0], 0.0), (parameters[1], 0.0))
     s1 = _div(s0, (parameters[0], 0.0))
@@ -120,7 +145,22 @@ def _setup():
     p2 = _div(p1, (parameters[0], 0.0))
     p3 = _div(p1, (parameters[1], 0.0))
     constants = ca.vertcat(s1[0], p0[0], p2[0], p3[0])
-    return ca.Function("tumbling_disc_setup", [parameters], [constants], ["parameters"], ["constants"])
+    status = ca.SX(0)
+    status = _refused(status, 5, _endless(s1[0]), _endless(p0[0]), _endless(p2[0]), _endless(p3[0]))
+    status = _refused(status, 4, parameters[0] <= 0.0, parameters[1] <= 0.0)
+    status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]))
+    return parameters, constants, status
+
+
+def _refused(status, number, *broken):
+    """Return ``number`` where one of these is true, else ``status``."""
+    for condition in broken:
+        status = ca.if_else(condition, number, status)
+    return status
+
+
+def _endless(x):
+    return ca.logic_not(ca.fabs(x) <= 1.7976931348623157e+308)
 
 
 def _from_parameters(hot, name):

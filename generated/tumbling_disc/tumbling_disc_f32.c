@@ -97,10 +97,21 @@ int tumbling_disc_setup_f32(float A, float C, tumbling_disc_constants_f32 *const
     constants->moment_ratio = p0.high;
     constants->lag = p2.high;
     constants->spin_c = p3.high;
-    return (A > 0.0F
-        && C > 0.0F
-        && A - A >= 0.0F
-        && C - C >= 0.0F) ? 0 : 1;
+    if (!(A - A >= 0.0F)
+        || !(C - C >= 0.0F)) {
+        return 1;
+    }
+    if (A <= 0.0F
+        || C <= 0.0F) {
+        return 4;
+    }
+    if (!(s1.high - s1.high >= 0.0F)
+        || !(p0.high - p0.high >= 0.0F)
+        || !(p2.high - p2.high >= 0.0F)
+        || !(p3.high - p3.high >= 0.0F)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 c9f1394b53b6b292.
+ * times the largest component of the output. Body of these files: sha256 7e36d3749cc904c3.
  */
 #ifndef TUMBLING_DISC_F32_H
 #define TUMBLING_DISC_F32_H
@@ -33,7 +33,8 @@ typedef struct {
  * Given:     A  kg m^2  1 .. 2  transverse moment of inertia
  *            C  kg m^2  1.5 .. 1.9  axial moment of inertia
  * Returned:  constants  constants made of parameters only, for the functions of this scene
- * Returns: 0, or 1 if the inertia is not positive definite or a parameter is not finite.
+ * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
+ *            5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 6 operations on pairs.
  */

@@ -97,10 +97,21 @@ int tumbling_disc_setup_f64(double A, double C, tumbling_disc_constants_f64 *con
     constants->moment_ratio = p0.high;
     constants->lag = p2.high;
     constants->spin_c = p3.high;
-    return (A > 0.0
-        && C > 0.0
-        && A - A >= 0.0
-        && C - C >= 0.0) ? 0 : 1;
+    if (!(A - A >= 0.0)
+        || !(C - C >= 0.0)) {
+        return 1;
+    }
+    if (A <= 0.0
+        || C <= 0.0) {
+        return 4;
+    }
+    if (!(s1.high - s1.high >= 0.0)
+        || !(p0.high - p0.high >= 0.0)
+        || !(p2.high - p2.high >= 0.0)
+        || !(p3.high - p3.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

@@ -4,14 +4,14 @@
  *
  * Use:
  *     unsymmetrical_rotor_in_carrier_axes_constants_f32 constants;
- *     unsymmetrical_rotor_in_carrier_axes_setup_f32(1.79999995F, 1.70000005F, 0.400000006F, &constants);
+ *     if (unsymmetrical_rotor_in_carrier_axes_setup_f32(1.79999995F, 1.70000005F, 0.400000006F, &constants) != 0) { return 1; }
  *     float moment[3];
  *     unsymmetrical_rotor_in_carrier_axes_moment_f32(&constants, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, moment);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 99ff787a9fa2ad90.
+ * times the largest component of the output. Body of these files: sha256 a87ee855a92a1916.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
@@ -34,10 +34,12 @@ typedef struct {
  *            I_yy  kg m^2  1.6 .. 1.8  moment of inertia across the shaft and the blades
  *            I_zz  kg m^2  0.3 .. 0.5  moment of inertia along the blades
  * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
+ *            5 a constant is not finite.
  * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
  * Cost: once; 3 operations on pairs.
  */
-void unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float I_zz,
+int unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float I_zz,
     unsymmetrical_rotor_in_carrier_axes_constants_f32 *constants);
 
 /* External moment that the motion needs (inverse dynamics).

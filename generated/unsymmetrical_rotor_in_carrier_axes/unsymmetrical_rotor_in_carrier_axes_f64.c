@@ -74,7 +74,7 @@ static unsymmetrical_rotor_in_carrier_axes_pair_f64 unsymmetrical_rotor_in_carri
     return (unsymmetrical_rotor_in_carrier_axes_pair_f64){high, e - (high - p.high)};
 }
 
-void unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, double I_zz,
+int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, double I_zz,
     unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants)
 {
     const unsymmetrical_rotor_in_carrier_axes_pair_f64 s0 = unsymmetrical_rotor_in_carrier_axes_sub_f64((unsymmetrical_rotor_in_carrier_axes_pair_f64){I_yy, 0.0}, (unsymmetrical_rotor_in_carrier_axes_pair_f64){I_zz, 0.0});
@@ -85,6 +85,22 @@ void unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, dou
     constants->k1 = s1.high;
     constants->twice_I_yy_minus_I_zz = s2.high;
     constants->I_yy = I_yy;
+    if (!(I_xx - I_xx >= 0.0)
+        || !(I_yy - I_yy >= 0.0)
+        || !(I_zz - I_zz >= 0.0)) {
+        return 1;
+    }
+    if (I_xx <= 0.0
+        || I_yy <= 0.0
+        || I_zz <= 0.0) {
+        return 4;
+    }
+    if (!(s0.high - s0.high >= 0.0)
+        || !(s1.high - s1.high >= 0.0)
+        || !(s2.high - s2.high >= 0.0)) {
+        return 5;
+    }
+    return 0;
 }
 
 /* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target

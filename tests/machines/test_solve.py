@@ -60,7 +60,7 @@ REFUSED = {
     "--limit n: limits of stability are no motion": ["--limit=n", "--until=1"],
     "--set m=nan: a value is a number": ["--set", "m=nan"],
     "--set m=-infdeg: a value is a number": ["--set", "m=-infdeg"],
-    "mass matrix that can be inverted": ["--set", "m=0"],
+    "body 'disc'.mass must be positive, and is not so at m = 0": ["--set", "m=0"],
 }
 
 

@@ -206,8 +206,7 @@ def _prepare(manifest: Manifest, precision: str) -> str:
     setup = _named(manifest, "setup")
     parameters = [q["name"] for q in manifest["parameters"]]
     given = [f"({REAL[precision]})p[{parameters.index(name)}]" for name in _names(setup, "in")]
-    call = f"{setup['symbols'][precision]}({', '.join([*given, '&constants'])});"
-    return f"return {call}" if setup["returns"].startswith("int") else f"{call}\n    return 0;"
+    return f"return {setup['symbols'][precision]}({', '.join([*given, '&constants'])});"
 
 
 def _zeroed(name: str, size: int) -> str:
