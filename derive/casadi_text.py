@@ -13,6 +13,7 @@ from derive.flows.series import Series
 from derive.library import Library
 from derive.pair_sine import quarter_turn, series
 from derive.program import Line, Op, Operand, Program, Quantity, Repeat
+from derive.scope import declared_in_python, require_free
 from derive.series_text import series_casadi
 from derive.status import CONSTANT, PARAMETER, computed, possible
 
@@ -153,6 +154,8 @@ def _function(program: Program, scene: str) -> dict[str, object]:
         lines, text = series_casadi(program.loops, _operation), _read(place)
     else:
         lines, text = (_pairs if program.arithmetic == "pairs" else plain_lines)(program, place)
+    given = [q.name for q in program.inputs]
+    require_free(scene, program.name, given, declared_in_python(lines))
     return {
         "builder": program.name,
         "name": f"{scene}_{program.name}",

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from derive import __version__
 from derive.check.compiler import CompilerError
 from derive.command import bench, check, generate, lecture, report, scenes, solve
-from derive.command.terminal import errors
+from derive.command.terminal import complain, errors
 from derive.files import OutputError
 from derive.prove import ProofError
 from derive.reference import NoValueError
@@ -36,10 +36,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         return command(options)
     except ProofError as error:
-        errors.print(f"derive: {error}", style="red", highlight=False, markup=False)
+        complain(f"derive: {error}", "red")
         return 1
     except (SceneError, OutputError, CompilerError, NoValueError) as error:
-        errors.print(f"derive: {error}", style="red", highlight=False, markup=False)
+        complain(f"derive: {error}", "red")
         return 2
     except KeyboardInterrupt:
         errors.print("derive: stopped; every file is whole, some may be new")

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from textwrap import wrap
 
+from derive.escape import in_comment
 from derive.lecture import LECTURE
 from derive.notation import equation_text
 from derive.program import Measurement, Program, Quantity
@@ -22,7 +23,7 @@ def comment(program: Program, figures: Sequence[Measurement]) -> str:
         lines += _labelled("Cost:", cost(program) + pairs + ".")
         if program.assumptions:
             lines += _labelled("Rests on:", ", ".join(program.assumptions) + ".")
-    text = "\n".join(f" * {line}".rstrip() for line in lines)
+    text = "\n".join(f" * {in_comment(line)}".rstrip() for line in lines)
     return f"/*{text[2:]}\n */" if text.startswith(" *") else text
 
 

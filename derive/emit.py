@@ -21,12 +21,14 @@ from derive.c_text import (
 )
 from derive.comment import comment
 from derive.definition import definition
+from derive.escape import in_comment, in_docstring
 from derive.example import example
 from derive.library import Library
 from derive.pair_sine import PI, quarter_turn, series
 from derive.pairs import splitter
 from derive.program import Measurement, Program
 from derive.scene import argument
+from derive.scope import declared_in_c, require_free
 from derive.signature import Names, dense_prototype, dense_size, prototype
 
 _HERE = Path(__file__).parent
@@ -38,6 +40,7 @@ TEMPLATES = jinja2.Environment(
     keep_trailing_newline=True,
     autoescape=jinja2.select_autoescape(["html.jinja"]),
 )
+TEMPLATES.filters |= {"in_comment": in_comment, "in_docstring": in_docstring}
 
 JACOBIAN_DENSE = "The whole matrix, column by column."
 
@@ -125,11 +128,19 @@ def _header(
         digest=digest,
         guard=names.file(precision, "h").upper().replace(".", "_"),
         constants=library.constants,
+        aside=any("I" in names_in(p) for p in functions),
         setup={"symbol": names.symbol("setup", precision)},
         struct=f"{names.scene}_constants_{precision.name}",
         scalar=precision.scalar,
         functions=described,
     )
+
+
+def names_in(program: Program) -> set[str]:
+    """Return the names that a function's declaration and the struct of constants hold."""
+    every = (*program.inputs, *program.outputs)
+    members = {c for q in every if q.name == "constants" for c in q.components}
+    return members | {q.name for q in every}
 
 
 def _source(library: Library, names: Names, precision: Precision) -> str:
@@ -140,6 +151,7 @@ def _source(library: Library, names: Names, precision: Precision) -> str:
         first_line=f"/* {first_line(library)}",
         header=names.file(precision, "h"),
         uses_math=_uses_math(library),
+        aside=any("I" in names_in(p) for p in (*programs, *library.printed())),
         contraction_off=CONTRACTION_OFF,
         contraction_on=CONTRACTION_ON,
         pair_functions=[_pair_function(name, names, precision) for name in pairs],
@@ -156,6 +168,8 @@ def _definitions(library: Library, names: Names, precision: Precision) -> list[d
     found = []
     for program in library.printed():
         written = definition(program, names.scene, precision)
+        arguments = [q.name for q in (*program.inputs, *program.outputs)]
+        require_free(names.scene, program.name, arguments, declared_in_c(written))
         lines = "\n".join(f"    {line}" for line in written)
         text = f"{prototype(program, names, precision)}\n{{\n{lines}\n}}"
         found.append({"says": program.says, "definition": text})
@@ -226,6 +240,9 @@ def _sine(precision: Precision) -> dict[str, object]:
 
 def _setup_definition(program: Program, names: Names, precision: Precision) -> str:
     lines = [*pair_body(program, names.scene, precision), *status(program, precision)]
+    members = [c for q in program.outputs for c in q.components]
+    require_free(names.scene, "setup", members, ())
+    require_free(names.scene, "setup", [q.name for q in program.inputs], declared_in_c(lines))
     text = "\n".join(f"    {line}" for part in lines for line in part.splitlines())
     return f"{prototype(program, names, precision)}\n{{\n{text}\n}}"
 
@@ -246,5 +263,7 @@ def _dense_definition(program: Program, names: Names, precision: Precision) -> s
         "    jacobian[places[entry]] = nonzeros[entry];",
         "}",
     ]
+    whole = f"{program.name}_dense"
+    require_free(names.scene, whole, passed[:-1], declared_in_c(lines))
     text = "\n".join(f"    {line}" for line in lines)
     return f"{dense_prototype(program, names, precision)}\n{{\n{text}\n}}"

@@ -29,6 +29,11 @@ class Graphed:
     leaves: Mapping[str, Value]
     constants: Constants
 
+    def taken(self) -> frozenset[str]:
+        """Return the names that no operation may have: those of all quantities and components."""
+        words = self.known.words
+        return frozenset(n for q in words.every() for n in (q.name, *q.components))
+
     def by_symbol(self) -> dict[Symbol, Value]:
         """Return the value of every component by its symbol."""
         return {self.known.words.symbols[c]: value for c, value in self.leaves.items()}
@@ -155,7 +160,7 @@ def _inputs_below(graph: Graph, values: Iterable[Value]) -> set[str]:
 
 def _program(scene: Graphed, fact: Truth, values: Sequence[Value]) -> Program:
     words = scene.known.words
-    ops, results = hot(scene.graph, scene.constants, values)
+    ops, results = hot(scene.graph, scene.constants, values, scene.taken())
     inputs = used_inputs((*words.states, *words.inputs), ops, results)
     assumptions = sorted({a for step in fact.steps for a in LECTURE.assumptions(step)})
     return Program(

@@ -19,10 +19,12 @@ from derive.stage import (
     Constant,
     Traced,
     Tried,
+    free_prefix,
     in_pairs,
     setup,
     with_low_parts,
 )
+from derive.trace import Tape
 from derive.truth import Truth
 from derive.wording import formula
 
@@ -99,7 +101,8 @@ def _asked(scene: Scene | Machine) -> tuple[list[str], list[str]]:
 
 def _moved(scene: Graphed, rates: Mapping[str, Program]) -> Moved:
     """Return what moves the state, its constants beside those that the rates asked for."""
-    setting = Setting(scene, rates, applied_moment(scene))
+    tape = Tape(free_prefix("p", set(scene.taken())))
+    setting = Setting(scene, rates, applied_moment(scene), tape)
     programs = motions(setting)
     part, renaming = traced(setting)
     programs = tuple(with_names(program, renaming) for program in programs)

@@ -105,7 +105,8 @@ _STEP_PROGRAMS: Mapping[str, Callable[[System], Program]] = {
 def _runge_kutta(setting: Setting, name: str) -> Program:
     rates, step = setting.rates, _time_step(setting)
     slopes = rates[SLOPES[name.rpartition("_")[2]]] if name in STEP_DERIVATIVES else None
-    system = System(setting.known.words.states, rates["state_rate"], slopes, step)
+    states, taken = setting.known.words.states, setting.scene.taken()
+    system = System(states, rates["state_rate"], slopes, step, taken)
     _check_quaternions(setting, name, len(system.quaternions))
     program = _STEP_PROGRAMS[name](system)
     if program.sparsity and not any(pattern.row for pattern in program.sparsity.values()):

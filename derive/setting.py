@@ -10,7 +10,7 @@ from derive.lower import value_of
 from derive.machine.mechanism import Known, Mechanism, single
 from derive.program import Program, renamed
 from derive.scene.wanted import SPLITTINGS, step_of
-from derive.stage import Traced, exact_number, hot, used_inputs
+from derive.stage import Traced, exact_number, free_prefix, hot, used_inputs
 from derive.trace import Number, Tape, number
 
 
@@ -25,7 +25,7 @@ class Setting:
     scene: Graphed
     rates: Mapping[str, Program]
     moment: Program | None
-    tape: Tape = field(default_factory=lambda: Tape("p"))
+    tape: Tape
     given: dict[str, Value] = field(default_factory=dict)
 
     @property
@@ -58,7 +58,7 @@ class Setting:
 
     def function(self) -> Tape:
         """Return a tape for a function."""
-        return Tape("t", below=self.tape)
+        return Tape(free_prefix("t", set(self.scene.taken())), below=self.tape)
 
 
 def applied_moment(scene: Graphed) -> Program | None:
@@ -72,7 +72,7 @@ def applied_moment(scene: Graphed) -> Program | None:
     values = [value_of(scene.graph, e, by_symbol) for e in known.bindings["M"]]
     if not any(coefficient for coefficient, _ in values):
         return None
-    ops, results = hot(scene.graph, scene.constants, values)
+    ops, results = hot(scene.graph, scene.constants, values, scene.taken())
     inputs = used_inputs((*known.words.states, *known.words.inputs), ops, results)
     output = known.words["moment"]
     return Program("applied_moment", "", inputs, (output,), ops, results)

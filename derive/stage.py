@@ -4,7 +4,7 @@ All functions of a scene share one graph, one set-up and one struct of named con
 in twice the working precision and rounds each constant once.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import prod
@@ -114,10 +114,13 @@ class Constant:
 
 
 def hot(
-    graph: Graph, constants: Constants, values: Sequence[Value]
+    graph: Graph, constants: Constants, values: Sequence[Value], taken: Iterable[str]
 ) -> tuple[tuple[Op, ...], tuple[Operand, ...]]:
-    """Return the operations that every call runs, and the operands of the results."""
-    prefix = free_prefix("t", graph.leaf_names() | set(constants.names.values()))
+    """Return the operations that every call runs, and the operands of the results.
+
+    taken : names of the scene, which no operation may have
+    """
+    prefix = free_prefix("t", graph.leaf_names() | set(constants.names.values()) | set(taken))
     return schedule(graph, values, lambda node: graph.fixed[node], constants.operand, prefix)
 
 
@@ -132,7 +135,8 @@ def in_pairs(program: Program, constants: set[str]) -> Program:
     """Return ``program`` for pairs of floats: each constant comes with what its rounding left."""
     used = operands_of(program.ops, program.results) & constants
     ordered = [c for q in program.inputs for c in q.components if c in used]
-    prefix = free_prefix("w", operands_of(program.ops, program.results))
+    every = {n for q in (*program.inputs, *program.outputs) for n in (q.name, *q.components)}
+    prefix = free_prefix("w", operands_of(program.ops, program.results) | every)
     whole: dict[Operand, Operand] = {c: f"{prefix}{place}" for place, c in enumerate(ordered)}
     joined = tuple(
         Op(f"{prefix}{place}", "add", (c, f"{c}_low")) for place, c in enumerate(ordered)

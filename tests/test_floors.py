@@ -10,8 +10,8 @@ import pytest
 
 FLOORS = (
     (
-        *("vectors", "formula", "grammar", "unit", "scene", "catalogue", "program", "graph"),
-        "largest",
+        *("escape", "vectors", "formula", "grammar", "unit", "scene", "catalogue", "program"),
+        *("graph", "largest"),
     ),
     (
         *("particles", "pairs", "pair_sine", "arithmetic", "status"),
@@ -27,8 +27,8 @@ FLOORS = (
     ("setting", "admission", "motions", "library"),
     ("saving",),
     (
-        *("c_text", "series_text", "compact_text", "definition", "comment", "signature", "example"),
-        *("emit", "casadi_text", "casadi_module", "manifest", "page"),
+        *("c_text", "scope", "series_text", "compact_text", "definition", "comment", "signature"),
+        *("example", "emit", "casadi_text", "casadi_module", "manifest", "page"),
     ),
     (
         "blocks",

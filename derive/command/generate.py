@@ -8,7 +8,8 @@ from pathlib import Path
 
 from derive.command.costs import print_costs
 from derive.command.scenes import scene_argument
-from derive.command.terminal import OUT, console, errors, progress
+from derive.command.terminal import OUT, complain, console, errors, progress
+from derive.escape import visible
 from derive.files import Difference, differences, folders_left_over, write
 from derive.generation import Made, all_made, gallery_of, lecture_made
 from derive.scene import SceneError, catalogue
@@ -59,7 +60,7 @@ def made_of(scenes: Sequence[str], also: Sequence[Callable[[], Made]]) -> list[M
             shown.update(task, description=f"deriving, proving and measuring: {done}")
     results = [found[place] for place in sorted(found)]
     for warning in (w for result in results for w in result.warnings):
-        errors.print(f"derive: warning: {warning}", style="yellow", highlight=False, markup=False)
+        complain(f"derive: warning: {warning}", "yellow")
     return results
 
 
@@ -89,7 +90,7 @@ def _compare(given: argparse.Namespace, texts: Mapping[str, str]) -> int:
     count = "1 file differs" if len(found) == 1 else f"{len(found)} files differ"
     errors.print(f"derive: {count} from what would be generated; mend:", style="red")
     for command in _mending(given, found):
-        errors.print(command, style="red", highlight=False, markup=False, soft_wrap=True)
+        errors.print(visible(command), style="red", highlight=False, soft_wrap=True)
     return 1
 
 

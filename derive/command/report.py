@@ -5,7 +5,7 @@ import argparse
 from derive.command.costs import print_costs
 from derive.command.generate import made_of
 from derive.command.scenes import scene_argument
-from derive.command.terminal import OUT, console, errors, progress
+from derive.command.terminal import OUT, complain, console, progress
 
 
 def options(command: argparse.ArgumentParser) -> None:
@@ -36,5 +36,5 @@ def report(given: argparse.Namespace) -> int:
             OUT, "full" if given.full else "small", given.only, console, progress()
         )
     except ImportError as absent:
-        errors.print(f"derive: {absent}", style="red", highlight=False, markup=False)
+        complain(f"derive: {absent}", "red")
         return 2

@@ -6,10 +6,20 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
+from derive.escape import visible
+
 OUT = Path("generated")
 WIDE = 150  # columns of a table that goes to a file or a pipe
-console = Console(width=None if sys.stdout.isatty() else WIDE)
-errors = Console(stderr=True, width=None if sys.stderr.isatty() else WIDE)
+console = Console(width=None if sys.stdout.isatty() else WIDE, markup=False, emoji=False)
+errors = Console(
+    stderr=True, width=None if sys.stderr.isatty() else WIDE, markup=False, emoji=False
+)
+
+
+def complain(sentence: str, style: str) -> None:
+    """Print a sentence on what is wrong; what a file or its name holds is shown, never obeyed."""
+    shown = "\n".join(map(visible, sentence.split("\n")))
+    errors.print(shown, style=style, highlight=False)
 
 
 def progress() -> Progress:

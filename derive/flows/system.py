@@ -32,12 +32,14 @@ class System:
     slopes : program of the rates and, as its last output, the nonzeros of their Jacobian by the
              states and by whatever else, inputs or parameters, derivatives are wanted by
     step   : the length of the step
+    taken  : further names of the scene, which no operation may have
     """
 
     states: tuple[Quantity, ...]
     rate: Program
     slopes: Program | None = None
     step: Quantity = TIME_STEP
+    taken: frozenset[str] = frozenset()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -89,7 +91,7 @@ def next_of(q: Quantity) -> Quantity:
 def tape_for(system: System) -> Tape:
     """Return a tape whose names are none of the scene's."""
     programs = (system.rate, *([system.slopes] if system.slopes is not None else []))
-    taken = {c for q in (*system.states, system.step) for c in q.components}
+    taken = {c for q in (*system.states, system.step) for c in q.components} | system.taken
     for program in programs:
         made = {op.result for op, _ in every_op(program.ops)}
         taken |= operands_of(program.ops, program.results) - made

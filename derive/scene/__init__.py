@@ -28,9 +28,9 @@ from derive.scene.declaration import (
 from derive.scene.file import read_scene
 from derive.scene.machine import Machine
 from derive.scene.machine_file import is_machine, read_machine
-from derive.scene.names import identifier
+from derive.scene.names import file_name
 from derive.scene.rules import check, warnings
-from derive.scene.table import nearest, shown, table
+from derive.scene.table import THE_FILE, gate, nearest, shown, table
 from derive.scene.times import idle_times
 
 __all__ = [
@@ -118,8 +118,9 @@ def parse_scene(text: str, name: str) -> Scene | Machine:
     Raises SceneError; its sentence names the scene, the quantity, the rule and the value found.
     """
     try:
-        identifier(name, "the file")
+        file_name(name)
         document = _document(text)
+        gate(document, THE_FILE)
         scene = _read(document, name, text)
         times = table(document.get("motion", {}), "motion").entries
         idle = idle_times(times, scene.wanted)

@@ -5,32 +5,32 @@ A name goes unchanged into C structs, CasADi inputs and JSON, so it must be usab
 
 from __future__ import annotations
 
-import keyword
 import re
 from typing import TYPE_CHECKING
 
-from derive.formula import FUNCTIONS
 from derive.scene.declaration import SceneError
+from derive.scene.reserved import is_device, owner
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
 LONGEST_NAME = 40
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*")
-_C_WORDS = (
-    "auto bool break case catch char class const constexpr continue default delete do double else "
-    "enum explicit export extern false float for friend goto if inline int long main mutable "
-    "namespace new nullptr operator private protected public register restrict return short signed "
-    "sizeof static struct switch template this throw true try typedef typename union unsigned "
-    "using virtual void volatile while NULL"
-)
-_C_FUNCTIONS = (
-    "abs acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cosh div erf erfc exp exp2 "
-    "expm1 fabs fdim floor fma fmax fmin fmod frexp hypot ilogb index isfinite isinf isnan ldexp "
-    "lgamma log log10 log1p log2 logb lrint lround modf nan nearbyint nextafter pow remainder "
-    "remquo rint round scalbln scalbn sinh tanh tgamma time trunc j0 j1 jn y0 y1 yn"
-)
-_WORDS = frozenset((*keyword.kwlist, *_C_WORDS.split(), *_C_FUNCTIONS.split(), *FUNCTIONS))
+HELPERS: Mapping[str, str] = {
+    "setup": "set-up",
+    "constants": "the struct of constants",
+    "pair": "a pair of floats",
+    **dict.fromkeys(
+        ("abs", "add", "at_most", "cos", "div", "less", "low", "mul", "neg", "pi", "power_of_two",
+         "sin", "sine", "sqrt", "sub", "two_product", "unit_roundoff"),
+        "a function of pairs of floats",
+    ),
+    "PARAMETERS": "the list of parameters in the CasADi module",
+    "CONSTANTS": "the list of constants in the CasADi module",
+}  # fmt: skip
+"""What emitted files call by a function's name beside the functions that are wanted."""
+VARIANTS = ("_hot", "_dense")
+"""How emitted files name a function from constants, and one with its whole Jacobian."""
 GENERATED: Mapping[str, str] = {
     "omega": "the angular velocity of the body",
     "omega_dot": "the angular acceleration of the body",
@@ -77,10 +77,29 @@ _COMPONENT = re.compile(r"(_[wxyz])?(_next)?(_in)?$")
 
 
 def identifier(name: str, what: str) -> str:
-    """Return a name that is an identifier in C and Python and not a word of either."""
-    if label(name, what) in _WORDS:
-        raise SceneError(f"{what} has the name '{name}', which is a word of C or Python")
+    """Return a name that is an identifier in C and Python and nobody's word."""
+    if whose := owner(label(name, what)):
+        raise SceneError(f"{what} has the name '{name}', which is {whose}")
     return name
+
+
+def file_name(name: str) -> str:
+    """Return the name of a scene's file, which its C symbols begin with."""
+    if is_device(name):
+        raise SceneError(f"the file has the name '{name}', which is a device of Windows")
+    return identifier(name, "the file")
+
+
+def functions(names: Iterable[str]) -> None:
+    """Refuse wanted functions whose symbols are taken, by helpers or by variants of others."""
+    names = tuple(names)
+    variants = {f"{name}{ending}": name for name in names for ending in VARIANTS}
+    for name in names:
+        if name in HELPERS:
+            raise SceneError(f"wanted has '{name}', which emitted files call {HELPERS[name]}")
+        if name in variants:
+            raise SceneError(f"wanted has '{name}', which is how a variant of "
+                             f"'{variants[name]}' is called")  # fmt: skip
 
 
 def label(name: str, what: str) -> str:

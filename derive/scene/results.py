@@ -9,9 +9,9 @@ from derive.grammar import parse
 from derive.scene.declaration import SceneError
 from derive.scene.load import MARK, unknown_units
 from derive.scene.machine import Result
-from derive.scene.names import identifier
+from derive.scene.names import functions, identifier
 from derive.scene.scalars import known, unknown_rates
-from derive.scene.table import Scope, Table, formula, keys, shown
+from derive.scene.table import Scope, Table, formula, keys, shown, text
 from derive.scene.wanted import JACOBIAN, OF_MACHINES, resembling
 from derive.unit import NONE, dimension, dimension_of, spelled
 
@@ -42,7 +42,9 @@ def read_results(
         if isinstance(value, dict):
             inner = Table(f"result '{key}'", value)
             keys(inner, ("formula",), ("meaning",))
-            said, meaning = inner.entries["formula"], str(inner.entries.get("meaning", ""))
+            said = inner.entries["formula"]
+            if "meaning" in inner.entries:
+                meaning = text(inner.entries["meaning"], f"{inner.label}: meaning")
         both = Scope(dict(scope.dimensions) | answers, {}, "")
         read, unit = of_any_unit(said, f"result '{key}'", both)
         answers[name] = unit
@@ -84,6 +86,7 @@ def read_asked(
         if name in asked:
             raise SceneError(f"wanted has '{name}' twice")
         asked[identifier(name, "a wanted function")] = answers
+    functions(asked)
     return asked
 
 

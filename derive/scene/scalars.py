@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 UNITS = {"coordinate": ("rad", "m"), "speed": ("rad/s", "m/s")}
 DIMENSIONS = {"coordinate": (NONE, LENGTH), "speed": (ANGULAR_VELOCITY, VELOCITY)}
+ARTICLE = {"coordinate": "a", "speed": "a", "input": "an"}
 PER_SECOND = {"rad": "rad/s", "m": "m/s", "rad/s": "rad/s^2", "m/s": "m/s^2"}
 
 
@@ -61,7 +62,7 @@ def read_scalars(part: Mapping[str, Table]) -> Scalars:
 
 def _entries(given: Table, kind: str) -> list[tuple[str, Table]]:
     return [
-        (identifier(name, f"a {kind}"), table(value, f"{kind} '{name}'"))
+        (identifier(name, f"{ARTICLE[kind]} {kind}"), table(value, f"{kind} '{name}'"))
         for name, value in given.entries.items()
     ]
 

@@ -20,7 +20,24 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 LONGEST_INTEGER_BITS = 1000
+LONGEST_LINE, LONGEST_KEY = 1000, 100
 MARKS = ("*/", "/*", "\\", '"""', "??")
+SPACES = "\t\n"
+"""What may part the words of a formula beside blanks."""
+
+
+THE_FILE = "the file"
+NAMED = {
+    "parameters": "parameter",
+    "coordinates": "coordinate",
+    "speeds": "speed",
+    "inputs": "input",
+    "frames": "frame",
+    "bodies": "body",
+    "loads": "load",
+    "results": "result",
+}
+"""Tables whose entries are named by the scene, and what one of them is called."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +55,45 @@ class Scope:
     dimensions: Mapping[str, Dimension]
     others: Mapping[str, str]
     rule: str
+
+
+def gate(value: object, label: str) -> None:
+    """Refuse a string anywhere in a document, key or value, that is not plain text.
+
+    Every string passes here before anything else reads it: characters that can be seen, in either
+    direction of writing as they stand, and no mark that ends a comment or a string.
+    """
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            _require_plain(key, f"a key in {label}")
+            if len(key) > LONGEST_KEY:
+                rule = f"has a key of {len(key)} characters; {LONGEST_KEY} is the most"
+                raise SceneError(f"{label} {rule}")
+            gate(inner, _place(label, key))
+    elif isinstance(value, list):
+        for inner in value:
+            gate(inner, label)
+    elif isinstance(value, str):
+        _require_plain(value, label)
+
+
+def _place(label: str, key: str) -> str:
+    """Return what an entry of a table is called in a sentence."""
+    if label == THE_FILE:
+        return key
+    if label in NAMED:
+        return f"{NAMED[label]} '{key}'"
+    return f"{label}: {key}" if label.endswith("'") else f"{label}.{key}"
+
+
+def _require_plain(value: str, label: str) -> None:
+    hidden = next((c for c in value if not (c.isprintable() or c in SPACES)), None)
+    if hidden is not None:
+        rule = "holds a character that does not print"
+        raise SceneError(f"{label} {rule}, {hidden!a}: {shown(value)}")
+    for mark in MARKS:
+        if mark in value:
+            raise SceneError(f"{label} must not hold {mark}, which ends a comment or a string")
 
 
 def table(value: object, label: str) -> Table:
@@ -93,9 +149,9 @@ def text(value: object, label: str) -> str:
     """Return one line of text that may stand in a comment of C and in a string of Python."""
     if not isinstance(value, str) or not value.strip() or not value.isprintable():
         raise SceneError(f"{label} must be one line of text, not {shown(value)}")
-    for mark in MARKS:
-        if mark in value:
-            raise SceneError(f"{label} must not hold {mark}, which ends a comment or a string")
+    if len(value) > LONGEST_LINE:
+        raise SceneError(f"{label} is {len(value)} characters long; {LONGEST_LINE} is the most")
+    _require_plain(value, label)
     return value
 
 

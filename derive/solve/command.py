@@ -1,6 +1,7 @@
 """``derive solve``: the answers of a machine as numbers with units, from the command line."""
 
 import argparse
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, nan, pi
@@ -10,14 +11,15 @@ from numpy.linalg import LinAlgError
 
 from derive.files import require_writable, write
 from derive.scene import Machine, SceneError
-from derive.scene.table import nearest
+from derive.scene.table import nearest, shown
 from derive.solve.instrument import Instrument, opened
 from derive.solve.motions import frequencies, growth, limits, roots
 from derive.solve.simulation import plot, simulated
 
 Row = tuple[str, str, str, str]
-FACTORS = {"deg": pi / 180, "rpm": 2 * pi / 60}
+FACTORS = {"": 1.0, "deg": pi / 180, "rpm": 2 * pi / 60}
 """Units that a value may be set in beside SI: ``skew=3deg``."""
+NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,6})?) ?(|deg|rpm)")
 
 
 @dataclass(frozen=True)
@@ -145,21 +147,16 @@ def settings(found: Instrument, texts: Sequence[str]) -> dict[str, float]:
 def _known(found: Instrument, name: str) -> str:
     names = [c for q in found.quantities() for c in q.components]
     if name not in names:
-        raise SceneError(f"scene '{found.name}' has no '{name}' to set{nearest(name, names)}")
+        raise SceneError(f"scene '{found.name}' has no {shown(name)} to set{nearest(name, names)}")
     return name
 
 
 def _number(text: str, value: str) -> float:
-    for unit, factor in FACTORS.items():
-        if value.endswith(unit):
-            return _number(text, value.removesuffix(unit).strip()) * factor
-    try:
-        number = float(value)
-    except ValueError:
-        number = nan
+    found = NUMBER.fullmatch(value)
+    number = float(found[1]) * FACTORS[found[2]] if found else nan
     if not isfinite(number):
         raise SceneError(
-            f"--set {text}: a value is a number, as m=1200 or skew=3deg, not '{value}'"
+            f"--set {text[:60]}: a value is a number, as m=1200 or skew=3deg, not {shown(value)}"
         )
     return number
 

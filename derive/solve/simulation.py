@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from html import escape
 from math import isfinite
 from typing import Any
 
@@ -121,7 +122,7 @@ def _line(
     ]
     return [
         f'<polyline points="{" ".join(points)}"/>',
-        f'<text x="4" y="{top + HEIGHT / 2}">{name} {unit}</text>',
+        f'<text x="4" y="{top + HEIGHT / 2}">{escape(f"{name} {unit}")}</text>',
         f'<text x="4" y="{top + 12}">{high:.4g}</text>',
         f'<text x="4" y="{top + HEIGHT}">{low:.4g}</text>',
     ]

@@ -1,0 +1,57 @@
+"""Names within one emitted function: none that the scene gives is one that the function declares.
+
+What printers call their own values is read off the lines that they print, so that nothing has to
+be listed here, and a name that is taken is refused by a sentence and not by a compiler.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+
+from derive.scene import SceneError
+
+_TYPE = r"(?:double|float|int|unsigned char|unsigned short|\w+_pair_f(?:32|64))"
+_DECLARED = re.compile(rf"\s*(?:for \()?(?:static )?(?:const )?{_TYPE} ([^;]*);?")
+_FIRST = re.compile(r"\*?([A-Za-z_]\w*)(?:\[\w+\])*(?: =.*)?")
+_ASSIGNED = re.compile(r"\s*(?:for )?([A-Za-z_]\w*(?:, [A-Za-z_]\w*)*)(?: =| in) ")
+
+
+def declared_in_c(lines: Iterable[str]) -> Iterator[str]:
+    """Yield the names that lines of C declare.
+
+    >>> list(declared_in_c(["double start[3], now[3];", "for (int j = 1, m = k - 1; j < 3;) {"]))
+    ['start', 'now', 'j', 'm']
+    """
+    for line in lines:
+        found = _DECLARED.match(line)
+        if found:
+            alone = set("({") & set(found[1])  # a value may hold commas too
+            parts = found[1].split(", ")[: 1 if alone else None]
+            yield from (one[1] for part in parts if (one := _FIRST.fullmatch(part)))
+
+
+def declared_in_python(lines: Iterable[str]) -> Iterator[str]:
+    """Yield the names that lines of Python assign to, and what every module calls CasADi.
+
+    >>> list(declared_in_python(["a, b = c", "for k in range(3):"]))
+    ['ca', 'a', 'b', 'k']
+    """
+    yield "ca"
+    for line in lines:
+        found = _ASSIGNED.match(line)
+        if found:
+            yield from found[1].split(", ")
+
+
+def require_free(scene: str, function: str, given: Sequence[str], declared: Iterable[str]) -> None:
+    """Refuse a name of the scene that a function has for a value of its own, or that it has twice.
+
+    given : the names of the function's arguments        declared : those of its own values
+    """
+    own = set(declared)
+    for place, name in enumerate(given):
+        if name in own or name in given[:place]:
+            whose = "a value of its own" if name in own else "two arguments"
+            raise SceneError(
+                f"scene '{scene}': '{name}' is what the emitted function '{function}' calls "
+                f"{whose}; give it another name"
+            )
