@@ -20,6 +20,7 @@ from derive.check.agreement import (
 from derive.check.attitudes import definitions
 from derive.check.compiler import Compiler, CompilerError, find_compiler
 from derive.check.emitted import Emitted, Files, casadi_module, files, is_double, loaded
+from derive.check.energy import energy_balance
 from derive.check.invariants import power_balance, turned_axes
 from derive.check.motion import orders, step_slopes
 from derive.check.particles import clouds
@@ -32,7 +33,7 @@ from derive.prove import ProofError, prove
 from derive.sample import Sample, samples
 from derive.scene import load
 
-ORDINARY, CORNERS, FEW = 300, 6, 8
+ORDINARY, CORNERS, FEW, TWO = 300, 6, 8, 2
 
 
 def check(sources: Sequence[str], folder: Path) -> Iterator[Verdict]:
@@ -126,6 +127,7 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
         plain = [s for s in each if s.kind == "ordinary"][: FEW * FEW]
         if isinstance(one.library.known, Mechanism):
             yield from clouds(one.library, plain[:FEW])
+            yield from energy_balance(one.library, plain[:TWO])
         else:
             yield from power_balance(one, plain)
             yield from turned_axes(one, plain)

@@ -17,7 +17,7 @@ Acting = tuple[str, Array, Array, Array]  # a body, the place, the force and the
 def left_over(history: History) -> list[Any]:
     """Return mass times acceleration less loads, and its moment, of every body in turn."""
     rows: list[Any] = []
-    acting = [one for load in history.machine.loads for one in _acting(history, load)]
+    loads = [one for load in history.machine.loads for one in acting(history, load)]
     for body in history.machine.bodies:
         centre = values(history.centre(body.name))
         force = np.array([mpf(0)] * 3, dtype=object)
@@ -25,7 +25,7 @@ def left_over(history: History) -> list[Any]:
         for m, place in history.particles(body.name):
             f = m * each(lambda x: x.acceleration, place)
             force, moment = force + f, moment + crossed(values(place) - centre, f)
-        for on, place, f, couple in acting:
+        for on, place, f, couple in loads:
             if on == body.name:
                 force, moment = force - f, moment - couple - crossed(place - centre, f)
         rows += [*force, *moment]
@@ -37,12 +37,13 @@ def values(array: Array) -> Array:
     return each(lambda x: x.value, array)
 
 
-def _acting(history: History, load: Load) -> Iterator[Acting]:
+def acting(history: History, load: Load) -> Iterator[Acting]:
+    """Yield what a load does to each body that it acts on."""
     match load:
         case Force():
             yield from _force(history, load)
         case Weight():
-            g = _along(history, load.along, load.gravity)
+            g = along(history, load.along, load.gravity)
             for body in load.on:
                 yield body, values(history.centre(body)), history.mass(body) * g, 0 * g
         case Gradient():
@@ -52,7 +53,8 @@ def _acting(history: History, load: Load) -> Iterator[Acting]:
             yield from _spring(history, load)
 
 
-def _along(history: History, frame: str, formulas: tuple[Any, ...]) -> Array:
+def along(history: History, frame: str, formulas: tuple[Any, ...]) -> Array:
+    """Return a vector given along the axes of a frame, along N."""
     if all(f == ZERO for f in formulas):
         return np.array([mpf(0)] * 3, dtype=object)
     return values(history.rotations[frame] @ history.column(formulas))
@@ -60,7 +62,7 @@ def _along(history: History, frame: str, formulas: tuple[Any, ...]) -> Array:
 
 def _force(history: History, load: Force) -> Iterator[Acting]:
     place = values(history.place(load.frame, load.at))
-    force, couple = (_along(history, load.along, f) for f in (load.force, load.couple))
+    force, couple = (along(history, load.along, f) for f in (load.force, load.couple))
     yield load.on, place, force, couple
     if load.against:
         yield load.against, place, -force, -couple
@@ -68,7 +70,7 @@ def _force(history: History, load: Force) -> Iterator[Acting]:
 
 def _gradient(history: History, load: Gradient, body: str) -> Acting:
     """Return the moment of the field on the particles themselves."""
-    c, third = _along(history, load.along, load.towards), history.value(load.strength).value / 3
+    c, third = along(history, load.along, load.towards), history.value(load.strength).value / 3
     centre = values(history.centre(body))
     couple = 0 * c
     for m, place in history.particles(body):
@@ -95,7 +97,7 @@ def potential_energy(history: History) -> Any:
     total = mpf(0)
     for load in history.machine.loads:
         if isinstance(load, Weight):
-            g = _along(history, load.along, load.gravity)
+            g = along(history, load.along, load.gravity)
             for body in load.on:
                 particles = history.particles(body)
                 total -= mp.fsum(m * (g @ values(place)) for m, place in particles)

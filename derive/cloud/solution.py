@@ -30,7 +30,8 @@ class Answers:
         free = [m.unknown for m in (*self.machine.coordinates, *self.machine.speeds) if m.free]
         return (*(u.name for u in self.machine.unknowns), *free)
 
-    def _history(self, found: Mapping[str, Any]) -> History:
+    def history(self, found: Mapping[str, Any]) -> History:
+        """Return the machine in motion with unknowns as they are found, others zero."""
         history = History(
             self.machine, dict(self.given) | dict.fromkeys(self.names, mpf(0)) | dict(found)
         )
@@ -41,8 +42,8 @@ class Answers:
     @cached_property
     def _table(self) -> tuple[list[list[Any]], list[Any]]:
         """Return the six equations a body, which are linear in the unknowns."""
-        rest = left_over(self._history({}))
-        columns = [left_over(self._history({n: mpf(1)})) for n in self.names]
+        rest = left_over(self.history({}))
+        columns = [left_over(self.history({n: mpf(1)})) for n in self.names]
         rows = [[column[r] - rest[r] for column in columns] for r in range(len(rest))]
         return rows, [-x for x in rest]
 
@@ -84,11 +85,17 @@ class Answers:
                     found[self.names[k]] = row[-1]
             return found
 
+    @property
+    def some(self) -> dict[str, Any]:
+        """Return values of all unknowns that satisfy the balances; zero where any value does."""
+        with mp.workdps(DIGITS):
+            return {self.names[k]: row[-1] for k, row in self._reduced[0].items()}
+
     @cached_property
     def momenta(self) -> dict[str, Any]:
         """Return energies and angular momentum, summed over the particles."""
         with mp.workdps(DIGITS):
-            history, place = self._history({}), self.machine.momentum
+            history, place = self.history({}), self.machine.momentum
             about = values(history.place(place.frame, place.at))
             energy, momentum = mpf(0), 0 * about
             for body in self.machine.bodies:
@@ -110,13 +117,13 @@ class Answers:
         if not set(free) <= set(self.unknowns):
             return None
         with mp.workdps(DIGITS):
-            scalars = self._history(self.unknowns).scalars
+            scalars = self.history(self.unknowns).scalars
             return scalars[name].velocity if name in scalars else None
 
     def result(self, formula: Formula, also: Mapping[str, Any] | None = None) -> Any:
         """Return the value of a formula of answers, and of what is ``also`` known by name."""
         with mp.workdps(DIGITS):
-            history = self._history(self.unknowns)
+            history = self.history(self.unknowns)
             known = self.unknowns | self.momenta | dict(also or {})
             history.scalars.update({n: series(v) for n, v in known.items()})
             return history.value(written_out(formula, self.machine.results)).value

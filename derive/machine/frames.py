@@ -238,10 +238,11 @@ class Frames:
         names = [
             n for end in (first, second) for n in self.chain(end)[: self.chain(end).index(top)]
         ]
-        frames = [self.each[n] for n in names]
-        return all(
-            f.velocity is None and f.acceleration is None and f.rolls is None for f in frames
-        )
+        return all(_has_place(self.each[n]) for n in names)
+
+    def anchor(self, name: str) -> str:
+        """Return the nearest frame of the chain whose origin has no known place in its parent."""
+        return next(n for n in self.chain(name) if n == INERTIAL or not _has_place(self.each[n]))
 
     def apart(self, start: Point, end: Point, along: str) -> Matrix:
         """Return the vector from one point to another, along the axes of a frame."""
@@ -254,9 +255,19 @@ class Frames:
         name, at = point
         while name != top:
             parent = self.each[name].parent
+            if not _has_place(self.each[name]):
+                raise SceneError(
+                    f"the origin of frame '{name}' is needed as a place in '{parent}', but only "
+                    "its motion is given; say where it is by origin, with a coordinate if need be"
+                )
             at = self.words.column(self.each[name].origin) + self.carried(at, name, parent)
             name = parent
         return at
+
+
+def _has_place(frame: Frame) -> bool:
+    """Tell whether the place of a frame's origin in its parent is given, not only its motion."""
+    return frame.velocity is None and frame.acceleration is None and frame.rolls is None
 
 
 def transported(known: Mapping[str, Matrix]) -> Matrix:

@@ -7,6 +7,7 @@ from sympy import Expr, Integer, Matrix, Rational, sqrt
 
 from derive.machine.bodies import centre, mass, tensor
 from derive.machine.frames import ZERO, Frames, Point
+from derive.machine.probe import NOTHING, POINTS, point
 from derive.scene import SceneError
 from derive.scene.machine import INERTIAL, Force, Gradient, Load, Spring, Weight
 from derive.specialise import stated
@@ -96,18 +97,61 @@ def _spring(frames: Frames, load: Spring) -> Iterator[Wrench]:
 
 
 def potential_energy(frames: Frames) -> Expr:
-    """Return the energy of weights and springs; a weight's is zero at the inertial origin."""
+    """Return the energy of weights and springs; a weight's is zero at the inertial origin.
+
+    A frame whose origin has no known place may carry a body that keeps its height: then the
+    energy is zero at that origin. Raises SceneError if a height or a force has no energy.
+    """
     total: Expr = Integer(0)
     for load in frames.machine.loads:
         if isinstance(load, Weight):
             for body in load.on:
-                at = frames.apart((INERTIAL, ZERO), centre(frames, body), INERTIAL)
                 g = frames.carried(frames.words.column(load.gravity), load.along, INERTIAL)
+                _keeps(frames, load.name, "gravity", list(g))
+                start = _level(frames, load.name, g, centre(frames, body)[0])
+                at = frames.apart((start, ZERO), centre(frames, body), INERTIAL)
                 total -= mass(frames, body) * (g.T * at)[0]
         elif isinstance(load, Spring):
             d, _ = stretched(frames, load)
             k, rest = (frames.words.expression(f) for f in (load.stiffness, load.length))
+            _keeps(frames, load.name, "stiffness and length", [k, rest])
             square = (d.T * d)[0]
             size = sqrt(square) if rest != 0 else Integer(0)
             total += Rational(1, 2) * k * (square - 2 * rest * size + rest**2)
     return total
+
+
+def _keeps(frames: Frames, load: str, what: str, values: list[Expr]) -> None:
+    """Refuse the energy of a load that changes in the inertial frame by itself."""
+    if not all(_vanishes(frames, frames.sheet.rate(_held(frames, v))) for v in values):
+        rule = f"has no potential energy, for its {what} change with the motion"
+        raise SceneError(f"load '{load}' {rule}; ask for kinetic_energy and add it in results")
+
+
+def _held(frames: Frames, value: Expr) -> Expr:
+    """Return a value with inputs held, whose rates are not known."""
+    return value.xreplace(dict.fromkeys(frames.sheet.rateless, Integer(1)))
+
+
+def _level(frames: Frames, load: str, g: Matrix, name: str) -> str:
+    """Return the frame from whose origin heights count: inertial, or one that keeps its height."""
+    start = frames.anchor(name)
+    if start != INERTIAL:
+        climbs = frames.carried(frames.velocity(start), start, INERTIAL)
+        if not _vanishes(frames, (g.T * climbs)[0]):
+            raise SceneError(
+                f"load '{load}': the height of frame '{start}' is not known, for only the motion "
+                "of its origin is given; say where it is by origin, with a coordinate if need be, "
+                "or ask for kinetic_energy and add the weight's energy in results"
+            )
+    return start
+
+
+def _vanishes(frames: Frames, value: Expr) -> bool:
+    """Tell whether a value is zero whatever the machine does."""
+    for number in range(POINTS):
+        probe = point(frames.words, number)
+        probe.define(frames.sheet.needed([value]))
+        if abs(probe.value(value)) > NOTHING:
+            return False
+    return True
