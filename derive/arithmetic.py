@@ -172,6 +172,7 @@ def extended(dtype: type) -> Table:
         "select": pair_select,
         "pi": lambda: number(PI),
         "unit_roundoff": lambda: number(Fraction(1, 2 ** MANTISSA[dtype])),
+        "splitter": lambda: number(Fraction(splitter(MANTISSA[dtype]))),
     }
 
 

@@ -287,6 +287,7 @@ RESTS_ON: dict[str, tuple[str, ...]] = {
     "power_of_two": (),
     "pi": (),
     "unit_roundoff": (),
+    "splitter": (),
     "abs": ("neg",),
     "less": (),
     "at_most": (),

@@ -13,7 +13,7 @@ from derive.machine.mechanism import Known, in_terms
 from derive.motions import motions, needs
 from derive.program import Program, Quantity, read_by
 from derive.scene import Machine, Scene
-from derive.scene.wanted import EQUATIONS, base_of, moves
+from derive.scene.wanted import EQUATIONS, IN_PAIRS, base_of, moves
 from derive.setting import Setting, applied_moment, traced, with_names
 from derive.stage import (
     Constant,
@@ -77,8 +77,11 @@ def library(scene: Scene | Machine) -> Library:
     if scene.form == "accurate" and made.outputs:
         made = with_low_parts(made)
     functions = _in_parameters(made, tuple(every.values()))
+    moving = _in_parameters(made, moved.programs)
     if scene.form == "accurate":
-        functions = tuple(in_pairs(f, set(terms.constants.names.values())) for f in functions)
+        names = {*terms.constants.names.values(), *moved.traced.names.values()}
+        functions = tuple(in_pairs(f, names) for f in functions)
+        moving = tuple(in_pairs(f, names) if f.name in IN_PAIRS else f for f in moving)
     return Library(
         terms.known,
         made,
@@ -86,7 +89,7 @@ def library(scene: Scene | Machine) -> Library:
         _constants(made, {**_meanings(terms), **moved.meanings}),
         {base: one.fact for base, one in wanted.items()},
         rates=functions[len(asked) :],
-        motions=_in_parameters(made, moved.programs),
+        motions=moving,
     )
 
 

@@ -32,6 +32,7 @@ from derive.scene.names import file_name
 from derive.scene.rules import check, warnings
 from derive.scene.table import THE_FILE, gate, nearest, shown, table
 from derive.scene.times import idle_times
+from derive.scene.wanted import check_form
 
 __all__ = [
     "Axes",
@@ -122,6 +123,7 @@ def parse_scene(text: str, name: str) -> Scene | Machine:
         document = _document(text)
         gate(document, THE_FILE)
         scene = _read(document, name, text)
+        check_form(scene.wanted, scene.form, scene.emission)
         times = table(document.get("motion", {}), "motion").entries
         idle = idle_times(times, scene.wanted)
         return replace(scene, warnings=(*scene.warnings, *idle))

@@ -18,15 +18,17 @@ LONGEST_NAME = 40
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*")
 HELPERS: Mapping[str, str] = {
     "setup": "set-up",
+    "setup_status": "what set-up says",
     "constants": "the struct of constants",
     "pair": "a pair of floats",
     **dict.fromkeys(
         ("abs", "add", "at_most", "cos", "div", "less", "low", "mul", "neg", "pi", "power_of_two",
-         "sin", "sine", "sqrt", "sub", "two_product", "unit_roundoff"),
+         "sin", "sine", "splitter", "sqrt", "sub", "two_product", "unit_roundoff"),
         "a function of pairs of floats",
     ),
     "PARAMETERS": "the list of parameters in the CasADi module",
     "CONSTANTS": "the list of constants in the CasADi module",
+    "SETUP_STATUS": "the words of set-up's status in the CasADi module",
 }  # fmt: skip
 """What emitted files call by a function's name beside the functions that are wanted."""
 VARIANTS = ("_hot", "_dense")

@@ -44,6 +44,9 @@ OF_MACHINES = (
 ROTATIONAL = (*TORQUE_FREE, *SPLITTINGS, *(f"{name}_compensated" for name in SPLITTINGS))
 """Those that move a free rotation, attitude and omega, and nothing else."""
 
+IN_PAIRS = ("step_rk4", "step_lie", *STEP_DERIVATIVES, *SPLITTINGS)
+"""Those that can work on pairs of floats, as the accurate form does."""
+
 SEQUENCES = tuple(
     first + middle + last
     for first, middle in permutations("xyz", 2)
@@ -94,6 +97,29 @@ def read_form(document: Mapping[str, object]) -> Literal["fast", "accurate"]:
     """Return how accurate the wanted functions are to be."""
     said = word(document.get("form", "fast"), "form", ("fast", "accurate"))
     return "accurate" if said == "accurate" else "fast"
+
+
+def check_form(wanted: Iterable[str], form: str, emission: str) -> None:
+    """Refuse the accurate form for steps that have none; formulas for attitudes need none."""
+    moving = [name for name in wanted if moves(name)]
+    if form != "accurate" or not moving:
+        return
+    if emission == "compact":
+        rule = "works in pairs of floats, which loops over stages do not"
+        raise SceneError(f"form = 'accurate' {rule}: '{moving[0]}' needs emission = 'fast'")
+    for name in moving:
+        if name not in IN_PAIRS:
+            raise SceneError(
+                f"form = 'accurate' is not for '{name}', which {_own_way(name)}; "
+                f"of the steps it is for {', '.join((*STEPS[:2], *SPLITTINGS))} and derivatives"
+            )
+
+
+def _own_way(name: str) -> str:
+    """Return why a step has no accurate form."""
+    if name in COMPENSATED or name == "step_dmv":
+        return "carries what rounding leaves already"
+    return "is a closed form of its own" if name == "flow_exact" else "runs loops over its series"
 
 
 def read_emission(document: Mapping[str, object]) -> Literal["fast", "compact"]:

@@ -95,6 +95,10 @@ def _unit_roundoff():
     return 1.1102230246251565e-16, 0.0
 
 
+def _splitter():
+    return 134217729.0, 0.0
+
+
 def _abs(a):
     return _select(a[0] < 0.0, _neg(a), a)
 
