@@ -9,11 +9,16 @@ from derive.specialise import Specialised
 
 @dataclass(frozen=True)
 class Stage:
-    """One named value: a let may be multiplied out by its users, a cut may not."""
+    """One named value: a let may be multiplied out by its users, a cut may not.
+
+    family : what components of one vector or tensor share, in words of this program's own; a value
+             that has none is a family of its own, whatever a scene calls it
+    """
 
     kind: str
     symbol: Symbol
     value: Expr
+    family: str = ""
 
 
 @dataclass(frozen=True)
@@ -32,14 +37,14 @@ class Draft:
     stages: list[Stage]
 
     def named(self, kind: str, name: str, value: Expr) -> Expr:
-        """Return a symbol for ``value``, unless it is plain already."""
+        """Return a symbol for ``value``, unless it is plain already; ``name`` is no scene's."""
         if value.is_Symbol or value.is_Number or (-value).is_Symbol:
             return value
         symbol = Symbol(name, real=True)
         taken = {stage.symbol for stage in self.stages}
         while symbol in taken:
             symbol = Symbol(f"{symbol.name}'", real=True)
-        self.stages.append(Stage(kind, symbol, value))
+        self.stages.append(Stage(kind, symbol, value, name.partition("_")[0]))
         return symbol
 
     def column(self, kind: str, name: str, values: Matrix) -> Matrix:

@@ -12,9 +12,10 @@ from derive.graph import ONE, UNIT, Graph, Value
 Monomial = tuple[tuple[int, int], ...]
 Terms = dict[Monomial, Value]
 Visit = Callable[[int], Terms]
+Family = str | int
 
 
-def terms(graph: Graph, value: Value, kept: frozenset[str] = frozenset()) -> Terms:
+def terms(graph: Graph, value: Value, kept: frozenset[Family] = frozenset()) -> Terms:
     """Return the coefficient, made of parameters, of every monomial in the variables.
 
     Calls, cuts and denominators that vary count as variables of their own, and so do the lets
@@ -33,14 +34,14 @@ def terms(graph: Graph, value: Value, kept: frozenset[str] = frozenset()) -> Ter
     return _scaled(graph, visit(value[1]), (value[0], ONE))
 
 
-def family(graph: Graph, node: int) -> str:
-    """Return the name that a let shares with the other components of its vector."""
-    return graph.names[node].partition("_")[0]
+def family(graph: Graph, node: int) -> Family:
+    """Return what a let shares with the other components of its vector; alone, its own number."""
+    return graph.families.get(node, node)
 
 
-def families(graph: Graph, value: Value) -> list[str]:
+def families(graph: Graph, value: Value) -> list[Family]:
     """Return the families of the lets that ``value`` varies by, innermost first."""
-    found: dict[str, None] = {}
+    found: dict[Family, None] = {}
     seen: set[int] = set()
 
     def visit(node: int) -> None:
@@ -59,7 +60,7 @@ def families(graph: Graph, value: Value) -> list[str]:
 def _kept(graph: Graph, node: int, visit: Visit) -> Terms:
     factor, inner = graph.nodes[node][1]
     inside = factored(graph, _scaled(graph, visit(inner), (factor, ONE)))
-    coefficient, named = graph.let(graph.names[node], inside)
+    coefficient, named = graph.let(graph.names[node], inside, graph.families.get(node, ""))
     return {((named, 1),): (coefficient, ONE)} if coefficient else {}
 
 

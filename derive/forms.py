@@ -13,7 +13,7 @@ from fractions import Fraction
 from itertools import combinations, product
 
 from derive.derivative import derivative
-from derive.expand import Terms, collected, degree, factored, families, terms
+from derive.expand import Family, Terms, collected, degree, factored, families, terms
 from derive.graph import Graph, Value
 from derive.program import FLOPS, Op
 from derive.schedule import draft
@@ -54,14 +54,14 @@ def value_forms(graph: Graph, block: Block) -> list[tuple[Value, ...]]:
     """Return the ways to compute the values of ``block``, the arranged one first."""
     forms = [block.values]
     kept = dict.fromkeys(f for value in block.values for f in families(graph, value))
-    for stop in (frozenset[str](), *(frozenset([name]) for name in kept)):
+    for stop in (frozenset[Family](), *(frozenset([name]) for name in kept)):
         expanded = _expanded(graph, block, stop)
         if expanded is not None:
             forms += [tuple(way(graph, t) for t in expanded) for way in WAYS]
     return list(dict.fromkeys(forms))
 
 
-def _expanded(graph: Graph, block: Block, kept: frozenset[str]) -> list[Terms] | None:
+def _expanded(graph: Graph, block: Block, kept: frozenset[Family]) -> list[Terms] | None:
     expanded = [terms(graph, value, kept) for value in block.values]
     return None if any(len(t) > MANY_TERMS for t in expanded) else expanded
 

@@ -27,6 +27,7 @@ class Graph:
         self.nodes: list[Node] = [("one",)]
         self.fixed: list[bool] = [True]
         self.names: dict[int, str] = {}
+        self.families: dict[int, str] = {}
         self._number: dict[Node, int] = {("one",): ONE}
 
     def _node(self, node: Node, parts: Iterable[int]) -> int:
@@ -125,9 +126,15 @@ class Graph:
         """Return ``function`` of ``values``: sin, cos, sqrt or power_of_two."""
         return Fraction(1), self._node(("call", function, values), [node for _, node in values])
 
-    def let(self, name: str, value: Value) -> Value:
-        """Name a value that is worth computing once; plain leaves and numbers stay themselves."""
-        return self._named("let", name, value)
+    def let(self, name: str, value: Value, family: str = "") -> Value:
+        """Name a value that is worth computing once; plain leaves and numbers stay themselves.
+
+        Lets of one ``family`` are components of one vector; without it a let is alone.
+        """
+        named = self._named("let", name, value)
+        if family:
+            self.families.setdefault(named[1], family)
+        return named
 
     def cut(self, name: str, value: Value) -> Value:
         """Name a value that must be computed as it stands, even when its users are expanded."""

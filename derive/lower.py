@@ -18,8 +18,10 @@ def lower(
     """
     known = dict(leaves)
     for stage in arrangement.stages:
-        named = graph.let if stage.kind == "let" else graph.cut
-        known[stage.symbol] = named(stage.symbol.name, value_of(graph, stage.value, known))
+        name, value = stage.symbol.name, value_of(graph, stage.value, known)
+        let = stage.kind == "let"
+        named = graph.let(name, value, stage.family) if let else graph.cut(name, value)
+        known[stage.symbol] = named
     return [value_of(graph, e, known) for e in arrangement.outputs]
 
 
