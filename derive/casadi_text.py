@@ -12,13 +12,14 @@ from derive.flows.compact import Compact
 from derive.flows.series import Series
 from derive.library import Library
 from derive.pair_sine import quarter_turn, series
-from derive.program import Line, Op, Operand, Program, Quantity, Repeat
+from derive.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
 from derive.scope import declared_in_python, require_free
 from derive.series_text import series_casadi
 from derive.status import CONSTANT, PARAMETER, computed, possible
 
 Text = Callable[[Operand], str]
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/", "less": "<", "at_most": "<="}
+KEPT = "_kept("
 _CALLS = {"abs": "fabs", "select": "if_else", "both": "logic_and", "either": "logic_or"}
 
 
@@ -27,17 +28,19 @@ def casadi_file(library: Library) -> str:
     name = library.known.scene.name
     has_setup = bool(library.constants)
     in_pairs = [p for p in library.printed() if works_in_pairs(p)] + [library.setup] * has_setup
+    functions = [_function(p, name) for p in library.printed()]
     return TEMPLATES.get_template("casadi.py.jinja").render(
         first_line=first_line(library),
         title=library.known.scene.title,
         scene=name,
         setup=_setup(library.setup, name) if has_setup else None,
         pairs=bool(in_pairs),
+        kept=bool(in_pairs) or any(KEPT in str(f["lines"]) for f in functions),
         turns=any(name in ("sin", "cos") for name in pair_functions(in_pairs)),
         odd=[tuple(map(float, pair_of(c, F64.dtype))) for c in series(F64.bits, 1)],
         even=[tuple(map(float, pair_of(c, F64.dtype))) for c in series(F64.bits, 0)],
         quarter=[float(part) for part in quarter_turn(lambda q: rounded(q, F64.dtype))],
-        functions=[_function(p, name) for p in library.printed()],
+        functions=functions,
     )
 
 
@@ -129,12 +132,24 @@ def _components(quantities: tuple[Quantity, ...]) -> list[str]:
 def plain_lines(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
     """Return the lines of a program in the working precision, and how to read a result."""
 
-    text = _read(place)
+    text, kept = _read(place), _to_keep(program.ops)
 
     def one(op: Op) -> str:
-        return f"{op.result} = {_operation(op, text)}"
+        value = _operation(op, text)
+        return f"{op.result} = {KEPT}{value})" if op.result in kept else f"{op.result} = {value}"
 
     return _written(program.ops, one, text, "ca.if_else"), text
+
+
+def _to_keep(lines: Sequence[Line]) -> frozenset[str]:
+    """Return the sums whose rounding is worked out: CasADi would make b of (a + b) - a."""
+    made = {op.result: op for op, _ in every_op(lines) if op.operator in ("add", "sub")}
+    return frozenset(
+        operand
+        for op in made.values()
+        for operand, other in (op.operands, op.operands[::-1])
+        if isinstance(operand, str) and operand in made and other in made[operand].operands
+    )
 
 
 def _read(place: dict[str, str]) -> Text:

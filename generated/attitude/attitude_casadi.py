@@ -20,6 +20,19 @@ def _built(build):
         ca.GlobalOptions.setSimplificationOnTheFly(before)
 
 
+def _missing(count):
+    """Make an input that is left out NaN, which shows; CasADi's own would be 0."""
+    return {"default_in": [float("nan")] * count}
+
+
+def _kept(x):
+    """Return x by an operation that CasADi does not see through, so that (a + b) - a stays so.
+
+    Needed where the Function is called with SX, or expanded: CasADi builds it anew then.
+    """
+    return ca.remainder(x, float("inf"))
+
+
 def quaternion_product():
     """product of two quaternions: the rotation of the second, then that of the first Inputs: left, right."""
     return _built(_quaternion_product)
@@ -64,6 +77,7 @@ def _quaternion_product():
         ],
         ['left', 'right'],
         ['attitude'],
+        _missing(2),
     )
 
 
@@ -115,6 +129,7 @@ def _quaternion_normalise():
         ],
         ['quaternion'],
         ['attitude'],
+        _missing(1),
     )
 
 
@@ -143,28 +158,28 @@ def _quaternion_exp():
     t15 = 134217729.0
     t16 = t15 - 1.0
     t17 = t16 * t12
-    t18 = t17 + t12
+    t18 = _kept(t17 + t12)
     t19 = t18 - t17
     t20 = t12 - t19
     t21 = t16 * t13
-    t22 = t21 + t13
+    t22 = _kept(t21 + t13)
     t23 = t22 - t21
     t24 = t13 - t23
     t25 = t16 * t14
-    t26 = t25 + t14
+    t26 = _kept(t25 + t14)
     t27 = t26 - t25
     t28 = t14 - t27
     t29 = t19 * t19
     t30 = t23 * t23
-    t31 = t29 + t30
-    t32 = t31 - t29
+    t31 = _kept(t29 + t30)
+    t32 = _kept(t31 - t29)
     t33 = t31 - t32
     t34 = t29 - t33
     t35 = t30 - t32
     t36 = t34 + t35
     t37 = t27 * t27
-    t38 = t31 + t37
-    t39 = t38 - t31
+    t38 = _kept(t31 + t37)
+    t39 = _kept(t38 - t31)
     t40 = t38 - t39
     t41 = t31 - t40
     t42 = t37 - t39
@@ -183,7 +198,7 @@ def _quaternion_exp():
     t55 = ca.sqrt(t54)
     t56 = ca.if_else(t7, 1.0, t55)
     t57 = t16 * t56
-    t58 = t57 + t56
+    t58 = _kept(t57 + t56)
     t59 = t58 - t57
     t60 = t56 - t59
     t61 = t59 * t59
@@ -221,6 +236,7 @@ def _quaternion_exp():
         ],
         ['rotation_vector'],
         ['attitude'],
+        _missing(1),
     )
 
 
@@ -291,6 +307,7 @@ def _quaternion_log():
         ],
         ['quaternion'],
         ['rotation_vector'],
+        _missing(1),
     )
 
 
@@ -351,6 +368,7 @@ def _quaternion_rotate():
         ],
         ['attitude', 'vector_B'],
         ['vector_N'],
+        _missing(2),
     )
 
 
@@ -411,6 +429,7 @@ def _quaternion_rotate_back():
         ],
         ['attitude', 'vector_N'],
         ['vector_B'],
+        _missing(2),
     )
 
 
@@ -455,6 +474,7 @@ def _quaternion_to_matrix():
         ],
         ['attitude'],
         ['matrix'],
+        _missing(1),
     )
 
 
@@ -522,6 +542,7 @@ def _quaternion_from_matrix():
         ],
         ['matrix'],
         ['attitude'],
+        _missing(1),
     )
 
 
@@ -548,6 +569,7 @@ def _quaternion_to_mrp():
         ],
         ['attitude'],
         ['mrp'],
+        _missing(1),
     )
 
 
@@ -597,6 +619,7 @@ def _quaternion_from_mrp():
         ],
         ['mrp'],
         ['attitude'],
+        _missing(1),
     )
 
 
@@ -654,6 +677,7 @@ def _quaternion_to_euler_zyx():
         ],
         ['attitude'],
         ['angles'],
+        _missing(1),
     )
 
 
@@ -699,6 +723,7 @@ def _quaternion_from_euler_zyx():
         ],
         ['angles'],
         ['attitude'],
+        _missing(1),
     )
 
 
@@ -762,6 +787,7 @@ def _quaternion_to_euler_zxz():
         ],
         ['attitude'],
         ['angles'],
+        _missing(1),
     )
 
 
@@ -806,4 +832,5 @@ def _quaternion_from_euler_zxz():
         ],
         ['angles'],
         ['attitude'],
+        _missing(1),
     )

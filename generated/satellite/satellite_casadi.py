@@ -25,6 +25,19 @@ def _built(build):
         ca.GlobalOptions.setSimplificationOnTheFly(before)
 
 
+def _missing(count):
+    """Make an input that is left out NaN, which shows; CasADi's own would be 0."""
+    return {"default_in": [float("nan")] * count}
+
+
+def _kept(x):
+    """Return x by an operation that CasADi does not see through, so that (a + b) - a stays so.
+
+    Needed where the Function is called with SX, or expanded: CasADi builds it anew then.
+    """
+    return ca.remainder(x, float("inf"))
+
+
 def _neg(a):
     return -a[0], 0.0 - a[1]
 
@@ -34,16 +47,16 @@ def _low(a):
 
 
 def _add(a, b):
-    s = a[0] + b[0]
+    s = _kept(a[0] + b[0])
     v = s - a[0]
     e = (a[0] - (s - v)) + (b[0] - v)
-    t = a[1] + b[1]
+    t = _kept(a[1] + b[1])
     w = t - a[1]
     f = (a[1] - (t - w)) + (b[1] - w)
     c = e + t
-    x = s + c
+    x = _kept(s + c)
     y = (c - (x - s)) + f
-    high = x + y
+    high = _kept(x + y)
     return high, y - (high - x)
 
 
@@ -62,23 +75,23 @@ def _two_product(a, b):
 def _mul(a, b):
     p, e = _two_product(a[0], b[0])
     e = e + (a[0] * b[1] + a[1] * b[0])
-    high = p + e
+    high = _kept(p + e)
     return high, e - (high - p)
 
 
 def _div(a, b):
-    q1 = (a[0] / b[0], 0.0)
+    q1 = (_kept(a[0] / b[0]), 0.0)
     r1 = _add(a, _neg(_mul(q1, b)))
-    q2 = (r1[0] / b[0], 0.0)
+    q2 = (_kept(r1[0] / b[0]), 0.0)
     r2 = _add(r1, _neg(_mul(q2, b)))
     return _add(_add(q1, q2), (r2[0] / b[0], 0.0))
 
 
 def _sqrt(a):
-    s = ca.sqrt(a[0])
+    s = _kept(ca.sqrt(a[0]))
     r = _add(a, _neg(_two_product(s, s)))
     e = ca.if_else(s > 0.0, r[0] / (s + s), 0.0)
-    high = s + e
+    high = _kept(s + e)
     return high, e - (high - s)
 
 
@@ -131,13 +144,15 @@ def setup_status():
 def _setup():
     parameters, constants, status = _tried()
     spoilt = ca.if_else(status > 0.0, float("nan"), 0.0)
+    names = ["parameters"], ["constants"]
     outputs = [constants + spoilt]
-    return ca.Function("satellite_setup", [parameters], outputs, ["parameters"], ["constants"])
+    return ca.Function("satellite_setup", [parameters], outputs, *names, _missing(1))
 
 
 def _setup_status():
     parameters, _, status = _tried()
-    return ca.Function("satellite_setup_status", [parameters], [status], ["parameters"], ["status"])
+    names = ["parameters"], ["status"]
+    return ca.Function("satellite_setup_status", [parameters], [status], *names, _missing(1))
 
 
 def _tried():
@@ -211,7 +226,8 @@ def _from_parameters(hot, name):
     names = [hot.name_in(i) for i in range(1, hot.n_in())]
     inputs = [ca.SX.sym(n, hot.sparsity_in(n)) for n in names]
     outputs = hot.call([_setup()(parameters), *inputs])
-    return ca.Function(name, [parameters, *inputs], outputs, ["parameters", *names], hot.name_out())
+    names = ["parameters", *names]
+    return ca.Function(name, [parameters, *inputs], outputs, names, hot.name_out(), _missing(len(names)))
 
 
 def state_rate():
@@ -274,6 +290,7 @@ def _state_rate():
         ],
         ['constants', 'attitude', 'omega', 'moment'],
         ['attitude_rate', 'omega_dot'],
+        _missing(4),
     )
 
 
@@ -520,6 +537,7 @@ def _step_rk4():
         ],
         ['constants', 'attitude', 'omega', 'moment', 'time_step'],
         ['attitude_next', 'omega_next'],
+        _missing(5),
     )
 
 
@@ -1460,6 +1478,7 @@ def _step_rk4_jacobian():
         ],
         ['constants', 'attitude', 'omega', 'moment', 'time_step'],
         ['attitude_next', 'omega_next', 'jacobian'],
+        _missing(5),
     )
 
 
@@ -2283,6 +2302,7 @@ def _step_rk4_tangent():
         ],
         ['constants', 'attitude', 'omega', 'moment', 'time_step'],
         ['attitude_next', 'omega_next', 'jacobian'],
+        _missing(5),
     )
 
 
@@ -3221,6 +3241,7 @@ def _step_rk4_sensitivity():
         ],
         ['constants', 'attitude', 'omega', 'moment', 'time_step'],
         ['attitude_next', 'omega_next', 'jacobian'],
+        _missing(5),
     )
 
 
@@ -3387,35 +3408,35 @@ def _step_lie():
     t223 = t107 / t220
     t276 = t220 * 0.5
     t232 = t20 * t223
-    t233 = t232 + t223
+    t233 = _kept(t232 + t223)
     t234 = t233 - t232
     t235 = t223 - t234
     t244 = t234 * t234
     t256 = t223 + t234
     t257 = t256 * t235
     t228 = t20 * t222
-    t229 = t228 + t222
+    t229 = _kept(t228 + t222)
     t230 = t229 - t228
     t231 = t222 - t230
     t237 = t230 * t230
     t253 = t222 + t230
     t254 = t253 * t231
     t224 = t20 * t221
-    t225 = t224 + t221
+    t225 = _kept(t224 + t221)
     t226 = t225 - t224
     t227 = t221 - t226
     t236 = t226 * t226
     t251 = t221 + t226
     t252 = t251 * t227
     t255 = t252 + t254
-    t238 = t236 + t237
-    t239 = t238 - t236
+    t238 = _kept(t236 + t237)
+    t239 = _kept(t238 - t236)
     t242 = t237 - t239
     t240 = t238 - t239
     t241 = t236 - t240
     t243 = t241 + t242
-    t245 = t238 + t244
-    t246 = t245 - t238
+    t245 = _kept(t238 + t244)
+    t246 = _kept(t245 - t238)
     t249 = t244 - t246
     t247 = t245 - t246
     t248 = t238 - t247
@@ -3427,7 +3448,7 @@ def _step_lie():
     t262 = ca.sqrt(t261)
     t263 = ca.if_else(t216, 1.0, t262)
     t264 = t20 * t263
-    t265 = t264 + t263
+    t265 = _kept(t264 + t263)
     t266 = t265 - t264
     t267 = t263 - t266
     t268 = t266 * t266
@@ -3469,35 +3490,35 @@ def _step_lie():
     t137 = t95 / t134
     t190 = t134 * 0.5
     t146 = t20 * t137
-    t147 = t146 + t137
+    t147 = _kept(t146 + t137)
     t148 = t147 - t146
     t149 = t137 - t148
     t158 = t148 * t148
     t170 = t137 + t148
     t171 = t170 * t149
     t142 = t20 * t136
-    t143 = t142 + t136
+    t143 = _kept(t142 + t136)
     t144 = t143 - t142
     t145 = t136 - t144
     t151 = t144 * t144
     t167 = t136 + t144
     t168 = t167 * t145
     t138 = t20 * t135
-    t139 = t138 + t135
+    t139 = _kept(t138 + t135)
     t140 = t139 - t138
     t141 = t135 - t140
     t150 = t140 * t140
     t165 = t135 + t140
     t166 = t165 * t141
     t169 = t166 + t168
-    t152 = t150 + t151
-    t153 = t152 - t150
+    t152 = _kept(t150 + t151)
+    t153 = _kept(t152 - t150)
     t156 = t151 - t153
     t154 = t152 - t153
     t155 = t150 - t154
     t157 = t155 + t156
-    t159 = t152 + t158
-    t160 = t159 - t152
+    t159 = _kept(t152 + t158)
+    t160 = _kept(t159 - t152)
     t163 = t158 - t160
     t161 = t159 - t160
     t162 = t152 - t161
@@ -3509,7 +3530,7 @@ def _step_lie():
     t176 = ca.sqrt(t175)
     t177 = ca.if_else(t130, 1.0, t176)
     t178 = t20 * t177
-    t179 = t178 + t177
+    t179 = _kept(t178 + t177)
     t180 = t179 - t178
     t181 = t177 - t180
     t182 = t180 * t180
@@ -3616,6 +3637,7 @@ def _step_lie():
         ],
         ['constants', 'attitude', 'omega', 'moment', 'time_step'],
         ['attitude_next', 'omega_next'],
+        _missing(5),
     )
 
 
@@ -4984,6 +5006,7 @@ def _step_split():
         ],
         ['constants', 'attitude', 'omega', 'moment', 'time_step'],
         ['attitude_next', 'omega_next'],
+        _missing(5),
     )
 
 
@@ -5284,4 +5307,5 @@ def _step_taylor():
         ],
         ['constants', 'attitude', 'omega', 'moment', 'time_step'],
         ['attitude_next', 'omega_next', 'step_proposed'],
+        _missing(5),
     )

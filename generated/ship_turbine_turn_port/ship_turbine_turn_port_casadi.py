@@ -25,6 +25,19 @@ def _built(build):
         ca.GlobalOptions.setSimplificationOnTheFly(before)
 
 
+def _missing(count):
+    """Make an input that is left out NaN, which shows; CasADi's own would be 0."""
+    return {"default_in": [float("nan")] * count}
+
+
+def _kept(x):
+    """Return x by an operation that CasADi does not see through, so that (a + b) - a stays so.
+
+    Needed where the Function is called with SX, or expanded: CasADi builds it anew then.
+    """
+    return ca.remainder(x, float("inf"))
+
+
 def _neg(a):
     return -a[0], 0.0 - a[1]
 
@@ -34,16 +47,16 @@ def _low(a):
 
 
 def _add(a, b):
-    s = a[0] + b[0]
+    s = _kept(a[0] + b[0])
     v = s - a[0]
     e = (a[0] - (s - v)) + (b[0] - v)
-    t = a[1] + b[1]
+    t = _kept(a[1] + b[1])
     w = t - a[1]
     f = (a[1] - (t - w)) + (b[1] - w)
     c = e + t
-    x = s + c
+    x = _kept(s + c)
     y = (c - (x - s)) + f
-    high = x + y
+    high = _kept(x + y)
     return high, y - (high - x)
 
 
@@ -62,23 +75,23 @@ def _two_product(a, b):
 def _mul(a, b):
     p, e = _two_product(a[0], b[0])
     e = e + (a[0] * b[1] + a[1] * b[0])
-    high = p + e
+    high = _kept(p + e)
     return high, e - (high - p)
 
 
 def _div(a, b):
-    q1 = (a[0] / b[0], 0.0)
+    q1 = (_kept(a[0] / b[0]), 0.0)
     r1 = _add(a, _neg(_mul(q1, b)))
-    q2 = (r1[0] / b[0], 0.0)
+    q2 = (_kept(r1[0] / b[0]), 0.0)
     r2 = _add(r1, _neg(_mul(q2, b)))
     return _add(_add(q1, q2), (r2[0] / b[0], 0.0))
 
 
 def _sqrt(a):
-    s = ca.sqrt(a[0])
+    s = _kept(ca.sqrt(a[0]))
     r = _add(a, _neg(_two_product(s, s)))
     e = ca.if_else(s > 0.0, r[0] / (s + s), 0.0)
-    high = s + e
+    high = _kept(s + e)
     return high, e - (high - s)
 
 
@@ -131,13 +144,15 @@ def setup_status():
 def _setup():
     parameters, constants, status = _tried()
     spoilt = ca.if_else(status > 0.0, float("nan"), 0.0)
+    names = ["parameters"], ["constants"]
     outputs = [constants + spoilt]
-    return ca.Function("ship_turbine_turn_port_setup", [parameters], outputs, ["parameters"], ["constants"])
+    return ca.Function("ship_turbine_turn_port_setup", [parameters], outputs, *names, _missing(1))
 
 
 def _setup_status():
     parameters, _, status = _tried()
-    return ca.Function("ship_turbine_turn_port_setup_status", [parameters], [status], ["parameters"], ["status"])
+    names = ["parameters"], ["status"]
+    return ca.Function("ship_turbine_turn_port_setup_status", [parameters], [status], *names, _missing(1))
 
 
 def _tried():
@@ -181,7 +196,8 @@ def _from_parameters(hot, name):
     names = [hot.name_in(i) for i in range(1, hot.n_in())]
     inputs = [ca.SX.sym(n, hot.sparsity_in(n)) for n in names]
     outputs = hot.call([_setup()(parameters), *inputs])
-    return ca.Function(name, [parameters, *inputs], outputs, ["parameters", *names], hot.name_out())
+    names = ["parameters", *names]
+    return ca.Function(name, [parameters, *inputs], outputs, names, hot.name_out(), _missing(len(names)))
 
 
 def reactions():
@@ -205,6 +221,7 @@ def _reactions():
         ],
         ['constants'],
         ['R_A', 'R_B'],
+        _missing(1),
     )
 
 
@@ -228,4 +245,5 @@ def _gyro_moment():
         ],
         ['constants'],
         ['gyro_moment'],
+        _missing(1),
     )

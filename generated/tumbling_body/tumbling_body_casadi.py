@@ -25,6 +25,19 @@ def _built(build):
         ca.GlobalOptions.setSimplificationOnTheFly(before)
 
 
+def _missing(count):
+    """Make an input that is left out NaN, which shows; CasADi's own would be 0."""
+    return {"default_in": [float("nan")] * count}
+
+
+def _kept(x):
+    """Return x by an operation that CasADi does not see through, so that (a + b) - a stays so.
+
+    Needed where the Function is called with SX, or expanded: CasADi builds it anew then.
+    """
+    return ca.remainder(x, float("inf"))
+
+
 def _neg(a):
     return -a[0], 0.0 - a[1]
 
@@ -34,16 +47,16 @@ def _low(a):
 
 
 def _add(a, b):
-    s = a[0] + b[0]
+    s = _kept(a[0] + b[0])
     v = s - a[0]
     e = (a[0] - (s - v)) + (b[0] - v)
-    t = a[1] + b[1]
+    t = _kept(a[1] + b[1])
     w = t - a[1]
     f = (a[1] - (t - w)) + (b[1] - w)
     c = e + t
-    x = s + c
+    x = _kept(s + c)
     y = (c - (x - s)) + f
-    high = x + y
+    high = _kept(x + y)
     return high, y - (high - x)
 
 
@@ -62,23 +75,23 @@ def _two_product(a, b):
 def _mul(a, b):
     p, e = _two_product(a[0], b[0])
     e = e + (a[0] * b[1] + a[1] * b[0])
-    high = p + e
+    high = _kept(p + e)
     return high, e - (high - p)
 
 
 def _div(a, b):
-    q1 = (a[0] / b[0], 0.0)
+    q1 = (_kept(a[0] / b[0]), 0.0)
     r1 = _add(a, _neg(_mul(q1, b)))
-    q2 = (r1[0] / b[0], 0.0)
+    q2 = (_kept(r1[0] / b[0]), 0.0)
     r2 = _add(r1, _neg(_mul(q2, b)))
     return _add(_add(q1, q2), (r2[0] / b[0], 0.0))
 
 
 def _sqrt(a):
-    s = ca.sqrt(a[0])
+    s = _kept(ca.sqrt(a[0]))
     r = _add(a, _neg(_two_product(s, s)))
     e = ca.if_else(s > 0.0, r[0] / (s + s), 0.0)
-    high = s + e
+    high = _kept(s + e)
     return high, e - (high - s)
 
 
@@ -131,13 +144,15 @@ def setup_status():
 def _setup():
     parameters, constants, status = _tried()
     spoilt = ca.if_else(status > 0.0, float("nan"), 0.0)
+    names = ["parameters"], ["constants"]
     outputs = [constants + spoilt]
-    return ca.Function("tumbling_body_setup", [parameters], outputs, ["parameters"], ["constants"])
+    return ca.Function("tumbling_body_setup", [parameters], outputs, *names, _missing(1))
 
 
 def _setup_status():
     parameters, _, status = _tried()
-    return ca.Function("tumbling_body_setup_status", [parameters], [status], ["parameters"], ["status"])
+    names = ["parameters"], ["status"]
+    return ca.Function("tumbling_body_setup_status", [parameters], [status], *names, _missing(1))
 
 
 def _tried():
@@ -585,7 +600,8 @@ def _from_parameters(hot, name):
     names = [hot.name_in(i) for i in range(1, hot.n_in())]
     inputs = [ca.SX.sym(n, hot.sparsity_in(n)) for n in names]
     outputs = hot.call([_setup()(parameters), *inputs])
-    return ca.Function(name, [parameters, *inputs], outputs, ["parameters", *names], hot.name_out())
+    names = ["parameters", *names]
+    return ca.Function(name, [parameters, *inputs], outputs, names, hot.name_out(), _missing(len(names)))
 
 
 def kinetic_energy():
@@ -617,6 +633,7 @@ def _kinetic_energy():
         ],
         ['constants', 'omega'],
         ['kinetic_energy'],
+        _missing(2),
     )
 
 
@@ -1480,6 +1497,7 @@ def _flow_exact():
         ],
         ['constants', 'attitude', 'omega', 'time'],
         ['attitude_next', 'omega_next'],
+        _missing(4),
     )
 
 
@@ -1605,11 +1623,11 @@ def _plan_dmv():
     t105 = t104 / t99
     t106 = t105 * t101
     t107 = t95 * t105
-    t108 = t107 - t105
+    t108 = _kept(t107 - t105)
     t109 = t107 - t108
     t110 = t105 - t109
     t111 = t95 * t101
-    t112 = t111 - t101
+    t112 = _kept(t111 - t101)
     t113 = t111 - t112
     t114 = t101 - t113
     t115 = t109 * t113
@@ -1629,11 +1647,11 @@ def _plan_dmv():
     t129 = t128 / t99
     t130 = t129 * t125
     t131 = t95 * t129
-    t132 = t131 - t129
+    t132 = _kept(t131 - t129)
     t133 = t131 - t132
     t134 = t129 - t133
     t135 = t95 * t125
-    t136 = t135 - t125
+    t136 = _kept(t135 - t125)
     t137 = t135 - t136
     t138 = t125 - t137
     t139 = t133 * t137
@@ -1653,11 +1671,11 @@ def _plan_dmv():
     t153 = t152 / t99
     t154 = t153 * t149
     t155 = t95 * t153
-    t156 = t155 - t153
+    t156 = _kept(t155 - t153)
     t157 = t155 - t156
     t158 = t153 - t157
     t159 = t95 * t149
-    t160 = t159 - t149
+    t160 = _kept(t159 - t149)
     t161 = t159 - t160
     t162 = t149 - t161
     t163 = t157 * t161
@@ -1680,6 +1698,7 @@ def _plan_dmv():
         ],
         ['constants', 'omega', 'time_step'],
         ['plan'],
+        _missing(3),
     )
 
 
@@ -1852,31 +1871,31 @@ def _step_dmv():
     t154 = plan[5] * t151
     t155 = plan[9] * t152
     t156 = t126 + remainder[0]
-    t157 = attitude[0] + t156
+    t157 = _kept(attitude[0] + t156)
     t158 = t157 - attitude[0]
     t159 = t156 - t158
     t160 = t133 + remainder[1]
-    t161 = attitude[1] + t160
+    t161 = _kept(attitude[1] + t160)
     t162 = t161 - attitude[1]
     t163 = t160 - t162
     t164 = t140 + remainder[2]
-    t165 = attitude[2] + t164
+    t165 = _kept(attitude[2] + t164)
     t166 = t165 - attitude[2]
     t167 = t164 - t166
     t168 = t147 + remainder[3]
-    t169 = attitude[3] + t168
+    t169 = _kept(attitude[3] + t168)
     t170 = t169 - attitude[3]
     t171 = t168 - t170
     t172 = t153 + remainder[4]
-    t173 = omega[0] + t172
+    t173 = _kept(omega[0] + t172)
     t174 = t173 - omega[0]
     t175 = t172 - t174
     t176 = t154 + remainder[5]
-    t177 = omega[1] + t176
+    t177 = _kept(omega[1] + t176)
     t178 = t177 - omega[1]
     t179 = t176 - t178
     t180 = t155 + remainder[6]
-    t181 = omega[2] + t180
+    t181 = _kept(omega[2] + t180)
     t182 = t181 - omega[2]
     t183 = t180 - t182
     return ca.Function(
@@ -1889,6 +1908,7 @@ def _step_dmv():
         ],
         ['plan', 'attitude', 'omega', 'remainder'],
         ['attitude_next', 'omega_next', 'remainder_next'],
+        _missing(4),
     )
 
 
@@ -2151,6 +2171,7 @@ def _step_split2():
         ],
         ['constants', 'attitude', 'omega', 'time_step'],
         ['attitude_next', 'omega_next'],
+        _missing(4),
     )
 
 
@@ -2899,6 +2920,7 @@ def _step_split():
         ],
         ['constants', 'attitude', 'omega', 'time_step'],
         ['attitude_next', 'omega_next'],
+        _missing(4),
     )
 
 
@@ -4035,6 +4057,7 @@ def _step_split6():
         ],
         ['constants', 'attitude', 'omega', 'time_step'],
         ['attitude_next', 'omega_next'],
+        _missing(4),
     )
 
 
@@ -4256,6 +4279,7 @@ def _step_rk4():
         ],
         ['constants', 'attitude', 'omega', 'time_step'],
         ['attitude_next', 'omega_next'],
+        _missing(4),
     )
 
 
@@ -5057,6 +5081,7 @@ def _step_rk4_jacobian():
         ],
         ['constants', 'attitude', 'omega', 'time_step'],
         ['attitude_next', 'omega_next', 'jacobian'],
+        _missing(4),
     )
 
 
@@ -5198,35 +5223,35 @@ def _step_lie():
     t199 = t83 / t196
     t252 = t196 * 0.5
     t208 = t14 * t199
-    t209 = t208 + t199
+    t209 = _kept(t208 + t199)
     t210 = t209 - t208
     t211 = t199 - t210
     t220 = t210 * t210
     t232 = t199 + t210
     t233 = t232 * t211
     t204 = t14 * t198
-    t205 = t204 + t198
+    t205 = _kept(t204 + t198)
     t206 = t205 - t204
     t207 = t198 - t206
     t213 = t206 * t206
     t229 = t198 + t206
     t230 = t229 * t207
     t200 = t14 * t197
-    t201 = t200 + t197
+    t201 = _kept(t200 + t197)
     t202 = t201 - t200
     t203 = t197 - t202
     t212 = t202 * t202
     t227 = t197 + t202
     t228 = t227 * t203
     t231 = t228 + t230
-    t214 = t212 + t213
-    t215 = t214 - t212
+    t214 = _kept(t212 + t213)
+    t215 = _kept(t214 - t212)
     t218 = t213 - t215
     t216 = t214 - t215
     t217 = t212 - t216
     t219 = t217 + t218
-    t221 = t214 + t220
-    t222 = t221 - t214
+    t221 = _kept(t214 + t220)
+    t222 = _kept(t221 - t214)
     t225 = t220 - t222
     t223 = t221 - t222
     t224 = t214 - t223
@@ -5238,7 +5263,7 @@ def _step_lie():
     t238 = ca.sqrt(t237)
     t239 = ca.if_else(t192, 1.0, t238)
     t240 = t14 * t239
-    t241 = t240 + t239
+    t241 = _kept(t240 + t239)
     t242 = t241 - t240
     t243 = t239 - t242
     t244 = t242 * t242
@@ -5280,35 +5305,35 @@ def _step_lie():
     t113 = t71 / t110
     t166 = t110 * 0.5
     t122 = t14 * t113
-    t123 = t122 + t113
+    t123 = _kept(t122 + t113)
     t124 = t123 - t122
     t125 = t113 - t124
     t134 = t124 * t124
     t146 = t113 + t124
     t147 = t146 * t125
     t118 = t14 * t112
-    t119 = t118 + t112
+    t119 = _kept(t118 + t112)
     t120 = t119 - t118
     t121 = t112 - t120
     t127 = t120 * t120
     t143 = t112 + t120
     t144 = t143 * t121
     t114 = t14 * t111
-    t115 = t114 + t111
+    t115 = _kept(t114 + t111)
     t116 = t115 - t114
     t117 = t111 - t116
     t126 = t116 * t116
     t141 = t111 + t116
     t142 = t141 * t117
     t145 = t142 + t144
-    t128 = t126 + t127
-    t129 = t128 - t126
+    t128 = _kept(t126 + t127)
+    t129 = _kept(t128 - t126)
     t132 = t127 - t129
     t130 = t128 - t129
     t131 = t126 - t130
     t133 = t131 + t132
-    t135 = t128 + t134
-    t136 = t135 - t128
+    t135 = _kept(t128 + t134)
+    t136 = _kept(t135 - t128)
     t139 = t134 - t136
     t137 = t135 - t136
     t138 = t128 - t137
@@ -5320,7 +5345,7 @@ def _step_lie():
     t152 = ca.sqrt(t151)
     t153 = ca.if_else(t106, 1.0, t152)
     t154 = t14 * t153
-    t155 = t154 + t153
+    t155 = _kept(t154 + t153)
     t156 = t155 - t154
     t157 = t153 - t156
     t158 = t156 * t156
@@ -5427,6 +5452,7 @@ def _step_lie():
         ],
         ['constants', 'attitude', 'omega', 'time_step'],
         ['attitude_next', 'omega_next'],
+        _missing(4),
     )
 
 
@@ -5716,4 +5742,5 @@ def _step_taylor():
         ],
         ['constants', 'attitude', 'omega', 'time_step'],
         ['attitude_next', 'omega_next', 'step_proposed'],
+        _missing(4),
     )
