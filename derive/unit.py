@@ -47,6 +47,25 @@ REFUSED: Mapping[str, str] = {
     **dict.fromkeys(("kN", "mN", "lbf"), "N"),
     **dict.fromkeys(("Nm", "kNm", "mNm"), "N m"),
 }
+BESIDE_SI: Mapping[str, tuple[str, str]] = {
+    "min": ("s", "60"),
+    "h": ("s", "3600"),
+    "d": ("s", "86400"),
+    "deg": ("rad", "pi/180"),
+    "rpm": ("rad/s", "pi/30"),
+}
+"""Units that a result may be given in: of which SI unit each is how much."""
+
+NAMED_AFTER: Mapping[str, str] = {
+    **dict.fromkeys(("day", "days"), "d"),
+    **dict.fromkeys(("hour", "hours"), "h"),
+    **dict.fromkeys(("minute", "minutes"), "min"),
+    **dict.fromkeys(("deg", "degree", "degrees"), "deg"),
+    **dict.fromkeys(("rpm", "Hz", "mm", "cm", "km", "kN", "kNm", "ms"), ""),
+    "rpm": "rpm",
+}
+"""Units that the last word of a name may claim, and how a result spells them, if it can."""
+
 NONE = UNITS["1"]
 ANGULAR_VELOCITY = _dimension(0, 0, -1)
 ANGULAR_ACCELERATION = _dimension(0, 0, -2)
@@ -122,6 +141,29 @@ def spelled(found: Dimension) -> str:
 
 def _factor(name: str, power: Fraction) -> str:
     return name if power == 1 else f"{name}^{power}"
+
+
+def behind(unit: str) -> str:
+    """Return what to write behind a number: a space and the unit, nothing for plain numbers.
+
+    >>> behind("N m"), behind("1"), behind("")
+    (' N m', '', '')
+    """
+    return "" if unit in ("", "1") else f" {unit}"
+
+
+def misnamed(name: str, unit: str) -> str:
+    """Return a doubt about a name that ends in a unit which is not its own, "" if there is none.
+
+    >>> misnamed("period_days", "s")
+    "'period_days' is called after days, but its unit is s"
+    >>> misnamed("period_days", "d"), misnamed("period_s", "s")
+    ('', '')
+    """
+    last = name.rpartition("_")[2]
+    if "_" not in name or last not in NAMED_AFTER or unit in (last, NAMED_AFTER[last]):
+        return ""
+    return f"'{name}' is called after {last}, but its unit is {unit}"
 
 
 def dimension_of(formula: Formula, dims: Mapping[str, Dimension]) -> Dimension | None:

@@ -212,7 +212,7 @@ def _outputs(scene: Scene) -> tuple[Quantity, ...]:
     if free:
         parts = tuple(f"{name}_dot" for name in free)
         says = "rates of " + ", ".join(free)
-        outputs.append(Quantity("coordinate_rates", parts, (len(free),), "1/s", "", *ANY, says))
+        outputs.append(Quantity("coordinate_rates", parts, (len(free),), "rad/s", "", *ANY, says))
     if scene.position is not None:
         outputs.append(_vector("position_rate", "m/s", "N", None, "rate of the position"))
         outputs.append(_vector("velocity_rate", "m/s^2", "N", None, "rate of the velocity"))

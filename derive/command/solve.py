@@ -7,6 +7,7 @@ from rich.table import Table
 from derive.command.terminal import console, errors
 from derive.scene import SceneError
 from derive.solve import command as answers
+from derive.unit import behind
 
 
 def options(command: argparse.ArgumentParser) -> None:
@@ -22,7 +23,7 @@ def solve(given: argparse.Namespace) -> int:
         errors.print(f"derive: warning: {doubt}", style="yellow", highlight=False, markup=False)
     table = Table("function", "answer", "value", "unit", box=None)
     for row in found.rows:
-        table.add_row(*row)
+        table.add_row(*row[:3], behind(row[3]).strip())
     if found.rows or not found.unanswered:
         console.print(table)
     if found.unanswered:

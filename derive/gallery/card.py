@@ -17,6 +17,7 @@ from derive.notation import equation_mathml, sympy_equation_mathml
 from derive.page.machine import written_names
 from derive.program import Program, run
 from derive.scene.wanted import JACOBIAN
+from derive.unit import behind
 
 LONGEST_EQUATION = 45  # operations of a closed form that a card still shows
 
@@ -98,5 +99,6 @@ def _answer(library: Library, program: Program) -> str:
         return ""
     results = run(program, table, [known[c] for q in program.inputs for c in q.components])
     outputs = [(c, q.unit) for q in program.outputs for c in q.components][:3]
-    return ", ".join(f"{c} = {float(r):.4g} {u}".strip()
-                     for (c, u), r in zip(outputs, results, strict=False))  # fmt: skip
+    return ", ".join(
+        f"{c} = {float(r):.4g}{behind(u)}" for (c, u), r in zip(outputs, results, strict=False)
+    )

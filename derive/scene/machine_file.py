@@ -19,7 +19,7 @@ from derive.scene.scalars import PER_SECOND, Scalars, known, places, read_scalar
 from derive.scene.table import Scope, Table, formula, keys, table, text, triple, word
 from derive.scene.times import read_time
 from derive.scene.wanted import read_emission, read_form
-from derive.unit import LENGTH, dimension
+from derive.unit import BESIDE_SI, LENGTH, dimension, misnamed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -57,8 +57,17 @@ def read_machine(document: Mapping[str, object], name: str, source: str) -> Mach
         steady=_steady(part["steady"], scalars, unknowns, results, asked),
         asked=asked, wanted=tuple(asked), form=read_form(document),
         emission=read_emission(document), time_step=read_time(part["motion"], "time_step"),
-        warnings=(*_unused(scalars, source), *_doubts(bodies, scalars)),
+        warnings=(*_unused(scalars, source), *_doubts(bodies, scalars),
+                  *_misnamed(scalars, results)),
     )  # fmt: skip
+
+
+def _misnamed(scalars: Scalars, results: tuple[Result, ...]) -> list[str]:
+    """Return doubts about names that end in a unit which is not theirs."""
+    named = [(q.name, q.unit) for q in scalars.parameters]
+    named += [(q.name, q.unit) for q in scalars.moving]
+    named += [(q.name, q.unit) for q in results]
+    return [doubt for name, unit in named if (doubt := misnamed(name, unit))]
 
 
 def _tables(document: Mapping[str, object]) -> Mapping[str, Table]:
@@ -167,7 +176,9 @@ def _steady(
     names = tuple(word(one, "steady.unknown", scalar) for one in each)
     vanishes = None
     if "vanishes" in given.entries:
-        answers = answer_units(scalars, unknowns) | {r.name: dimension(r.unit) for r in results}
+        answers = answer_units(scalars, unknowns) | {
+            r.name: dimension(r.unit) for r in results if r.unit not in BESIDE_SI
+        }
         both = Scope(dict(known(scalars).dimensions) | answers, {}, "")
         vanishes, _ = of_any_unit(given.entries["vanishes"], "steady.vanishes", both)
         vanishes = written_out(vanishes, results)

@@ -13,7 +13,7 @@ from derive.scene.names import functions, identifier
 from derive.scene.scalars import known, unknown_rates
 from derive.scene.table import Scope, Table, formula, keys, shown, text
 from derive.scene.wanted import JACOBIAN, OF_MACHINES, resembling
-from derive.unit import NONE, dimension, dimension_of, spelled
+from derive.unit import BESIDE_SI, NONE, UnitError, dimension, dimension_of, spelled
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -41,15 +41,35 @@ def read_results(
         name, meaning, said = identifier(key, "a result"), "", value
         if isinstance(value, dict):
             inner = Table(f"result '{key}'", value)
-            keys(inner, ("formula",), ("meaning",))
+            keys(inner, ("formula",), ("meaning", "unit"))
             said = inner.entries["formula"]
             if "meaning" in inner.entries:
                 meaning = text(inner.entries["meaning"], f"{inner.label}: meaning")
         both = Scope(dict(scope.dimensions) | answers, {}, "")
         read, unit = of_any_unit(said, f"result '{key}'", both)
-        answers[name] = unit
-        found.append(Result(name, spelled(unit), read, meaning or f"{read}"))
+        spelling = spelled(unit)
+        if isinstance(value, dict) and "unit" in value:
+            spelling = _spelling(value["unit"], f"result '{key}'", unit)
+            if spelling in BESIDE_SI:
+                inside = f"({said})/({BESIDE_SI[spelling][1]})"
+                read, _ = of_any_unit(inside, f"result '{key}'", both)
+        if spelling not in BESIDE_SI:
+            answers[name] = unit
+        found.append(Result(name, spelling, read, meaning or f"{read}"))
     return tuple(found)
+
+
+def _spelling(value: object, label: str, found: Dimension) -> str:
+    """Return the unit that a result is given in; it must be one of what its formula is."""
+    spelling = text(value, f"{label}.unit")
+    try:
+        asked = dimension(BESIDE_SI.get(spelling, (spelling, ""))[0])
+    except UnitError as error:
+        raise SceneError(f"{label}: {error}") from None
+    if asked != found:
+        rule = f"a formula in {spelled(found)} cannot be given in '{spelling}'"
+        raise SceneError(f"{label}: {rule}")
+    return spelling
 
 
 def of_any_unit(value: object, label: str, scope: Scope) -> tuple[Formula, Dimension]:

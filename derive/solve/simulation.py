@@ -12,6 +12,7 @@ import numpy as np
 from derive.program import Quantity
 from derive.scene import SceneError
 from derive.solve.instrument import Instrument
+from derive.unit import behind
 
 STEP = "step_rk4"
 WIDTH, HEIGHT, LEFT, GAP = 640, 110, 90, 14
@@ -122,7 +123,7 @@ def _line(
     ]
     return [
         f'<polyline points="{" ".join(points)}"/>',
-        f'<text x="4" y="{top + HEIGHT / 2}">{escape(f"{name} {unit}")}</text>',
+        f'<text x="4" y="{top + HEIGHT / 2}">{escape(f"{name}{behind(unit)}")}</text>',
         f'<text x="4" y="{top + 12}">{high:.4g}</text>',
         f'<text x="4" y="{top + HEIGHT}">{low:.4g}</text>',
     ]

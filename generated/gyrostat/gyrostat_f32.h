@@ -102,7 +102,7 @@ int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_x
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
  *            moment[3]  N m  along B  -0.5 .. 0.5  external moment about the centre of mass
  *            wheel_torques[3]  N m  wheel axes  -0.2 .. 0.2  wheel torque of the motor on the wheel
- * Returned:  coordinate_rates[3]  1/s  rates of psi, theta, phi
+ * Returned:  coordinate_rates[3]  rad/s  rates of psi, theta, phi
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  *            wheel_accelerations[3]  rad/s^2  wheel axes  wheel acceleration relative to the carrier
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
@@ -130,7 +130,7 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
  *            moment[3]  N m  along B  -0.5 .. 0.5  external moment about the centre of mass
  *            wheel_torques[3]  N m  wheel axes  -0.2 .. 0.2  wheel torque of the motor on the wheel
- * Returned:  coordinate_rates[3]  1/s  rates of psi, theta, phi
+ * Returned:  coordinate_rates[3]  rad/s  rates of psi, theta, phi
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  *            wheel_accelerations[3]  rad/s^2  wheel axes  wheel acceleration relative to the carrier
  *            jacobian[84]  nonzeros of the Jacobian, in compressed-column order

@@ -50,7 +50,7 @@ int heavy_top_setup_f64(double A, double C, double m, double g, double l,
  * Given:     constants  constants made of parameters only, for the functions of this scene
  *            theta  rad  0.2 .. 2.9  nutation, from the vertical to the top's axis
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
- * Returned:  coordinate_rates[3]  1/s  rates of psi, theta, phi
+ * Returned:  coordinate_rates[3]  rad/s  rates of psi, theta, phi
  *            omega_dot[3]  rad/s^2  along xyz  rate of the components of omega along the axes
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
@@ -68,7 +68,7 @@ void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double t
  * Given:     constants  constants made of parameters only, for the functions of this scene
  *            theta  rad  0.2 .. 2.9  nutation, from the vertical to the top's axis
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
- * Returned:  coordinate_rates[3]  1/s  rates of psi, theta, phi
+ * Returned:  coordinate_rates[3]  rad/s  rates of psi, theta, phi
  *            omega_dot[3]  rad/s^2  along xyz  rate of the components of omega along the axes
  *            jacobian[13]  nonzeros of the Jacobian, in compressed-column order
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
