@@ -7,6 +7,7 @@ import numpy as np
 
 from derive.arithmetic import pair_of, rounded
 from derive.c_text import F64, machine_number, pair_functions
+from derive.comment import told
 from derive.emit import TEMPLATES, first_line, works_in_pairs
 from derive.flows.compact import Compact
 from derive.flows.series import Series
@@ -175,6 +176,7 @@ def _function(program: Program, scene: str) -> dict[str, object]:
         "builder": program.name,
         "name": f"{scene}_{program.name}",
         "says": program.says,
+        "singular": [told(s) for s in program.singular],
         "inputs": [{"name": q.name, "size": len(q.components)} for q in program.inputs],
         "needs_constants": any(q.name == "constants" for q in program.inputs),
         "lines": lines,

@@ -6,7 +6,7 @@ from textwrap import wrap
 from derive.escape import in_comment
 from derive.lecture import LECTURE
 from derive.notation import equation_text
-from derive.program import Measurement, Program, Quantity
+from derive.program import Measurement, Program, Quantity, Singular
 from derive.status import possible
 
 WIDTH = 96
@@ -20,6 +20,7 @@ def comment(program: Program, figures: Sequence[Measurement]) -> str:
         lines = [program.says, *_arguments(program), *_postconditions(program)]
         lines += _labelled("Error:", _error(program, figures))
         pairs = " (on pairs of floats)" if program.arithmetic == "pairs" else ""
+        lines += [line for s in program.singular for line in _labelled("Singular:", f"{told(s)}.")]
         lines += _labelled("Cost:", cost(program) + pairs + ".")
         if program.assumptions:
             lines += _labelled("Rests on:", ", ".join(program.assumptions) + ".")
@@ -70,6 +71,12 @@ def _postconditions(program: Program) -> list[str]:
             "Postcondition:", f"{equation_text(LECTURE[name])}   [lecture step {name}]"
         )
     return lines
+
+
+def told(singular: Singular) -> str:
+    """Return where a function has no value and what comes back, as a clause."""
+    at = singular.where if singular.where.startswith("where ") else f"at {singular.where}"
+    return f"{at}, {', '.join(singular.outputs)} infinite, no number or beyond all measure"
 
 
 def _error(program: Program, figures: Sequence[Measurement]) -> str:

@@ -15,6 +15,7 @@ from derive.program import Program, Quantity, read_by
 from derive.scene import Machine, Scene
 from derive.scene.wanted import EQUATIONS, IN_PAIRS, base_of, moves
 from derive.setting import Setting, applied_moment, traced, with_names
+from derive.singular import with_singular
 from derive.stage import (
     Constant,
     Traced,
@@ -82,6 +83,8 @@ def library(scene: Scene | Machine) -> Library:
         names = {*terms.constants.names.values(), *moved.traced.names.values()}
         functions = tuple(in_pairs(f, names) for f in functions)
         moving = tuple(in_pairs(f, names) if f.name in IN_PAIRS else f for f in moving)
+    functions = with_singular(functions, made)
+    moving = with_singular(moving, made)
     return Library(
         terms.known,
         made,

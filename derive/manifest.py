@@ -126,6 +126,7 @@ def _function(library: Library, program: Program, figures: Sequence[Measurement]
         "arithmetic": program.arithmetic,
         "cost": {"flops": program.flops()} | program.count(),
         "error": _error(program, figures),
+        "singular": [{"where": s.where, "outputs": list(s.outputs)} for s in program.singular],
         "postconditions": [
             {"step": s, "equation": equation_text(LECTURE[s])} for s in program.steps
         ],

@@ -121,13 +121,22 @@ class Rule:
 
 
 @dataclass(frozen=True)
+class Singular:
+    """Where a function has no value, in words, and the outputs that are infinite or no number."""
+
+    where: str
+    outputs: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Program:
     """A function without branches, ready for any arithmetic; its loops have an end known before.
 
     ``results`` are the values of the outputs' components in order; ``sparsity`` gives the pattern
     of an output that holds the nonzeros of a matrix; ``rules`` are what ``ops`` find out about
-    the inputs of set-up. In ``arithmetic`` "pairs" every operation
-    works on pairs of floats, and results are rounded once. With ``loops`` there are no ``ops``.
+    the inputs of set-up. ``singular`` are the places that comments warn of. In ``arithmetic``
+    "pairs" every operation works on pairs of floats, and results are rounded once. With ``loops``
+    there are no ``ops``.
     """
 
     name: str
@@ -142,6 +151,7 @@ class Program:
     rules: tuple[Rule, ...] = ()
     arithmetic: Literal["working", "pairs"] = "working"
     loops: Loops | None = None
+    singular: tuple[Singular, ...] = ()
 
     def count(self) -> dict[str, int]:
         """Return how often each operator is used at most, every pass of a loop counted."""

@@ -24,7 +24,7 @@ FLOORS = (
     ("machine",),
     ("lower", "forms", "stage", "function"),
     ("flows",),
-    ("setting", "admission", "motions", "library"),
+    ("setting", "admission", "motions", "singular", "library"),
     ("saving",),
     (
         *("c_text", "scope", "series_text", "compact_text", "definition", "comment", "signature"),

@@ -279,7 +279,11 @@ def _from_parameters(hot, name):
 
 
 def state_rate():
-    """Rate of the state from the state and the inputs (forward dynamics). Inputs: parameters, theta, phi, omega, wheel_speeds, moment, wheel_torques."""
+    """Rate of the state from the state and the inputs (forward dynamics). Inputs: parameters, theta, phi, omega, wheel_speeds, moment, wheel_torques.
+
+    Singular:
+    at theta = pi/2 + k pi, coordinate_rates infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_state_rate(), "gyrostat_state_rate"))
 
 
@@ -379,7 +383,11 @@ def _state_rate():
 
 
 def state_rate_jacobian():
-    """Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. Inputs: parameters, theta, phi, omega, wheel_speeds, moment, wheel_torques."""
+    """Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. Inputs: parameters, theta, phi, omega, wheel_speeds, moment, wheel_torques.
+
+    Singular:
+    at theta = pi/2 + k pi, coordinate_rates, jacobian infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_state_rate_jacobian(), "gyrostat_state_rate_jacobian"))
 
 

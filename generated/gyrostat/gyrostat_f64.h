@@ -110,6 +110,7 @@ int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doubl
  * Postcondition: u = C (a . omega_dot + s_dot)   [lecture step wheel_equation]
  * Error: median 0.92, largest 6.7 u of the largest term (sampled: 129 points, worst at omega_dot,
  *            point 31).
+ * Singular: at theta = pi/2 + k pi, coordinate_rates infinite, no number or beyond all measure.
  * Cost: 12 add, 17 sub, 34 mul, 1 div, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
  *            composed_turns, constant_mass, further_axes_are_right_handed, gyrostat_parts, newton,
@@ -139,6 +140,8 @@ void gyrostat_state_rate_f64(const gyrostat_constants_f64 *constants, double the
  * Postcondition: u = C (a . omega_dot + s_dot)   [lecture step wheel_equation]
  * Error: median 0.92, largest 14 u of the largest term (sampled: 129 points, worst at jacobian,
  *            point 61).
+ * Singular: at theta = pi/2 + k pi, coordinate_rates, jacobian infinite, no number or beyond all
+ *            measure.
  * Cost: 24 add, 46 sub, 98 mul, 1 div, 20 neg, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
  *            composed_turns, constant_mass, further_axes_are_right_handed, gyrostat_parts, newton,

@@ -116,6 +116,7 @@ void heavy_body_step_split_f32(const heavy_body_constants_f32 *constants, const 
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.31, largest 2 u of the largest term (sampled: 42 points, worst at attitude_next,
  *            point 20).
+ * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 76 add, 24 sub, 144 mul, 1 div, 1 sqrt.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,

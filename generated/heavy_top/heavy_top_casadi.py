@@ -193,7 +193,11 @@ def _from_parameters(hot, name):
 
 
 def state_rate():
-    """Rate of the state from the state and the inputs (forward dynamics). Inputs: parameters, theta, omega."""
+    """Rate of the state from the state and the inputs (forward dynamics). Inputs: parameters, theta, omega.
+
+    Singular:
+    at theta = k pi, coordinate_rates, omega_dot infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_state_rate(), "heavy_top_state_rate"))
 
 
@@ -231,7 +235,11 @@ def _state_rate():
 
 
 def state_rate_jacobian():
-    """Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. Inputs: parameters, theta, omega."""
+    """Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. Inputs: parameters, theta, omega.
+
+    Singular:
+    at theta = k pi, coordinate_rates, omega_dot, jacobian infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_state_rate_jacobian(), "heavy_top_state_rate_jacobian"))
 
 

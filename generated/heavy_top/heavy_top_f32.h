@@ -56,6 +56,8 @@ int heavy_top_setup_f32(float A, float C, float m, float g, float l,
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.36, largest 4 u of the largest term (sampled: 123 points, worst at omega_dot,
  *            point 81).
+ * Singular: at theta = k pi, coordinate_rates, omega_dot infinite, no number or beyond all
+ *            measure.
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -75,6 +77,8 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.48, largest 5.7 u of the largest term (sampled: 123 points, worst at jacobian,
  *            point 81).
+ * Singular: at theta = k pi, coordinate_rates, omega_dot, jacobian infinite, no number or beyond
+ *            all measure.
  * Cost: 1 add, 5 sub, 17 mul, 1 div, 4 neg, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

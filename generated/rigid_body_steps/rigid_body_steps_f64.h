@@ -93,6 +93,7 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.42, largest 5.4e+03 u of the largest term (sampled: 46 points, worst at
  *            omega_next, point 44).
+ * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 213 add, 56 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -124,6 +125,7 @@ void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constan
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.42, largest 4 u of the largest term (sampled: 46 points, worst at jacobian,
  *            point 31).
+ * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 7608 add, 196 sub, 7986 mul, 1 div, 44 neg, 1 sqrt.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,

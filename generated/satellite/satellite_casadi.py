@@ -295,7 +295,11 @@ def _state_rate():
 
 
 def step_rk4():
-    """One classic Runge-Kutta step (order 4). Inputs: parameters, attitude, omega, moment, time_step."""
+    """One classic Runge-Kutta step (order 4). Inputs: parameters, attitude, omega, moment, time_step.
+
+    Singular:
+    at attitude = 0, attitude_next infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_step_rk4(), "satellite_step_rk4"))
 
 
@@ -542,7 +546,11 @@ def _step_rk4():
 
 
 def step_rk4_jacobian():
-    """One classic Runge-Kutta step (order 4), with its Jacobian. Inputs: parameters, attitude, omega, moment, time_step."""
+    """One classic Runge-Kutta step (order 4), with its Jacobian. Inputs: parameters, attitude, omega, moment, time_step.
+
+    Singular:
+    at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_step_rk4_jacobian(), "satellite_step_rk4_jacobian"))
 
 
@@ -1483,7 +1491,11 @@ def _step_rk4_jacobian():
 
 
 def step_rk4_tangent():
-    """One classic Runge-Kutta step (order 4), with its Jacobian over the tangent space of the attitude. Inputs: parameters, attitude, omega, moment, time_step."""
+    """One classic Runge-Kutta step (order 4), with its Jacobian over the tangent space of the attitude. Inputs: parameters, attitude, omega, moment, time_step.
+
+    Singular:
+    at attitude = 0, attitude_next infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_step_rk4_tangent(), "satellite_step_rk4_tangent"))
 
 
@@ -2307,7 +2319,11 @@ def _step_rk4_tangent():
 
 
 def step_rk4_sensitivity():
-    """One classic Runge-Kutta step (order 4), with its derivatives by the parameters. Inputs: parameters, attitude, omega, moment, time_step."""
+    """One classic Runge-Kutta step (order 4), with its derivatives by the parameters. Inputs: parameters, attitude, omega, moment, time_step.
+
+    Singular:
+    at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_step_rk4_sensitivity(), "satellite_step_rk4_sensitivity"))
 
 
@@ -3246,7 +3262,11 @@ def _step_rk4_sensitivity():
 
 
 def step_lie():
-    """One commutator-free Lie-group step: the attitude turns by exponentials (order 4). Inputs: parameters, attitude, omega, moment, time_step."""
+    """One commutator-free Lie-group step: the attitude turns by exponentials (order 4). Inputs: parameters, attitude, omega, moment, time_step.
+
+    Singular:
+    at attitude = 0, attitude_next infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_step_lie(), "satellite_step_lie"))
 
 

@@ -238,7 +238,11 @@ def _linearised():
 
 
 def accelerations():
-    """Acceleration of alpha and acceleration of beta. Inputs: parameters, alpha, alpha_dot, beta, beta_dot."""
+    """Acceleration of alpha and acceleration of beta. Inputs: parameters, alpha, alpha_dot, beta, beta_dot.
+
+    Singular:
+    at beta = pi/2 + k pi, alpha_ddot infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_accelerations(), "sleeping_top_accelerations"))
 
 
@@ -324,7 +328,11 @@ def _energy():
 
 
 def step_rk4():
-    """One classic Runge-Kutta step (order 4). Inputs: parameters, alpha, alpha_dot, beta, beta_dot, time_step."""
+    """One classic Runge-Kutta step (order 4). Inputs: parameters, alpha, alpha_dot, beta, beta_dot, time_step.
+
+    Singular:
+    at beta = pi/2 + k pi, alpha_next, alpha_dot_next, beta_next, beta_dot_next infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_step_rk4(), "sleeping_top_step_rk4"))
 
 

@@ -87,6 +87,7 @@ void sleeping_top_linearised_f32(const sleeping_top_constants_f32 *constants, fl
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.79, largest 5.6 u of the largest term (sampled: 105 points, worst at alpha_ddot,
  *            point 82).
+ * Singular: at beta = pi/2 + k pi, alpha_ddot infinite, no number or beyond all measure.
  * Cost: 4 sub, 9 mul, 1 div, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -135,6 +136,8 @@ void sleeping_top_energy_f32(const sleeping_top_constants_f32 *constants, float 
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.49, largest 13 u of the largest term (sampled: 30 points, worst at
  *            alpha_dot_next, point 6).
+ * Singular: at beta = pi/2 + k pi, alpha_next, alpha_dot_next, beta_next, beta_dot_next infinite,
+ *            no number or beyond all measure.
  * Cost: 28 add, 16 sub, 64 mul, 4 div, 8 sin, 8 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

@@ -188,7 +188,11 @@ def _from_parameters(hot, name):
 
 
 def precession():
-    """Rate of the axis about L. Inputs: parameters, w_x, w_y, w_z."""
+    """Rate of the axis about L. Inputs: parameters, w_x, w_y, w_z.
+
+    Singular:
+    at w_x = w_y = 0, precession infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_precession(), "torque_free_axisymmetric_precession"))
 
 
@@ -257,7 +261,11 @@ def _body_rate():
 
 
 def tan_theta():
-    """Tangent, axis from L. Inputs: parameters, w_x, w_y, w_z."""
+    """Tangent, axis from L. Inputs: parameters, w_x, w_y, w_z.
+
+    Singular:
+    at w_z = 0, tan_theta infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_tan_theta(), "torque_free_axisymmetric_tan_theta"))
 
 
@@ -292,7 +300,11 @@ def _tan_theta():
 
 
 def tan_beta():
-    """Tangent, axis from omega. Inputs: w_x, w_y, w_z."""
+    """Tangent, axis from omega. Inputs: w_x, w_y, w_z.
+
+    Singular:
+    at w_z = 0, tan_beta infinite, no number or beyond all measure
+"""
     return _built(_tan_beta)
 
 

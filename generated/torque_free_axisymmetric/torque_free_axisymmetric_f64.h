@@ -50,6 +50,7 @@ int torque_free_axisymmetric_setup_f64(double A, double C,
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.78, largest 2.9 u of the largest term (sampled: 105 points, worst at precession,
  *            point 42).
+ * Singular: at w_x = w_y = 0, precession infinite, no number or beyond all measure.
  * Cost: 3 add, 9 mul, 1 div, 3 sqrt.
  * Rests on: axes_are_orthonormal, composed_turns, further_axes_are_right_handed, rate_seen_from_N.
  */
@@ -88,6 +89,7 @@ void torque_free_axisymmetric_body_rate_f64(const torque_free_axisymmetric_const
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.62, largest 3.1 u of the largest term (sampled: 105 points, worst at tan_theta,
  *            point 42).
+ * Singular: at w_z = 0, tan_theta infinite, no number or beyond all measure.
  * Cost: 1 add, 5 mul, 1 div, 1 sqrt.
  * Rests on: axes_are_orthonormal, composed_turns, further_axes_are_right_handed, rate_seen_from_N.
  */
@@ -101,6 +103,7 @@ void torque_free_axisymmetric_tan_theta_f64(const torque_free_axisymmetric_const
  * Returned:  tan_beta  1  tangent, axis from omega
  * Error: median 0.49, largest 1.7 u of the largest component, by rounding alone (sampled: 105
  *            points, worst at tan_beta, point 15).
+ * Singular: at w_z = 0, tan_beta infinite, no number or beyond all measure.
  * Cost: 1 add, 2 mul, 1 div, 1 sqrt.
  */
 void torque_free_axisymmetric_tan_beta_f64(double w_x, double w_y, double w_z, double *tan_beta);

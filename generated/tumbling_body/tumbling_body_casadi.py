@@ -4062,7 +4062,11 @@ def _step_split6():
 
 
 def step_rk4():
-    """One classic Runge-Kutta step (order 4). Inputs: parameters, attitude, omega, time_step."""
+    """One classic Runge-Kutta step (order 4). Inputs: parameters, attitude, omega, time_step.
+
+    Singular:
+    at attitude = 0, attitude_next infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_step_rk4(), "tumbling_body_step_rk4"))
 
 
@@ -4284,7 +4288,11 @@ def _step_rk4():
 
 
 def step_rk4_jacobian():
-    """One classic Runge-Kutta step (order 4), with its Jacobian. Inputs: parameters, attitude, omega, time_step."""
+    """One classic Runge-Kutta step (order 4), with its Jacobian. Inputs: parameters, attitude, omega, time_step.
+
+    Singular:
+    at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_step_rk4_jacobian(), "tumbling_body_step_rk4_jacobian"))
 
 
@@ -5086,7 +5094,11 @@ def _step_rk4_jacobian():
 
 
 def step_lie():
-    """One commutator-free Lie-group step: the attitude turns by exponentials (order 4). Inputs: parameters, attitude, omega, time_step."""
+    """One commutator-free Lie-group step: the attitude turns by exponentials (order 4). Inputs: parameters, attitude, omega, time_step.
+
+    Singular:
+    at attitude = 0, attitude_next infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_step_lie(), "tumbling_body_step_lie"))
 
 

@@ -638,7 +638,11 @@ def _step_split():
 
 
 def step_rk4():
-    """One classic Runge-Kutta step (order 4). Inputs: parameters, attitude, omega, time_step."""
+    """One classic Runge-Kutta step (order 4). Inputs: parameters, attitude, omega, time_step.
+
+    Singular:
+    at attitude = 0, attitude_next infinite, no number or beyond all measure
+"""
     return _built(lambda: _from_parameters(_step_rk4(), "tumbling_disc_step_rk4"))
 
 

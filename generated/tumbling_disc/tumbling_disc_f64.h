@@ -123,6 +123,7 @@ void tumbling_disc_step_split_f64(const tumbling_disc_constants_f64 *constants,
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.42, largest 2.4 u of the largest term (sampled: 42 points, worst at
  *            attitude_next, point 23).
+ * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 52 add, 22 sub, 88 mul, 1 div, 1 sqrt.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
