@@ -182,7 +182,7 @@ def exactness(library: Library, values: Mapping[str, float]) -> float:
 def unit_attitude(library: Library, values: dict[str, Any]) -> dict[str, Any]:
     """Return the values with every quaternion of the state brought to length one."""
     for q in library.known.words.states:
-        if q.shape == (4,):
+        if q.is_quaternion:
             size = sum((values[c] ** 2 for c in q.components), arb(0)).sqrt()
             values = values | {c: (values[c] / size).mid() for c in q.components}
     return values

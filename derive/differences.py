@@ -58,7 +58,7 @@ def slopes(library: Library, program: Program, values: Mapping[str, float]) -> I
 def _attitude(library: Library) -> tuple[str, ...]:
     """Return the components of the quaternion that errors of attitude turn."""
     states = library.known.words.states
-    return next((q.components for q in states if q.shape == (4,)), ())
+    return next((q.components for q in states if q.is_quaternion), ())
 
 
 def _results(library: Library, program: Program, values: Values) -> dict[str, Any]:

@@ -35,6 +35,11 @@ class Quantity:
             raise ValueError(f"quantity '{self.name}' ranges over {self.low} to {self.high} only")
 
     @property
+    def is_quaternion(self) -> bool:
+        """Tell whether this is an attitude, of length 1; four wheels have four speeds too."""
+        return self.shape == (4,) and self.name.startswith("attitude")
+
+    @property
     def ends(self) -> tuple[Fraction, Fraction]:
         """Return the range that samples are drawn from.
 

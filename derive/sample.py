@@ -162,7 +162,7 @@ def _denormal(of: Source, _: int) -> Values | None:
 
 
 def _is_attitude(q: Quantity) -> bool:
-    return q.name.startswith("attitude") and q.shape == (4,)
+    return q.is_quaternion
 
 
 def _may_vanish(q: Quantity) -> bool:

@@ -63,8 +63,8 @@ class System:
 
     @property
     def quaternions(self) -> tuple[slice, ...]:
-        """Return where attitudes stand among the components: all states that have four."""
-        return tuple(place for q, place in self._places() if q.shape == (4,))
+        """Return where attitudes stand among the components."""
+        return tuple(place for q, place in self._places() if q.is_quaternion)
 
     @property
     def quaternion(self) -> slice | None:

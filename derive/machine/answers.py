@@ -120,7 +120,7 @@ class Answers:
     def _rates(self, q: Quantity) -> list[Expr]:
         """Return the rates of a state: of a quaternion by the lecture, of others by their names."""
         sheet = self.frames.sheet
-        if q.shape != (4,):
+        if not q.is_quaternion:
             return [sheet.rate(s) for s in self._symbols(q)]
         frame = self.machine.frame(q.name.removeprefix("attitude_"))
         assert frame.angular_velocity is not None  # noqa: S101

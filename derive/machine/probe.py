@@ -72,7 +72,7 @@ def point(words: Words, number: int) -> Probe:
     with mp.workdps(DIGITS):
         for q in (*book.parameters, *book.states, *book.inputs):
             own = [_within(dice, q) for _ in q.components]
-            size = mp.sqrt(mp.fsum(x * x for x in own)) if q.shape == (4,) else mpf(1)
+            size = mp.sqrt(mp.fsum(x * x for x in own)) if q.is_quaternion else mpf(1)
             values |= {book.symbols[c]: x / size for c, x in zip(q.components, own, strict=True)}
         for symbol in words.hidden:
             values[symbol] = _between(dice, mpf(1), mpf(2))
