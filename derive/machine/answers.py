@@ -1,6 +1,6 @@
 """What each wanted answer is made of: unknowns, energies, momenta, results, small motion."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -9,13 +9,15 @@ from sympy import Expr, Integer, Matrix, Symbol
 from derive.formula import Formula
 from derive.machine.balances import Balance, Balances, Row
 from derive.machine.bodies import centre, centre_velocity, kinetic_energy, mass, momentum
-from derive.machine.choice import chosen, contradiction, unbalanced
+from derive.machine.choice import chosen, clearly_told, contradiction, unbalanced
 from derive.machine.frames import ZERO, Frames
 from derive.machine.linearised import linearised
 from derive.machine.loads import potential_energy
 from derive.machine.matter import without_factors
-from derive.machine.probe import NOTHING, POINTS, independent
+from derive.machine.pivots import where
+from derive.machine.probe import NOTHING, POINTS, Probe, independent
 from derive.machine.question import Question, substituted
+from derive.machine.sweep import Weakest, probe_at, ranges, regular, weakest
 from derive.machine.words import MATRICES
 from derive.program import Quantity
 from derive.scene import Input, Machine, SceneError
@@ -23,6 +25,7 @@ from derive.scene.results import written_out
 from derive.scene.wanted import JACOBIAN
 from derive.specialise import stated
 
+TRIES = 6  # places at which balances must be independent, found one after another
 FRAME_STEPS = ("angular_velocities_add", "acceleration_seen_from_axes")
 
 
@@ -73,7 +76,7 @@ class Answers:
         used = {s for e in (*answers.values(), *sheet.needed(answers.values()).values())
                 for s in e.free_symbols}  # fmt: skip
         wanted = used & sheet.unknowns
-        rows, unknowns = self._chosen(wanted)
+        rows, unknowns = self._regular(wanted)
         written = tuple(self.balances.written(row) for row in rows)
         definitions = sheet.needed([*written, *answers.values()])
         held = tuple(row.balance for row in rows)
@@ -82,7 +85,48 @@ class Answers:
         return Question(base, says[:1].upper() + says[1:], outputs, answers, definitions, written,
                         unknowns, held, (*balance_steps(held), *steps, *motion))  # fmt: skip
 
-    def _chosen(self, wanted: set[Symbol]) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
+    def _regular(self, wanted: set[Symbol]) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
+        """Return balances that determine the unknowns wherever the machine itself does.
+
+        Where those chosen are found to depend on each other, others are, for that place too.
+        """
+        hard: list[Probe] = []
+        first = rows, unknowns = self._chosen(wanted, hard)
+        for _ in range(TRIES):
+            worst = self._weakest(rows, unknowns)
+            if not worst.vanishes:
+                return rows, unknowns
+            hard.append(probe_at(self.frames.words, worst.place, self.frames.sheet.definitions))
+            try:
+                rows, unknowns = self._chosen(wanted, hard)
+            except SceneError:
+                break
+        worst = self._weakest(*first)
+        if rows and self._told(first[1], worst):
+            names = ", ".join(f"'{self.frames.sheet.label(u)}'" for u in first[1])
+            rule = f"vanishes {where(worst.place)}, where the machine itself is regular"
+            raise SceneError(f"the divisor of {names} {rule}, and no other balances were found")
+        return first
+
+    def _weakest(self, rows: tuple[Row, ...], unknowns: tuple[Symbol, ...]) -> Weakest:
+        """Return where the balances are nearest to depending on each other."""
+        if not rows:
+            return Weakest(1.0, {})
+        sheet = self.frames.sheet
+        slopes = [sheet.split(self.balances.written(row))[1] for row in rows]
+        entries = [[own.get(u, Integer(0)) for u in unknowns] for own in slopes]
+        below = sheet.needed([e for row in entries for e in row])
+        return weakest(ranges(self.frames.words), below, lambda at: regular(at, entries))
+
+    def _told(self, unknowns: tuple[Symbol, ...], worst: Weakest) -> bool:
+        """Tell whether the machine itself determines the unknowns where some balances do not."""
+        every = self.balances.unknowns
+        place = probe_at(self.frames.words, worst.place, self.frames.sheet.definitions)
+        return clearly_told(self.balances, frozenset(map(every.index, unknowns)), place)
+
+    def _chosen(
+        self, wanted: set[Symbol], hard: Sequence[Probe]
+    ) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
         every = self.balances.unknowns
         missing = [s for s in wanted if s not in every]
         if missing:
@@ -92,7 +136,7 @@ class Answers:
             return (), ()
         if self.machine.steady is None and (sentence := contradiction(self.balances)):
             raise SceneError(sentence)
-        rows, unknowns = chosen(self.balances, frozenset(every.index(s) for s in wanted))
+        rows, unknowns = chosen(self.balances, frozenset(every.index(s) for s in wanted), hard)
         return rows, tuple(every[k] for k in sorted(unknowns))
 
     def _answer(self, name: str) -> dict[Quantity, list[Expr]]:

@@ -227,6 +227,13 @@ class Balances:
         kept = {u: c for u, c in slopes.items() if self.unknowns.index(u) in row.holds}
         return sheet.linear("balance", rest + sum((c * u for u, c in kept.items()), Integer(0)))
 
+    def at(self, row: Row, valued: Valued) -> Array:
+        """Return the coefficients of a balance at another place: the rest, then the unknowns."""
+        b = row.balance
+        vector = valued.force(b.bodies) if b.point is None else valued.moment(b.bodies, b.point)
+        found: Array = valued.rotation(b.frame)[:, "xyz".index(b.axis)] @ vector
+        return found
+
     def carried_vectors(self, balance: Balance) -> int:
         """Return how many vectors must be carried to other axes to write a balance."""
         own = [f for b in balance.bodies for f in (self.efforts[b].frame, *self.efforts[b].force)]

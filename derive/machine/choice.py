@@ -4,22 +4,37 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import Any
 
+import numpy as np
 from mpmath import mp, mpf
+from numpy.typing import NDArray
 
 from derive.machine.balances import Balances, Row
-from derive.machine.probe import DIGITS, NOTHING, POINTS, independent, independent_at_all
+from derive.machine.probe import (
+    DIGITS,
+    NOTHING,
+    POINTS,
+    Probe,
+    independent,
+    independent_at_all,
+)
+from derive.machine.valued import Valued
 from derive.scene import SceneError
 
+FLOORS = (0.1, 0.02, 0.004)  # of a row of size one: what must be left of it beside the others
 MOST_EXTRA = 5  # unknowns that are solved along without being asked for, before all are
 MOST_SETS = 20_000
 CLEAR = mpf(10) ** -25  # of a row of size one: what elimination leaves of 60 digits is far below
 
+Array = NDArray[Any]
 Chosen = tuple[tuple[Row, ...], frozenset[int]]
 
 
-def chosen(balances: Balances, wanted: frozenset[int]) -> Chosen:
+def chosen(
+    balances: Balances, wanted: frozenset[int], hard: Sequence[Probe] = ()
+) -> Chosen:
     """Return balances for the ``wanted`` unknowns, and all unknowns that these balances hold.
 
+    hard : places at which the balances must be independent too, and clearly so
     Raises SceneError, naming unknowns and balances, if the wanted ones cannot be told.
     """
     if not wanted:
@@ -37,12 +52,71 @@ def chosen(balances: Balances, wanted: frozenset[int]) -> Chosen:
         covered = frozenset(k for row in within for k in row.holds)
         if len(within) < len(unknowns) or covered != unknowns:
             continue
+        if hard:
+            kept = _clear(balances, within, unknowns, hard)
+            if kept:
+                return tuple(within[k] for k in kept), unknowns
+            continue
         for tables in ((0, -1), (0,)):
             each = [[_coefficients(row, point) for row in within] for point in tables]
             kept = independent_at_all(each, len(unknowns))
             if len(kept) == len(unknowns):
                 return tuple(within[k] for k in kept), unknowns
     raise SceneError(undetermined(balances, wanted))
+
+
+def _clear(
+    balances: Balances, within: Sequence[Row], unknowns: frozenset[int], hard: Sequence[Probe]
+) -> list[int]:
+    """Return the first rows that are independent at hard places, by as much as can be had."""
+    tables = _tables(balances, within, unknowns, hard)
+    for floor in FLOORS:
+        kept: list[int] = []
+        bases: list[list[Array]] = [[] for _ in tables]
+        for n in range(len(within)):
+            left = [_off(table[n], basis) for table, basis in zip(tables, bases, strict=True)]
+            if all(np.linalg.norm(own) > floor for own in left):
+                for basis, own in zip(bases, left, strict=True):
+                    basis.append(own / np.linalg.norm(own))
+                kept.append(n)
+            if len(kept) == len(unknowns):
+                return kept
+    return []
+
+
+def _tables(
+    balances: Balances, rows: Sequence[Row], unknowns: frozenset[int], hard: Sequence[Probe]
+) -> list[Array]:
+    """Return the coefficients of rows at a trial point and at hard places, scaled to size 1."""
+    places = [1 + k for k in sorted(unknowns)]
+    with mp.workdps(DIGITS):
+        each = [[row.values[0] for row in rows]]
+        for probe in hard:
+            valued = Valued(balances.sides, probe)
+            each.append([balances.at(row, valued) for row in rows])
+    found = []
+    for own in each:
+        table = np.array([[float(values[k]) for k in places] for values in own])
+        for axis in (1, 0, 1):
+            size = np.linalg.norm(table, axis=axis, keepdims=True)
+            table = table / np.where(size > 0, size, 1)
+        found.append(table)
+    return found
+
+
+def _off(row: Array, basis: Sequence[Array]) -> Array:
+    """Return what is left of a row beside the directions of others."""
+    for direction in (*basis, *basis):
+        row = row - (row @ direction) * direction
+    return row
+
+
+def clearly_told(balances: Balances, unknowns: frozenset[int], place: Probe) -> bool:
+    """Tell whether all balances that hold only these unknowns tell them apart at a place."""
+    within = [row for row in balances.rows if row.holds and row.holds <= unknowns]
+    table = _tables(balances, within, unknowns, [place])[1]
+    size = np.linalg.svd(table, compute_uv=False)
+    return len(size) == len(unknowns) and bool(size[-1] > FLOORS[-1] * size[0])
 
 
 def _sets(rows: Sequence[Row], wanted: frozenset[int]) -> Iterator[frozenset[int]]:

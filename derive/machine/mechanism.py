@@ -11,10 +11,12 @@ from derive.machine.answers import Answers
 from derive.machine.balances import Balances
 from derive.machine.frames import Frames
 from derive.machine.matter import Lean, lean
+from derive.machine.pivots import Pivots
 from derive.machine.probe import point
 from derive.machine.question import Question, substituted
 from derive.machine.sheet import Sheet
 from derive.machine.solve import solved
+from derive.machine.sweep import ranges
 from derive.machine.words import Words, words
 from derive.motion import reduced
 from derive.scene import Machine, Scene, SceneError
@@ -116,7 +118,8 @@ def plain_arrangement(known: Mechanism, question: Question) -> Arrangement:
     if question.rows:
         probe = point(known.made, 0)
         probe.define(question.definitions)
-        found = solved(question.rows, question.unknowns, known.made.sheet.split, probe)
+        pivots = Pivots(ranges(known.made), question.definitions, known.made.sheet.label)
+        found = solved(question.rows, question.unknowns, known.made.sheet.split, probe, pivots)
         named |= {stage.symbol: stage.value for stage in found.stages}
     outputs = tuple(question.answers.values())
     return Arrangement(tuple(staged(named)), outputs)

@@ -3,11 +3,13 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from mpmath import mp
 from sympy import Expr, Integer, Matrix, Symbol
 
 from derive.draft import Stage
 from derive.machine.matching import blocks
-from derive.machine.probe import Probe
+from derive.machine.pivots import Pivots
+from derive.machine.probe import DIGITS, Probe
 
 SMALL = 3  # blocks up to this size are solved by determinants
 
@@ -16,10 +18,9 @@ Split = Callable[[Expr], tuple[Expr, dict[Symbol, Expr]]]
 
 @dataclass
 class Solution:
-    """Stages that solve balances, and what must not vanish for them to exist."""
+    """Stages that solve balances."""
 
     stages: list[Stage]
-    divisors: list[Symbol]
 
     def named(self, name: str, value: Expr) -> Expr:
         """Return a symbol for a value, unless it is plain."""
@@ -34,17 +35,20 @@ class Solution:
 
 
 def solved(
-    rows: Sequence[Expr], unknowns: Sequence[Symbol], split: Split, probe: Probe
+    rows: Sequence[Expr], unknowns: Sequence[Symbol], split: Split, probe: Probe, pivots: Pivots
 ) -> Solution:
-    """Return stages that yield every unknown, each block from those before."""
+    """Return stages that yield every unknown, each block from those before.
+
+    pivots : finds where pivots vanish, and others that do not
+    """
     parts = [split(row) for row in rows]
     holds = [frozenset(unknowns.index(u) for u in slopes) for _, slopes in parts]
-    found = Solution([], [])
+    found = Solution([])
     for equations, own in blocks(holds):
         block = [unknowns[k] for k in own]
         matrix = Matrix([[parts[n][1].get(u, Integer(0)) for u in block] for n in equations])
         right = Matrix([_right(parts[n], block) for n in equations])
-        _solve_block(found, matrix, right, block, probe)
+        _solve_block(found, matrix, right, block, probe, pivots)
     return found
 
 
@@ -54,16 +58,23 @@ def _right(part: tuple[Expr, Mapping[Symbol, Expr]], block: Sequence[Symbol]) ->
 
 
 def _solve_block(
-    found: Solution, matrix: Matrix, right: Matrix, block: Sequence[Symbol], probe: Probe
+    found: Solution,
+    matrix: Matrix,
+    right: Matrix,
+    block: Sequence[Symbol],
+    probe: Probe,
+    pivots: Pivots,
 ) -> None:
     if len(block) == 1:
         found.stages.append(Stage("let", block[0], right[0] / matrix[0, 0]))
-        if matrix[0, 0].free_symbols:
-            found.divisors.append(block[0])
     elif len(block) <= SMALL:
         _by_determinants(found, matrix, right, block)
     else:
-        _by_elimination(found, matrix, right, block, probe)
+        order = _order(matrix, probe)
+        if pivots.vanish(matrix, order):
+            _by_chosen_pivots(found, matrix, right, block, pivots)
+        else:
+            _by_elimination(found, matrix, right, block, order)
 
 
 def _by_determinants(
@@ -76,19 +87,58 @@ def _by_determinants(
     for k, u in enumerate(block):
         top = sum((adjugate[k, n] * right[n] for n in range(len(block))), Integer(0))
         found.stages.append(Stage("let", u, inverse * top))
-    found.divisors += list(block)
+
+
+def _order(matrix: Matrix, probe: Probe) -> list[int]:
+    """Return rows in the order of pivots chosen at a trial point: the largest that is left."""
+    size = matrix.rows
+    with mp.workdps(DIGITS):
+        A = [[probe.value(matrix[r, c]) for c in range(size)] for r in range(size)]
+        rows = list(range(size))
+        for k in range(size):
+            pivot = max(rows[k:], key=lambda r: abs(A[r][k]))
+            rows[k : rows.index(pivot) + 1] = [pivot, *rows[k : rows.index(pivot)]]
+            for r in rows[k + 1 :]:
+                factor = A[r][k] / A[pivot][k]
+                A[r] = [a - factor * p for a, p in zip(A[r], A[pivot], strict=True)]
+    return rows
+
+
+def _by_chosen_pivots(
+    found: Solution, matrix: Matrix, right: Matrix, block: Sequence[Symbol], pivots: Pivots
+) -> None:
+    """Eliminate by pivots that vanish nowhere, until determinants do the rest."""
+    A, b = matrix.as_mutable(), list(right)
+    rows, columns = list(range(len(block))), list(range(len(block)))
+    taken = pivots.chosen(matrix, block, SMALL)
+    for r, c in taken:
+        rows.remove(r)
+        columns.remove(c)
+        inverse = found.named("pivot", 1 / A[r, c])
+        for n in rows:
+            if A[n, c] == 0:
+                continue
+            factor = found.named("factor", A[n, c] * inverse)
+            for k in columns:
+                A[n, k] = found.named("a", A[n, k] - factor * A[r, k])
+            b[n] = found.named("b", b[n] - factor * b[r])
+    left, own = A.extract(rows, columns), [block[c] for c in columns]
+    _by_determinants(found, left, Matrix([b[n] for n in rows]), own)
+    known = list(columns)
+    for r, c in reversed(taken):
+        rest = sum((A[r, k] * block[k] for k in known), Integer(0))
+        found.stages.append(Stage("let", block[c], (b[r] - rest) / A[r, c]))
+        known.append(c)
 
 
 def _by_elimination(
-    found: Solution, matrix: Matrix, right: Matrix, block: Sequence[Symbol], probe: Probe
+    found: Solution, matrix: Matrix, right: Matrix, block: Sequence[Symbol], rows: Sequence[int]
 ) -> None:
-    """Eliminate with pivots chosen once, at a trial point: the largest that is left."""
+    """Eliminate with the pivots of rows in an order."""
     size = len(block)
-    A, b, rows = matrix.as_mutable(), list(right), list(range(size))
+    A, b = matrix.as_mutable(), list(right)
     for k in range(size):
-        _value_stages(found, probe)
-        pivot = max(rows[k:], key=lambda r: abs(probe.value(A[r, k])))
-        rows[k : rows.index(pivot) + 1] = [pivot, *rows[k : rows.index(pivot)]]
+        pivot = rows[k]
         inverse = found.named("pivot", 1 / A[pivot, k])
         for r in rows[k + 1 :]:
             if A[r, k] == 0:
@@ -102,10 +152,3 @@ def _by_elimination(
         r = rows[k]
         above = sum((A[r, c] * block[c] for c in range(k + 1, size)), Integer(0))
         found.stages.append(Stage("let", block[k], (b[r] - above) / A[r, k]))
-    found.divisors += list(block)
-
-
-def _value_stages(found: Solution, probe: Probe) -> None:
-    for stage in found.stages:
-        if stage.symbol not in probe.values:
-            probe.values[stage.symbol] = probe.value(stage.value)
