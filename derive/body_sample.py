@@ -113,6 +113,14 @@ def _turned(moments: Triple, turn: Sequence[float]) -> tuple[float, ...]:
     return tuple(own)
 
 
+def formulas_of_body(
+    known: Specialised,
+) -> tuple[Sequence[Formula], list[tuple[Sequence[Formula], Formula]]]:
+    """Return a body's moments and products, and axis and axial moment of each wheel."""
+    scene = known.scene
+    return scene.body.inertia, [(wheel.axis, wheel.axial) for wheel in scene.wheels]
+
+
 def admissible(known: Known, values: Mapping[str, float]) -> bool:
     """Tell whether a scene's parameters describe a body, wheels included."""
     if isinstance(known, Mechanism):

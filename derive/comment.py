@@ -9,6 +9,8 @@ from derive.notation import equation_text
 from derive.program import Measurement, Program, Quantity, Singular
 from derive.status import possible
 
+FLOW, NEXT = "flow_exact", "_next"
+
 WIDTH = 96
 
 
@@ -87,7 +89,15 @@ def _error(program: Program, figures: Sequence[Measurement]) -> str:
     median = max(m.median for m in own)
     return (
         f"median {median:.2g}, largest {worst.worst:.2g} u {of_what(program)} "
-        f"(sampled: {worst.samples} points, worst at {worst.output}, point {worst.sample})."
+        f"(of {worst.output}; {looked_at(worst)})."
+    )
+
+
+def looked_at(m: Measurement) -> str:
+    """Return at how many samples a figure was looked for."""
+    return (
+        f"{m.samples} samples of the ranges, {m.searched} searched from the worst, "
+        f"{m.hard} hard ones"
     )
 
 
@@ -96,7 +106,19 @@ def of_what(program: Program) -> str:
 
     Functions without a step of the lecture (motion, attitudes) are measured for rounding alone.
     """
-    return "of the largest term" if program.steps else "of the largest component, by rounding alone"
+    if program.steps:
+        return "of the largest term of the sum that the output is"
+    if program.name == FLOW:
+        return (
+            "of kappa times the largest component, by rounding alone (kappa: what changes of the "
+            "inputs make of the result, relative to both, added up)"
+        )
+    if any(q.name.endswith(NEXT) for q in program.outputs):
+        return (
+            "of the largest component, before or after, or of the largest term of what the step "
+            "adds, by rounding alone"
+        )
+    return "of the largest component, by rounding alone"
 
 
 def cost(program: Program) -> str:

@@ -31,12 +31,14 @@ class Difference:
     left_over: bool
 
 
-def scene_files(library: Library, figures: Sequence[Measurement]) -> dict[str, str]:
+def scene_files(
+    library: Library, figures: Sequence[Measurement], digest: str = ""
+) -> dict[str, str]:
     """Return the path below the output folder and the text of every file of a scene."""
     name = library.known.scene.name
     texts = c_files(library, figures) | {
         f"{name}_casadi.py": casadi_file(library),
-        f"{name}.json": manifest(library, figures),
+        f"{name}.json": manifest(library, figures, digest),
         f"{name}.html": scene_page(library, figures),
     }
     return {f"{name}/{file}": text for file, text in texts.items()}

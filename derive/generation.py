@@ -7,9 +7,8 @@ from math import isfinite
 
 from derive.files import scene_files
 from derive.gallery.card import Card, card, gallery
+from derive.kept import Measuring, figures_of
 from derive.library import Library, library
-from derive.measure import figures
-from derive.motion_error import moving_figures
 from derive.page import lecture_page
 from derive.program import Measurement
 from derive.prove import prove
@@ -43,20 +42,21 @@ class Made:
     card: Card | None = None
 
 
-def made(source: str) -> Made:
+def made(source: str, measuring: Measuring) -> Made:
     """Return everything that a scene becomes; its programs are proved before they are printed."""
     scene = load(source)
     programs = library(scene)
     try:
         prove(programs)
-        measured = figures(programs) + moving_figures(programs)
+        measured = figures_of(programs, measuring)
     except NoValueError as error:
         rule = "formulas must have a value on all of the declared ranges"
         raise SceneError(f"scene '{scene.name}': {rule}, but {error}") from None
-    _finite(scene.name, measured)
+    _finite(scene.name, measured.each)
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in scene.warnings)
-    costs, spared = cost_rows(programs, measured), tuple(savings(programs))
-    return Made(scene_files(programs, measured), warnings, costs, spared, card(programs))
+    costs, spared = cost_rows(programs, measured.each), tuple(savings(programs))
+    texts = scene_files(programs, measured.each, measured.digest)
+    return Made(texts, warnings, costs, spared, card(programs))
 
 
 def _finite(scene: str, measured: Sequence[Measurement]) -> None:
@@ -97,15 +97,16 @@ def _errors(function: str, measured: Sequence[Measurement]) -> tuple[str, ...]:
 
 
 def all_made(
-    sources: Sequence[str], also: Sequence[Callable[[], Made]]
+    sources: Sequence[str], also: Sequence[Callable[[], Made]], measuring: Measuring
 ) -> Iterator[tuple[int, Made]]:
     """Yield place and result of every source, then of what is made ``also``, as they are done."""
     if len(sources) + len(also) == 1:
-        yield 0, made(sources[0]) if sources else also[0]()
+        yield 0, made(sources[0], measuring) if sources else also[0]()
         return
     with ProcessPoolExecutor() as pool:
         # What is made also takes longest, so it starts first.
         last = {pool.submit(task): len(sources) + k for k, task in enumerate(also)}
-        waiting = last | {pool.submit(made, source): k for k, source in enumerate(sources)}
+        scenes = {pool.submit(made, source, measuring): k for k, source in enumerate(sources)}
+        waiting = last | scenes
         for future in as_completed(waiting):
             yield waiting[future], future.result()

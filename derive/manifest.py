@@ -20,8 +20,8 @@ from derive.signature import Names, dense
 from derive.status import possible
 
 
-def manifest(library: Library, figures: Sequence[Measurement]) -> str:
-    """Return the text of ``<scene>.json``."""
+def manifest(library: Library, figures: Sequence[Measurement], digest: str = "") -> str:
+    """Return the text of ``<scene>.json``; ``digest`` is of all that the figures depend on."""
     scene = library.known.scene
     whole = {
         "scene": scene.name,
@@ -44,6 +44,7 @@ def manifest(library: Library, figures: Sequence[Measurement]) -> str:
         "constants": [{"name": c.name, "formula": c.formula} for c in library.constants],
         "functions": _functions(library, figures),
         "warnings": list(scene.warnings),
+        "measured": {"digest": digest},
     }
     return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
 
@@ -180,10 +181,10 @@ def _error(program: Program, figures: Sequence[Measurement]) -> dict[str, Any]:
                 "largest_ulp": m.worst,
                 "worst_sample": m.sample,
                 "samples": m.samples,
+                "searched": m.searched,
+                "hard_samples": m.hard,
             }
     return found | {
-        "measure": "ulps of the largest term of the sum that the output is"
-        if program.steps
-        else f"ulps {of_what(program)}",
+        "measure": f"ulps {of_what(program)}",
         "kind": "sampled",
     }

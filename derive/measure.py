@@ -8,25 +8,23 @@ as smaller than the smallest normal number, below which floats are spaced alike.
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from statistics import median
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from flint import arb
 from numpy.typing import NDArray
 
-from derive.arithmetic import Table, extended, paired, working
-from derive.c_text import PRECISIONS, Precision
+from derive.arithmetic import Table, extended, paired
+from derive.c_text import Precision
 from derive.equations import equations
 from derive.largest import largest
 from derive.library import Library
-from derive.program import Measurement, Program, component_names, run
+from derive.program import Program, component_names, run
 from derive.reference import Known, reference
-from derive.sample import Sample, samples
-from derive.scene.wanted import JACOBIAN
+from derive.sample import Sample
+from derive.scale import base_of, columns_of
 
-ORDINARY, CORNERS = 96, 3
 DIGITS = 2  # of a printed figure, rounded up
 
 True_ = Mapping[str, Known]
@@ -40,35 +38,9 @@ class Errors:
     output: str
     rows: tuple[tuple[float, ...], ...]
 
-
-def figures(library: Library) -> tuple[Measurement, ...]:
-    """Return the errors of every output of every function, both precisions."""
-    found: list[Measurement] = []
-    for precision in PRECISIONS:
-        each = samples(library.known, precision, ORDINARY, CORNERS).each
-        lectured = replace(library, motions=())
-        results = replayed(lectured, each, precision, working(precision.dtype))
-        for program, true in references(library, each):
-            every = errors(program, results[program.name], true, precision)
-            found += [measurement(one, precision, each) for one in every]
-    return tuple(found)
-
-
-def measurement(found: Errors, precision: Precision, each: Sequence[Sample]) -> Measurement:
-    """Return median and largest of errors, rounded up to the digits that are printed."""
-    worst = [largest(row) if row else 0.0 for row in found.rows]
-    most = largest(worst)
-    middle = median([error for row in found.rows for error in row] or [0.0])
-    number = each[worst.index(most)].number
-    return Measurement(
-        found.function,
-        precision.name,
-        found.output,
-        upwards(middle),
-        upwards(most),
-        number,
-        len(each),
-    )
+    def largest(self) -> list[float]:
+        """Return the largest error of each sample, infinite where one is no number."""
+        return [largest(row) if row else 0.0 for row in self.rows]
 
 
 def upwards(x: float) -> float:
@@ -86,18 +58,12 @@ def upwards(x: float) -> float:
 
 def references(library: Library, each: Sequence[Sample]) -> Iterator[tuple[Program, list[True_]]]:
     """Yield each function with what it should return, sample by sample."""
-    for base, fact in library.truths.items():
-        question, columns = equations(library.known, fact), _columns(library, base)
-        true: list[True_] = [reference(question, s.values, columns) for s in each]
-        for program in library.functions:
-            if program.name.removesuffix(JACOBIAN) == base:
-                yield program, true
-
-
-def _columns(library: Library, base: str) -> tuple[str, ...]:
-    program = next((f for f in library.functions if f.name == base + JACOBIAN), None)
-    patterns = (program.sparsity or {}).values() if program else ()
-    return tuple(c for pattern in patterns for c in pattern.columns)
+    asked = {base: equations(library.known, fact) for base, fact in library.truths.items()}
+    for base, question in asked.items():
+        own = [f for f in library.functions if base_of(f) == base]
+        columns = tuple(dict.fromkeys(c for f in own for c in columns_of(f)))
+        true: list[True_] = [reference(question, s.values, columns) for s in each] if own else []
+        yield from ((program, true) for program in own)
 
 
 def replayed(
@@ -163,9 +129,10 @@ def expected(program: Program, output: str, true: True_) -> list[Expected]:
         (q,) = (q for q in program.outputs if q.name == output)
         own = [true[c] for c in q.components]
         return [Expected(known.value, known.scale, known.gain) for known in own]
-    zero = (arb(0), 0.0)
+    zero: tuple[Any, float] = (arb(0), 0.0)
     entries = [(true[pattern.rows[i]], pattern.columns[k]) for i, k in pattern.places()]
-    return [Expected(*row.slopes.get(column, zero), row.gain) for row, column in entries]
+    slopes = [(row.slopes.get(column, zero), row.gain) for row, column in entries]
+    return [Expected(value, scale, gain) for (value, scale), gain in slopes]
 
 
 def error(found: float, should: Expected, precision: Precision) -> float:

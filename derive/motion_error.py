@@ -2,7 +2,7 @@
 
 The same program is run in balls of 300 bits, set-up included, on the same inputs; the difference is
 rounding alone. What a step leaves out by its order is another matter: tests measure the order, and
-the report shows error against cost. Errors are in u of the largest component of an output.
+the report shows error against cost. What errors are counted in, ``scale`` says.
 """
 
 import math
@@ -14,25 +14,20 @@ import numpy as np
 from flint import arb, ctx
 
 from derive.arithmetic import working
-from derive.c_text import PRECISIONS, Precision
+from derive.c_text import Precision
+from derive.columns import arithmetics, known, planned
 from derive.flows.carried import REMAINDER
-from derive.largest import largest
 from derive.library import Library
-from derive.measure import Errors, measurement, replayed
-from derive.program import Measurement, Program, Quantity, component_names, run
+from derive.measure import Errors, replayed
+from derive.program import Program, Quantity, component_names, run
 from derive.reference import BALLS, BITS
-from derive.sample import Sample, Source, Values, samples, source, uniform
+from derive.sample import Sample, Source, Values, source, uniform
+from derive.scale import PLAN, Sizing, measured_outputs, motion_scales
 
-ORDINARY, CORNERS = 24, 2
-PLAN = "plan"
-UNMEASURED = ("remainder_next", "step_proposed")
-"""What rounding left, and a length that is proposed: neither has a true value."""
 REACH = 0.3
 """Turn in rad, by omega and by its rate, that a sampled step covers at most."""
 LONG = 1000.0
 """So many such steps make the longest time that a flow is sampled at."""
-NOTHING = 1e-60
-"""A part this much smaller than the rest of a plan is what rounding left, and has no true value."""
 OMEGA_DOT = ("omega_dot_x", "omega_dot_y", "omega_dot_z")
 
 
@@ -80,25 +75,12 @@ LONG_FLOATS: Mapping[str, Callable[..., Any]] = {
 """Floats of whatever precision is set: balls would lose a choice that is made next to zero."""
 
 
-def moving_figures(library: Library) -> tuple[Measurement, ...]:
-    """Return the errors of every function of motion, both precisions."""
-    found: list[Measurement] = []
-    for precision in PRECISIONS if library.motions else ():
-        drawn = samples(library.known, precision, ORDINARY, CORNERS).each
-        found += motion_figures(library, with_motion(library, drawn, precision), precision)
-    return tuple(found)
-
-
 def with_motion(
     library: Library, each: Sequence[Sample], precision: Precision
 ) -> tuple[Sample, ...]:
     """Return the samples with values for all that only the functions of motion are given."""
-    known = {c for q in library.known.words.every() for c in q.components}
-    known |= set(component_names(library.setup))
-    given = {q.name: q for f in library.motions for q in f.inputs}
-    fresh = [q for q in given.values() if not known & set(q.components) and q.name != PLAN]
     dice = source(library.known, precision, "motion")
-    own = [(c, q) for q in fresh for c in q.components]
+    own = [(c, q) for q in fresh_quantities(library) for c in q.components]
     drawn = [
         replace(s, values=s.values | {c: _drawn(dice, s, c, q) for c, q in own}) for s in each
     ]
@@ -107,7 +89,22 @@ def with_motion(
         replace(s, values={c: dice.held(x) for c, x in _in_reach(s.values, fast).items()})
         for s, fast in zip(drawn, rates, strict=True)
     )
-    return tuple(_planned(library, kept, precision)) if PLAN in given else kept
+    plans = any(q.name == PLAN for f in library.motions for q in f.inputs)
+    return tuple(_planned(library, kept, precision)) if plans else kept
+
+
+def fresh_quantities(library: Library) -> list[Quantity]:
+    """Return what only the functions of motion are given, but for a plan, which is made."""
+    known = {c for q in library.known.words.every() for c in q.components}
+    known |= set(component_names(library.setup))
+    given = {q.name: q for f in library.motions for q in f.inputs}
+    return [q for q in given.values() if not known & set(q.components) and q.name != PLAN]
+
+
+def telling(library: Library) -> list[Program]:
+    """Return the functions, one or none, that tell how fast omega changes."""
+    every = (*library.rates, *library.functions)
+    return [f for f in every if any(q.name == "omega_dot" for q in f.outputs)][:1]
 
 
 def _drawn(of: Source, sample: Sample, component: str, q: Quantity) -> float:
@@ -120,12 +117,11 @@ def _drawn(of: Source, sample: Sample, component: str, q: Quantity) -> float:
 
 def _omega_rates(library: Library, each: Sequence[Sample], precision: Precision) -> list[float]:
     """Return how fast omega changes at each sample, 0 where no function tells."""
-    every = (*library.rates, *library.functions)
-    telling = [f for f in every if any(q.name == "omega_dot" for q in f.outputs)][:1]
-    if not telling:
+    found = telling(library)
+    if not found:
         return [0.0] * len(each)
     table = working(precision.dtype)
-    (f,) = telling
+    (f,) = found
     columns = replayed(replace(library, functions=(f,), motions=()), each, precision, table)
     named = zip(component_names(f), columns[f.name], strict=True)
     own = [np.abs(np.broadcast_to(c, len(each))) for name, c in named if name in OMEGA_DOT]
@@ -137,10 +133,16 @@ def _in_reach(values: Values, fast: float) -> Values:
     if "omega_x" not in values:
         return values
     omega = max(abs(values[f"omega_{axis}"]) for axis in "xyz")
-    longest = REACH / max(omega, math.sqrt(fast), 1e-300)
+    longest, long = (float(x) for x in bounds_of_times(omega, fast))
     step = min(values.get("time_step", 0.0), longest)
-    time = max(-LONG * longest, min(values.get("time", 0.0), LONG * longest))
+    time = max(-long, min(values.get("time", 0.0), long))
     return values | {c: x for c, x in (("time_step", step), ("time", time)) if c in values}
+
+
+def bounds_of_times(omega: Any, fast: Any) -> tuple[Any, Any]:
+    """Return the longest step, and the longest time of a flow, from omega and its rate."""
+    longest = REACH / np.maximum(np.maximum(omega, np.sqrt(fast)), 1e-300)
+    return longest, LONG * longest
 
 
 def _planned(library: Library, each: Sequence[Sample], precision: Precision) -> Iterator[Sample]:
@@ -154,38 +156,45 @@ def _planned(library: Library, each: Sequence[Sample], precision: Precision) -> 
         yield replace(s, values=s.values | dict(zip(names, row, strict=True)))
 
 
-def motion_figures(
-    library: Library, each: Sequence[Sample], precision: Precision
-) -> tuple[Measurement, ...]:
-    """Return the errors of rounding of every output of every function of motion."""
-    found = []
-    results = replayed(library, each, precision, working(precision.dtype))
-    for program in library.motions:
-        columns = [np.broadcast_to(c, len(each)).tolist() for c in results[program.name]]
-        errors = motion_errors(library, program, columns, each, precision)
-        found += [measurement(one, precision, each) for one in errors]
-    return tuple(found)
-
-
 def motion_errors(
-    library: Library,
+    by: Sizing,
     program: Program,
     columns: Sequence[Sequence[float]],
     each: Sequence[Sample],
     precision: Precision,
 ) -> Iterator[Errors]:
     """Yield the errors of each output, from the results by component and sample."""
-    true = [exact(library, program, s) for s in each]
-    place = 0
-    for q in program.outputs:
-        span = range(place, place + len(q.components))
-        place += len(q.components)
-        if q.name not in UNMEASURED:
-            rows = tuple(
-                _errors([columns[k][n] for k in span], [here[k] for k in span], q, precision)
-                for n, here in enumerate(true)
+    true = [[arb(x).mid() for x in exact(by.library, program, s)] for s in each]
+    scales = _scales(by, program, true, each, precision)
+    for q, span in measured_outputs(program):
+        rows = tuple(
+            tuple(
+                _error(column[n], should, scale[n]) / precision.unit_roundoff
+                for column, should, scale in zip(
+                    columns[span], true[n][span], scales[span], strict=True
+                )
             )
-            yield Errors(program.name, q.name, rows)
+            for n in range(len(each))
+        )
+        yield Errors(program.name, q.name, rows)
+
+
+def _scales(
+    by: Sizing,
+    program: Program,
+    true: Sequence[Sequence[Any]],
+    each: Sequence[Sample],
+    precision: Precision,
+) -> list[list[float]]:
+    """Return what errors are counted in: a row a component, a column a sample."""
+    own: dict[str, Any] = {
+        c: np.array([s.values[c] for s in each], precision.dtype) for c in each[0].values
+    }
+    with np.errstate(all="ignore"):
+        wide = known(by.setup, own, arithmetics(precision.dtype)).wide
+        values = [np.array([float(row[k]) for row in true]) for k in range(len(true[0]))]
+        scales = motion_scales(by, planned(program), wide, values)
+        return [np.broadcast_to(x, len(each)).tolist() for x in scales]
 
 
 def exact(library: Library, program: Program, sample: Sample) -> list[Any]:
@@ -202,26 +211,8 @@ def _inputs(program: Program) -> list[str]:
     return [c for q in program.inputs for c in q.components]
 
 
-def _errors(
-    found: Sequence[float], should: Sequence[Any], q: Quantity, precision: Precision
-) -> tuple[float, ...]:
-    """Return the errors of one output's components, in u of the largest; a plan's one by one."""
-    true = [arb(x).mid() for x in should]
-    if not all(x.is_finite() for x in true):
-        return (math.inf,) * len(found)  # samples lie where every function has a value
-    smallest = float(np.finfo(precision.dtype).smallest_normal)
-    sizes = [abs(float(x)) for x in true]
-    most = largest((*sizes, smallest))
-    own = [max(size, smallest) if size > most * NOTHING else most for size in sizes]
-    scales = own if q.name == PLAN else [most] * len(sizes)
-    return tuple(
-        _error(x, y, scale) / precision.unit_roundoff
-        for x, y, scale in zip(found, true, scales, strict=True)
-    )
-
-
 def _error(found: float, should: Any, scale: float) -> float:
-    if not math.isfinite(found):
-        return math.inf
+    if not (math.isfinite(found) and should.is_finite() and math.isfinite(scale)):
+        return math.inf  # samples lie where every function has a value
     with ctx.workprec(BITS):
         return abs(float((arb(found) - should) / arb(scale)))

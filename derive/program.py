@@ -237,41 +237,53 @@ def run(program: Program, arithmetic: Table, values: Sequence[Any]) -> list[Any]
 
     if program.loops is not None:
         return program.loops.run(arithmetic, known)
-    for line in program.ops:
+    run_lines(program.ops, arithmetic, known)
+    return values_of(program.results, arithmetic, known)
+
+
+def run_lines(lines: Sequence[Line], arithmetic: Table, known: dict[str, Any]) -> None:
+    """Add the values that operations and loops give to what is known by name."""
+    for line in lines:
         if isinstance(line, Repeat):
             _repeat(line, arithmetic, known)
         else:
             _operate((line,), arithmetic, known)
-    return _values(program.results, arithmetic, known)
 
 
-def _values(operands: Sequence[Operand], arithmetic: Table, known: Mapping[str, Any]) -> list[Any]:
+def values_of(
+    operands: Sequence[Operand], arithmetic: Table, known: Mapping[str, Any]
+) -> list[Any]:
+    """Return the values of operands: known by name, or exact numbers."""
     return [known[o] if isinstance(o, str) else arithmetic["number"](o) for o in operands]
 
 
 def _operate(ops: Sequence[Op], arithmetic: Table, known: dict[str, Any]) -> None:
     for op in ops:
-        known[op.result] = arithmetic[op.operator](*_values(op.operands, arithmetic, known))
+        known[op.result] = arithmetic[op.operator](*values_of(op.operands, arithmetic, known))
 
 
 def _repeat(loop: Repeat, arithmetic: Table, known: dict[str, Any]) -> None:
-    known.update(zip(loop.carried, _values(loop.start, arithmetic, known), strict=True))
+    known.update(zip(loop.carried, values_of(loop.start, arithmetic, known), strict=True))
     done: Any = None
     for _ in range(loop.passes):
         _operate(loop.ops, arithmetic, known)
-        new = _values(loop.then, arithmetic, known)
+        new = values_of(loop.then, arithmetic, known)
         if done is not None:
             old = [known[name] for name in loop.carried]
             new = [arithmetic["select"](done, o, n) for o, n in zip(old, new, strict=True)]
         known.update(zip(loop.carried, new, strict=True))
         if loop.done is not None:
-            (now,) = _values((loop.done,), arithmetic, known)
+            (now,) = values_of((loop.done,), arithmetic, known)
             done = now if done is None else arithmetic["either"](done, now)
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """The error of one output of one function in one precision, in ulps of its largest term."""
+    """The error of one output of one function in one precision, in u of what it is counted in.
+
+    sample                  : number of the worst sample
+    samples, searched, hard : how many were drawn on the ranges, searched from the worst, and hard
+    """
 
     function: str
     precision: str
@@ -280,3 +292,5 @@ class Measurement:
     worst: float
     sample: int
     samples: int
+    searched: int
+    hard: int

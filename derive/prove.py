@@ -71,6 +71,8 @@ FRACTIONS: Table = _INFIX | {
     "power_of_two": _power_of_two,
     "inverse": _inverse,
     "size": lambda _: 1.0,
+    "most": max,
+    "unless_zero": lambda size, other: size or other,
 }
 
 WIDE_BALLS: Table = (

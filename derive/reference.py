@@ -6,9 +6,11 @@ how programs are arranged, lowered or differentiated. Beside every value stands 
 largest term of the sum that it is, the measure of its rounding errors.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
+from types import MappingProxyType
 from typing import Any
 
 from flint import arb, arb_mat, ctx
@@ -21,7 +23,8 @@ SPARE_BITS = 100  # a ball must be this much narrower than its largest term
 MOST_BITS = 10_000
 NOTHING_BITS = 1200  # less than 2^-1200 is below half of the smallest double
 
-Slopes = dict[str, tuple[Any, float]]
+Slopes = dict[str, tuple[Any, Any]]
+NO_SCALES: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -29,16 +32,23 @@ class Known:
     """A value, the size of its largest term, what it magnifies, and its slopes by column."""
 
     value: Any
-    scale: float
+    scale: Any
     slopes: Slopes
-    gain: float = 1.0
+    gain: Any = 1.0
 
 
 def solution(
-    asked: Equations, given: Mapping[str, Any], columns: Iterable[str], arithmetic: Arithmetic
+    asked: Equations,
+    given: Mapping[str, Any],
+    columns: Iterable[str],
+    arithmetic: Arithmetic,
+    scales: Mapping[str, Any] = NO_SCALES,
 ) -> dict[str, Known]:
-    """Return every unknown by its component's name, with its slopes by the ``columns``."""
-    known = _given(asked, given, set(columns), arithmetic)
+    """Return every unknown by its component's name, with its slopes by the ``columns``.
+
+    scales : of what is given and was itself the sum of larger terms
+    """
+    known = _given(asked, given, set(columns), arithmetic, scales)
     _apply(asked, known, arithmetic)
     fixed = {place: known[place].value for place in asked.fixed}
     values = [value(c, fixed, arithmetic) for c in asked.coefficients]
@@ -56,14 +66,19 @@ def solution(
 
 
 def _given(
-    asked: Equations, given: Mapping[str, Any], columns: set[str], arithmetic: Arithmetic
+    asked: Equations,
+    given: Mapping[str, Any],
+    columns: set[str],
+    arithmetic: Arithmetic,
+    scales: Mapping[str, Any],
 ) -> dict[int, Known]:
     known: dict[int, Known] = {}
     one = arithmetic["number"](Fraction(1))
     for place, name in asked.names.items():
         if name in given:
             slopes: Slopes = {name: (one, 1.0)} if name in columns else {}
-            known[place] = Known(given[name], arithmetic["size"](given[name]), slopes)
+            size = scales[name] if name in scales else arithmetic["size"](given[name])
+            known[place] = Known(given[name], size, slopes)
     return known
 
 
@@ -98,7 +113,7 @@ def _applied(atom: Atom, known: Mapping[int, Known], arithmetic: Arithmetic) -> 
     exact = len(atom.inner) == 1 and abs(atom.inner[0][1]) == 1 and len(atom.inner[0][0]) == 1
     error = 0.0 if exact else size(slope) * inner.scale
     slopes = {c: (slope * v, size(slope) * s) for c, (v, s) in inner.slopes.items()}
-    return Known(here, max(size(here), error), slopes)
+    return Known(here, arithmetic["most"](size(here), error), slopes)
 
 
 def _summed(
@@ -108,27 +123,28 @@ def _summed(
     arithmetic: Arithmetic,
 ) -> Known:
     """Return a sum of terms with its largest term, and the same for every slope."""
-    total, largest, slopes = arithmetic["number"](Fraction(0)), 0.0, dict[str, tuple[Any, float]]()
+    most, slopes = arithmetic["most"], dict[str, tuple[Any, Any]]()
+    total, largest = arithmetic["number"](Fraction(0)), 0.0
     for part in parts:
         product, size = coefficients[part.coefficient]
         for atom, power in part.factors:
             factor = known[atom]
             product = product * raised(factor.value, power)
-            size *= _power_scale(factor, power, arithmetic)
-        total, largest = total + product, max(largest, size)
+            size = size * _power_scale(factor, power, arithmetic)
+        total, largest = total + product, most(largest, size)
         for place, (atom, _) in enumerate(part.factors):
             if known[atom].slopes:
                 partial = _partial(part, place, known, coefficients)
-                _add_slopes(slopes, known[atom].slopes, *partial)
+                _add_slopes(slopes, known[atom].slopes, *partial, most)
     return Known(total, largest, slopes)
 
 
-def _power_scale(factor: Known, power: int, arithmetic: Arithmetic) -> float:
+def _power_scale(factor: Known, power: int, arithmetic: Arithmetic) -> Any:
     """Return the size of a power; a quotient magnifies what its divisor has lost."""
     if power > 0:
-        return factor.scale**power
-    size = arithmetic["size"](factor.value) or factor.scale
-    return float(size ** (power - 1) * factor.scale)
+        return raised(factor.scale, power)
+    size = arithmetic["unless_zero"](arithmetic["size"](factor.value), factor.scale)
+    return raised(size, power - 1) * factor.scale
 
 
 def _partial(
@@ -142,16 +158,18 @@ def _partial(
             product, size = product * power, size * abs(power)
         if left:
             product = product * raised(factor.value, left)
-            size *= factor.scale**left
+            size = size * raised(factor.scale, left)
     return product, size
 
 
-def _add_slopes(slopes: Slopes, more: Slopes, product: Any, size: float) -> None:
+def _add_slopes(
+    slopes: Slopes, more: Slopes, product: Any, size: Any, most: Callable[[Any, Any], Any]
+) -> None:
     """Add ``product`` times the slopes ``more``; a slope's scale is that of its largest term."""
     for column, (slope, scale) in more.items():
         if column in slopes:
             before, largest = slopes[column]
-            slopes[column] = before + product * slope, max(largest, size * scale)
+            slopes[column] = before + product * slope, most(largest, size * scale)
         else:
             slopes[column] = product * slope, size * scale
 
@@ -162,19 +180,21 @@ def _solved(matrix: list[list[Known]], right: list[Known], arithmetic: Arithmeti
     sizes = [[arithmetic["size"](entry) for entry in row] for row in inverse]
     order = range(len(right))
     values = [sum((r[k] * right[k].value for k in order), right[0].value * 0) for r in inverse]
-    scales = [max(r[k] * right[k].scale for k in order) for r in sizes]
+    most = arithmetic["most"]
+    scales = [reduce(most, (r[k] * right[k].scale for k in order)) for r in sizes]
     loads: list[Slopes] = []
     for row, load in zip(matrix, right, strict=True):
         slopes = dict(load.slopes)
         for entry, u, scale in zip(row, values, scales, strict=True):
-            _add_slopes(slopes, entry.slopes, -u, scale)
+            _add_slopes(slopes, entry.slopes, -u, scale, most)
         loads.append(slopes)
     found = []
     for place in order:
         slopes = {}
         for k in order:
-            _add_slopes(slopes, loads[k], inverse[place][k], sizes[place][k])
-        found.append(Known(values[place], scales[place], slopes, max(1.0, *sizes[place])))
+            _add_slopes(slopes, loads[k], inverse[place][k], sizes[place][k], most)
+        gain = reduce(most, sizes[place], 1.0)
+        found.append(Known(values[place], scales[place], slopes, gain))
     return found
 
 
@@ -194,6 +214,8 @@ BALLS: Arithmetic = {
     "pi": lambda: arb.pi(),
     "inverse": _inverse,
     "size": lambda x: abs(float(x.mid())),
+    "most": max,
+    "unless_zero": lambda size, other: size or other,
 }
 
 

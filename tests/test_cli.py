@@ -10,12 +10,13 @@ from derive.prove import ProofError
 from derive.reference import NoValueError
 
 SCENE = "free_body_principal"
+FEW = ("--samples", "256")
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("made")
-    assert main(["generate", SCENE, "--out", str(folder)]) == 0
+    assert main(["generate", *FEW, SCENE, "--out", str(folder)]) == 0
     return folder
 
 
@@ -30,7 +31,7 @@ def test_a_scene_becomes_its_files_and_no_others(made):
 
 
 def test_what_was_generated_passes_the_check(made):
-    assert main(["generate", SCENE, "--out", str(made), "--check"]) == 0
+    assert main(["generate", *FEW, SCENE, "--out", str(made), "--check"]) == 0
 
 
 @pytest.mark.parametrize("ending", ["_f32.c", "_f64.h", ".json", "_casadi.py", ".html"])
@@ -40,10 +41,10 @@ def test_an_edit_of_any_file_fails_the_check_with_the_mending_command(made, endi
     file.write_bytes(before.replace(b"0", b"1", 1))
     found = contents(made)
     try:
-        assert main(["generate", SCENE, "--out", str(made), "--check"]) == 1
+        assert main(["generate", *FEW, SCENE, "--out", str(made), "--check"]) == 1
         shown = capsys.readouterr()
         assert f"{SCENE}{ending}" in shown.out
-        assert f"derive generate {SCENE} --out" in " ".join(shown.err.split())
+        assert f"derive generate {SCENE} --samples 256 --out" in " ".join(shown.err.split())
         assert contents(made) == found
     finally:
         file.write_bytes(before)
@@ -53,12 +54,12 @@ def test_a_missing_and_a_left_over_file_fail_the_check(made, capsys):
     file = made / SCENE / f"{SCENE}_f64.h"
     aside = file.rename(file.with_name("left_over.h"))
     try:
-        assert main(["generate", SCENE, "--out", str(made), "--check"]) == 1
+        assert main(["generate", *FEW, SCENE, "--out", str(made), "--check"]) == 1
         shown = capsys.readouterr()
         assert "missing" in shown.out
         assert "no scene makes this file" in shown.out
         assert "2 files differ" in shown.err
-        assert f"derive generate {SCENE} --out {made}\n" in shown.err
+        assert f"derive generate {SCENE} --samples 256 --out {made}\n" in shown.err
         assert f"rm {aside}\n" in shown.err
     finally:
         aside.rename(file)
@@ -68,7 +69,7 @@ def test_a_file_that_is_only_left_over_is_mended_by_deleting_it(made, capsys):
     extra = made / SCENE / "left over.h"
     extra.write_text("")
     try:
-        assert main(["generate", SCENE, "--out", str(made), "--check"]) == 1
+        assert main(["generate", *FEW, SCENE, "--out", str(made), "--check"]) == 1
         shown = capsys.readouterr().err
         assert "1 file differs" in shown
         assert f"rm '{extra}'\n" in shown
@@ -90,14 +91,14 @@ def test_an_edit_of_the_scene_fails_the_check(made, tmp_path, capsys):
     text = (Path(__file__).parents[1] / "derive" / "catalogue" / f"{SCENE}.toml").read_text()
     other = tmp_path / f"{SCENE}.toml"
     other.write_text(text.replace("title", "# a remark\ntitle", 1))
-    assert main(["generate", str(other), "--out", str(made), "--check"]) == 1
+    assert main(["generate", *FEW, str(other), "--out", str(made), "--check"]) == 1
     assert "sha256" in capsys.readouterr().out
 
 
 def test_files_of_a_scene_outside_the_catalogue_name_its_file(tmp_path):
     body = '[body]\nkind = "spherical"\nmoment = "1"\n'
     source = scene(tmp_path, "ball", '"acceleration"', body)
-    assert main(["generate", source, "--out", str(tmp_path / "out")]) == 0
+    assert main(["generate", *FEW, source, "--out", str(tmp_path / "out")]) == 0
     made = contents(tmp_path / "out")
     assert len(made) == 7
     assert all(b"derive generate ball.toml" in text for text in made.values())
@@ -106,13 +107,13 @@ def test_files_of_a_scene_outside_the_catalogue_name_its_file(tmp_path):
 def test_a_bad_scene_gets_one_sentence_and_no_file(tmp_path, capsys):
     scene = tmp_path / "broken.toml"
     scene.write_text('title = "x"\nwanted = ["moment"]\n[body]\nkind = "cube"\n')
-    assert main(["generate", str(scene), "--out", str(tmp_path / "out")]) == 2
+    assert main(["generate", *FEW, str(scene), "--out", str(tmp_path / "out")]) == 2
     assert capsys.readouterr().err.count("\n") <= 3
     assert not (tmp_path / "out").exists()
 
 
 def test_an_unknown_scene_and_an_unknown_assumption_are_refused(capsys):
-    assert main(["generate", "free_bodi"]) == 2
+    assert main(["generate", *FEW, "free_bodi"]) == 2
     assert "free_body" in capsys.readouterr().err
     assert main(["lecture", "--without", "newtom"]) == 2
     assert "newton" in capsys.readouterr().err
@@ -121,7 +122,7 @@ def test_an_unknown_scene_and_an_unknown_assumption_are_refused(capsys):
 def test_a_folder_that_cannot_be_written_is_named_and_nothing_is_left(tmp_path, capsys):
     in_the_way = tmp_path / "a_file"
     in_the_way.write_text("")
-    assert main(["generate", SCENE, "--out", str(in_the_way)]) == 2
+    assert main(["generate", *FEW, SCENE, "--out", str(in_the_way)]) == 2
     assert "a_file" in " ".join(capsys.readouterr().err.split()).replace(" ", "")
     assert contents(tmp_path) == {"a_file": b""}
 
@@ -169,7 +170,7 @@ def scene(tmp_path, name: str, wanted: str, body: str) -> str:
 def test_two_scenes_of_one_name_are_refused(tmp_path, capsys):
     body = '[body]\nkind = "spherical"\nmoment = "1"\n'
     source = scene(tmp_path, SCENE, '"acceleration"', body)
-    assert main(["generate", SCENE, source, "--out", str(tmp_path / "out")]) == 2
+    assert main(["generate", *FEW, SCENE, source, "--out", str(tmp_path / "out")]) == 2
     assert f"are both '{SCENE}'" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
@@ -177,7 +178,7 @@ def test_two_scenes_of_one_name_are_refused(tmp_path, capsys):
 def test_a_body_beyond_the_float_range_is_refused(tmp_path, capsys):
     body = '[body]\nkind = "spherical"\nmoment = "1e300"\n'
     source = scene(tmp_path, "huge", '"acceleration", "kinetic_energy"', body)
-    assert main(["generate", source, "--out", str(tmp_path / "out")]) == 2
+    assert main(["generate", *FEW, source, "--out", str(tmp_path / "out")]) == 2
     assert "within f32" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
@@ -190,7 +191,7 @@ def test_bench_names_a_file_that_it_cannot_write(tmp_path, capsys):
 def test_a_broken_triangle_inequality_warns_and_does_not_stop(tmp_path, capsys):
     body = '[body]\nkind = "principal"\nmoments = ["1", "1", "3"]\n'
     source = scene(tmp_path, "flat", '"acceleration"', body)
-    assert main(["generate", source, "--out", str(tmp_path / "out")]) == 0
+    assert main(["generate", *FEW, source, "--out", str(tmp_path / "out")]) == 0
     assert "scene 'flat': body inertia breaks the triangle inequality" in capsys.readouterr().err
     assert (tmp_path / "out" / "flat" / "flat_f64.c").is_file()
 
@@ -202,7 +203,7 @@ def test_a_jacobian_of_what_does_not_vary_is_refused(tmp_path, capsys):
     still += '[axes]\nturned = ["y b"]\n'
     still += '[body]\nshape = "disc"\nmass = 2\nradius = 0.5\naxis = "z"\nspin = "p"\n'
     source = scene(tmp_path, "still", '"moment_jacobian"', still)
-    assert main(["generate", source, "--out", str(tmp_path / "out")]) == 2
+    assert main(["generate", *FEW, source, "--out", str(tmp_path / "out")]) == 2
     assert "'moment_jacobian' must have entries" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
@@ -216,22 +217,31 @@ def test_what_fails_its_proof_is_told_from_bad_input(raised, code, monkeypatch, 
         raise raised
 
     monkeypatch.setattr("derive.generation.prove", fails)
-    assert main(["generate", SCENE, "--check"]) == code
+    assert main(["generate", *FEW, SCENE, "--check"]) == code
     assert str(raised) in capsys.readouterr().err
 
 
 def test_a_bug_of_ours_is_not_called_bad_input(monkeypatch):
-    def fails(_):
+    def fails(*_):
         raise ZeroDivisionError
 
-    monkeypatch.setattr("derive.generation.figures", fails)
+    monkeypatch.setattr("derive.generation.figures_of", fails)
     with pytest.raises(ZeroDivisionError):
-        main(["generate", SCENE, "--check"])
+        main(["generate", *FEW, SCENE, "--check"])
 
 
 def test_formulas_without_a_value_are_refused(tmp_path, capsys):
     body = '[parameters]\na = { unit = "kg m^2", range = [1, 2], meaning = "moment" }\n'
     body += '[body]\nkind = "spherical"\nmoment = "sqrt(a^2 - 9*a^2)"\n'
     source = scene(tmp_path, "hollow", '"kinetic_energy"', body)
-    assert main(["generate", source, "--out", str(tmp_path / "out")]) == 2
+    assert main(["generate", *FEW, source, "--out", str(tmp_path / "out")]) == 2
     assert "scene 'hollow'" in capsys.readouterr().err
+
+
+def test_a_number_of_samples_is_a_whole_number_above_zero(capsys):
+    for command in ("generate", "check"):
+        for wrong in ("0", "-5", "many", "1e6"):
+            with pytest.raises(SystemExit) as stopped:
+                main([command, SCENE, "--samples", wrong])
+            assert stopped.value.code == 2
+            assert f"must be a whole number above zero, not '{wrong}'" in capsys.readouterr().err

@@ -5,7 +5,7 @@ the reference, and with laws of mechanics. Nothing is left out silently: a check
 cannot take is a row that says why.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -21,11 +21,13 @@ from derive.check.attitudes import definitions
 from derive.check.compiler import Compiler, CompilerError, find_compiler
 from derive.check.emitted import Emitted, Files, casadi_module, files, is_double, loaded
 from derive.check.energy import energy_balance
+from derive.check.fresh import fresh
 from derive.check.invariants import power_balance, turned_axes
 from derive.check.motion import orders, step_slopes
 from derive.check.particles import clouds
 from derive.check.refusals import casadi_status, refusal
 from derive.check.verdict import JUDGED, Verdict
+from derive.kept import stated_figures
 from derive.library import Library, library
 from derive.machine.mechanism import Mechanism
 from derive.motion_error import with_motion
@@ -36,16 +38,21 @@ from derive.scene import load
 ORDINARY, CORNERS, FEW, TWO = 300, 6, 8, 2
 
 
-def check(sources: Sequence[str], folder: Path) -> Iterator[Verdict]:
+def check(
+    sources: Sequence[str], folder: Path, samples: int, told: Callable[[str], None]
+) -> Iterator[Verdict]:
     """Yield the verdicts on the emitted files of scenes, as they lie below ``folder`` or are made.
 
+    samples : fresh ones that stated errors are tried at       told : hears how far that is
     Raises CompilerError if there is no C compiler.
     """
     with_ = find_compiler()
     for source in sources:
         made = library(load(source))
         with TemporaryDirectory(prefix="derive-") as workshop:
-            yield from check_library(made, files(made, folder), Path(workshop), with_, ORDINARY)
+            found = files(made, folder)
+            yield from check_library(made, found, Path(workshop), with_, ORDINARY)
+            yield from fresh(made, stated_figures(found.manifest), samples, told)
 
 
 def check_library(

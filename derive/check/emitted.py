@@ -12,12 +12,12 @@ from derive.casadi_module import imported
 from derive.check.call import Function, functions
 from derive.check.compiler import Compiler, compiled
 from derive.files import scene_files
+from derive.kept import Measuring, figures_of
 from derive.library import Library
-from derive.measure import figures
-from derive.motion_error import moving_figures
 from derive.program import Program
 from derive.sample import Sample
 from derive.scene import SceneError
+from derive.search import SAMPLING, Sampling
 
 ENDINGS = (".json", "_casadi.py", "_f32.c", "_f32.h", "_f64.c", "_f64.h")
 """Of the files of a scene that checks read; whatever else lies there is nobody's business."""
@@ -70,7 +70,7 @@ def inputs(
     }
 
 
-def files(library: Library, folder: Path) -> Files:
+def files(library: Library, folder: Path, sampling: Sampling = SAMPLING) -> Files:
     """Return a scene's files as they lie below ``folder``, or made in memory if they do not."""
     name = library.known.scene.name
     place = folder / name
@@ -80,7 +80,8 @@ def files(library: Library, folder: Path) -> Files:
         if missing:
             raise SceneError(f"scene '{name}': {place / missing[0]} is missing; generate it again")
         return Files({file: (place / file).read_text(encoding="utf-8") for file in own}, f"{place}")
-    made = scene_files(library, figures(library) + moving_figures(library))
+    measured = figures_of(library, Measuring(sampling, None))
+    made = scene_files(library, measured.each, measured.digest)
     return Files({path.partition("/")[2]: text for path, text in made.items()}, "made in memory")
 
 

@@ -5,14 +5,18 @@ import argparse
 from rich.table import Table
 
 from derive.check import check as verdicts_on
-from derive.command.scenes import scene_argument
+from derive.command.scenes import samples_argument, scene_argument
 from derive.command.terminal import OUT, console, progress
 from derive.scene import catalogue
+
+FRESH = 4096
+"""Samples that take a second a scene; a release is tried with a million."""
 
 
 def options(command: argparse.ArgumentParser) -> None:
     """Declare the options of ``derive check``."""
     scene_argument(command)
+    samples_argument(command, FRESH, "fresh samples that stated errors are tried at")
     command.set_defaults(run=check)
 
 
@@ -22,7 +26,11 @@ def check(given: argparse.Namespace) -> int:
     found: list[str] = []
     with progress() as shown:
         task = shown.add_task("finding a compiler")
-        verdicts = verdicts_on(given.scenes or catalogue(), OUT)
+
+        def told(says: str) -> None:
+            shown.update(task, description=says)
+
+        verdicts = verdicts_on(given.scenes or catalogue(), OUT, given.samples, told)
         for count, v in enumerate(verdicts, 1):
             shown.update(task, description=f"{v.scene}: {v.function} ({count} checks)")
             found.append(v.outcome)

@@ -7,12 +7,14 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from derive.command.costs import print_costs
-from derive.command.scenes import scene_argument
+from derive.command.scenes import samples_argument, scene_argument
 from derive.command.terminal import OUT, complain, console, errors, progress
 from derive.escape import visible
 from derive.files import Difference, differences, folders_left_over, write
 from derive.generation import Made, all_made, gallery_of, lecture_made
+from derive.kept import Measuring
 from derive.scene import SceneError, catalogue
+from derive.search import SAMPLING, sampled_at
 
 
 def options(command: argparse.ArgumentParser) -> None:
@@ -30,12 +32,19 @@ def options(command: argparse.ArgumentParser) -> None:
         action="store_true",
         help="write nothing; exit 1 with a diff if the files are not what would be written",
     )
+    command.add_argument(
+        "--anew",
+        action="store_true",
+        help="measure all errors anew, also those that are kept because nothing has changed",
+    )
+    samples_argument(command, SAMPLING.samples, "samples that each stated error is looked for at")
     command.set_defaults(run=generate)
 
 
 def generate(given: argparse.Namespace) -> int:
     """Write, or with --check compare, the files of scenes."""
-    results = made_of(given.scenes, () if given.scenes else (lecture_made,))
+    by = Measuring(sampled_at(given.samples), None if given.anew else given.out)
+    results = made_of(given.scenes, () if given.scenes else (lecture_made,), by)
     texts = {name: text for result in results for name, text in result.texts.items()}
     if not given.scenes:
         texts |= gallery_of(results)
@@ -47,14 +56,16 @@ def generate(given: argparse.Namespace) -> int:
     return 0
 
 
-def made_of(scenes: Sequence[str], also: Sequence[Callable[[], Made]]) -> list[Made]:
+def made_of(
+    scenes: Sequence[str], also: Sequence[Callable[[], Made]], measuring: Measuring
+) -> list[Made]:
     """Return what scenes become, none meaning all, and what is made also; print the warnings."""
     sources = [str(source) for source in scenes or catalogue()]
     _distinct(sources)
     found: dict[int, Made] = {}
     with progress() as shown:
         task = shown.add_task("deriving, proving and measuring")
-        for place, result in all_made(sources, also):
+        for place, result in all_made(sources, also, measuring):
             found[place] = result
             done = f"{len(found)} of {len(sources) + len(also)} done"
             shown.update(task, description=f"deriving, proving and measuring: {done}")
@@ -99,6 +110,8 @@ def _mending(given: argparse.Namespace, found: Sequence[Difference]) -> list[str
     commands = []
     if not all(difference.left_over for difference in found):
         out = [] if given.out == OUT else ["--out", str(given.out)]
-        commands.append(shlex.join(["derive", "generate", *given.scenes, *out]))
+        few = given.samples != SAMPLING.samples
+        samples = ["--samples", str(given.samples)] if few else []
+        commands.append(shlex.join(["derive", "generate", *given.scenes, *samples, *out]))
     left = [str(given.out / difference.name) for difference in found if difference.left_over]
     return [*commands, *([shlex.join(["rm", *left])] if left else [])]

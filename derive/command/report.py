@@ -6,6 +6,8 @@ from derive.command.costs import print_costs
 from derive.command.generate import made_of
 from derive.command.scenes import scene_argument
 from derive.command.terminal import OUT, complain, console, progress
+from derive.kept import Measuring
+from derive.search import SAMPLING
 
 
 def options(command: argparse.ArgumentParser) -> None:
@@ -27,7 +29,7 @@ def options(command: argparse.ArgumentParser) -> None:
 def report(given: argparse.Namespace) -> int:
     """Write the speed-against-error report; of scenes, only print what their functions cost."""
     if given.scenes:
-        print_costs(made_of(given.scenes, ()))
+        print_costs(made_of(given.scenes, (), Measuring(SAMPLING, OUT)))
         return 0
     from derive.report import command  # matplotlib and the peers are an extra
 

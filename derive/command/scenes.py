@@ -28,3 +28,20 @@ def list_scenes(_: argparse.Namespace) -> int:
         table.add_row(name, scene.title, ", ".join(scene.wanted))
     console.print(table)
     return 0
+
+
+def samples_argument(command: argparse.ArgumentParser, default: int, says: str) -> None:
+    """Let a command be told how many samples to take, at least one."""
+    command.add_argument(
+        "--samples",
+        type=_positive,
+        default=default,
+        metavar="N",
+        help=f"{says} (default: {default})",
+    )
+
+
+def _positive(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"must be a whole number above zero, not '{text}'")
+    return int(text)

@@ -108,7 +108,9 @@ class Series:
 
     def run(self, arithmetic: Mapping[str, Callable[..., Any]], known: dict[str, Any]) -> list[Any]:
         """Return the results in an arithmetic, from the inputs by name."""
-        bits = min(MOST_BITS, round(-math.log2(float(arithmetic["unit_roundoff"]()))))
+        unit = arithmetic["unit_roundoff"]()
+        high = unit[0] if isinstance(unit, tuple) else unit  # of a pair
+        bits = min(MOST_BITS, round(-math.log2(float(high))))
         given = [known[c] for q in self.inputs for c in q.components]
         return run_series(self, arithmetic, given, bits)
 

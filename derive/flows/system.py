@@ -63,8 +63,9 @@ class System:
 
     @property
     def quaternions(self) -> tuple[slice, ...]:
-        """Return where attitudes stand among the components."""
-        return tuple(place for q, place in self._places() if q.is_quaternion)
+        """Return where attitudes stand among the components: four numbers without a unit."""
+        own = [(q, place) for q, place in self._places() if q.shape == (4,)]
+        return tuple(place for q, place in own if q.unit in ("", "1"))
 
     @property
     def quaternion(self) -> slice | None:

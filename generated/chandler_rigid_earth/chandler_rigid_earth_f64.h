@@ -48,8 +48,9 @@ int chandler_rigid_earth_setup_f64(double A, double C, double rate,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.34, largest 0.92 u of the largest term (sampled: 105 points, worst at
- *            period_days, point 3).
+ * Error: median 0.35, largest 1 u of the largest term of the sum that the output is (of
+ *            period_days; 200000 samples of the ranges, 65536 searched from the worst, 114 hard
+ *            ones).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

@@ -50,7 +50,8 @@ int propeller_3_blade_setup_f32(float blade_mass, float blade_length, float p, f
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0, largest 0.86 u of the largest term (sampled: 102 points, worst at M, point 38).
+ * Error: median 0, largest 1 u of the largest term of the sum that the output is (of M; 200000
+ *            samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

@@ -59,6 +59,7 @@ moments = ["J", "C", "J"]
 [loads]
 tether = {{ on = "hub", against = "pod", couple = ["-k*(a_x - b_x)", "0", "0"], along = "hub" }}
 """
+FEW = ("--samples", "256")
 STEPS = [name for name in OF_MACHINES if "tangent" not in name and name != "step_taylor"]
 ON_SPHERE = 4.0
 """Length of a quaternion after a step, in u from 1: one normalisation and its roundings."""
@@ -133,5 +134,5 @@ def test_a_machine_may_want_steps_and_nothing_else(tmp_path: Path) -> None:
     names = TWO_HUBS.format(wanted='"step_rk4"', emission="fast")
     scene = tmp_path / "two_hubs.toml"
     scene.write_text(names, encoding="utf-8")
-    assert main(["generate", str(scene), "--out", str(tmp_path / "out")]) == 0
+    assert main(["generate", *FEW, str(scene), "--out", str(tmp_path / "out")]) == 0
     assert (tmp_path / "out" / "two_hubs" / "two_hubs_f64.c").is_file()

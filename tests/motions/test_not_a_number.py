@@ -24,17 +24,20 @@ from derive.convergence import Order
 from derive.files import scene_files
 from derive.largest import largest
 from derive.library import Library
-from derive.measure import Errors, measurement
-from derive.motion_error import motion_figures, with_motion
+from derive.measure import Errors
+from derive.motion_error import with_motion
 from derive.program import Op, Program
 from derive.report.hard import Hard
 from derive.report.hard_top import ANSWERS
 from derive.report.hard_top import _largest as largest_of_top
 from derive.sample import Sample, samples
 from derive.scene import Machine
+from derive.search import Sampling
+from derive.stated import figures
 from tests.made import library_of
 
 NAN, FEW = math.nan, 3
+FEWEST = Sampling(samples=64, rounds=1, batch=16, balls=1, motion_balls=1)
 
 
 @cache
@@ -64,14 +67,13 @@ def test_the_largest_of_numbers_is_infinite_if_one_is_none(numbers: Sequence[Any
 
 def test_a_formula_without_a_value_has_an_infinite_error() -> None:
     scene, name = "attitude", "quaternion_product"
-    found = motion_figures(spoilt(library_of(scene), name), drawn(scene), F64)
-    assert {m.function: m.worst for m in found}[name] == math.inf
+    found = figures(spoilt(library_of(scene), name), FEWEST)
+    assert {m.worst for m in found if m.function == name} == {math.inf}
     assert all(math.isfinite(m.worst) for m in found if m.function != name)
 
 
 def test_an_error_that_is_no_number_is_measured_as_infinite() -> None:
-    each = drawn("attitude")[:2]
-    assert measurement(Errors("f", "x", ((0.5, 0.5), (0.5, NAN))), F64, each).worst == math.inf
+    assert Errors("f", "x", ((0.5, 0.5), (0.5, NAN))).largest() == [0.5, math.inf]
 
 
 def test_a_step_or_flow_without_a_value_is_no_motion() -> None:

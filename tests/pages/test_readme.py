@@ -40,7 +40,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     command = blocks("sh")[0].split()
     assert command == ["derive", "generate", "brick.toml"]
     code = f"import sys; sys.path[:0] = {sys.path!r}; from derive.cli import main; sys.exit(main())"
-    run([sys.executable, "-c", code, *command[1:]], place)
+    run([sys.executable, "-c", code, *command[1:], "--samples", "256"], place)  # to be quick
     return place
 
 

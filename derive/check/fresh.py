@@ -1,0 +1,69 @@
+"""Stated errors beside samples of another seed: none may be larger by more than a tenth.
+
+The figures are read from the scene's JSON. What is larger in pairs of doubles is measured again in
+balls before it counts.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+
+from derive.c_text import PRECISIONS, Precision
+from derive.check.agreement import ABSURD, MORE
+from derive.check.verdict import JUDGED, Verdict
+from derive.largest import largest
+from derive.library import Library
+from derive.program import Measurement, Program
+from derive.scale import measured_outputs
+from derive.search import Best, Field, Worst, field, sampled, worst_of
+from derive.stated import at_rows, at_samples, balls
+
+SEED = "checked"
+KEPT = 4
+
+
+def fresh(
+    library: Library,
+    stated: Sequence[Measurement],
+    samples: int,
+    told: Callable[[str], None],
+) -> Iterator[Verdict]:
+    """Yield whether any error at fresh samples is larger than stated, a row an output.
+
+    told : is called with a sentence as samples are done
+    """
+    said = {(m.function, m.precision, m.output): m.worst for m in stated}
+    for precision in PRECISIONS:
+        of = field(library, precision)
+        best: list[Best] = []
+        for done, best in sampled(of, SEED, samples, KEPT):  # noqa: B007 - the last is kept
+            told(f"{library.known.scene.name}: {precision.name}, {done} of {samples} samples")
+        found = worst_of(of, best)
+        for program in library.printed():
+            for place, (q, _) in enumerate(measured_outputs(program)):
+                own = [w for w in found if (w.function, w.output) == (program.name, q.name)]
+                limit = said.get((program.name, precision.name, q.name))
+                yield _verdict(of, program, place, own[0], limit, samples)
+
+
+def _verdict(
+    of: Field, program: Program, place: int, found: Worst, stated: float | None, samples: int
+) -> Verdict:
+    library, precision = of.ranges.library, of.precision
+    seen = largest(found.errors)
+    if stated is not None and seen > MORE * stated:
+        seen = _in_balls(library, precision, program, place, found, of)
+    holds = stated is not None and stated <= ABSURD and seen <= MORE * stated
+    says = f"{found.output}: largest {seen:.3g} u at {samples} fresh samples; "
+    says += "no figure is stated" if stated is None else f"stated {stated:.2g} u"
+    if stated is not None and not holds:
+        limit = f"no more than {MORE * stated:.3g} u" if stated <= ABSURD else f"below {ABSURD:g} u"
+        says += f", and it must be {limit}"
+    scene = library.known.scene.name
+    return Verdict(scene, program.name, precision.name, "stated error", JUDGED[holds], says)
+
+
+def _in_balls(
+    library: Library, precision: Precision, program: Program, place: int, found: Worst, of: Field
+) -> float:
+    each = at_rows(of.ranges, [found.rows], 0)
+    errors = at_samples(balls(library, precision), program, each)[place]
+    return largest(errors.largest())
