@@ -140,8 +140,12 @@ class Answers:
         return rows, tuple(every[k] for k in sorted(unknowns))
 
     def _answer(self, name: str) -> dict[Quantity, list[Expr]]:
+        if name == "state_rate" and not self._states:
+            raise SceneError("'state_rate' needs something free, and nothing is")
         if name == "accelerations":
             free = [m.unknown for m in (*self.machine.coordinates, *self.machine.speeds) if m.free]
+            if not free:
+                raise SceneError("'accelerations' needs a free coordinate or speed")
             return {self._quantity(n): self._symbols(self._quantity(n)) for n in free}
         if name == "state_rate":
             return {self._quantity(f"{q.name}_rate"): self._rates(q) for q in self._states}

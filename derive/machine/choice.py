@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import Any
 
+import networkx as nx
 import numpy as np
 from mpmath import mp, mpf
 from numpy.typing import NDArray
@@ -18,8 +19,10 @@ from derive.machine.probe import (
     independent_at_all,
 )
 from derive.machine.valued import Valued
-from derive.scene import SceneError
+from derive.scene import Machine, SceneError
+from derive.scene.machine import Force
 
+GROUND = "the ground"
 FLOORS = (0.1, 0.02, 0.004)  # of a row of size one: what must be left of it beside the others
 MOST_EXTRA = 5  # unknowns that are solved along without being asked for, before all are
 MOST_SETS = 20_000
@@ -47,6 +50,8 @@ def chosen(
             balances.carried_vectors(row.balance),
         ),
     )
+    if _cannot_be_told(balances, rows, wanted):
+        raise SceneError(undetermined(balances, wanted))
     for unknowns in _sets(rows, wanted):
         within = [row for row in rows if row.holds <= unknowns]
         covered = frozenset(k for row in within for k in row.holds)
@@ -119,6 +124,14 @@ def clearly_told(balances: Balances, unknowns: frozenset[int], place: Probe) -> 
     return len(size) == len(unknowns) and bool(size[-1] > FLOORS[-1] * size[0])
 
 
+def _cannot_be_told(balances: Balances, rows: Sequence[Row], wanted: frozenset[int]) -> bool:
+    """Tell whether even all balances together leave some wanted unknown open."""
+    count = len(balances.unknowns)
+    table = [_coefficients(row) for row in rows]
+    others = [{k: v for k, v in row.items() if k not in wanted} for row in table]
+    return len(independent(table, count)) - len(independent(others, count)) < len(wanted)
+
+
 def _sets(rows: Sequence[Row], wanted: frozenset[int]) -> Iterator[frozenset[int]]:
     """Yield sets of unknowns that hold the wanted ones, small ones first."""
     others = sorted(frozenset(k for row in rows for k in row.holds) - wanted)
@@ -145,6 +158,9 @@ def undetermined(balances: Balances, wanted: frozenset[int]) -> str:
         here = [row for row in holding if k in row.holds]
         if not here:
             return f"no balance holds '{names[k]}', so it cannot be found"
+    loop = closed_loop(balances.frames.machine, {names[k] for k in wanted})
+    if loop:
+        return loop
     for k in sorted(wanted):
         joint = _joint(balances, k)
         if joint:
@@ -156,6 +172,28 @@ def undetermined(balances: Balances, wanted: frozenset[int]) -> str:
             )
     found = ", ".join(f"'{names[k]}'" for k in sorted(wanted))
     return f"the balances do not determine {found}"
+
+
+def closed_loop(machine: Machine, unknowns: set[str]) -> str:
+    """Return a sentence on bodies that loads with unknowns join in a ring, "" if there is none.
+
+    unknowns : those that cannot be found; one of them is an acceleration or a load's of the ring
+    """
+    of_loads = {u.name: u.load for u in machine.unknowns}
+    graph = nx.Graph()
+    for load in machine.loads:
+        if isinstance(load, Force) and load.name in of_loads.values():
+            graph.add_edge(load.on, load.against or GROUND, load=load.name)
+    for ring in nx.cycle_basis(graph, GROUND if GROUND in graph else None):
+        pairs = zip(ring, (*ring[1:], ring[0]), strict=True)
+        loads = [graph.edges[pair]["load"] for pair in pairs]
+        if all(of_loads.get(name, loads[0]) in loads for name in unknowns):
+            return (
+                f"bodies form a closed loop ({', '.join(ring)}), joined by the loads "
+                f"{', '.join(loads)}: a machine must be a tree, whose coordinates are free of each "
+                "other; open the loop, or prescribe what follows from the rest"
+            )
+    return ""
 
 
 def _joint(balances: Balances, k: int) -> list[int]:

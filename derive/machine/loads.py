@@ -7,7 +7,7 @@ from sympy import Expr, Integer, Matrix, Rational, sqrt
 
 from derive.machine.bodies import centre, mass, tensor
 from derive.machine.frames import ZERO, Frames, Point
-from derive.machine.probe import NOTHING, POINTS, point
+from derive.machine.probe import NOTHING, POINTS, at_rest, point
 from derive.scene import SceneError
 from derive.scene.machine import INERTIAL, Force, Gradient, Load, Spring, Weight
 from derive.specialise import stated
@@ -85,6 +85,7 @@ def _spring(frames: Frames, load: Spring) -> Iterator[Wrench]:
     k, c, rest = (words.expression(f) for f in (load.stiffness, load.damping, load.length))
     force: Matrix = k * d
     if rest != 0 or c != 0:
+        _require_length(frames, load, (d.T * d)[0])
         size = sheet.named(f"{load.name}.length", sqrt((d.T * d)[0]))
         force = force - (k * rest / size) * d
         opening = sum((x * v for x, v in zip(d, sheet.rate_of_column(d), strict=True)), Integer(0))
@@ -94,6 +95,18 @@ def _spring(frames: Frames, load: Spring) -> Iterator[Wrench]:
     if load.against:
         yield Wrench(load.name, load.against, (load.to_frame, words.column(load.to)), top,
                      -force, ZERO)  # fmt: skip
+
+
+def _require_length(frames: Frames, load: Spring, square: Expr) -> None:
+    """Refuse a spring or damper whose ends coincide: its force would have no direction."""
+    words, sheet = frames.words, frames.sheet
+    for probe, where in ((point(words, 0), ""), (at_rest(words), " where all that varies is 0")):
+        probe.define(sheet.needed([square]))
+        if abs(probe.value(square)) <= NOTHING:
+            raise SceneError(
+                f"load '{load.name}': its two ends coincide{where}, so its force has no direction; "
+                "move an end, or leave out length and damper"
+            )
 
 
 def potential_energy(frames: Frames) -> Expr:

@@ -25,11 +25,13 @@ from derive.scene.declaration import (
     Turn,
     Wheel,
 )
+from derive.scene.doubtful import beyond, idle_frames, in_degrees, require_sizes
 from derive.scene.file import read_scene
 from derive.scene.machine import Machine
 from derive.scene.machine_file import is_machine, read_machine
 from derive.scene.names import file_name
 from derive.scene.rules import check, warnings
+from derive.scene.safe import require_values
 from derive.scene.table import THE_FILE, gate, nearest, shown, table
 from derive.scene.times import idle_times
 from derive.scene.wanted import check_form
@@ -124,6 +126,7 @@ def parse_scene(text: str, name: str) -> Scene | Machine:
         gate(document, THE_FILE)
         scene = _read(document, name, text)
         check_form(scene.wanted, scene.form, scene.emission)
+        require_values(scene)
         times = table(document.get("motion", {}), "motion").entries
         idle = idle_times(times, scene.wanted)
         return replace(scene, warnings=(*scene.warnings, *idle))
@@ -133,7 +136,10 @@ def parse_scene(text: str, name: str) -> Scene | Machine:
 
 def _read(document: dict[str, object], name: str, text: str) -> Scene | Machine:
     if is_machine(document):
-        return read_machine(document, name, text)
+        machine = read_machine(document, name, text)
+        require_sizes(machine)
+        more = (*beyond(machine), *idle_frames(machine), *in_degrees(machine.coordinates))
+        return replace(machine, warnings=(*machine.warnings, *more))
     scene = read_scene(document, name, text)
     said = tuple(table(document.get("known", {}), "known").entries)
     check(scene, said)

@@ -8,7 +8,7 @@ from derive.formula import ZERO
 from derive.scene.declaration import SceneError
 from derive.scene.machine import INERTIAL, Frame, Rolling
 from derive.scene.names import label
-from derive.scene.scalars import Scalars, known, motions, places, turnings
+from derive.scene.scalars import Scalars, turnings
 from derive.scene.table import Table, keys, nearest, table, text, triple, word
 from derive.unit import ACCELERATION, ANGULAR_VELOCITY, LENGTH, VELOCITY
 
@@ -29,16 +29,21 @@ def read_frames(given: Table, scalars: Scalars, bodies: tuple[str, ...]) -> tupl
     }
     if INERTIAL in waiting:
         raise SceneError(f"frame '{INERTIAL}' is there already")
-    while waiting:
-        ready = [n for n, t in waiting.items() if _parent(t) in found]
-        if not ready:
-            name, entry = next(iter(waiting.items()))
-            parent = str(entry.entries.get("parent"))
-            hint = nearest(parent, [*found, *waiting])
-            raise SceneError(f"frame '{name}' has the parent '{parent}', which no chain of frames"
-                             f" carries{'' if parent in waiting else hint}")  # fmt: skip
+    carried: dict[str, list[str]] = {}
+    for name, entry in waiting.items():
+        carried.setdefault(_parent(entry), []).append(name)
+    place = {name: k for k, name in enumerate(waiting)}
+    ready = carried.get(INERTIAL, [])
+    while ready:
         for name in ready:
             found[name] = _frame(name, waiting.pop(name), scalars, bodies)
+        ready = sorted((n for r in ready for n in carried.get(r, ())), key=place.__getitem__)
+    if waiting:
+        name, entry = next(iter(waiting.items()))
+        parent = str(entry.entries.get("parent"))
+        hint = nearest(parent, [*found, *waiting])
+        raise SceneError(f"frame '{name}' has the parent '{parent}', which no chain of frames"
+                         f" carries{'' if parent in waiting else hint}")  # fmt: skip
     return tuple(found.values())
 
 
@@ -61,17 +66,17 @@ def _frame(name: str, given: Table, scalars: Scalars, bodies: tuple[str, ...]) -
 
     def three(key: str) -> Triple | None:
         scope, unit = {
-            "angular_velocity": (motions(scalars), ANGULAR_VELOCITY),
-            "velocity": (motions(scalars), VELOCITY),
-            "acceleration": (known(scalars), ACCELERATION),
-            "origin": (places(scalars), LENGTH),
+            "angular_velocity": (scalars.motions, ANGULAR_VELOCITY),
+            "velocity": (scalars.motions, VELOCITY),
+            "acceleration": (scalars.known, ACCELERATION),
+            "origin": (scalars.places, LENGTH),
         }[key]
         return triple(entries[key], f"{label}.{key}", scope, unit) if key in entries else None
 
     return Frame(
         name,
         _parent(given),
-        turnings(entries["turned"], f"{label}.turned", places(scalars)) if turned else (),
+        turnings(entries["turned"], f"{label}.turned", scalars.places) if turned else (),
         three("angular_velocity"),
         "attitude" in entries,
         three("origin") or (ZERO, ZERO, ZERO),
@@ -85,4 +90,4 @@ def _rolling(given: Table, scalars: Scalars, bodies: tuple[str, ...]) -> Rolling
     inner = table(given.entries["rolls"], f"{given.label}.rolls")
     keys(inner, ("body", "at"), ())
     body = word(inner.entries["body"], f"{inner.label}.body", bodies)
-    return Rolling(body, triple(inner.entries["at"], f"{inner.label}.at", places(scalars), LENGTH))
+    return Rolling(body, triple(inner.entries["at"], f"{inner.label}.at", scalars.places, LENGTH))

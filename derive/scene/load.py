@@ -21,8 +21,8 @@ from derive.scene.machine import (
 )
 from derive.scene.names import identifier, label
 from derive.scene.numbers import check_unit
-from derive.scene.scalars import Scalars, known, places
-from derive.scene.table import Scope, Table, formula, keys, shown, table, triple, word
+from derive.scene.scalars import Scalars
+from derive.scene.table import Scope, Table, formula, keys, several, shown, table, triple, word
 from derive.unit import ACCELERATION, FORCE, LENGTH, MOMENT, NONE, Dimension, dimension
 
 MARK = re.compile(r"\?([A-Za-z][A-Za-z0-9_]*)")
@@ -53,18 +53,16 @@ class _Reader:
     def several(self, given: Table) -> tuple[str, ...]:
         """Return the bodies of an entry ``on``, all of them by default."""
         value = given.entries.get("on", [b.name for b in self.bodies])
-        each = value if isinstance(value, list) else [value]
-        names = [b.name for b in self.bodies]
-        return tuple(word(one, f"{given.label}.on", names) for one in each)
+        return several(value, f"{given.label}.on", [b.name for b in self.bodies])
 
     def place(self, given: Table, key: str) -> Triple:
         """Return a point, the origin of its frame by default."""
         value = given.entries.get(key, [0, 0, 0])
-        return triple(value, f"{given.label}.{key}", places(self.scalars), LENGTH)
+        return triple(value, f"{given.label}.{key}", self.scalars.places, LENGTH)
 
     def formula(self, value: object, label: str, unit: Dimension) -> Formula:
         """Return a formula of what is known and of unknowns."""
-        scope = known(self.scalars)
+        scope = self.scalars.known
         plain = MARK.sub(r"\1", value) if isinstance(value, str) else value
         both = Scope(dict(scope.dimensions) | self.units, scope.others, scope.rule)
         return formula(plain, label, both, unit)
@@ -114,7 +112,7 @@ def _load(reader: _Reader, name: str, given: Table) -> Load:
         keys(given, ("gravity",), ("on", "along"))
         along = reader.frame(given, "along", INERTIAL)
         value = triple(given.entries["gravity"], f"{given.label}.gravity",
-                       known(reader.scalars), ACCELERATION)  # fmt: skip
+                       reader.scalars.known, ACCELERATION)  # fmt: skip
         return Weight(name, reader.several(given), along, value)
     if "gravity_gradient" in given.entries:
         return _gradient(reader, name, given)
@@ -153,7 +151,7 @@ def _three(reader: _Reader, given: Table, key: str, unit: Dimension) -> Triple:
 def _gradient(reader: _Reader, name: str, given: Table) -> Gradient:
     keys(given, ("gravity_gradient", "towards"), ("on", "along"))
     strength = given.entries["gravity_gradient"]
-    scope = known(reader.scalars)
+    scope = reader.scalars.known
     along = reader.frame(given, "along", INERTIAL)
     towards = triple(given.entries["towards"], f"{given.label}.towards", scope, NONE)
     values = dict.fromkeys(scope.dimensions, 0.0) | dict(reader.scalars.middle())
@@ -167,7 +165,7 @@ def _spring(reader: _Reader, name: str, given: Table) -> Spring:
     keys(given, ("on",), optional)
     on = reader.body(given, "on")
     against = reader.body(given, "against") if "against" in given.entries else ""
-    scope = known(reader.scalars)
+    scope = reader.scalars.known
 
     def one(key: str, unit: Dimension) -> Formula:
         if key not in given.entries:

@@ -15,8 +15,8 @@ from derive.scene.member import read_member
 from derive.scene.names import distinct, label
 from derive.scene.numbers import member_doubts
 from derive.scene.results import answer_units, of_any_unit, read_asked, read_results, written_out
-from derive.scene.scalars import PER_SECOND, Scalars, known, places, read_scalars
-from derive.scene.table import Scope, Table, formula, keys, table, text, triple, word
+from derive.scene.scalars import PER_SECOND, Scalars, read_scalars
+from derive.scene.table import Scope, Table, formula, keys, several, table, text, triple, word
 from derive.scene.times import read_time
 from derive.scene.wanted import read_emission, read_form
 from derive.unit import BESIDE_SI, LENGTH, dimension, misnamed
@@ -133,11 +133,10 @@ def _momentum(
     keys(given, (), ("frame", "at", "of"))
     frame = word(given.entries.get("frame", INERTIAL), "angular_momentum.frame",
                  [f.name for f in frames])  # fmt: skip
-    at = triple(given.entries.get("at", [0, 0, 0]), "angular_momentum.at", places(scalars), LENGTH)
+    at = triple(given.entries.get("at", [0, 0, 0]), "angular_momentum.at", scalars.places, LENGTH)
     names = [b.name for b in bodies]
     value = given.entries.get("of", names)
-    each = value if isinstance(value, list) else [value]
-    return Place(frame, at, tuple(word(one, "angular_momentum.of", names) for one in each))
+    return Place(frame, at, several(value, "angular_momentum.of", names))
 
 
 def _about(given: Table, scalars: Scalars) -> Mapping[str, Formula]:
@@ -147,7 +146,7 @@ def _about(given: Table, scalars: Scalars) -> Mapping[str, Formula]:
              if c.free and isinstance(c.rate, Input)}  # fmt: skip
     keys(given, (), free)
     others = dict.fromkeys(free, "free, and not known")
-    dimensions = {n: d for n, d in known(scalars).dimensions.items() if n not in free}
+    dimensions = {n: d for n, d in scalars.known.dimensions.items() if n not in free}
     scope = Scope(dimensions, others, "only what is given may stand here")
     return {
         name: formula(given.entries[name], f"linearised.{name}", scope, dimension(unit))
@@ -172,14 +171,14 @@ def _steady(
     value = given.entries["unknown"]
     each = value if isinstance(value, list) else [value]
     scalar = [*(p.name for p in scalars.parameters if p.value is None),
-              *(m.name for m in scalars.moving), *known(scalars).dimensions]  # fmt: skip
+              *(m.name for m in scalars.moving), *scalars.known.dimensions]  # fmt: skip
     names = tuple(word(one, "steady.unknown", scalar) for one in each)
     vanishes = None
     if "vanishes" in given.entries:
         answers = answer_units(scalars, unknowns) | {
             r.name: dimension(r.unit) for r in results if r.unit not in BESIDE_SI
         }
-        both = Scope(dict(known(scalars).dimensions) | answers, {}, "")
+        both = Scope(dict(scalars.known.dimensions) | answers, {}, "")
         vanishes, _ = of_any_unit(given.entries["vanishes"], "steady.vanishes", both)
         vanishes = written_out(vanishes, results)
     return Steady(names, vanishes)

@@ -14,7 +14,7 @@ from derive.scene.body import AXES, KINDS, lengths, read_body
 from derive.scene.declaration import Axis, SceneError, Sextuple, Triple
 from derive.scene.machine import Entries, Frame, Member, Turning
 from derive.scene.numbers import check_member, positive
-from derive.scene.scalars import Scalars, motions, places, turnings
+from derive.scene.scalars import Scalars, turnings
 from derive.scene.shape import CONE_CENTRE, SHAPES, about_axis, box, diagonal, moved
 from derive.scene.symbols import Symbols, constants
 from derive.scene.table import Table, formula, keys, shown, triple, word
@@ -60,7 +60,7 @@ def read_member(name: str, given: Table, frames: tuple[Frame, ...], scalars: Sca
     check_member(given.label, made.inertia, scalars.parameters)
     turned: tuple[Turning, ...] = ()
     if "turned" in entries:
-        turned = turnings(entries["turned"], f"{given.label}.turned", places(scalars))
+        turned = turnings(entries["turned"], f"{given.label}.turned", scalars.places)
     spins = _spins(given, made, scalars)
     relative = _angular_velocity(given, centre, made, scalars)
     return Member(
@@ -72,7 +72,7 @@ def read_member(name: str, given: Table, frames: tuple[Frame, ...], scalars: Sca
 def _spins(given: Table, made: _Substance, scalars: Scalars) -> dict[str, Formula]:
     """Return how a body turns about its own axis: its spin or its axial speed, or neither."""
     spins = {
-        key: formula(given.entries[key], f"{given.label}.{key}", motions(scalars), ANGULAR_VELOCITY)
+        key: formula(given.entries[key], f"{given.label}.{key}", scalars.motions, ANGULAR_VELOCITY)
         for key in ("spin", "axial_speed")
         if key in given.entries
     }
@@ -98,7 +98,7 @@ def _angular_velocity(
             f"{given.label}: angular_velocity {rule}; or carry it by a frame of its own"
         )
     label = f"{given.label}.angular_velocity"
-    return triple(given.entries["angular_velocity"], label, motions(scalars), ANGULAR_VELOCITY)
+    return triple(given.entries["angular_velocity"], label, scalars.motions, ANGULAR_VELOCITY)
 
 
 def _about(
@@ -210,7 +210,8 @@ def _plate(given: Table, axis: Axis, fixed: Symbols) -> Triple:
     if not isinstance(value, list) or len(value) != 2:
         raise SceneError(f"{given.label}.lengths must be a list of 2, not {shown(value)}")
     scope = constants(fixed)
-    edges = [formula(part, f"{given.label}.lengths", scope, LENGTH) for part in value]
+    label, parameters = f"{given.label}.lengths", fixed.parameters
+    edges = [positive(formula(part, label, scope, LENGTH), label, parameters) for part in value]
     x, y, z = (ZERO if name == axis else edges.pop(0) for name in AXES)
     return x, y, z
 

@@ -137,17 +137,16 @@ def _possible(body: Body, matrix: Matrix) -> bool:
 
 
 def doubts(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str]:
-    """Yield a sentence on the first inertia on the ranges that no masses can have."""
+    """Yield a sentence on the first inertia that is not definite, and one on the first triangle."""
     used = [name for part in body.inertia for name in symbols(part)]
-    for values in (middle(parameters), *ends(parameters, used)):
-        matrix = tensor(body.inertia, values, "body inertia")
-        where = _where(values, body.inertia)
-        if not _possible(body, matrix):
-            yield f"body inertia is not positive definite{where}"
-            return
-        if not triangle(matrix):
-            yield f"body inertia breaks the triangle inequality{where}"
-            return
+    points = (middle(parameters), *ends(parameters, used))
+    tensors = [(values, tensor(body.inertia, values, "body inertia")) for values in points]
+    indefinite = [values for values, matrix in tensors if not _possible(body, matrix)]
+    broken = [v for v, matrix in tensors if v not in indefinite and not triangle(matrix)]
+    for values in indefinite[:1]:
+        yield f"body inertia is not positive definite{_where(values, body.inertia)}"
+    for values in broken[:1]:
+        yield f"body inertia breaks the triangle inequality{_where(values, body.inertia)}"
 
 
 def check_member(label: str, inertia: Entries, parameters: tuple[Parameter, ...]) -> None:
@@ -185,7 +184,7 @@ def _whole(inertia: Entries) -> Sextuple | None:
 def member_doubts(
     label: str, inertia: Entries, parameters: tuple[Parameter, ...]
 ) -> Iterator[str]:
-    """Yield a sentence on the first inertia of a machine's body that no masses can have.
+    """Yield a sentence on the first inertia of a machine's body that is indefinite, or no masses'.
 
     Nothing is said of a wheel with its axial moment alone: its carrier counts the others.
     """
@@ -193,10 +192,14 @@ def member_doubts(
     if whole is None or [part == ZERO for part in whole[:3]].count(True) == 2:
         return
     used = [name for part in whole for name in symbols(part)]
-    for values in (middle(parameters), *ends(parameters, used)):
-        if not triangle(tensor(whole, values, f"{label} inertia")):
-            yield f"{label} inertia breaks the triangle inequality{_where(values, whole)}"
-            return
+    points = (middle(parameters), *ends(parameters, used))
+    tensors = [(values, tensor(whole, values, f"{label} inertia")) for values in points]
+    indefinite = [v for v, matrix in tensors if not semidefinite(matrix, abs(_trace(matrix)))]
+    broken = [v for v, matrix in tensors if v not in indefinite and not triangle(matrix)]
+    for values in indefinite[:1]:
+        yield f"{label} inertia is not positive definite{_where(values, whole)}"
+    for values in broken[:1]:
+        yield f"{label} inertia breaks the triangle inequality{_where(values, whole)}"
 
 
 def check_axis(wheel: Wheel, parameters: tuple[Parameter, ...]) -> None:
@@ -224,7 +227,25 @@ def inexact_axis(wheel: Wheel) -> bool:
 
 def check_carrier(body: Body, wheels: tuple[Wheel, ...], parameters: tuple[Parameter, ...]) -> None:
     """Refuse wheels that leave the carrier no inertia of its own about some axis."""
-    values = middle(parameters)
+    if wheels and not definite(_without(body, wheels, middle(parameters))):
+        raise SceneError("body inertia is that of the whole, but the wheels alone exceed it")
+
+
+def carrier_doubts(
+    body: Body, wheels: tuple[Wheel, ...], parameters: tuple[Parameter, ...]
+) -> Iterator[str]:
+    """Yield a sentence on the first end of the ranges where the wheels exceed the whole."""
+    formulas = (*body.inertia, *(f for wheel in wheels for f in (*wheel.axis, wheel.axial)))
+    used = [name for part in formulas for name in symbols(part)]
+    for values in ends(parameters, used) if wheels else ():
+        if not definite(_without(body, wheels, values)):
+            where = _where(values, formulas)
+            yield f"body inertia is that of the whole, but the wheels alone exceed it{where}"
+            return
+
+
+def _without(body: Body, wheels: tuple[Wheel, ...], values: Mapping[str, float]) -> Matrix:
+    """Return the inertia of the carrier without the axial moments of its wheels."""
     matrix = tensor(body.inertia, values, "body inertia")
     for wheel in wheels:
         label = f"wheel '{wheel.name}'"
@@ -233,8 +254,7 @@ def check_carrier(body: Body, wheels: tuple[Wheel, ...], parameters: tuple[Param
         matrix = tuple(
             tuple(matrix[i][j] - axial * axis[i] * axis[j] for j in range(3)) for i in range(3)
         )
-    if wheels and not definite(matrix):
-        raise SceneError("body inertia is that of the whole, but the wheels alone exceed it")
+    return matrix
 
 
 def merges(middle_turn: Coordinate, angle: float) -> bool:

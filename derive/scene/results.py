@@ -10,7 +10,7 @@ from derive.scene.declaration import SceneError
 from derive.scene.load import MARK, unknown_units
 from derive.scene.machine import Result
 from derive.scene.names import functions, identifier
-from derive.scene.scalars import known, unknown_rates
+from derive.scene.scalars import unknown_rates
 from derive.scene.table import Scope, Table, formula, keys, shown, text
 from derive.scene.wanted import JACOBIAN, OF_MACHINES, resembling
 from derive.unit import BESIDE_SI, NONE, UnitError, dimension, dimension_of, spelled
@@ -36,7 +36,7 @@ def read_results(
 ) -> tuple[Result, ...]:
     """Return the results of a scene file; each may be made of those before it."""
     answers, found = answer_units(scalars, unknowns), list[Result]()
-    scope = known(scalars)
+    scope = scalars.known
     for key, value in given.entries.items():
         name, meaning, said = identifier(key, "a result"), "", value
         if isinstance(value, dict):
@@ -148,13 +148,14 @@ def _entries(scalars: Scalars) -> dict[str, Dimension]:
     Entries stand for forces or moments; of one kind alone they are told apart by nothing else.
     """
     free = [m for m in (*scalars.coordinates, *scalars.speeds) if m.free]
-    inertia = {"rad": "kg m^2", "rad/s": "kg m^2", "m": "kg", "m/s": "kg"}
+    of_a_turn, of_a_way = dimension("kg m^2"), dimension("kg")
+    inertia = {"rad": of_a_turn, "rad/s": of_a_turn, "m": of_a_way, "m/s": of_a_way}
     found = {}
     for name, per in (("mass", 0), ("damping", 1), ("stiffness", 2)):
+        units = [(u[0], u[1], u[2] - per) for u in (inertia[m.unit] for m in free)]
         for i in range(len(free)):
-            for k, m in enumerate(free):
-                unit = dimension(inertia[m.unit])
-                found[f"{name}_matrix_{i + 1}_{k + 1}"] = (unit[0], unit[1], unit[2] - per)
+            for k, unit in enumerate(units):
+                found[f"{name}_matrix_{i + 1}_{k + 1}"] = unit
     return found
 
 

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING
 
 from derive.formula import ZERO, symbols
 from derive.scene.declaration import SceneError
+from derive.scene.doubtful import in_degrees
 from derive.scene.moving import check_moving
 from derive.scene.numbers import (
+    carrier_doubts,
     check_axis,
     check_carrier,
     check_inertia,
@@ -208,7 +210,13 @@ def _forward(scene: Scene) -> None:
 
 def warnings(scene: Scene, said: tuple[str, ...]) -> tuple[str, ...]:
     """Return sentences on what is allowed and yet unlikely to be meant."""
-    return (*doubts(scene.body, scene.parameters), *_unused(scene, said), *_doubtful_angles(scene))
+    return (
+        *doubts(scene.body, scene.parameters),
+        *carrier_doubts(scene.body, scene.wheels, scene.parameters),
+        *_unused(scene, said),
+        *_doubtful_angles(scene),
+        *in_degrees(scene.coordinates),
+    )
 
 
 def _unused(scene: Scene, said: tuple[str, ...]) -> Iterator[str]:

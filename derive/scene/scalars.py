@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 from derive.formula import ZERO, Formula
@@ -41,6 +42,21 @@ class Scalars:
     def middle(self) -> Mapping[str, float]:
         """Return the middle of every range."""
         return middle((*self.parameters, *self.moving))
+
+    @cached_property
+    def places(self) -> Scope:
+        """Return the scope of where things are: parameters and coordinates."""
+        return _places(self)
+
+    @cached_property
+    def motions(self) -> Scope:
+        """Return the scope of how things move: places, rates of coordinates, and speeds."""
+        return _motions(self)
+
+    @cached_property
+    def known(self) -> Scope:
+        """Return the scope of a load: all that is known with the state and the inputs."""
+        return _known(self)
 
 
 def read_scalars(part: Mapping[str, Table]) -> Scalars:
@@ -167,8 +183,7 @@ def _input(name: str, given: Table) -> Moving:
     return Moving(name, spelling, low, high, _meaning(given), "input", False, None, None)  # noqa: FBT003
 
 
-def places(scalars: Scalars) -> Scope:
-    """Return the scope of where things are: parameters and coordinates."""
+def _places(scalars: Scalars) -> Scope:
     known = {"pi": NONE} | {p.name: dimension(p.unit) for p in scalars.parameters}
     known |= {c.name: dimension(c.unit) for c in scalars.coordinates}
     others = {m.name: f"{'an' if m.kind == 'input' else 'a'} {m.kind}"
@@ -176,9 +191,8 @@ def places(scalars: Scalars) -> Scope:
     return Scope(known, others, "only parameters and coordinates may stand here")
 
 
-def motions(scalars: Scalars) -> Scope:
-    """Return the scope of how things move: places, rates of coordinates, and speeds."""
-    known = dict(places(scalars).dimensions)
+def _motions(scalars: Scalars) -> Scope:
+    known = dict(scalars.places.dimensions)
     known |= rates(scalars)
     known |= {s.name: dimension(s.unit) for s in scalars.speeds}
     others = {m.name: "an input, whose rate is not known" for m in scalars.inputs}
@@ -214,9 +228,8 @@ def unknown_rates(scalars: Scalars) -> dict[str, Dimension]:
     return found
 
 
-def known(scalars: Scalars) -> Scope:
-    """Return the scope of a load: all that is known with the state and the inputs."""
-    dimensions = dict(motions(scalars).dimensions)
+def _known(scalars: Scalars) -> Scope:
+    dimensions = dict(scalars.motions.dimensions)
     dimensions |= accelerations(scalars)
     dimensions |= {m.name: dimension(m.unit) for m in scalars.inputs}
     others = dict.fromkeys(unknown_rates(scalars), "an acceleration that is found")

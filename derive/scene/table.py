@@ -145,6 +145,18 @@ def word(value: object, label: str, known: Iterable[str]) -> str:
     return value
 
 
+def several(value: object, label: str, known: Iterable[str]) -> tuple[str, ...]:
+    """Return one word or a list of different ones, each one of a few."""
+    known, each = tuple(known), value if isinstance(value, list) else [value]
+    if not each:
+        raise SceneError(f"{label} is an empty list; leave it out to mean all")
+    found = tuple(word(one, label, known) for one in each)
+    for name in found:
+        if found.count(name) > 1:
+            raise SceneError(f"{label} has '{name}' twice")
+    return found
+
+
 def text(value: object, label: str) -> str:
     """Return one line of text that may stand in a comment of C and in a string of Python."""
     if not isinstance(value, str) or not value.strip() or not value.isprintable():

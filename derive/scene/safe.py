@@ -1,0 +1,244 @@
+"""Whether every formula of a scene has a value on the declared ranges, or where it has none.
+
+Divisors must not vanish, square roots must be of what is not negative. Middle, corners and points
+between are tried first; then intervals prove what is left, or close in on a place that breaks the
+rule. A part with a symbol of no range (an unknown, the attitude) is only refused if it is zero
+whatever its symbols are.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields, is_dataclass
+from itertools import islice, product
+from random import Random
+from typing import TYPE_CHECKING, Any
+
+from derive.formula import FLOATS, Formula, apply, evaluate, symbols
+from derive.scene.declaration import SceneError
+from derive.scene.interval import INTERVALS, Interval
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    Point = Mapping[str, float]
+    Ranges = Mapping[str, Interval]
+
+CORNERS, BETWEEN, BOXES = 256, 64, 2000
+"""Enough for every corner of eight ranges; points tried between; boxes that a proof may take."""
+ROUNDING = 1e-12
+"""What is smaller beside its own terms is zero: a dozen roundings of 2^-53 are 1.3e-15."""
+SMALLEST_BOX = 2.0**-36
+"""Part of a range in which a zero that no sign shows is taken to lie."""
+_WORDS = {
+    "Frame": "frame", "Member": "body", "Force": "load", "Weight": "load", "Spring": "load",
+    "Gradient": "load", "Result": "result", "Wheel": "wheel", "Moving": "coordinate",
+}  # fmt: skip
+
+
+def require_values(scene: object) -> None:
+    """Refuse a scene with a formula that has no value somewhere on the declared ranges."""
+    ranges = ranges_of(scene)
+    seen: set[tuple[str, Formula]] = set()
+    for label, formula in _formulas(scene, ""):
+        for kind, part in _dangers(formula):
+            if (kind, part) not in seen:
+                seen.add((kind, part))
+                _require(label, kind, part, ranges)
+
+
+def ranges_of(scene: object) -> dict[str, Interval]:
+    """Return the range of everything in a scene that has one, by its name."""
+    return dict(_ranges(scene))
+
+
+def negative(part: Formula, ranges: Ranges) -> Point | None:
+    """Return a place on the ranges where a formula is negative, None if none was found."""
+    used = symbols(part)
+    if any(name not in ranges for name in used):
+        return None
+    return _broken(part, {name: ranges[name] for name in used})
+
+
+def values_of(formula: Formula, ranges: Ranges) -> list[float]:
+    """Return a formula's values at the middle, the corners and between; none without ranges."""
+    used = symbols(formula)
+    if any(name not in ranges for name in used):
+        return []
+    box = {name: ranges[name] for name in used}
+    return [_sized(formula, point)[0] for point in _points(box)]
+
+
+def _ranges(value: object) -> Iterator[tuple[str, Interval]]:
+    """Yield the range of everything in a scene that has one."""
+    for inner in _parts(value):
+        low, high = getattr(inner, "low", None), getattr(inner, "high", None)
+        if low is not None and high is not None and hasattr(inner, "name"):
+            yield inner.name, (float(low), float(high))
+        yield from _ranges(inner)
+
+
+def _parts(value: object) -> Iterator[Any]:
+    if is_dataclass(value) and not isinstance(value, Formula):
+        yield from (getattr(value, f.name) for f in fields(value))
+    elif isinstance(value, tuple):
+        yield from value
+    elif isinstance(value, dict):
+        yield from value.values()
+
+
+def _formulas(value: object, label: str) -> Iterator[tuple[str, Formula]]:
+    """Yield every formula of a scene with what it belongs to."""
+    if isinstance(value, Formula):
+        yield label, value
+    elif is_dataclass(value):
+        word = _WORDS.get(type(value).__name__)
+        own = f"{word} '{getattr(value, 'name', '')}'" if word else label
+        for f in fields(value):
+            yield from _formulas(getattr(value, f.name), own or f.name)
+    elif isinstance(value, tuple):
+        for inner in value:
+            yield from _formulas(inner, label)
+    elif isinstance(value, dict):
+        for key, inner in value.items():
+            yield from _formulas(inner, label if "'" in label else f"{label}.{key}")
+
+
+def _dangers(formula: Formula) -> Iterator[tuple[str, Formula]]:
+    """Yield the divisors and the radicands in a formula, inner ones first."""
+    for part in formula.operands:
+        yield from _dangers(part)
+    if formula.operator == "div":
+        yield "divisor", formula.operands[1]
+    elif formula.operator == "power" and formula.number < 0:
+        yield "divisor", formula.operands[0]
+    elif formula.operator == "tan":
+        yield "divisor of a tangent", apply("cos", formula.operands[0])
+    elif formula.operator == "sqrt":
+        yield "radicand", formula.operands[0]
+
+
+def _require(label: str, kind: str, part: Formula, ranges: Ranges) -> None:
+    used = symbols(part)
+    if any(name not in ranges for name in used):
+        if kind != "radicand" and _nothing(part):
+            raise SceneError(f"{label}: the {kind} '{part}' is 0 whatever its symbols are")
+        return
+    box = {name: ranges[name] for name in used}
+    place = _broken(part, box) if kind == "radicand" else _zero(part, box)
+    if place is None:
+        return
+    at = ", ".join(f"{name} = {x:.6g}" for name, x in place.items())
+    where = f" at {at}" if at else ""
+    if kind == "radicand":
+        found = _sized(part, place)[0]
+        raise SceneError(
+            f"{label}: the square root of '{part}' needs what is not negative, but it is "
+            f"{found:.6g}{where}"
+        )
+    raise SceneError(f"{label}: the {kind} '{part}' must not vanish, but does{where}")
+
+
+def _nothing(part: Formula) -> bool:
+    """Tell whether a formula is zero at points drawn at random, beside its own terms."""
+    random = Random(0)  # noqa: S311 (points to try, no secret)
+    every = [{n: random.uniform(0.5, 2) for n in symbols(part)} for _ in range(5)]
+    sized = [_sized(part, values) for values in every]
+    return all(math.isfinite(size) and abs(x) <= ROUNDING * size for x, size in sized)
+
+
+def _sized(part: Formula, values: Point) -> tuple[float, float]:
+    """Return a formula's value and the size of its terms, nan where it has none."""
+    try:
+        return float(evaluate(part, values, FLOATS)), _size(part, values)
+    except (ArithmeticError, ValueError):
+        return math.nan, math.nan
+
+
+def _size(part: Formula, values: Point) -> float:
+    if part.operator in ("add", "sub"):
+        return sum(_size(p, values) for p in part.operands)
+    return max(abs(float(evaluate(part, values, FLOATS))), 0.0)
+
+
+def _points(box: Ranges) -> Iterator[Point]:
+    """Yield the middle, corners, and points between."""
+    yield {n: (low + high) / 2 for n, (low, high) in box.items()}
+    for values in islice(product(*box.values()), CORNERS):
+        yield dict(zip(box, values, strict=True))
+    random = Random(1)  # noqa: S311 (points to try, no secret)
+    for _ in range(BETWEEN):
+        yield {n: random.uniform(*ends) for n, ends in box.items()}
+
+
+def _broken(part: Formula, box: Ranges) -> Point | None:
+    """Return a place where a radicand is negative, None if there is none or none was found."""
+    for point in _points(box):
+        found, size = _sized(part, point)
+        if found < -ROUNDING * size:
+            return point
+    return _searched(part, box, lambda ends: ends[0] >= 0, lambda x, size: x < -ROUNDING * size)
+
+
+def _zero(part: Formula, box: Ranges) -> Point | None:
+    """Return a place where a divisor vanishes, None if there is none or none was found."""
+    signs: dict[bool, Point] = {}
+    for point in _points(box):
+        found, size = _sized(part, point)
+        if abs(found) <= ROUNDING * size:
+            return point
+        if not math.isnan(found):
+            signs.setdefault(found > 0, point)
+    if len(signs) == 2:
+        return _between(part, signs[False], signs[True])
+    return _searched(part, box, lambda ends: not ends[0] <= 0 <= ends[1], None)
+
+
+def _between(part: Formula, below: Point, above: Point) -> Point:
+    """Return where a formula changes its sign on the way from one point to another."""
+    for _ in range(60):
+        half = {n: (below[n] + above[n]) / 2 for n in below}
+        if _sized(part, half)[0] > 0:
+            above = half
+        else:
+            below = half
+    return below
+
+
+def _searched(part: Formula, box: Ranges, safe: Any, broken: Any) -> Point | None:
+    """Return a place that breaks the rule, found by halving the boxes that are not proved safe.
+
+    broken : tells it of a value and the size of its terms; None if a smallest box tells it
+    """
+    waiting = [box]
+    for _ in range(BOXES):
+        if not waiting:
+            return None
+        now = waiting.pop()
+        if safe(evaluate(part, now, INTERVALS)):
+            continue
+        middle = {n: (low + high) / 2 for n, (low, high) in now.items()}
+        if broken is not None and broken(*_sized(part, middle)):
+            return middle
+        parts = {n: _part(now[n], box[n]) for n in now}
+        widest = max(parts, key=parts.__getitem__, default="")
+        if not widest or parts[widest] < SMALLEST_BOX:
+            if broken is None:
+                return middle
+            continue
+        low, high = now[widest]
+        cut = middle[widest]
+        halves = [{**now, widest: (low, cut)}, {**now, widest: (cut, high)}]
+        waiting += sorted(halves, key=lambda half: _least(part, half), reverse=True)
+    return None
+
+
+def _least(part: Formula, box: Ranges) -> float:
+    """Return how far from zero a formula is at the middle of a box: where to look first."""
+    found, _ = _sized(part, {n: (low + high) / 2 for n, (low, high) in box.items()})
+    return math.inf if math.isnan(found) else abs(found)
+
+
+def _part(inner: Interval, outer: Interval) -> float:
+    wide = outer[1] - outer[0]
+    return (inner[1] - inner[0]) / wide if wide else 0.0

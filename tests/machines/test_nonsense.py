@@ -1,0 +1,113 @@
+"""What no machine can be is refused by a sentence; what is hardly meant is said as a warning."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from derive.library import library
+from derive.machine.choice import closed_loop
+from derive.scene import CATALOGUE, Machine, SceneError, parse_scene
+
+TRIALS = Path(__file__).parent.parent / "data" / "trials"
+EDGE = (CATALOGUE / "edge_runner_flat.toml").read_text(encoding="utf-8")
+PLAIN = """
+wanted = ["q_ddot", "linearised"]
+[parameters]
+m = { unit = "kg", range = [1, 2] }
+a = { unit = "m", range = [0.1, 0.3] }
+b = { unit = "m", range = [0.2, 0.4] }
+k = { unit = "N/m", range = [-1, 2] }
+[coordinates]
+q = { unit = "rad", range = [-1, 1] }
+[frames.arm]
+turned = ["y q"]
+[bodies.bob]
+frame = "arm"
+shape = "tube"
+inner = "a"
+outer = "a + b"
+length = "b"
+axis = "y"
+mass = "m"
+centre = ["0", "0", "-b"]
+[loads]
+weight = { gravity = ["0", "0", "-9.81"] }
+pin = { on = "bob", force = "?pin", couple = ["?cx", "0", "?cz"] }
+"""
+SPRING = 'spring = {{ on = "bob", at = ["0", "0", "-b"], to = ["b", "0", "0"], {} }}\n'
+TUBE = 'shape = "tube"\ninner = "a"\nouter = "a + b"\nlength = "b"'
+
+
+def refused(text: str) -> str:
+    """Return the sentence that refuses a machine or its programs, "" if nothing does."""
+    try:
+        library(parse_scene(text, "odd"))
+    except SceneError as error:
+        return str(error).removeprefix("scene 'odd': ")
+    return ""
+
+
+def test_the_plain_machine_is_accepted_without_a_warning() -> None:
+    assert refused(PLAIN) == ""
+    assert parse_scene(PLAIN.replace("k = ", "# k = "), "odd").warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ('"a + b"', '"b"', "body 'bob': outer - inner must not be negative, but 'b - a' is at"),
+        (TUBE, 'shape = "plate"\nlengths = ["a", "-b"]', "body 'bob'.lengths must be positive"),
+        ("weight =", SPRING.format('spring = "k"') + "weight =", "load 'spring': spring must not"),
+        ("weight =", SPRING.format('damper = "-m/1"') + "weight =", "load 'spring'.damper = '-m"),
+        ('-9.81"]', '-9.81"], on = []', "load 'weight'.on is an empty list"),
+        ('-9.81"]', "-9.81\"], on = ['bob', 'bob']", "load 'weight'.on has 'bob' twice"),
+    ],
+)
+def test_a_size_or_a_list_that_cannot_be_is_refused(old: str, new: str, says: str) -> None:
+    assert old in PLAIN
+    assert refused(PLAIN.replace(old, new)).startswith(says)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("[-1, 1]", "[-180, 180]", "the range of 'q' goes to -180 rad; are degrees meant?"),
+        ("[bodies.bob]", "[frames.idle]\n[bodies.bob]", "frame 'idle' carries nothing"),
+        ("[-1, 1]", "[0.5, 1]", "linearised.q is 0, outside the range of 'q', [0.5, 1]"),
+    ],
+)
+def test_what_is_hardly_meant_is_a_warning(old: str, new: str, says: str) -> None:
+    text = PLAIN.replace("k = ", "# k = ").replace(old, new)
+    assert parse_scene(text, "odd").warnings == (says,)
+
+
+@pytest.mark.parametrize(
+    "wanted",
+    ["accelerations", "state_rate", "step_rk4", "linearised", "accelerations_jacobian"],
+)
+def test_motion_of_a_machine_with_nothing_free_is_refused(wanted: str) -> None:
+    start, end = EDGE.index("wanted"), EDGE.index("[parameters]")
+    text = f'{EDGE[:start]}wanted = ["{wanted}"]\n{EDGE[end:]}'
+    assert "needs" in refused(text)
+
+
+@pytest.mark.parametrize("name", ["spring_of_no_length", "spring_of_no_length_2"])
+def test_a_spring_whose_ends_coincide_is_refused(name: str) -> None:
+    says = "load 's': its two ends coincide"
+    assert refused((TRIALS / f"{name}.toml").read_text(encoding="utf-8")).startswith(says)
+
+
+@pytest.mark.parametrize("name", ["four_bar", "slider_crank"])
+def test_a_ring_of_bodies_is_found_and_a_tree_has_none(name: str) -> None:
+    machine = parse_scene((TRIALS / f"{name}.toml").read_text(encoding="utf-8"), name)
+    assert isinstance(machine, Machine)
+    assert "bodies form a closed loop" in closed_loop(machine, set())
+    assert closed_loop(replace(machine, loads=machine.loads[:-1]), set()) == ""
+
+
+@pytest.mark.long
+def test_a_closed_loop_of_bodies_is_refused_as_one_with_its_bodies_and_loads() -> None:
+    says = refused((TRIALS / "four_bar.toml").read_text(encoding="utf-8"))
+    assert says.startswith("bodies form a closed loop (left, bar, right, the ground)")
+    assert "joined by the loads b, d, c, a" in says
