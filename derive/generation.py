@@ -9,6 +9,7 @@ from derive.files import scene_files
 from derive.gallery.card import Card, card, gallery
 from derive.kept import Measuring, figures_of
 from derive.library import Library, library
+from derive.machine.mechanism import Mechanism, pole
 from derive.page import lecture_page
 from derive.program import Measurement
 from derive.prove import prove
@@ -51,21 +52,30 @@ def made(source: str, measuring: Measuring) -> Made:
         measured = figures_of(programs, measuring)
     except NoValueError as error:
         rule = "formulas must have a value on all of the declared ranges"
-        raise SceneError(f"scene '{scene.name}': {rule}, but {error}") from None
-    _finite(scene.name, measured.each)
+        why = _poles(programs) or str(error)
+        raise SceneError(f"scene '{scene.name}': {rule}, but {why}") from None
+    _finite(programs, measured.each)
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in scene.warnings)
     costs, spared = cost_rows(programs, measured.each), tuple(savings(programs))
     texts = scene_files(programs, measured.each, measured.digest)
     return Made(texts, warnings, costs, spared, card(programs))
 
 
-def _finite(scene: str, measured: Sequence[Measurement]) -> None:
-    """Refuse a scene whose declared ranges overflow one of the float types."""
+def _poles(programs: Library) -> str:
+    """Return what a machine divides by that vanishes in its ranges, and where; "" if nothing."""
+    known = programs.known
+    each = [pole(known, base) for base in programs.truths] if isinstance(known, Mechanism) else []
+    return next(filter(None, each), "")
+
+
+def _finite(programs: Library, measured: Sequence[Measurement]) -> None:
+    """Refuse a scene whose declared ranges hold a pole or overflow one of the float types."""
+    scene = programs.known.scene.name
     for m in measured:
         if not isfinite(m.worst):
             raise SceneError(
                 f"scene '{scene}': ranges must keep '{m.function}' within {m.precision}, "
-                f"but the error of {m.output} is {m.worst}"
+                f"but {_poles(programs) or f'the error of {m.output} is {m.worst}'}"
             )
 
 

@@ -11,12 +11,12 @@ from derive.machine.answers import Answers
 from derive.machine.balances import Balances
 from derive.machine.frames import Frames
 from derive.machine.matter import Lean, lean
-from derive.machine.pivots import Pivots
+from derive.machine.pivots import Pivots, where
 from derive.machine.probe import point
 from derive.machine.question import Question, substituted
 from derive.machine.sheet import Sheet
 from derive.machine.solve import solved
-from derive.machine.sweep import ranges
+from derive.machine.sweep import ranges, regular, weakest
 from derive.machine.words import Words, words
 from derive.motion import reduced
 from derive.scene import Machine, Scene, SceneError
@@ -123,6 +123,19 @@ def plain_arrangement(known: Mechanism, question: Question) -> Arrangement:
         named |= {stage.symbol: stage.value for stage in found.stages}
     outputs = tuple(question.answers.values())
     return Arrangement(tuple(staged(named)), outputs)
+
+
+def pole(known: Mechanism, base: str) -> str:
+    """Return words on where the balances of a function depend on each other, "" if nowhere."""
+    question, label = known.question(base), known.made.sheet.label
+    slopes = [known.made.sheet.split(row)[1] for row in question.rows]
+    entries = [[own.get(u, Integer(0)) for u in question.unknowns] for own in slopes]
+    if not entries:
+        return ""
+    of = ranges(known.made)
+    worst = weakest(of, question.definitions, lambda at: regular(at, entries))
+    names = ", ".join(f"'{label(u)}'" for u in question.unknowns)
+    return f"the divisor of {names} vanishes {where(worst.place)}" if worst.vanishes else ""
 
 
 def with_parameters_put_in(question: Question, words: Vocabulary) -> Question:

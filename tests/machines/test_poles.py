@@ -10,6 +10,7 @@ from derive.arithmetic import working
 from derive.c_text import F64
 from derive.library import Library, library
 from derive.machine import answers
+from derive.machine.mechanism import Mechanism, pole
 from derive.machine.pivots import Pivots
 from derive.machine.sweep import Weakest
 from derive.measure import errors, references, replayed
@@ -70,3 +71,31 @@ def test_without_the_search_the_pole_is_there(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(Pivots, "vanish", lambda *_: False)
     with pytest.raises(NoValueError):  # the balances that are chosen then have no solution there
         worst(cat("bent_cat", "waist"))
+
+
+UPRIGHT = """
+wanted = ["accelerations"]
+[parameters]
+m = { unit = "kg", range = [1, 2] }
+l = { unit = "m", range = [1, 2] }
+[coordinates]
+psi   = { unit = "rad", range = [-1, 1] }
+theta = { unit = "rad", range = [-0.5, 0.5] }
+[frames.arm]
+turned = ["z psi", "x theta"]
+[bodies.bob]
+frame  = "arm"
+shape  = "point"
+mass   = "m"
+centre = ["0", "0", "l"]
+[loads]
+pin = { on = "bob", force = "?pin" }
+"""
+
+
+def test_a_pole_that_the_machine_has_is_named_with_its_place() -> None:
+    made = library(parse_scene(UPRIGHT, "upright"))
+    assert isinstance(made.known, Mechanism)
+    says = pole(made.known, "accelerations")
+    assert says.startswith("the divisor of 'psi_ddot', 'theta_ddot' vanishes at ")
+    assert ", theta = 0," in says
