@@ -103,7 +103,7 @@ def _drawn(trial: _Trial, count: int, reach: float) -> Columns:
             [middle + half * (2 * dice.random() - 1) for _ in range(count)] for _ in q.components
         ]
         rows = np.array(own)
-        if q.shape == (4,):
+        if q.is_quaternion:
             rows = rows / np.sqrt((rows * rows).sum(axis=0))
         columns |= dict(zip(q.components, rows, strict=True))
     return columns
@@ -120,7 +120,7 @@ def _places(trial: _Trial) -> list[Place]:
         places += [(q.components, 0.0)] if q.shape else []
     single = [q.components for q in trial.free() if not q.shape]
     places += [(a + b, 0.0) for a, b in combinations(single, 2)]
-    rest = tuple(c for q in trial.free() if q.shape != (4,) for c in q.components)
+    rest = tuple(c for q in trial.free() if not q.is_quaternion for c in q.components)
     return [*places, (rest, 0.0)] if rest else places
 
 
