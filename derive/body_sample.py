@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from random import Random
 
+from derive.added import added
 from derive.arithmetic import rounded
 from derive.c_text import Precision
 from derive.formula import FLOATS, Formula, evaluate
@@ -106,7 +107,7 @@ def _turned(moments: Triple, turn: Sequence[float]) -> tuple[float, ...]:
     """Return moments and products (+sum x y dm) of a turned body."""
     rows = [turn[0:3], turn[3:6], turn[6:9]]
     entry = [
-        [sum(rows[i][n] * moments[n] * rows[k][n] for n in range(3)) for k in range(3)]
+        [added(rows[i][n] * moments[n] * rows[k][n] for n in range(3)) for k in range(3)]
         for i in range(3)
     ]
     own = [entry[0][0], entry[1][1], entry[2][2], -entry[0][1], -entry[0][2], -entry[1][2]]

@@ -11,6 +11,7 @@ from fractions import Fraction
 from math import sqrt
 from random import Random
 
+from derive.added import added
 from derive.arithmetic import rounded
 from derive.body_sample import BODIES, Hard, admissible, bodies_taken, hard_body, solvable
 from derive.c_text import Precision
@@ -125,7 +126,7 @@ def uniform(dice: Random, q: Quantity) -> float:
 
 def _unit(values: Sequence[float]) -> list[float]:
     """Return a direction of unit length, by operations that every machine rounds alike."""
-    size = sqrt(sum((x * x for x in values), 0.0))
+    size = sqrt(added(x * x for x in values))
     return [x / size for x in values]
 
 

@@ -10,8 +10,8 @@ import pytest
 
 FLOORS = (
     (
-        *("escape", "vectors", "formula", "grammar", "unit", "scene", "catalogue", "program"),
-        *("graph", "largest"),
+        *("escape", "added", "vectors", "formula", "grammar", "unit", "scene", "catalogue"),
+        *("program", "graph", "largest"),
     ),
     (
         *("particles", "pairs", "pair_sine", "arithmetic", "status"),

@@ -7,6 +7,7 @@ import math
 import random
 from collections.abc import Callable
 
+from derive.added import added
 from derive.bench.problem import Problem
 
 Row = tuple[float, ...]
@@ -37,7 +38,7 @@ def tensor(principal: Triple, dice: random.Random) -> Row:
     """Return moments and products (+sum x y dm) of a body turned at random."""
     turn = _turn(_unit(dice, 4))
     entry = [
-        [sum(turn[i][n] * principal[n] * turn[j][n] for n in range(3)) for j in range(3)]
+        [added(turn[i][n] * principal[n] * turn[j][n] for n in range(3)) for j in range(3)]
         for i in range(3)
     ]
     return (*(entry[i][i] for i in range(3)), -entry[0][1], -entry[0][2], -entry[1][2])

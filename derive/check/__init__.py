@@ -41,7 +41,10 @@ ORDINARY, CORNERS, FEW, TWO = 300, 6, 8, 2
 def check(
     sources: Sequence[str], folder: Path, samples: int, told: Callable[[str], None]
 ) -> Iterator[Verdict]:
-    """Yield the verdicts on the emitted files of scenes, as they lie below ``folder`` or are made.
+    """Yield the verdicts on scenes' files, made anew; what lies below ``folder`` must be the same.
+
+    Nothing that lies there is run.
+
 
     samples : fresh ones that stated errors are tried at       told : hears how far that is
     Raises CompilerError if there is no C compiler.
@@ -51,6 +54,7 @@ def check(
         made = library(load(source))
         with TemporaryDirectory(prefix="derive-") as workshop:
             found = files(made, folder)
+            yield as_made(made, found)
             yield from check_library(made, found, Path(workshop), with_, ORDINARY)
             yield from fresh(made, stated_figures(found.manifest), samples, told)
 
@@ -73,6 +77,17 @@ def check_library(
     except CompilerError as error:
         name = made.known.scene.name
         yield Verdict(name, "all", "", "compiles without warnings", "FAILS", str(error))
+
+
+def as_made(made: Library, found: Files) -> Verdict:
+    """Return whether the files that lie there are what the scene makes."""
+    name, check_ = made.known.scene.name, "lies as it is made"
+    if found.origin == "made in memory":
+        return Verdict(name, "all", "", check_, "skipped", "no files of the scene lie there")
+    says = f"{found.origin}: as made"
+    if found.differ:
+        says = f"not as made: {', '.join(found.differ)}; run `derive generate {name}`"
+    return Verdict(name, "all", "", check_, JUDGED[not found.differ], says)
 
 
 def proof(made: Library) -> Verdict:

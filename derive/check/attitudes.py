@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import atan, atan2, cos, hypot, inf, pi, sin, sqrt
 from random import Random
 
+from derive.added import added
 from derive.check.emitted import Emitted
 from derive.check.verdict import JUDGED, Verdict
 from derive.largest import largest
@@ -157,7 +158,7 @@ def _cosine(left: Row, right: Row) -> float:
     """Return the cosine of half the angle of two turns in a row, by spherical trigonometry."""
     (w1, *a), (w2, *b) = left, right
     sizes = _size(a) * _size(b)
-    between = sum(x * y for x, y in zip(a, b, strict=True)) / (sizes or 1.0)
+    between = added(x * y for x, y in zip(a, b, strict=True)) / (sizes or 1.0)
     alpha, beta = (atan2(_size(v), w) for v, w in ((a, w1), (b, w2)))
     return cos(alpha) * cos(beta) - sin(alpha) * sin(beta) * between
 
@@ -189,9 +190,9 @@ def _in_turn(sequence: str, angles: Row) -> Turns:
 
 def _rodrigues(axis: Row, angle: float, v: Row) -> list[float]:
     """Return v turned about an axis: e (e v) + (v - e (e v)) cos + (e x v) sin."""
-    size = sqrt(sum(x * x for x in axis)) or 1.0
+    size = sqrt(added(x * x for x in axis)) or 1.0
     e = [x / size for x in axis]
-    along = sum(x * y for x, y in zip(e, v, strict=True))
+    along = added(x * y for x, y in zip(e, v, strict=True))
     across = [e[k - 2] * v[k - 1] - e[k - 1] * v[k - 2] for k in range(3)]
     c, s = cos(angle), sin(angle)
     return [n * along + (x - n * along) * c + y * s for n, x, y in zip(e, v, across, strict=True)]

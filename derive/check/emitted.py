@@ -11,24 +11,24 @@ from derive.c_text import F64, PRECISIONS, Precision
 from derive.casadi_module import imported
 from derive.check.call import Function, functions
 from derive.check.compiler import Compiler, compiled
-from derive.files import scene_files
+from derive.files import differences, scene_files
 from derive.kept import Measuring, figures_of
 from derive.library import Library
 from derive.program import Program
 from derive.sample import Sample
-from derive.scene import SceneError
 from derive.search import SAMPLING, Sampling
-
-ENDINGS = (".json", "_casadi.py", "_f32.c", "_f32.h", "_f64.c", "_f64.h")
-"""Of the files of a scene that checks read; whatever else lies there is nobody's business."""
 
 
 @dataclass(frozen=True)
 class Files:
-    """The texts of a scene's files by name, and where they are from."""
+    """The texts of a scene's files by name, and where they are from.
+
+    differ : files that lie there and are not what the scene makes
+    """
 
     texts: Mapping[str, str]
     origin: str
+    differ: tuple[str, ...] = ()
 
     @property
     def manifest(self) -> Mapping[str, Any]:
@@ -71,18 +71,19 @@ def inputs(
 
 
 def files(library: Library, folder: Path, sampling: Sampling = SAMPLING) -> Files:
-    """Return a scene's files as they lie below ``folder``, or made in memory if they do not."""
+    """Return a scene's files, made in memory: what lies below ``folder`` is compared, never run.
+
+    Only figures are taken over from there, by the digest of all that they depend on.
+    """
     name = library.known.scene.name
-    place = folder / name
-    if (place / f"{name}.json").is_file():
-        own = [f"{name}{ending}" for ending in ENDINGS]
-        missing = [file for file in own if not (place / file).is_file()]
-        if missing:
-            raise SceneError(f"scene '{name}': {place / missing[0]} is missing; generate it again")
-        return Files({file: (place / file).read_text(encoding="utf-8") for file in own}, f"{place}")
-    measured = figures_of(library, Measuring(sampling, None))
+    measured = figures_of(library, Measuring(sampling, folder))
     made = scene_files(library, measured.each, measured.digest)
-    return Files({path.partition("/")[2]: text for path, text in made.items()}, "made in memory")
+    texts = {path.partition("/")[2]: text for path, text in made.items()}
+    own = {file: text for file, text in texts.items() if not file.endswith(".html")}
+    if not (folder / name).is_dir():
+        return Files(own, "made in memory")
+    found = tuple(difference.name for difference in differences(folder, made))
+    return Files(own, f"{folder / name}", found)
 
 
 def loaded(library: Library, found: Files, workshop: Path, with_: Compiler) -> Iterator[Emitted]:

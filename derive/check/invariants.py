@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import frexp, isfinite
 
+from derive.added import added
 from derive.check.emitted import Emitted
 from derive.check.turning import Turning, turnings
 from derive.check.verdict import JUDGED, Outcome, Verdict
@@ -77,8 +78,8 @@ def _power_gap(emitted: Emitted, sample: Sample) -> float:
         for h in (step, -step)
     )
     powers = _powers(single(emitted.library.known), sample.values)
-    allowed = ROUNDING * ((abs(ahead) + abs(behind)) / (2 * step) + sum(map(abs, powers)))
-    gap = abs((ahead - behind) / (2 * step) - sum(powers))
+    allowed = ROUNDING * ((abs(ahead) + abs(behind)) / (2 * step) + added(map(abs, powers)))
+    gap = abs((ahead - behind) / (2 * step) - added(powers))
     return gap / allowed if allowed else 0.0
 
 
@@ -133,7 +134,7 @@ def _turned(q: Sequence[float], v: Sequence[float]) -> list[float]:
         (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
         (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
     )
-    return [sum(r * a for r, a in zip(row, v, strict=True)) for row in rows]
+    return [added(r * a for r, a in zip(row, v, strict=True)) for row in rows]
 
 
 @dataclass(frozen=True)

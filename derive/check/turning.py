@@ -7,6 +7,7 @@ are the moments and products themselves can be described anew.
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from derive.added import added
 from derive.formula import FLOATS, Formula, evaluate, symbols
 from derive.program import Quantity
 from derive.sample import Values, varying
@@ -76,7 +77,7 @@ class Turning:
 
 
 def _applied(rows: Rows, old: Sequence[float]) -> list[float]:
-    return [sum(r * x for r, x in zip(row, old, strict=True)) for row in rows]
+    return [added(r * x for r, x in zip(row, old, strict=True)) for row in rows]
 
 
 def _value(formula: Formula, values: Mapping[str, float]) -> float:

@@ -10,7 +10,7 @@ from derive.command.costs import print_costs
 from derive.command.scenes import samples_argument, scene_argument
 from derive.command.terminal import OUT, complain, console, errors, progress
 from derive.escape import visible
-from derive.files import Difference, differences, folders_left_over, write
+from derive.files import Difference, differences, folders_left_over, unfinished, write
 from derive.generation import Made, all_made, gallery_of, lecture_made
 from derive.kept import Measuring
 from derive.scene import SceneError, catalogue
@@ -50,10 +50,21 @@ def generate(given: argparse.Namespace) -> int:
         texts |= gallery_of(results)
     if given.check:
         return _compare(given, texts)
+    stopped = unfinished(given.out)
     write(given.out, texts)
+    if stopped:
+        complain(_mended(given.out, stopped), "yellow")
     print_costs(results)
     console.print(f"{len(texts)} files in {given.out}/")
     return 0
+
+
+def _mended(folder: Path, stopped: Sequence[str]) -> str:
+    """Return what is to be said of files that a run before this one was replacing."""
+    says = f"derive: a run before this one was stopped while it replaced {len(stopped)} files"
+    left = len(unfinished(folder))
+    more = f"{left} are still to be made: run `derive generate`" if left else "all are new now"
+    return f"{says}; {more}"
 
 
 def made_of(

@@ -8,6 +8,7 @@ of its own, and the page fills its lines with them.
 from collections.abc import Callable
 from itertools import pairwise
 
+from derive.added import added
 from derive.notation.glyph import GREEK, glyph
 from derive.notation.layout import Layout, group, is_number, operand
 from derive.notation.mathml import SIGNS, TOUCHING, TRANSPOSED, between, row, total_sign
@@ -42,17 +43,17 @@ def width(layout: Layout) -> float:
         case "power":
             return parts[0] + _SMALL * parts[1] / _OF_WORD
         case "sum" | "infix" | "equal" | "negative":
-            return sum(parts) + _SIGN * max(len(parts) - 1, 1)
+            return added(parts) + _SIGN * max(len(parts) - 1, 1)
         case "product":
             signs = sum(1 for pair in pairwise(layout.parts) if between(*pair) != TOUCHING)
-            return sum(parts) + _SMALL * signs
-    return sum(parts) + _OF_WORD * len(layout.text) + _FENCES
+            return added(parts) + _SMALL * signs
+    return added(parts) + _OF_WORD * len(layout.text) + _FENCES
 
 
 def _of_name(text: str) -> float:
     parts = glyph(text)
     letters = len(GREEK.get(parts.base, parts.base))
-    indices = sum(len(GREEK.get(index, index)) + 0.4 for index in parts.indices)
+    indices = added(len(GREEK.get(index, index)) + 0.4 for index in parts.indices)
     small = _SMALL * (indices + len(parts.seen_from)) + (_of_name(parts.by) if parts.by else 0)
     return max(_LETTER, _OF_WORD * letters) + small
 

@@ -7,6 +7,7 @@ an angle. Kept to show what it loses.
 import math
 from typing import Any
 
+from derive.added import added
 from derive.bench.motion.case import Case
 
 TYPES = {"f64": "float64", "f32": "float32"}
@@ -20,8 +21,8 @@ def elliptic(case: Case, precision: str) -> float:
     with np.errstate(all="ignore"):
         found = [float(x) for x in _omega(case, real)]
     true = [float(x) for x in case.omega_T]
-    size = math.sqrt(sum(x * x for x in true)) or 1.0
-    error = math.sqrt(sum((a - b) ** 2 for a, b in zip(found, true, strict=True))) / size
+    size = math.sqrt(added(x * x for x in true)) or 1.0
+    error = math.sqrt(added((a - b) ** 2 for a, b in zip(found, true, strict=True))) / size
     return error if math.isfinite(error) else math.nan
 
 

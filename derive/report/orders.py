@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from derive.added import added
 from derive.bench.motion.case import Case
 from derive.bench.motion.ours import parameters, scenes_for
 from derive.bench.motion.runner import Job, Mover, moved
@@ -55,9 +56,9 @@ def slope(steps: Sequence[float], errors: Sequence[float]) -> float:
     if len(steps) < LEAST:
         return math.nan
     x, y = [math.log(s) for s in steps], [math.log(e) for e in errors]
-    mean_x, mean_y = sum(x) / len(x), sum(y) / len(y)
-    above = sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y, strict=True))
-    return above / sum((a - mean_x) ** 2 for a in x)
+    mean_x, mean_y = added(x) / len(x), added(y) / len(y)
+    above = added((a - mean_x) * (b - mean_y) for a, b in zip(x, y, strict=True))
+    return above / added((a - mean_x) ** 2 for a in x)
 
 
 def measured(method: str, case: Case, found: Sequence[tuple[float, float]]) -> Order:

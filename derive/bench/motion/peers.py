@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from derive.added import added
 from derive.bench.motion.case import Case
 
 State = list[float]
@@ -161,7 +162,7 @@ def _rates(case: Case, y: Sequence[Any]) -> list[Any]:
         load = [(yy - zz) * w[1] * w[2], (zz - xx) * w[2] * w[0], (xx - yy) * w[0] * w[1]]
     else:
         rows = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
-        load = _cross([sum(a * b for a, b in zip(r, w, strict=True)) for r in rows], w)
+        load = _cross([added(a * b for a, b in zip(r, w, strict=True)) for r in rows], w)
     load = [a + b for a, b in zip(load, _floats(case.moment), strict=True)]
     if any(wheel):
         load = [a + b for a, b in zip(load, _cross(wheel, w), strict=True)]
@@ -170,7 +171,7 @@ def _rates(case: Case, y: Sequence[Any]) -> list[Any]:
     if case.principal:
         return [*_attitude_rate(q, w), load[0] / xx, load[1] / yy, load[2] / zz]
     inverse = _inverse(xx, yy, zz, xy, xz, yz)
-    omega_dot = [sum(a * b for a, b in zip(r, load, strict=True)) for r in inverse]
+    omega_dot = [added(a * b for a, b in zip(r, load, strict=True)) for r in inverse]
     return [*_attitude_rate(q, w), *omega_dot]
 
 
@@ -192,7 +193,7 @@ def _third_row(q: Sequence[Any]) -> list[Any]:
 def _inverse(xx: float, yy: float, zz: float, xy: float, xz: float, yz: float) -> list[list[float]]:
     rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
     adjugate = [_cross(rows[1], rows[2]), _cross(rows[2], rows[0]), _cross(rows[0], rows[1])]
-    determinant = sum(a * b for a, b in zip(rows[0], adjugate[0], strict=True))
+    determinant = added(a * b for a, b in zip(rows[0], adjugate[0], strict=True))
     return [[x / determinant for x in row] for row in adjugate]
 
 

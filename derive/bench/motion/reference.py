@@ -12,6 +12,7 @@ from typing import Any
 
 from flint import arb, arb_series, ctx, fmpq
 
+from derive.added import added
 from derive.bench.motion.case import Case, case
 
 BITS, TERMS, DIGITS = 420, 60, 40
@@ -82,7 +83,7 @@ def kappa(case: Case) -> tuple[float, float]:
     omega = [_norm([a - b for a, b in zip(v, w, strict=True)]) / size for v, _ in changes]
     angle = [2 * _norm([a - b for a, b in zip(p, q, strict=True)]) for _, p in changes]
     scale = 1 / float(PERTURBED)
-    return sum(float(x) * scale for x in omega), sum(float(x) * scale for x in angle)
+    return added(float(x) * scale for x in omega), added(float(x) * scale for x in angle)
 
 
 def _changed(case: Case) -> list[Case]:

@@ -9,9 +9,11 @@ import random
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from math import sqrt
 from pathlib import Path
 from typing import Any
 
+from derive.added import added
 from derive.bench import own
 from derive.bench.build import O2, O3_NATIVE, BuildError, Row, answers, build
 from derive.bench.callgrind import instructions
@@ -96,7 +98,7 @@ def _rows() -> list[Row]:
 def _row(dice: random.Random) -> Row:
     a, b, c = (dice.uniform(0.5, 2) for _ in range(3))
     q = [dice.gauss(0, 1) for _ in range(4)]
-    size = sum(x * x for x in q) ** 0.5
+    size = sqrt(added(x * x for x in q))
     others = [dice.uniform(-1, 1) for _ in range(6)]
     return (b + c, c + a, a + b, *others[:3], *(x / size for x in q), *others[3:], 0.01)
 
