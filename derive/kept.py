@@ -18,8 +18,8 @@ from derive.search import Sampling
 from derive.stated import figures
 
 METHOD = (
-    *("arithmetic", "body_sample", "columns", "draw", "measure", "motion_error", "pair_sine"),
-    *("pairs", "reference", "sample", "scale", "search", "stated"),
+    *("added", "arithmetic", "body_sample", "columns", "draw", "measure", "motion_error"),
+    *("pair_sine", "pairs", "reference", "sample", "scale", "search", "stated"),
 )
 """The modules that figures are measured by."""
 

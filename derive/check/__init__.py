@@ -45,7 +45,6 @@ def check(
 
     Nothing that lies there is run.
 
-
     samples : fresh ones that stated errors are tried at       told : hears how far that is
     Raises CompilerError if there is no C compiler.
     """

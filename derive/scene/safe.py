@@ -14,6 +14,7 @@ from itertools import islice, product
 from random import Random
 from typing import TYPE_CHECKING, Any
 
+from derive.added import added
 from derive.formula import FLOATS, Formula, apply, evaluate, symbols
 from derive.scene.declaration import SceneError
 from derive.scene.interval import INTERVALS, Interval
@@ -157,7 +158,7 @@ def _sized(part: Formula, values: Point) -> tuple[float, float]:
 
 def _size(part: Formula, values: Point) -> float:
     if part.operator in ("add", "sub"):
-        return sum(_size(p, values) for p in part.operands)
+        return added(_size(p, values) for p in part.operands)
     return max(abs(float(evaluate(part, values, FLOATS))), 0.0)
 
 

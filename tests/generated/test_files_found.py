@@ -7,15 +7,17 @@ import pytest
 from derive.check import as_made
 from derive.check.emitted import Files, files
 from derive.files import scene_files, write
+from derive.search import Sampling
 from tests.made import library_of
 
 NAME = "free_body_principal"
+FEW = Sampling(samples=64, rounds=1, batch=16, balls=1, motion_balls=1)
 
 
 @pytest.fixture(scope="module")
 def found() -> Files:
     """Return the files of a scene, made in memory."""
-    return files(library_of(NAME), Path("nowhere"))
+    return files(library_of(NAME), Path("nowhere"), FEW)
 
 
 @pytest.fixture
@@ -29,13 +31,13 @@ def folder(tmp_path: Path, found: Files) -> Path:
 def test_what_an_import_or_an_editor_left_is_not_read(folder: Path, found: Files) -> None:
     (folder / NAME / "__pycache__").mkdir()
     (folder / NAME / f".{NAME}_f64.c.swp").write_bytes(b"\xff\xfe")
-    assert files(library_of(NAME), folder).texts == found.texts
+    assert files(library_of(NAME), folder, FEW).texts == found.texts
 
 
 @pytest.mark.parametrize("ending", ["_casadi.py", "_f64.c", ".json"])
 def test_what_lies_there_is_compared_and_never_run(folder: Path, found: Files, ending: str) -> None:
     (folder / NAME / f"{NAME}{ending}").write_text("raise SystemExit('it was run')")
-    again = files(library_of(NAME), folder)
+    again = files(library_of(NAME), folder, FEW)
     assert again.texts == found.texts
     assert f"{NAME}/{NAME}{ending}" in again.differ
     verdict = as_made(library_of(NAME), again)
@@ -45,7 +47,7 @@ def test_what_lies_there_is_compared_and_never_run(folder: Path, found: Files, e
 
 def test_a_missing_file_is_named(folder: Path) -> None:
     (folder / NAME / f"{NAME}_f32.h").unlink()
-    assert f"{NAME}/{NAME}_f32.h" in files(library_of(NAME), folder).differ
+    assert f"{NAME}/{NAME}_f32.h" in files(library_of(NAME), folder, FEW).differ
 
 
 def test_a_scene_of_which_nothing_lies_there_is_skipped(found: Files) -> None:
