@@ -10,6 +10,7 @@ from derive.c_text import F64, machine_number, pair_functions
 from derive.comment import told
 from derive.emit import TEMPLATES, first_line, works_in_pairs
 from derive.flows.compact import Compact
+from derive.flows.orbit import NEARLY_ZERO
 from derive.flows.series import Series
 from derive.library import Library
 from derive.pair_sine import quarter_turn, series
@@ -21,7 +22,13 @@ from derive.status import CONSTANT, PARAMETER, computed, possible
 Text = Callable[[Operand], str]
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/", "less": "<", "at_most": "<="}
 KEPT = "_kept("
-_CALLS = {"abs": "fabs", "select": "if_else", "both": "logic_and", "either": "logic_or"}
+NOWHERE = "without_slope"
+LOST = {
+    "flow_exact": "flow_exact at rest and on the separatrix, so about the middle axis",
+    "plan_dmv": "plan_dmv at rest and for no time",
+}
+RESTING = {"flow_exact": "omega", "plan_dmv": "time_step"}
+_CALLS = {"select": "if_else", "both": "logic_and", "either": "logic_or"}
 
 
 def casadi_file(library: Library) -> str:
@@ -42,6 +49,7 @@ def casadi_file(library: Library) -> str:
         even=[tuple(map(float, pair_of(c, F64.dtype))) for c in series(F64.bits, 0)],
         quarter=[float(part) for part in quarter_turn(lambda q: rounded(q, F64.dtype))],
         functions=functions,
+        lost="; ".join(LOST[p.name] for p in library.printed() if p.name in LOST),
     )
 
 
@@ -172,6 +180,7 @@ def _function(program: Program, scene: str) -> dict[str, object]:
         lines, text = (_pairs if program.arithmetic == "pairs" else plain_lines)(program, place)
     given = [q.name for q in program.inputs]
     require_free(scene, program.name, given, declared_in_python(lines))
+    lines, nowhere = [*lines, *_nowhere(program, text)], program.name in RESTING
     return {
         "builder": program.name,
         "name": f"{scene}_{program.name}",
@@ -180,8 +189,24 @@ def _function(program: Program, scene: str) -> dict[str, object]:
         "inputs": [{"name": q.name, "size": len(q.components)} for q in program.inputs],
         "needs_constants": any(q.name == "constants" for q in program.inputs),
         "lines": lines,
-        "outputs": _outputs(program, text),
+        "outputs": _outputs(program, lambda x: f"{text(x)} + {NOWHERE}" if nowhere else text(x)),
     }
+
+
+def _nowhere(program: Program, text: Text) -> Iterator[str]:
+    """Yield a value 0 whose slope is no number where CasADi loses a slope that there is.
+
+    At rest and for no time the formulas of ``RESTING`` work with another state; on the separatrix
+    (and so about the middle axis) the modulus is a number.
+    """
+    if program.name not in RESTING:
+        return
+    yield f"stir = ca.sum1(ca.fabs({RESTING[program.name]}))"
+    yield f"{NOWHERE} = ca.if_else(stir > 0.0, 0.0, ca.sqrt(stir))"
+    for op, _ in every_op(program.ops):
+        if op.operator == "select" and op.operands[1] == NEARLY_ZERO:
+            condition, _, found = (text(operand) for operand in op.operands)
+            yield f"{NOWHERE} = {NOWHERE} + ca.if_else({condition}, {found}, 0.0)"
 
 
 def _operation(op: Op, text: Text) -> str:
@@ -192,6 +217,8 @@ def _operation(op: Op, text: Text) -> str:
         return f"-{operands[0]}"
     if not op.operands:
         return repr(float(rounded(machine_number(op.operator, F64), F64.dtype)))
+    if op.operator == "abs":  # fabs has the derivative 0 at 0, and |x|^2 then no second one
+        return f"ca.if_else({operands[0]} < 0.0, -1.0, 1.0) * {operands[0]}"
     if op.operator == "power_of_two":
         top = f"4503599627370497.0 * {operands[0]}"
         return f"{top} - 0.9999999999999999 * ({top})"

@@ -35,7 +35,7 @@ def _power_of_two(x: Any) -> Any:
     if not x.is_finite() or x == 0:
         return x  # on a way that is not taken
     mantissa, exponent = x.mid().man_exp()
-    return arb(2) ** (int(exponent) + int(abs(mantissa)).bit_length())
+    return arb(2) ** (int(exponent) + int(abs(mantissa)).bit_length() - 1)
 
 
 def _rounded(operation: Callable[..., Any]) -> Callable[..., Any]:

@@ -19,6 +19,7 @@ from derive.check.agreement import (
 )
 from derive.check.attitudes import definitions
 from derive.check.compiler import Compiler, CompilerError, find_compiler
+from derive.check.derivatives import derivatives
 from derive.check.emitted import Emitted, Files, casadi_module, files, is_double, loaded
 from derive.check.energy import energy_balance
 from derive.check.fresh import fresh
@@ -143,6 +144,7 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
         yield from step_slopes(one.library, each)
         module = casadi_module(one.library, found, workshop)
         yield from casadi_bits(one, module, each)
+        yield from derivatives(one.library, module, each)
         if one.library.constants:
             yield casadi_status(one, module)
         plain = [s for s in each if s.kind == "ordinary"][: FEW * FEW]

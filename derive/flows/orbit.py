@@ -13,7 +13,7 @@ from fractions import Fraction
 
 from derive.flows.principal_axes import Three, quotient, root
 from derive.operations import absolute, at_most, both, less, select, sqrt
-from derive.rotations.lengths import hypotenuse
+from derive.rotations.lengths import hypotenuse, length_of
 from derive.trace import Number, named, number
 
 NEARLY_ZERO = Fraction(1, 2**100)
@@ -61,7 +61,8 @@ class Orbit:
     """The state in the roles a, b, c and what stays the same.
 
     m : angular momentum over I_2, along a, b, c; m_b is omega_b     spin : |omega_a|
-    high, middle, across : the largest m_a, m_b, m_c     length : of m     complement : k'
+    high : the largest m_a     across_squared : the square of the largest m_c
+    length : of m     complement : k'
     rate : of the phase     a_is_1, separatrix : truths, the second of being on it exactly
     hand : 1 if (a, b, c) is right-handed, else -1     sign : 1, or -1 after half a turn about b
     """
@@ -71,18 +72,13 @@ class Orbit:
     a: Role
     c: Role
     high: Number
-    across: Number
+    across_squared: Number
     length: Number
     complement: Number
     a_is_1: Number
     separatrix: Number
     hand: Number
     sign: Number
-
-    @property
-    def middle(self) -> Number:
-        """Return the largest m_b."""
-        return self.across * self.a.inverse_root
 
     @property
     def rate(self) -> Number:
@@ -97,8 +93,8 @@ class Orbit:
     @property
     def modulus_squared(self) -> Number:
         """Return k^2, with all its digits where it is small."""
-        ratio = self.c.root * self.across / self.divisor * self.a.inverse_root
-        return ratio * ratio
+        ratio = self.c.root * self.a.inverse_root / self.divisor
+        return ratio * ratio * self.across_squared
 
     def back(self, v: Three) -> list[Number]:
         """Return the components along 1, 2, 3 of a vector along a, b, c."""
@@ -120,7 +116,7 @@ def orbit(one: Role, three: Role, omega: Three) -> Orbit:
     spin, m_a, m_c = (select(a_is_1, *v) for v in ((omega[0], omega[2]), (m_1, m_3), (m_3, m_1)))
     sign = select(less(spin, 0), -1, 1)
     m_a, m_c, b = absolute(m_a), m_c * sign, absolute(m_b)
-    high, across = hypotenuse(m_a, c.root * b), hypotenuse(absolute(m_c), a.root * b)
+    high, around = hypotenuse(m_a, c.root * b), a.root * m_b
     gap, scale = absolute(pull_1 - pull_3), a.root * high
     some = less(0, scale)
     scale = select(some, scale, 1)
@@ -128,8 +124,8 @@ def orbit(one: Role, three: Role, omega: Three) -> Orbit:
     separatrix = both(some, at_most(gap, 0))
     complement = select(separatrix, NEARLY_ZERO, complement)
     hand = select(a_is_1, 1, -1)
-    m, length = (m_a, m_b, m_c), hypotenuse(high, across)
-    found = a, c, high, across, length, complement, a_is_1, separatrix, hand, sign
+    m, across_squared = (m_a, m_b, m_c), m_c * m_c + around * around
+    found = a, c, high, across_squared, length_of(m), complement, a_is_1, separatrix, hand, sign
     return Orbit(m, absolute(spin), *found)
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from derive.flows.principal_axes import Three
-from derive.operations import absolute, cos, sin, sqrt
-from derive.rotations.lengths import hypotenuse, squares
+from derive.operations import cos, sin, sqrt
+from derive.rotations.lengths import length_of, squares
 from derive.rotations.quaternion import product
 from derive.trace import Number, named, number
 
@@ -39,8 +39,7 @@ def precess(
     cosine, sine = cos(half), sin(half)
     about = [cosine, *(sine if k == axis else number(0) for k in range(3))]
     x, y, z = momentum
-    length = hypotenuse(hypotenuse(absolute(x), absolute(y)), absolute(z))
-    turn = product(_turned((x, y, z), length, time), about)
+    turn = product(_turned((x, y, z), length_of((x, y, z)), time), about)
     c, s = cosine * cosine - sine * sine, 2 * cosine * sine
     after = list(omega)
     after[i], after[j] = c * omega[i] + s * omega[j], c * omega[j] - s * omega[i]

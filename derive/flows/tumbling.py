@@ -76,7 +76,8 @@ def _third_kind(path: Orbit, means: Ladder, at: Values) -> Angle:
     """
     below, over = path.length + path.high * path.complement, path.length + path.high
     first = means.a[1]
-    weight = path.modulus_squared * path.across * path.middle / (4 * first * over * below)
+    weight = path.modulus_squared * path.across_squared * path.a.inverse_root
+    weight = weight / (4 * first * over * below)
     return angle(means, at, weight, sqrt(first * below / over))
 
 
@@ -89,7 +90,7 @@ def _mean_rate(path: Orbit, third: Angle) -> Number:
     b, g, over = absolute(b), path.length, path.length + path.high
     lowest = path.high * path.complement
     square = path.c.part * (b * b) / (path.divisor + a) * path.a.inverse
-    fast = square + path.across * path.across / over * path.c.inverse
+    fast = square + path.across_squared / over * path.c.inverse
     slow = (
         (a * a * path.a.inverse + c * c * path.c.inverse - b * (a * a + c * c) / (g + b))
         + lowest * (g * path.a.inverse - b)

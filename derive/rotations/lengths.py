@@ -55,10 +55,19 @@ def hypotenuse(x: Number, y: Number) -> Number:
     return longer * sqrt(1 + ratio * ratio)
 
 
-def length_and_rest(tape: Tape, v: Sequence[Number], vanishing: Number) -> tuple[Number, Number]:
-    """Return the rounded length h of ``v``, and l with h + l right to u times the root of u.
+def length_of(values: Sequence[Number]) -> Number:
+    """Return the length of a vector of any scale that is not zero, differentiable on its axes."""
+    size = largest(values)
+    return size * sqrt(squares([v / size for v in values]))
 
-    ``v`` is scaled already. Where ``vanishing`` is true h is 1 and l means nothing. With every
+
+def length_and_rest(
+    tape: Tape, v: Sequence[Number], vanishing: Number
+) -> tuple[Number, Number, Number]:
+    """Return the rounded length h of ``v``, l with h + l right to u times the root of u, and h^2.
+
+    ``v`` is scaled already. Where ``vanishing`` is true h is 1 and l means nothing;
+    h^2 is never more than near. With every
     number split into a short one and a rest, the squares of the short ones are exact and so is
     their sum with what its rounding leaves; the sum over h^2 is r, and l = r / (2 h).
     Every product that must be exact is one of short numbers: fused operations give the same.
@@ -71,7 +80,7 @@ def length_and_rest(tape: Tape, v: Sequence[Number], vanishing: Number) -> tuple
     beside = (v[0] + x) * x_low + (v[1] + y) * y_low + ((v[2] + z) * z_low + (first + second))
     h = select(vanishing, 1, sqrt(total + beside))
     high, low = _halves(h, shift)
-    return h, ((total - high * high) + (beside - (h + high) * low)) / (h + h)
+    return h, ((total - high * high) + (beside - (h + high) * low)) / (h + h), total
 
 
 def _halves(a: Number, shift: Number) -> tuple[Number, Number]:

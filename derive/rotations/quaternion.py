@@ -43,20 +43,21 @@ def exponential(tape: Tape, v: Sequence[Number]) -> list[Number]:
 
     Within 6 u for |v| from zero and denormal up to 2^26 (double) or 2^12 (float), and up to pi
     the vector part within 6 u of itself: |v| is carried with what its rounding left. Beyond,
-    |v| is rounded once and the quaternion is still of unit length. 67 flops, a sine, a cosine.
+    |v| is rounded once and the quaternion is still of unit length. 69 flops, a sine, a cosine.
     """
     m = largest(v)
     tiny = less(m, TINY)
     scale = power_of_two(select(less(FAR, m), m * (1 / FAR), 1))
     y = [c / scale for c in v]
-    h, low = length_and_rest(tape, y, tiny)
+    h, low, square = length_and_rest(tape, y, tiny)
     half = scale * Fraction(1, 2)
     sine, cosine = sin(h * half), cos(h * half)
     rest = low * half
     # A rest above the root of u would leave the sphere; there |v| is too large to be known.
     rest = select(less(absolute(rest) * h, 1), rest, 0)
     ratio = select(tiny, Fraction(1, 2), (sine + rest * cosine) / h)
-    return [select(tiny, 1, cosine - rest * sine), *(ratio * c for c in y)]
+    scalar = 1 - square * Fraction(1, 8)  # 1 if tiny, and bent as the cosine is
+    return [select(tiny, scalar, cosine - rest * sine), *(ratio * c for c in y)]
 
 
 def logarithm(q: Sequence[Number]) -> list[Number]:

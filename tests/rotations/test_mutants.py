@@ -123,11 +123,16 @@ def splits(one: Program, op: Op) -> bool:
     return op.result in shifts or (op.operator == "add" and bool(longs & set(op.operands)))
 
 
+def bends(op: Op) -> bool:
+    """Tell whether an operation is 1 less what rounds away: for derivatives, and judged by them."""
+    return op.operator == "sub" and op.operands[0] == Fraction(1)
+
+
 def mutants(one: Program) -> Iterator[tuple[str, Program]]:
     """Yield the program with the sign of one sum wrong, or one choice the wrong way round."""
     for place, op in enumerate(one.ops):
         assert isinstance(op, Op)
-        if splits(one, op):
+        if splits(one, op) or bends(op):
             continue
         changed = []
         if op.operator in SWAPPED:
