@@ -23,6 +23,12 @@ def options(command: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="run one case or section, print its figures and write nothing",
     )
+    command.add_argument(
+        "--again",
+        nargs="*",
+        metavar="NAME",
+        help="write the report anew from generated/report.json, measuring only what is named",
+    )
     command.set_defaults(run=report)
 
 
@@ -33,10 +39,11 @@ def report(given: argparse.Namespace) -> int:
         return 0
     from derive.report import command  # matplotlib and the peers are an extra
 
+    kind = "full" if given.full else "small"
     try:
-        return command.report(
-            OUT, "full" if given.full else "small", given.only, console, progress()
-        )
+        if given.again is not None:
+            return command.again(OUT, kind, given.again, console, progress())
+        return command.report(OUT, kind, given.only, console, progress())
     except ImportError as absent:
         complain(f"derive: {absent}", "red")
         return 2

@@ -9,9 +9,12 @@ from rich.table import Table
 
 from derive.files import require_writable, write
 from derive.report.case_run import Found
+from derive.report.contradictions import contradictions
 from derive.report.page import figure, page
+from derive.report.recall import merged, read, recalled
 from derive.report.record import Report, data, text
 from derive.report.run import Ask, made
+from derive.scene import SceneError
 
 PAGE, DATA = "report.html", "report.json"
 NEEDS = "the report needs matplotlib and SciPy: `pip install 'derive[bench]'`"
@@ -21,33 +24,70 @@ SHOWN = {
     "step_and_jacobian": ("author", "flops", "instructions", "missing"),
     "gyroscopic_term": ("form", "precision", "asphericity", "median", "largest"),
     "functions": ("scene", "name", "flops", "divisions", "instructions", "median", "largest"),
+    "counts": ("scene", "function", "of", "count"),
+    "proposals": ("case", "scene", "precision", "part", "passes", "error"),
     "targets": ("says", "limit", "measured", "reached"),
 }
 
 
-def report(
-    out: Path, kind: str, only: Sequence[str], console: Console, progress: Progress
-) -> int:
-    """Run the report; write it to ``out``, or print the parts named by ``only``. Return 0.
+def report(out: Path, kind: str, only: Sequence[str], console: Console, progress: Progress) -> int:
+    """Run the report; write it to ``out``, or print the parts named by ``only``.
 
+    Returns 0, or 1 if a sentence is contradicted by the report's own figures.
     Raises ImportError with a sentence where the extra is not installed.
     """
     _require_extra()
     if not only:
-        out.mkdir(parents=True, exist_ok=True)
-        require_writable(out / PAGE)
+        _require_place(out)
     with progress as shown:
         task = shown.add_task("report")
         found = made(Ask(kind, out, only, lambda what: shown.update(task, description=what)))
         if not only:
             shown.update(task, description="drawing")
+            found = recalled(found)
             write(out, {PAGE: page(found), DATA: text(found)})
     if only:
         _print(found, console)
-    else:
-        _print_targets(found, console)
-        console.print(f"{out / PAGE}, {out / DATA}")
-    return 0
+        return 0
+    return _told(found, out, console)
+
+
+def again(out: Path, kind: str, names: Sequence[str], console: Console, progress: Progress) -> int:
+    """Write the report anew from its record, of which only the parts named are measured anew.
+
+    Returns 0, or 1 if a sentence is contradicted by the report's own figures.
+    Raises SceneError where there is no record, ImportError where the extra is not installed.
+    """
+    _require_extra()
+    try:
+        found = read((out / DATA).read_text(encoding="utf-8"))
+    except (OSError, ValueError, LookupError, TypeError) as reason:
+        raise SceneError(f"{out / DATA} is no record to write the report from: {reason}") from None
+    _require_place(out)
+    with progress as shown:
+        task = shown.add_task("report")
+        if names:
+            ask = Ask(kind, out, names, lambda what: shown.update(task, description=what))
+            found = merged(found, made(ask), names)
+        shown.update(task, description="drawing")
+        found = recalled(found)
+        write(out, {PAGE: page(found), DATA: text(found)})
+    return _told(found, out, console)
+
+
+def _require_place(out: Path) -> None:
+    out.mkdir(parents=True, exist_ok=True)
+    require_writable(out / PAGE)
+
+
+def _told(found: Report, out: Path, console: Console) -> int:
+    """Print targets, and the sentences that the figures contradict; return 1 if there are any."""
+    _print_targets(found, console)
+    console.print(f"{out / PAGE}, {out / DATA}")
+    wrong = contradictions(data(found))
+    for sentence in wrong:
+        console.print(f"contradicted by its own figures: {sentence}", highlight=False, markup=False)
+    return 1 if wrong else 0
 
 
 def _require_extra() -> None:

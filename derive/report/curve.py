@@ -20,14 +20,20 @@ def seconds(point: Point) -> float | None:
 def cost_at(
     points: Sequence[Point], error: float, cost: Callable[[Point], float | None]
 ) -> float | None:
-    """Return the cost of an error along a curve, between its points; None if it is not reached."""
+    """Return the cost of an error along a curve; None if the curve does not keep to it.
+
+    Between the coarsest point from which on every finer one keeps to the error, and the one before:
+    a lucky crossing does not count.
+    """
     pairs = []
     for p in sorted(points, key=lambda p: -p.value):
         own = cost(p)
         if own is not None and p.wrong.state > 0 and math.isfinite(p.wrong.state):
             pairs.append((p.wrong.state, own))
-    for (e0, c0), (e1, c1) in pairwise(pairs):
-        if e1 <= error < e0:
+    for (e0, c0), (e1, c1) in reversed(list(pairwise(pairs))):
+        if e1 > error:
+            return None
+        if e0 > error:
             part = math.log(e0 / error) / math.log(e0 / e1)
             return math.exp(math.log(c0) + part * math.log(c1 / c0))
     return None

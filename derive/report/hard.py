@@ -143,24 +143,34 @@ def _times(case: Case, factor: Fraction) -> Case:
     return replace(case, inertia=tuple(x * factor for x in case.inertia))
 
 
-def program(
-    case: Case, method: str, shop: Workshop, precision: str
-) -> tuple[Mover, Sequence[float]]:
-    """Return the program that holds a method for a case, and the numbers it takes.
+Program = tuple[Mover, Sequence[float]]
 
-    Raises BuildError if there is none.
+
+def program(case: Case, method: str, shop: Workshop, precision: str) -> Program:
+    """Return the first of ``programs``."""
+    return programs(case, method, shop, precision)[0]
+
+
+def programs(case: Case, method: str, shop: Workshop, precision: str) -> list[Program]:
+    """Return the programs that hold a method for a case, and the numbers they take.
+
+    Ours are one a scene that describes the case. Raises BuildError if there is none.
     """
     if method == PUBLISHED:
         built = published(precision, shop.folder / f"published_{precision}")
-        return built, textbook_parameters(case)
+        return [(built, textbook_parameters(case))]
     if method == RK4:
         built = textbook(case, precision, shop.folder / f"textbook_{case.name}_{precision}")
-        return built, textbook_parameters(case)
-    for scene in scenes_for(case)[::-1]:
-        mover = shop.movers.get((scene, precision))
-        if isinstance(mover, Mover) and method in mover.methods:
-            return mover, parameters(shop.emissions[scene], case)
-    raise BuildError(f"no scene holds '{method}' for case '{case.name}'")
+        return [(built, textbook_parameters(case))]
+    found: list[Program] = [
+        (mover, parameters(shop.emissions[scene], case))
+        for scene in scenes_for(case)[::-1]
+        for mover in [shop.movers.get((scene, precision))]
+        if isinstance(mover, Mover) and method in mover.methods
+    ]
+    if not found:
+        raise BuildError(f"no scene holds '{method}' for case '{case.name}'")
+    return found
 
 
 def _best_of(
@@ -170,10 +180,19 @@ def _best_of(
 
 
 def best(case: Case, method: str, shop: Workshop, precision: str) -> tuple[float, ...]:
-    """Return the errors of omega and attitude with the best of the steps that are tried."""
+    """Return the errors of omega and attitude with the best of the steps that are tried.
+
+    Of several scenes that describe the case, those of the scene that errs most.
+    """
     if method == ELLIPTIC:
         return (elliptic(case, precision),)
-    mover, given = program(case, method, shop, precision)
+    each = [_best(case, method, shop, own) for own in programs(case, method, shop, precision)]
+    chosen = max(each, key=lambda w: largest([w.state]))
+    return chosen.omega, chosen.attitude
+
+
+def _best(case: Case, method: str, shop: Workshop, own: Program) -> Wrong:
+    mover, given = own
     if method.startswith("flow_"):
         jobs = [Job(method, float(case.time), 1)]
     else:
@@ -181,8 +200,7 @@ def best(case: Case, method: str, shop: Workshop, precision: str) -> tuple[float
         jobs = [Job(method, float(case.time) / n, n) for n in _tried(case, counts)]
     found = moved(mover, case, given, jobs)
     every = [wrong(case, m.states[-1]) for m in found if m] or [Wrong(*[math.nan] * 4)]
-    chosen = min(every, key=lambda w: largest([w.state]))
-    return chosen.omega, chosen.attitude
+    return min(every, key=lambda w: largest([w.state]))
 
 
 def _tried(case: Case, counts: Sequence[int]) -> Sequence[int]:

@@ -13,7 +13,8 @@ from derive.emit import TEMPLATES
 from derive.report.case_run import PRECISIONS, Found, attainable
 from derive.report.look import look
 from derive.report.plots import panels, svg
-from derive.report.recommend import ERRORS, Overall, advice, choice, overall, sentence
+from derive.report.proposals import proposal_says
+from derive.report.recommend import ERRORS, advice, choice, overall, says, sentence
 from derive.report.record import PACKAGES, RULES, TOOLS, Report, best, data, kinds
 
 SAYS = {"f64": "double", "f32": "float"}
@@ -21,8 +22,6 @@ STATE = ("error at the end",)
 SEPARATE = ("omega, relative", "attitude, rad", "energy, relative", "momentum, relative")
 WORKERS = 2
 CHOICE = 3  # steppers that are named for an error
-ALIKE = 1.005  # costs that differ by less are the same
-PLAIN = 100.0  # larger ratios are written without decimals
 SMALLEST, LARGEST = 1e-2, 1e4  # numbers outside are written with an exponent
 
 
@@ -48,6 +47,7 @@ def page(report: Report) -> str:
         machine=figures["machine"],
         programs=(*TOOLS, *PACKAGES),
         rules=RULES,
+        proposals=proposal_says(report.proposals),
         says=SAYS,
         precisions=PRECISIONS,
         figure=figure,
@@ -91,20 +91,8 @@ def _overall(report: Report) -> list[dict[str, Any]]:
             for error in ERRORS[precision]:
                 named = choice(overall(kind, own, precision, error))[:CHOICE]
                 rows.append({"kind": kind, "precision": SAYS[precision], "error": figure(error),
-                             "choice": [_choice(c) for c in named]})  # fmt: skip
+                             "choice": [says(c) for c in named]})  # fmt: skip
     return rows
-
-
-def _choice(row: Overall) -> str:
-    step = "" if math.isnan(row.radians) else f" with steps of {row.radians:.2g} rad"
-    step += "" if math.isnan(row.tolerance) else f" to {figure(row.tolerance)}"
-    where = "every case" if row.reached == row.asked else f"{row.reached} of {row.asked} cases"
-    cost = "" if row.worst < ALIKE else f", {_times(row.usual)} the least cost"
-    return f"{look(row.method).label}{step}: {where}{cost}"
-
-
-def _times(ratio: float) -> str:
-    return f"{_number(ratio) if ratio > PLAIN else format(ratio, '.2g')} times"
 
 
 def _condition(found: Found) -> dict[str, Any]:

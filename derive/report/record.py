@@ -6,7 +6,7 @@ import platform
 import re
 import subprocess
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
@@ -14,12 +14,14 @@ from derive import __version__
 from derive.bench.motion.peers import PEERS
 from derive.bench.motion.step_jacobian import Entry
 from derive.report.case_run import PRECISIONS, Found, attainable
+from derive.report.counts import Count
 from derive.report.functions import Function
 from derive.report.gyroscopic import Gyroscopic
 from derive.report.hard import Hard
 from derive.report.orders import Order
 from derive.report.point import Point
-from derive.report.recommend import ERRORS, advice, overall, sentence
+from derive.report.proposals import Proposal, proposal_says
+from derive.report.recommend import ERRORS, advice, overall, says, sentence
 from derive.report.targets import Target
 
 RULES = {
@@ -52,6 +54,9 @@ class Report:
     gyroscopic: tuple[Gyroscopic, ...]
     functions: tuple[Function, ...]
     targets: tuple[Target, ...]
+    counts: tuple[Count, ...] = ()
+    proposals: tuple[Proposal, ...] = ()
+    machine: Mapping[str, str | None] = field(default_factory=dict)
 
 
 def data(report: Report) -> dict[str, Any]:
@@ -59,7 +64,7 @@ def data(report: Report) -> dict[str, Any]:
     whole = {
         "generator": f"derive {__version__}",
         "kind": report.kind,
-        "machine": {"processor": platform.machine(), **_versions()},
+        "machine": dict(report.machine),
         "rules": RULES,
         "targets": [asdict(t) for t in report.targets],
         "recommendations": recommendations(report.found),
@@ -69,6 +74,9 @@ def data(report: Report) -> dict[str, Any]:
         "step_and_jacobian": [_entry(e) for e in report.tools],
         "gyroscopic_term": [asdict(g) for g in report.gyroscopic],
         "functions": [asdict(f) for f in report.functions],
+        "counts": [asdict(c) for c in report.counts],
+        "proposals": [asdict(p) | {"error": _rounded(p.error)} for p in report.proposals],
+        "proposals_say": proposal_says(report.proposals),
     }
     plain: dict[str, Any] = _plain(whole)
     return plain
@@ -80,14 +88,15 @@ def text(report: Report) -> str:
     return FLAT.sub(lambda found: re.sub(r"\s*\n\s*", " ", found.group()), written) + "\n"
 
 
-def kinds(found: Sequence[Found]) -> dict[str, list[list[Point]]]:
+def kinds(found: Sequence[Found]) -> dict[str, dict[str, list[Point]]]:
     """Return the points of each case by the kinds of motion that advice is given for."""
     free = [f for f in found if not f.case.torqued]
-    at_once = [[p for p in f.points if not p.setting] for f in free]
+    at_once = {f.case.name: [p for p in f.points if not p.setting] for f in free}
+    by_steps = {f.case.name: [p for p in f.points if p.setting] for f in free}
     every = {
         "without torque, at any time at once": at_once,
-        "without torque, step by step": [[p for p in f.points if p.setting] for f in free],
-        "with torque": [list(f.points) for f in found if f.case.torqued],
+        "without torque, step by step": by_steps,
+        "with torque": {f.case.name: list(f.points) for f in found if f.case.torqued},
     }
     return {kind: own for kind, own in every.items() if own}
 
@@ -96,7 +105,7 @@ def recommendations(found: Sequence[Found]) -> dict[str, Any]:
     """Return advice for every error, overall and for each case."""
     return {
         "overall": [
-            asdict(row)
+            asdict(row) | {"says": says(row)}
             for kind, own in kinds(found).items()
             for precision in PRECISIONS
             for error in ERRORS[precision]
@@ -167,6 +176,11 @@ def _plain(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return [_plain(v) for v in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def machine() -> dict[str, str | None]:
+    """Return what a run is made with, by name; None for what is not there."""
+    return {"processor": platform.machine(), **_versions()}
 
 
 def _versions() -> dict[str, str | None]:

@@ -9,8 +9,10 @@ from typing import TypeVar
 
 from derive.bench.motion.case import Case, cases
 from derive.bench.motion.ours import SCENES, emission
+from derive.bench.motion.peers import PEERS
 from derive.bench.motion.step_jacobian import SCENE, entries
 from derive.report.case_run import Workshop, case_run
+from derive.report.counts import counts
 from derive.report.functions import functions
 from derive.report.gyroscopic import gyroscopic
 from derive.report.hard import Hard, motions, scaled
@@ -22,7 +24,8 @@ from derive.report.hard_spin import spins
 from derive.report.hard_top import tops
 from derive.report.orders import orders
 from derive.report.point import FULL, SMALL
-from derive.report.record import Report
+from derive.report.proposals import proposals
+from derive.report.record import Report, machine
 from derive.report.targets import Evidence, Target, targets
 from derive.report.workshop import workshop
 from derive.scene import SceneError
@@ -30,7 +33,8 @@ from derive.scene import SceneError
 LIMITS = {"small": SMALL, "full": FULL}
 WORKERS = 3
 CASES = "cases"
-PARTS = ("hard", "orders", "tools", "gyroscopic", "functions")
+PARTS = ("hard", "orders", "tools", "gyroscopic", "functions", "counts", "proposals")
+MOVED = ("hard", "orders", "proposals")  # parts for which programs must be made
 Tell = Callable[[str], None]
 T = TypeVar("T")
 
@@ -63,7 +67,9 @@ def made(ask: Ask) -> Report:
 def _made(ask: Ask, every: dict[str, Case], folder: Path) -> Report:
     ask.tell("emitting and compiling steppers; counting what peers, tools and functions take")
     with ThreadPoolExecutor(WORKERS) as pool:  # nothing here is timed
-        ready = pool.submit(workshop, SCENES, LIMITS[ask.kind], folder)
+        peers = PEERS if _wanted(ask, CASES, *every) else ()
+        scenes = SCENES if peers or _wanted(ask, *MOVED) else ()
+        ready = pool.submit(workshop, scenes, peers, LIMITS[ask.kind], folder)
         counted = pool.submit(_part, ask, "functions", lambda: functions(ask.generated, folder))
         tools = pool.submit(_part, ask, "tools", lambda: entries(emission(SCENE), folder / "tools"))
         shop = ready.result()
@@ -75,7 +81,10 @@ def _made(ask: Ask, every: dict[str, Case], folder: Path) -> Report:
             found.append(case_run(case, shop))
     ask.tell("hard cases and orders")
     hard = _part(ask, "hard", lambda: _hard(every, shop))
-    evidence = Evidence({f.case.name: f for f in found}, hard, tools.result(), turning, folder)
+    counted_once = _part(ask, "counts", lambda: counts(folder))
+    evidence = Evidence(
+        {f.case.name: f for f in found}, hard, tools.result(), turning, counted_once
+    )
     return Report(
         ask.kind,
         tuple(found),
@@ -85,6 +94,9 @@ def _made(ask: Ask, every: dict[str, Case], folder: Path) -> Report:
         turning,
         counted.result(),
         tuple(t for t in targets(evidence) if _shown(ask, t, every)),
+        counted_once,
+        _part(ask, "proposals", lambda: proposals(every, shop)),
+        machine(),
     )
 
 

@@ -4,18 +4,16 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 
 from derive.bench.build import O3_NATIVE
 from derive.bench.motion.case import cases
-from derive.bench.motion.ours import emission
 from derive.bench.motion.step_jacobian import Entry
 from derive.bench.motion.textbook import DOP853
 from derive.bench.motion.wrong import ROUNDOFF
 from derive.bench.own import AUTHOR
 from derive.largest import largest
 from derive.report.case_run import PRECISIONS, Found
-from derive.report.code_size import code_size
+from derive.report.counts import BYTES, COMPACT, DERIVED, SPECIAL, STEPPERS, THIRTEEN, Count
 from derive.report.curve import cost_at, instructions, seconds
 from derive.report.gyroscopic import ASPHERICITIES, Gyroscopic
 from derive.report.gyroscopic import SCENES as FORMS
@@ -54,7 +52,7 @@ class Evidence:
     hard: Sequence[Hard]
     tools: Sequence[Entry]
     gyroscopic: Sequence[Gyroscopic]
-    folder: Path
+    counts: Sequence[Count]
 
 
 Verdict = tuple[str, bool] | str
@@ -69,7 +67,7 @@ def targets(given: Evidence) -> Iterator[Target]:
     yield from _faster(given, TOP, TAYLOR, 1e-11, 1.5)
     yield from _gyroscopic(given)
     yield from _derivatives(given)
-    yield from _special()
+    yield from _special(given)
 
 
 def _target(says: str, limit: str, only: str, verdict: Verdict) -> Target:
@@ -127,9 +125,7 @@ def _units(found: Found, point: Point, units: float) -> float:
     return point.wrong.state / allowed if math.isfinite(point.wrong.state) else math.inf
 
 
-def _hard(
-    given: Evidence, ours: str, name: str, precisions: Sequence[str] = PRECISIONS
-) -> Verdict:
+def _hard(given: Evidence, ours: str, name: str, precisions: Sequence[str] = PRECISIONS) -> Verdict:
     """Return whether ours keeps the bound of a hard case in all of ``precisions``."""
     row = next((h for h in given.hard if (h.ours, h.name) == (ours, name)), None)
     if row is None:
@@ -164,7 +160,7 @@ def _of(given: Evidence, case: str, method: str, precision: str = "f64") -> list
 def _dmv(given: Evidence) -> Iterator[Target]:
     for precision, limit in (("f64", 600), ("f32", 360)):
         yield _target(f"step_dmv, {SAYS[precision]}: instructions a step", f"{limit} Ir", GENERIC,
-                      _each_step(_of(given, GENERIC, DMV, precision), limit))  # fmt: skip
+                      _each_step(given, precision, limit))  # fmt: skip
     yield _target("step_dmv: the generic case to 1e-12", "1.0 M Ir", GENERIC, _generic(given))
     yield _target("step_dmv: below DOP853 in C, to 1e-12", "9 times", GENERIC,
                   _below_dop853(given))  # fmt: skip
@@ -174,18 +170,38 @@ def _dmv(given: Evidence) -> Iterator[Target]:
                       "hard", _hard(given, DMV, ROD, (precision,)))  # fmt: skip
 
 
-def _each_step(points: Sequence[Point], limit: int) -> Verdict:
-    counts = [(p, p.instructions) for p in points if p.instructions is not None]
+def _each_step(given: Evidence, precision: str, limit: int) -> Verdict:
+    """Return the most instructions of a step of about ``USUAL`` rad, over all cases and scenes."""
+    each = [_near(own) for name in given.found for own in _scenes(_of(given, name, DMV, precision))]
+    counts = [(count / p.passes, p) for p, count in filter(None, each)]
     if not counts:
         return NOT
-    near, count = min(counts, key=lambda pair: abs(math.log(pair[0].radians / USUAL)))
-    each = count / near.passes
-    return f"{each:.0f} Ir at {near.radians:.2g} rad a step", each <= limit
+    most, p = max(counts, key=lambda pair: pair[0])
+    return f"{most:.0f} Ir at {p.radians:.2g} rad a step, scene {p.scene}", most <= limit
+
+
+def _near(points: Sequence[Point]) -> tuple[Point, float] | None:
+    counts = [(p, p.instructions) for p in points if p.instructions is not None]
+    return min(counts, key=lambda c: abs(math.log(c[0].radians / USUAL)), default=None)
+
+
+def _scenes(points: Sequence[Point]) -> list[list[Point]]:
+    """Return the points of each scene that describes a case; peers have one without a name."""
+    return [[p for p in points if p.scene == s] for s in dict.fromkeys(p.scene for p in points)]
+
+
+def _cost(
+    points: Sequence[Point], error: float, cost: Callable[[Point], float | None]
+) -> float | None:
+    """Return the cost of an error in the dearest scene, None if one does not keep to it."""
+    each = [cost_at(own, error, cost) for own in _scenes(points)]
+    known = [c for c in each if c is not None]
+    return max(known) if known and len(known) == len(each) else None
 
 
 def _generic(given: Evidence) -> Verdict:
     points = _of(given, GENERIC, DMV)
-    ours = cost_at(points, 1e-12, instructions)
+    ours = _cost(points, 1e-12, instructions)
     if ours is None:
         return _why_no_cost(points, 1e-12, instructions)
     return f"{ours / 1e6:.2f} M Ir", ours <= 1e6
@@ -193,8 +209,8 @@ def _generic(given: Evidence) -> Verdict:
 
 def _below_dop853(given: Evidence) -> Verdict:
     points = _of(given, GENERIC, DMV)
-    ours = cost_at(points, 1e-12, instructions)
-    dop = cost_at(_of(given, GENERIC, DOP853), 1e-12, instructions)
+    ours = _cost(points, 1e-12, instructions)
+    dop = _cost(_of(given, GENERIC, DOP853), 1e-12, instructions)
     if ours is None:
         return _why_no_cost(points, 1e-12, instructions)
     if dop is None:
@@ -209,14 +225,15 @@ def _faster(
     """Yield whether a stepper of ours takes at most ``times`` heyoka's time to an error."""
     names = [method, f"{method}_adaptive"] if method == TAYLOR else [method]
     points = [_of(given, case, m) for m in names]
-    costs = [cost_at(own, error, seconds) for own in points]
-    own = min((c for c in costs if c is not None), default=None)
-    peer = cost_at(_of(given, case, HEYOKA), error, seconds)
+    costs = [(_cost(own, error, seconds), name) for own, name in zip(points, names, strict=True)]
+    own, by = min(((c, name) for c, name in costs if c is not None), default=(None, ""))
+    peer = _cost(_of(given, case, HEYOKA), error, seconds)
     verdict: Verdict = NOT
     if own is None:
         verdict = _why_no_cost([p for each in points for p in each], error, seconds)
     elif peer is not None:
-        said = f"{own / peer:.2f} times ({own * 1e6:.0f} against {peer * 1e6:.0f} microseconds)"
+        times_said = f"{own * 1e6:.0f} against {peer * 1e6:.0f} microseconds"
+        said = f"{own / peer:.2f} times ({by}, {times_said})"
         verdict = said, own / peer <= times
     yield _target(f"{method}: {case} to {error:.0e}, same run", f"{times:g} times heyoka's time",
                   case, verdict)  # fmt: skip
@@ -255,34 +272,32 @@ def _derivatives(given: Evidence) -> Iterator[Target]:
                   _at_most(count, 1500, " Ir"))  # fmt: skip
     yield _target("RK4 step of 13 states with its derivatives: operations",
                   "half of CasADi's 5898", "tools",
-                  _at_most(_flops("thirteen").get("step_rk4_jacobian"), 5898 / 2, ""))  # fmt: skip
-    size = code_size(emission("compact"), given.folder)
-    yield _target("the same as loops, float: code for a Cortex-M4F", "3000 bytes", "tools",
-                  "no arm-none-eabi-gcc" if size is None else _at_most(size, 3000, " bytes"),
+                  _at_most(_counted(given, THIRTEEN, DERIVED, "operations"), 5898 / 2, ""),
                   )  # fmt: skip
+    size = _counted(given, COMPACT, DERIVED, BYTES)
+    yield _target("the same as loops, float: code for a Cortex-M4F", "3000 bytes", "tools",
+                  _at_most(size, 3000, " bytes"))  # fmt: skip
 
 
 def _at_most(found: float | None, limit: float, unit: str) -> Verdict:
     return NOT if found is None else (f"{found:.0f}{unit}", found <= limit)
 
 
-def _flops(scene: str) -> dict[str, int | None]:
-    functions = emission(scene).manifest["functions"]
-    return {f["name"]: f.get("cost", {}).get("flops") for f in functions}
+def _counted(given: Evidence, scene: str, function: str, of: str) -> float | None:
+    known = {(c.scene, c.function, c.of): c.count for c in given.counts}
+    return known.get((scene, function, of))
 
 
-def _special() -> Iterator[Target]:
+def _special(given: Evidence) -> Iterator[Target]:
     """Yield whether what is known of a body makes its steppers smaller."""
-    scenes = ("principal", "axisymmetric", "spherical")
-    flops = {scene: _flops(scene) for scene in scenes}
-    for method in (EXACT, DMV, "step_split6", "step_rk4", TAYLOR):
-        counts = [flops[scene].get(method) for scene in scenes]
+    for method in STEPPERS:
+        counts = [_counted(given, scene, method, "operations") for scene in SPECIAL]
         says = f"{method}: operations for a principal, axisymmetric, spherical body"
         yield _target(says, "falling", "functions", _falling(counts))
 
 
-def _falling(counts: Sequence[int | None]) -> Verdict:
+def _falling(counts: Sequence[float | None]) -> Verdict:
     known = [c for c in counts if c is not None]
     if len(known) < len(counts):
         return NOT
-    return ", ".join(map(str, known)), all(a > b for a, b in pairwise(known))
+    return ", ".join(f"{c:.0f}" for c in known), all(a > b for a, b in pairwise(known))

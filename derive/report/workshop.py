@@ -9,7 +9,7 @@ from pathlib import Path
 from derive.bench.build import BuildError
 from derive.bench.motion.ours import Emission, emission, ours
 from derive.bench.motion.peer_count import counted
-from derive.bench.motion.peers import PEERS, Peer
+from derive.bench.motion.peers import Peer
 from derive.bench.motion.runner import Mover
 from derive.report.case_run import ANY, PRECISIONS, Workshop
 from derive.report.point import Limits
@@ -21,12 +21,14 @@ SLOW = ("scipy", "mujoco")  # under callgrind; a short case does for them
 WORKERS = 2
 
 
-def workshop(scenes: Sequence[str], limits: Limits, folder: Path) -> Workshop:
-    """Return everything that cases of these scenes are run with."""
+def workshop(
+    scenes: Sequence[str], peers: Sequence[Peer], limits: Limits, folder: Path
+) -> Workshop:
+    """Return everything that cases of these scenes are run with, passes of ``peers`` counted."""
     with ThreadPoolExecutor(WORKERS) as pool:
-        peers = [pool.submit(per_pass, peer, limits, folder) for peer in PEERS]
+        counting = [pool.submit(per_pass, peer, limits, folder) for peer in peers]
         ready = list(pool.map(_programs, scenes, [folder] * len(scenes)))
-        counts = {key: count for found in peers for key, count in found.result().items()}
+        counts = {key: count for found in counting for key, count in found.result().items()}
     emissions = {scene: made for scene, (made, _) in zip(scenes, ready, strict=True) if made}
     movers = {
         (scene, precision): mover

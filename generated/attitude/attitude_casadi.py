@@ -2,7 +2,8 @@
 """Attitudes: quaternions, rotation vectors, matrices, Rodrigues parameters, Euler angles
 
 Every builder returns a CasADi Function with the operations of the C files in their order, so the
-numbers agree with double C to the last bit. Derivatives by CasADi are exact and sparse.
+numbers agree with double C to the last bit. CasADi differentiates them, sparsely, once and twice;
+where it cannot and a derivative exists, it gives NaN or an infinity.
 
     state function : quaternion_product()          inputs left, right
 """
@@ -88,10 +89,10 @@ def quaternion_normalise():
 
 def _quaternion_normalise():
     quaternion = ca.SX.sym("quaternion", 4)
-    t0 = ca.fabs(quaternion[0])
-    t1 = ca.fabs(quaternion[1])
-    t2 = ca.fabs(quaternion[2])
-    t3 = ca.fabs(quaternion[3])
+    t0 = ca.if_else(quaternion[0] < 0.0, -1.0, 1.0) * quaternion[0]
+    t1 = ca.if_else(quaternion[1] < 0.0, -1.0, 1.0) * quaternion[1]
+    t2 = ca.if_else(quaternion[2] < 0.0, -1.0, 1.0) * quaternion[2]
+    t3 = ca.if_else(quaternion[3] < 0.0, -1.0, 1.0) * quaternion[3]
     t4 = t0 < t1
     t5 = ca.if_else(t4, t1, t0)
     t6 = t5 < t2
@@ -140,9 +141,9 @@ def quaternion_exp():
 
 def _quaternion_exp():
     rotation_vector = ca.SX.sym("rotation_vector", 3)
-    t0 = ca.fabs(rotation_vector[0])
-    t1 = ca.fabs(rotation_vector[1])
-    t2 = ca.fabs(rotation_vector[2])
+    t0 = ca.if_else(rotation_vector[0] < 0.0, -1.0, 1.0) * rotation_vector[0]
+    t1 = ca.if_else(rotation_vector[1] < 0.0, -1.0, 1.0) * rotation_vector[1]
+    t2 = ca.if_else(rotation_vector[2] < 0.0, -1.0, 1.0) * rotation_vector[2]
     t3 = t0 < t1
     t4 = ca.if_else(t3, t1, t0)
     t5 = t4 < t2
@@ -214,7 +215,7 @@ def _quaternion_exp():
     t71 = ca.sin(t70)
     t72 = ca.cos(t70)
     t73 = t68 * t69
-    t74 = ca.fabs(t73)
+    t74 = ca.if_else(t73 < 0.0, -1.0, 1.0) * t73
     t75 = t74 * t56
     t76 = t75 < 1.0
     t77 = ca.if_else(t76, t73, 0.0)
@@ -222,17 +223,19 @@ def _quaternion_exp():
     t79 = t71 + t78
     t80 = t79 / t56
     t81 = ca.if_else(t7, 0.5, t80)
-    t82 = t77 * t71
-    t83 = t72 - t82
-    t84 = ca.if_else(t7, 1.0, t83)
-    t85 = t81 * t12
-    t86 = t81 * t13
-    t87 = t81 * t14
+    t82 = t38 * 0.125
+    t83 = 1.0 - t82
+    t84 = t77 * t71
+    t85 = t72 - t84
+    t86 = ca.if_else(t7, t83, t85)
+    t87 = t81 * t12
+    t88 = t81 * t13
+    t89 = t81 * t14
     return ca.Function(
         "attitude_quaternion_exp",
         [rotation_vector],
         [
-            ca.vertcat(t84, t85, t86, t87),
+            ca.vertcat(t86, t87, t88, t89),
         ],
         ['rotation_vector'],
         ['attitude'],
@@ -247,10 +250,10 @@ def quaternion_log():
 
 def _quaternion_log():
     quaternion = ca.SX.sym("quaternion", 4)
-    t0 = ca.fabs(quaternion[0])
-    t1 = ca.fabs(quaternion[1])
-    t2 = ca.fabs(quaternion[2])
-    t3 = ca.fabs(quaternion[3])
+    t0 = ca.if_else(quaternion[0] < 0.0, -1.0, 1.0) * quaternion[0]
+    t1 = ca.if_else(quaternion[1] < 0.0, -1.0, 1.0) * quaternion[1]
+    t2 = ca.if_else(quaternion[2] < 0.0, -1.0, 1.0) * quaternion[2]
+    t3 = ca.if_else(quaternion[3] < 0.0, -1.0, 1.0) * quaternion[3]
     t4 = t0 < t1
     t5 = ca.if_else(t4, t1, t0)
     t6 = t5 < t2
@@ -263,9 +266,9 @@ def _quaternion_log():
     t13 = quaternion[1] * t11
     t14 = quaternion[2] * t11
     t15 = quaternion[3] * t11
-    t16 = ca.fabs(t13)
-    t17 = ca.fabs(t14)
-    t18 = ca.fabs(t15)
+    t16 = ca.if_else(t13 < 0.0, -1.0, 1.0) * t13
+    t17 = ca.if_else(t14 < 0.0, -1.0, 1.0) * t14
+    t18 = ca.if_else(t15 < 0.0, -1.0, 1.0) * t15
     t19 = t16 < t17
     t20 = ca.if_else(t19, t17, t16)
     t21 = t20 < t18
@@ -289,7 +292,7 @@ def _quaternion_log():
     t39 = ca.sqrt(t38)
     t40 = ca.if_else(t25, t39, 1.0)
     t41 = t40 * t30
-    t42 = ca.fabs(t12)
+    t42 = ca.if_else(t12 < 0.0, -1.0, 1.0) * t12
     t43 = ca.atan2(t41, t42)
     t44 = t43 * 2.0
     t45 = t44 / t40
@@ -553,7 +556,7 @@ def quaternion_to_mrp():
 
 def _quaternion_to_mrp():
     attitude = ca.SX.sym("attitude", 4)
-    t0 = ca.fabs(attitude[0])
+    t0 = ca.if_else(attitude[0] < 0.0, -1.0, 1.0) * attitude[0]
     t1 = 1.0 + t0
     t2 = attitude[0] < 0.0
     t3 = -t1
@@ -580,9 +583,9 @@ def quaternion_from_mrp():
 
 def _quaternion_from_mrp():
     mrp = ca.SX.sym("mrp", 3)
-    t0 = ca.fabs(mrp[0])
-    t1 = ca.fabs(mrp[1])
-    t2 = ca.fabs(mrp[2])
+    t0 = ca.if_else(mrp[0] < 0.0, -1.0, 1.0) * mrp[0]
+    t1 = ca.if_else(mrp[1] < 0.0, -1.0, 1.0) * mrp[1]
+    t2 = ca.if_else(mrp[2] < 0.0, -1.0, 1.0) * mrp[2]
     t3 = t0 < t1
     t4 = ca.if_else(t3, t1, t0)
     t5 = t4 < t2
@@ -645,12 +648,12 @@ def _quaternion_to_euler_zyx():
     t13 = t11 + t12
     t14 = t10 * t13
     t15 = ca.sqrt(t14)
-    t16 = ca.fabs(t2)
-    t17 = ca.fabs(t1)
+    t16 = ca.if_else(t2 < 0.0, -1.0, 1.0) * t2
+    t17 = ca.if_else(t1 < 0.0, -1.0, 1.0) * t1
     t18 = t16 + t17
     t19 = t18 <= 0.0
-    t20 = ca.fabs(t0)
-    t21 = ca.fabs(t3)
+    t20 = ca.if_else(t0 < 0.0, -1.0, 1.0) * t0
+    t21 = ca.if_else(t3 < 0.0, -1.0, 1.0) * t3
     t22 = t20 + t21
     t23 = t22 <= 0.0
     t24 = ca.if_else(t19, t0, t2)
@@ -736,8 +739,8 @@ def _quaternion_to_euler_zxz():
     attitude = ca.SX.sym("attitude", 4)
     t0 = attitude[0] * 1.152921504606847e+18
     t1 = attitude[3] * 1.152921504606847e+18
-    t2 = ca.fabs(attitude[1])
-    t3 = ca.fabs(attitude[2])
+    t2 = ca.if_else(attitude[1] < 0.0, -1.0, 1.0) * attitude[1]
+    t3 = ca.if_else(attitude[2] < 0.0, -1.0, 1.0) * attitude[2]
     t4 = t2 < t3
     t5 = ca.if_else(t4, t3, t2)
     t6 = 0.0 < t5
@@ -745,12 +748,12 @@ def _quaternion_to_euler_zxz():
     t8 = 4503599627370497.0 * t7 - 0.9999999999999999 * (4503599627370497.0 * t7)
     t9 = attitude[1] / t8
     t10 = attitude[2] / t8
-    t11 = ca.fabs(t0)
-    t12 = ca.fabs(t1)
+    t11 = ca.if_else(t0 < 0.0, -1.0, 1.0) * t0
+    t12 = ca.if_else(t1 < 0.0, -1.0, 1.0) * t1
     t13 = t11 + t12
     t14 = t13 <= 0.0
-    t15 = ca.fabs(t9)
-    t16 = ca.fabs(t10)
+    t15 = ca.if_else(t9 < 0.0, -1.0, 1.0) * t9
+    t16 = ca.if_else(t10 < 0.0, -1.0, 1.0) * t10
     t17 = t15 + t16
     t18 = t17 <= 0.0
     t19 = ca.if_else(t14, t9, t0)

@@ -197,16 +197,18 @@ void attitude_quaternion_exp_f32(const float rotation_vector[3], float attitude[
     const float t79 = t71 + t78;
     const float t80 = t79 / t56;
     const float t81 = t7 ? 0.5F : t80;
-    const float t82 = t77 * t71;
-    const float t83 = t72 - t82;
-    const float t84 = t7 ? 1.0F : t83;
-    const float t85 = t81 * t12;
-    const float t86 = t81 * t13;
-    const float t87 = t81 * t14;
-    attitude[0] = t84;
-    attitude[1] = t85;
-    attitude[2] = t86;
-    attitude[3] = t87;
+    const float t82 = t38 * 0.125F;
+    const float t83 = 1.0F - t82;
+    const float t84 = t77 * t71;
+    const float t85 = t72 - t84;
+    const float t86 = t7 ? t83 : t85;
+    const float t87 = t81 * t12;
+    const float t88 = t81 * t13;
+    const float t89 = t81 * t14;
+    attitude[0] = t86;
+    attitude[1] = t87;
+    attitude[2] = t88;
+    attitude[3] = t89;
 }
 
 /* rotation vector of a quaternion of any length, angle at most pi; 0 for the quaternion 0 */

@@ -10,7 +10,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 0bb554be1983eedf.
+ * times the largest component of the output. Body of these files: sha256 64e4a1f380c59b79.
  */
 #ifndef ATTITUDE_F32_H
 #define ATTITUDE_F32_H
@@ -43,7 +43,7 @@ void attitude_quaternion_normalise_f32(const float quaternion[4], float attitude
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Error: median 0.23, largest 3.5 u of the largest component, by rounding alone (of attitude;
  *            200000 samples of the ranges, 65536 searched from the worst, 48 hard ones).
- * Cost: 20 add, 20 sub, 22 mul, 5 div, 1 sqrt, 1 sin, 1 cos, 4 abs, 5 less, 1 power_of_two, 7
+ * Cost: 20 add, 21 sub, 23 mul, 5 div, 1 sqrt, 1 sin, 1 cos, 4 abs, 5 less, 1 power_of_two, 7
  *            select, 1 splitter.
  */
 void attitude_quaternion_exp_f32(const float rotation_vector[3], float attitude[4]);

@@ -198,16 +198,18 @@ void attitude_quaternion_exp_f64(const double rotation_vector[3], double attitud
     const double t79 = t71 + t78;
     const double t80 = t79 / t56;
     const double t81 = t7 ? 0.5 : t80;
-    const double t82 = t77 * t71;
-    const double t83 = t72 - t82;
-    const double t84 = t7 ? 1.0 : t83;
-    const double t85 = t81 * t12;
-    const double t86 = t81 * t13;
-    const double t87 = t81 * t14;
-    attitude[0] = t84;
-    attitude[1] = t85;
-    attitude[2] = t86;
-    attitude[3] = t87;
+    const double t82 = t38 * 0.125;
+    const double t83 = 1.0 - t82;
+    const double t84 = t77 * t71;
+    const double t85 = t72 - t84;
+    const double t86 = t7 ? t83 : t85;
+    const double t87 = t81 * t12;
+    const double t88 = t81 * t13;
+    const double t89 = t81 * t14;
+    attitude[0] = t86;
+    attitude[1] = t87;
+    attitude[2] = t88;
+    attitude[3] = t89;
 }
 
 /* rotation vector of a quaternion of any length, angle at most pi; 0 for the quaternion 0 */

@@ -10,7 +10,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 3850305e9612206b.
+ * times the largest component of the output. Body of these files: sha256 1f20a6c4f434d6de.
  */
 #ifndef ATTITUDE_F64_H
 #define ATTITUDE_F64_H
@@ -44,7 +44,7 @@ void attitude_quaternion_normalise_f64(const double quaternion[4], double attitu
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Error: median 0.24, largest 3.6 u of the largest component, by rounding alone (of attitude;
  *            200000 samples of the ranges, 65536 searched from the worst, 48 hard ones).
- * Cost: 20 add, 20 sub, 22 mul, 5 div, 1 sqrt, 1 sin, 1 cos, 4 abs, 5 less, 1 power_of_two, 7
+ * Cost: 20 add, 21 sub, 23 mul, 5 div, 1 sqrt, 1 sin, 1 cos, 4 abs, 5 less, 1 power_of_two, 7
  *            select, 1 splitter.
  */
 void attitude_quaternion_exp_f64(const double rotation_vector[3], double attitude[4]);

@@ -2,7 +2,8 @@
 """Gondola at the arm of a centrifuge: force and moment at its pivot, gravity apart
 
 Every builder returns a CasADi Function with the operations of the C files in their order, so the
-numbers agree with double C to the last bit. Derivatives by CasADi are exact and sparse.
+numbers agree with double C to the last bit. CasADi differentiates them, sparsely, once and twice;
+where it cannot and a derivative exists, it gives NaN or an infinity.
 
     state function : F()          inputs parameters, yaw, yaw_dot, yaw_ddot, pitch, pitch_dot, pitch_ddot, spin, spin_dot, spin_ddot, a_x, a_y
     in a loop      : F_hot()      takes constants = setup()(parameters), made once

@@ -2,7 +2,8 @@
 """Rigid body along its principal axes through the mass centre: Euler's equations
 
 Every builder returns a CasADi Function with the operations of the C files in their order, so the
-numbers agree with double C to the last bit. Derivatives by CasADi are exact and sparse.
+numbers agree with double C to the last bit. CasADi differentiates them, sparsely, once and twice;
+where it cannot and a derivative exists, it gives NaN or an infinity.
 
     state function : acceleration()          inputs parameters, omega, moment
     in a loop      : acceleration_hot()      takes constants = setup()(parameters), made once

@@ -2,7 +2,8 @@
 """Gyrocompass: a rotor held horizontal on the rotating Earth seeks the meridian
 
 Every builder returns a CasADi Function with the operations of the C files in their order, so the
-numbers agree with double C to the last bit. Derivatives by CasADi are exact and sparse.
+numbers agree with double C to the last bit. CasADi differentiates them, sparsely, once and twice;
+where it cannot and a derivative exists, it gives NaN or an infinity.
 
     state function : alpha_ddot()          inputs parameters, alpha
     in a loop      : alpha_ddot_hot()      takes constants = setup()(parameters), made once

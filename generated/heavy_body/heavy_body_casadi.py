@@ -2,7 +2,8 @@
 """Heavy body of any shape about a fixed point: gravity turns with the attitude
 
 Every builder returns a CasADi Function with the operations of the C files in their order, so the
-numbers agree with double C to the last bit. Derivatives by CasADi are exact and sparse.
+numbers agree with double C to the last bit. CasADi differentiates them, sparsely, once and twice;
+where it cannot and a derivative exists, it gives NaN or an infinity.
 
     state function : kinetic_energy()          inputs parameters, omega
     in a loop      : kinetic_energy_hot()      takes constants = setup()(parameters), made once
@@ -2745,60 +2746,60 @@ def _step_taylor():
     omega_x_after = omega[0] + omega_x_sum
     omega_y_after = omega[1] + omega_y_sum
     omega_z_after = omega[2] + omega_z_sum
-    attitude_w_before_abs = ca.fabs(attitude_w_before)
-    attitude_x_before_abs = ca.fabs(attitude_x_before)
+    attitude_w_before_abs = ca.if_else(attitude_w_before < 0.0, -1.0, 1.0) * attitude_w_before
+    attitude_x_before_abs = ca.if_else(attitude_x_before < 0.0, -1.0, 1.0) * attitude_x_before
     attitude_x_before_norm = attitude_w_before_abs + attitude_x_before_abs
-    attitude_y_before_abs = ca.fabs(attitude_y_before)
+    attitude_y_before_abs = ca.if_else(attitude_y_before < 0.0, -1.0, 1.0) * attitude_y_before
     attitude_y_before_norm = attitude_x_before_norm + attitude_y_before_abs
-    attitude_z_before_abs = ca.fabs(attitude_z_before)
+    attitude_z_before_abs = ca.if_else(attitude_z_before < 0.0, -1.0, 1.0) * attitude_z_before
     attitude_z_before_norm = attitude_y_before_norm + attitude_z_before_abs
     attitude_w_reached = attitude_z_before_norm * 0.1593186372745491
-    attitude_w_last_abs = ca.fabs(attitude_w_last)
-    attitude_x_last_abs = ca.fabs(attitude_x_last)
+    attitude_w_last_abs = ca.if_else(attitude_w_last < 0.0, -1.0, 1.0) * attitude_w_last
+    attitude_x_last_abs = ca.if_else(attitude_x_last < 0.0, -1.0, 1.0) * attitude_x_last
     attitude_x_last_norm = attitude_w_last_abs + attitude_x_last_abs
-    attitude_y_last_abs = ca.fabs(attitude_y_last)
+    attitude_y_last_abs = ca.if_else(attitude_y_last < 0.0, -1.0, 1.0) * attitude_y_last
     attitude_y_last_norm = attitude_x_last_norm + attitude_y_last_abs
-    attitude_z_last_abs = ca.fabs(attitude_z_last)
+    attitude_z_last_abs = ca.if_else(attitude_z_last < 0.0, -1.0, 1.0) * attitude_z_last
     attitude_z_last_norm = attitude_y_last_norm + attitude_z_last_abs
     attitude_w_tail = attitude_z_last_norm + attitude_w_reached
-    attitude_w_here_abs = ca.fabs(attitude[0])
-    attitude_x_here_abs = ca.fabs(attitude[1])
+    attitude_w_here_abs = ca.if_else(attitude[0] < 0.0, -1.0, 1.0) * attitude[0]
+    attitude_x_here_abs = ca.if_else(attitude[1] < 0.0, -1.0, 1.0) * attitude[1]
     attitude_x_here_norm = attitude_w_here_abs + attitude_x_here_abs
-    attitude_y_here_abs = ca.fabs(attitude[2])
+    attitude_y_here_abs = ca.if_else(attitude[2] < 0.0, -1.0, 1.0) * attitude[2]
     attitude_y_here_norm = attitude_x_here_norm + attitude_y_here_abs
-    attitude_z_here_abs = ca.fabs(attitude[3])
+    attitude_z_here_abs = ca.if_else(attitude[3] < 0.0, -1.0, 1.0) * attitude[3]
     attitude_z_here_norm = attitude_y_here_norm + attitude_z_here_abs
-    attitude_w_first_abs = ca.fabs(attitude_w_first)
-    attitude_x_first_abs = ca.fabs(attitude_x_first)
+    attitude_w_first_abs = ca.if_else(attitude_w_first < 0.0, -1.0, 1.0) * attitude_w_first
+    attitude_x_first_abs = ca.if_else(attitude_x_first < 0.0, -1.0, 1.0) * attitude_x_first
     attitude_x_first_norm = attitude_w_first_abs + attitude_x_first_abs
-    attitude_y_first_abs = ca.fabs(attitude_y_first)
+    attitude_y_first_abs = ca.if_else(attitude_y_first < 0.0, -1.0, 1.0) * attitude_y_first
     attitude_y_first_norm = attitude_x_first_norm + attitude_y_first_abs
-    attitude_z_first_abs = ca.fabs(attitude_z_first)
+    attitude_z_first_abs = ca.if_else(attitude_z_first < 0.0, -1.0, 1.0) * attitude_z_first
     attitude_z_first_norm = attitude_y_first_norm + attitude_z_first_abs
     attitude_w_size = attitude_z_here_norm + attitude_z_first_norm
     attitude_w_above_zero = attitude_w_size + 2.2250738585072014e-308
     attitude_w_ratio = attitude_w_tail / attitude_w_above_zero
-    omega_x_before_abs = ca.fabs(omega_x_before)
-    omega_y_before_abs = ca.fabs(omega_y_before)
+    omega_x_before_abs = ca.if_else(omega_x_before < 0.0, -1.0, 1.0) * omega_x_before
+    omega_y_before_abs = ca.if_else(omega_y_before < 0.0, -1.0, 1.0) * omega_y_before
     omega_y_before_norm = omega_x_before_abs + omega_y_before_abs
-    omega_z_before_abs = ca.fabs(omega_z_before)
+    omega_z_before_abs = ca.if_else(omega_z_before < 0.0, -1.0, 1.0) * omega_z_before
     omega_z_before_norm = omega_y_before_norm + omega_z_before_abs
     omega_x_reached = omega_z_before_norm * 0.1593186372745491
-    omega_x_last_abs = ca.fabs(omega_x_last)
-    omega_y_last_abs = ca.fabs(omega_y_last)
+    omega_x_last_abs = ca.if_else(omega_x_last < 0.0, -1.0, 1.0) * omega_x_last
+    omega_y_last_abs = ca.if_else(omega_y_last < 0.0, -1.0, 1.0) * omega_y_last
     omega_y_last_norm = omega_x_last_abs + omega_y_last_abs
-    omega_z_last_abs = ca.fabs(omega_z_last)
+    omega_z_last_abs = ca.if_else(omega_z_last < 0.0, -1.0, 1.0) * omega_z_last
     omega_z_last_norm = omega_y_last_norm + omega_z_last_abs
     omega_x_tail = omega_z_last_norm + omega_x_reached
-    omega_x_here_abs = ca.fabs(omega[0])
-    omega_y_here_abs = ca.fabs(omega[1])
+    omega_x_here_abs = ca.if_else(omega[0] < 0.0, -1.0, 1.0) * omega[0]
+    omega_y_here_abs = ca.if_else(omega[1] < 0.0, -1.0, 1.0) * omega[1]
     omega_y_here_norm = omega_x_here_abs + omega_y_here_abs
-    omega_z_here_abs = ca.fabs(omega[2])
+    omega_z_here_abs = ca.if_else(omega[2] < 0.0, -1.0, 1.0) * omega[2]
     omega_z_here_norm = omega_y_here_norm + omega_z_here_abs
-    omega_x_first_abs = ca.fabs(omega_x_first)
-    omega_y_first_abs = ca.fabs(omega_y_first)
+    omega_x_first_abs = ca.if_else(omega_x_first < 0.0, -1.0, 1.0) * omega_x_first
+    omega_y_first_abs = ca.if_else(omega_y_first < 0.0, -1.0, 1.0) * omega_y_first
     omega_y_first_norm = omega_x_first_abs + omega_y_first_abs
-    omega_z_first_abs = ca.fabs(omega_z_first)
+    omega_z_first_abs = ca.if_else(omega_z_first < 0.0, -1.0, 1.0) * omega_z_first
     omega_z_first_norm = omega_y_first_norm + omega_z_first_abs
     omega_x_size = omega_z_here_norm + omega_z_first_norm
     omega_x_above_zero = omega_x_size + 2.2250738585072014e-308

@@ -2,7 +2,8 @@
 """Propeller of three blades on a yawing aircraft: what does its hub carry?
 
 Every builder returns a CasADi Function with the operations of the C files in their order, so the
-numbers agree with double C to the last bit. Derivatives by CasADi are exact and sparse.
+numbers agree with double C to the last bit. CasADi differentiates them, sparsely, once and twice;
+where it cannot and a derivative exists, it gives NaN or an infinity.
 
     state function : M()          inputs parameters, 
     in a loop      : M_hot()      takes constants = setup()(parameters), made once

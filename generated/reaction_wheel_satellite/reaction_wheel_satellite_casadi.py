@@ -2,7 +2,8 @@
 """Satellite with three reaction wheels: accelerations of body and wheels
 
 Every builder returns a CasADi Function with the operations of the C files in their order, so the
-numbers agree with double C to the last bit. Derivatives by CasADi are exact and sparse.
+numbers agree with double C to the last bit. CasADi differentiates them, sparsely, once and twice;
+where it cannot and a derivative exists, it gives NaN or an infinity.
 
     state function : body()          inputs parameters, w_x, w_y, w_z, s_1, s_2, s_3, u_1, u_2, u_3
     in a loop      : body_hot()      takes constants = setup()(parameters), made once

@@ -2,7 +2,8 @@
 """Rigid body that moves and turns freely: position, quaternion, velocity, angular velocity
 
 Every builder returns a CasADi Function with the operations of the C files in their order, so the
-numbers agree with double C to the last bit. Derivatives by CasADi are exact and sparse.
+numbers agree with double C to the last bit. CasADi differentiates them, sparsely, once and twice;
+where it cannot and a derivative exists, it gives NaN or an infinity.
 
     state function : state_rate()          inputs parameters, attitude, velocity, omega, force, moment
     in a loop      : state_rate_hot()      takes constants = setup()(parameters), made once

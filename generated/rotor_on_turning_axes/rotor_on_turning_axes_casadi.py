@@ -2,7 +2,8 @@
 """Symmetrical rotor in bearings that turn in any way: which moment do they carry?
 
 Every builder returns a CasADi Function with the operations of the C files in their order, so the
-numbers agree with double C to the last bit. Derivatives by CasADi are exact and sparse.
+numbers agree with double C to the last bit. CasADi differentiates them, sparsely, once and twice;
+where it cannot and a derivative exists, it gives NaN or an infinity.
 
     state function : moment()          inputs parameters, W_x, W_x_dot, W_y, W_y_dot, W_z, W_z_dot, p, p_dot
     in a loop      : moment_hot()      takes constants = setup()(parameters), made once

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 6055224dd9152ef2.
+ * times the largest component of the output. Body of these files: sha256 a0e368f87b8fc610.
  */
 #ifndef T_HANDLE_FLIP_F32_H
 #define T_HANDLE_FLIP_F32_H
@@ -100,12 +100,12 @@ void t_handle_flip_angular_momentum_f32(const t_handle_flip_constants_f32 *const
  *            time  s  -60 .. 60  time from the given to the new state
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- * Error: median 0.072, largest 11 u of kappa times the largest component, by rounding alone
- *            (kappa: what changes of the inputs make of the result, relative to both, added up)
- *            (of omega_next; 200000 samples of the ranges, 65536 searched from the worst, 78 hard
+ * Error: median 0.07, largest 11 u of kappa times the largest component, by rounding alone (kappa:
+ *            what changes of the inputs make of the result, relative to both, added up) (of
+ *            omega_next; 200000 samples of the ranges, 65536 searched from the worst, 78 hard
  *            ones).
- * Cost: 169 add, 50 sub, 390 mul, 120 div, 1 neg, 30 sqrt, 2 sin, 2 cos, 13 abs, 2 at_most, 1
- *            both, 15 less, 2 power_of_two, 39 select.
+ * Cost: 170 add, 50 sub, 387 mul, 121 div, 1 neg, 29 sqrt, 2 sin, 2 cos, 14 abs, 2 at_most, 1
+ *            both, 13 less, 2 power_of_two, 35 select.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

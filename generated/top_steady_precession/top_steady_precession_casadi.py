@@ -2,7 +2,8 @@
 """Heavy symmetric top: at which rates does it precess steadily?
 
 Every builder returns a CasADi Function with the operations of the C files in their order, so the
-numbers agree with double C to the last bit. Derivatives by CasADi are exact and sparse.
+numbers agree with double C to the last bit. CasADi differentiates them, sparsely, once and twice;
+where it cannot and a derivative exists, it gives NaN or an infinity.
 
     state function : steady()          inputs parameters, W
     in a loop      : steady_hot()      takes constants = setup()(parameters), made once

@@ -2,7 +2,8 @@
 """Free precession of an axisymmetric body: rates and cones
 
 Every builder returns a CasADi Function with the operations of the C files in their order, so the
-numbers agree with double C to the last bit. Derivatives by CasADi are exact and sparse.
+numbers agree with double C to the last bit. CasADi differentiates them, sparsely, once and twice;
+where it cannot and a derivative exists, it gives NaN or an infinity.
 
     state function : precession()          inputs parameters, w_x, w_y, w_z
     in a loop      : precession_hot()      takes constants = setup()(parameters), made once

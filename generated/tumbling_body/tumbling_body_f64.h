@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 c2c291451833a095.
+ * times the largest component of the output. Body of these files: sha256 efd5e00eadf897fa.
  */
 #ifndef TUMBLING_BODY_F64_H
 #define TUMBLING_BODY_F64_H
@@ -133,12 +133,12 @@ void tumbling_body_kinetic_energy_f64(const tumbling_body_constants_f64 *constan
  *            time  s  -10 .. 10  time from the given to the new state
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- * Error: median 0.08, largest 9 u of kappa times the largest component, by rounding alone (kappa:
+ * Error: median 0.077, largest 9 u of kappa times the largest component, by rounding alone (kappa:
  *            what changes of the inputs make of the result, relative to both, added up) (of
  *            omega_next; 200000 samples of the ranges, 65536 searched from the worst, 78 hard
  *            ones).
- * Cost: 169 add, 50 sub, 390 mul, 120 div, 1 neg, 30 sqrt, 2 sin, 2 cos, 13 abs, 2 at_most, 1
- *            both, 15 less, 2 power_of_two, 39 select.
+ * Cost: 170 add, 50 sub, 387 mul, 121 div, 1 neg, 29 sqrt, 2 sin, 2 cos, 14 abs, 2 at_most, 1
+ *            both, 13 less, 2 power_of_two, 35 select.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -304,7 +304,7 @@ void tumbling_body_step_rk4_jacobian_dense_f64(const tumbling_body_constants_f64
  *            attitude_next; 200000 samples of the ranges, 65536 searched from the worst, 78 hard
  *            ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
- * Cost: 87 add, 55 sub, 148 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
+ * Cost: 87 add, 57 sub, 150 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,

@@ -2,7 +2,8 @@
 """Unsymmetrical rotor, as a two-blade propeller, in the axes of the carrier that turns
 
 Every builder returns a CasADi Function with the operations of the C files in their order, so the
-numbers agree with double C to the last bit. Derivatives by CasADi are exact and sparse.
+numbers agree with double C to the last bit. CasADi differentiates them, sparsely, once and twice;
+where it cannot and a derivative exists, it gives NaN or an infinity.
 
     state function : moment()          inputs parameters, gamma, gamma_dot, gamma_ddot, W, W_dot
     in a loop      : moment_hot()      takes constants = setup()(parameters), made once

@@ -8,12 +8,14 @@ from derive.bench.motion.case import cases
 from derive.bench.motion.step_jacobian import Entry
 from derive.bench.motion.wrong import Wrong
 from derive.report.case_run import Found
+from derive.report.counts import Count
 from derive.report.functions import Function
 from derive.report.gyroscopic import Gyroscopic
 from derive.report.hard import Hard
 from derive.report.orders import Order
 from derive.report.point import NotRun, Point
-from derive.report.record import Report
+from derive.report.proposals import Proposal
+from derive.report.record import Report, machine
 from derive.report.targets import Target
 
 CASE = "asym_ii_generic"
@@ -67,6 +69,12 @@ def report() -> Report:
             Target("what", "1", "2", reached=False, only="hard"),
             Target("else", "1", "?", reached=None, only="hard"),
         ),
+        (Count("principal", "step_rk4", "operations", 193),),
+        tuple(
+            Proposal(CASE, "principal", "f64", part, 10, error)
+            for part, error in ((1.0, 2e-15), (0.9, 1e-15), (0.5, 4e-15))
+        ),
+        machine(),
     )
 
 

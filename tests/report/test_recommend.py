@@ -1,7 +1,9 @@
 """A recommendation follows from the points alone, and never from a lucky one."""
 
-from derive.report.recommend import advice, keeping, overall, sentence
-from tests.report.made_up import curve, peer, point
+from dataclasses import replace
+
+from derive.report.recommend import SAME, advice, choice, cut, keeping, overall, says, sentence
+from tests.report.made_up import curve, peer, point, wrong
 
 
 def test_the_cheapest_stepper_that_keeps_to_the_error_is_recommended() -> None:
@@ -36,7 +38,7 @@ def test_the_advice_names_stepper_and_step() -> None:
 
 def test_the_stepper_that_serves_most_cases_comes_first() -> None:
     easy = [*curve("step_rk4", 4, 100.0), *curve("step_dmv", 10, 400.0)]
-    rows = overall("free", [easy, curve("step_dmv", 10, 400.0)], "f64", 1e-3)
+    rows = overall("free", {"a": easy, "b": curve("step_dmv", 10, 400.0)}, "f64", 1e-3)
     assert [(r.method, r.reached, r.asked) for r in rows] == [
         ("step_dmv", 2, 2),
         ("step_rk4", 1, 2),
@@ -46,5 +48,45 @@ def test_the_stepper_that_serves_most_cases_comes_first() -> None:
 def test_the_step_that_is_named_is_right_for_every_case() -> None:
     other = [point("step_dmv", p.value, 100 * p.wrong.state, 1 / p.value)
              for p in curve("step_dmv", 10, 1.0)]  # fmt: skip
-    (row,) = overall("free", [curve("step_dmv", 10, 1.0), other], "f64", 1e-9)
+    (row,) = overall("free", {"a": curve("step_dmv", 10, 1.0), "b": other}, "f64", 1e-9)
     assert row.radians == 2.0**-4  # 100 * 2^-30 is above 1e-9 / 10, 100 * 2^-40 below
+
+
+def test_a_case_that_no_stepper_serves_counts_and_is_named() -> None:
+    lost = [replace(p, wrong=wrong(1.0)) for p in curve("step_dmv", 10, 400.0)]
+    (row,) = overall("free", {"a": curve("step_dmv", 10, 400.0), "b": lost}, "f64", 1e-3)
+    assert (row.reached, row.asked, row.missed) == (1, 2, ("b",))
+    assert says(row) == "step_dmv with steps of 0.5 rad: 1 of 2 cases, not b"
+
+
+def test_a_case_is_served_only_if_every_scene_that_describes_it_is() -> None:
+    good = curve("step_dmv", 10, 400.0)
+    bad = [replace(p, scene="special", wrong=wrong(1e-6)) for p in good]
+    assert overall("free", {"a": [*good, *bad]}, "f64", 1e-9) == []
+    assert advice("a", [*good, *bad], "f64", 1e-9).point is None
+    worse = [replace(p, scene="special", wrong=wrong(16 * p.wrong.state)) for p in good]
+    (row,) = overall("free", {"a": [*good, *worse]}, "f64", 0.5**10)
+    assert row.radians == 0.25  # 16 * 2^-10 is above 2^-10, 16 * 2^-20 below
+
+
+def test_a_step_that_a_case_was_not_run_with_serves_it_not() -> None:
+    coarse = [p for p in curve("step_dmv", 10, 1.0) if p.radians >= 0.5]
+    hard = [replace(p, wrong=wrong(1e6 * p.wrong.state)) for p in curve("step_dmv", 10, 1.0)]
+    (row,) = overall("free", {"a": coarse, "b": hard, "c": hard}, "f64", 1e-2)
+    assert row.missed == ("a",)
+
+
+def test_costs_are_those_of_the_step_that_is_named() -> None:
+    hard = [replace(p, wrong=wrong(1024 * p.wrong.state)) for p in curve("step_dmv", 10, 1.0)]
+    (row,) = overall("free", {"a": curve("step_dmv", 10, 1.0), "b": hard}, "f64", 0.5**10)
+    assert (row.radians, row.worst, row.usual) == (0.25, 2.0, 1.5)
+
+
+def test_a_setting_is_cut_and_never_rounded_up() -> None:
+    for x in (0.0676582346, 0.5412658773652741, 1.11e-10, 0.25, 1e-9, 9.999e-4):
+        assert float(cut(x)) <= x <= SAME * float(cut(x))
+
+
+def test_what_serves_most_stands_second_even_where_it_is_also_cheapest() -> None:
+    rows = overall("free", {"a": curve("step_dmv", 10, 1.0)}, "f64", 1e-3)
+    assert [row.method for row in choice(rows)] == ["step_dmv", "step_dmv"]

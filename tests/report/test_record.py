@@ -26,6 +26,9 @@ SECTIONS = {
     "step_and_jacobian": {"author", "flops", "instructions", "apart", "missing"},
     "gyroscopic_term": {"form", "precision", "asphericity", "median", "largest", "of_terms"},
     "functions": {"scene", "name", "flops", "divisions", "instructions", "median", "largest"},
+    "counts": {"scene", "function", "of", "count"},
+    "proposals": {"case", "scene", "precision", "part", "passes", "error"},
+    "proposals_say": set(),
 }  # fmt: skip
 POINT = {"method", "scene", "precision", "setting", "value", "passes", "radians", "instructions",
          "seconds", "omega", "attitude", "energy", "momentum"}  # fmt: skip
