@@ -63,9 +63,8 @@ class System:
 
     @property
     def quaternions(self) -> tuple[slice, ...]:
-        """Return where attitudes stand among the components: four numbers without a unit."""
-        own = [(q, place) for q, place in self._places() if q.shape == (4,)]
-        return tuple(place for q, place in own if q.unit in ("", "1"))
+        """Return where attitudes stand among the components."""
+        return tuple(place for q, place in self._places() if q.is_quaternion)
 
     @property
     def quaternion(self) -> slice | None:
