@@ -20,9 +20,10 @@ SEEN = 1e-11  # a thousand times what rounding adds to the states below
 
 
 # Left alone are: a sign divided by instead of multiplied with (5); the choice between two ways to
-# one rate (1) and two guards (2), which matter to rounding and to traps only; and factors of the
-# last rungs, where means that start 2^-536 apart have become equal but for 1e-11 (26).
-KNOWN = 34
+# one rate (1), of what to scale by (6), and two guards (2), which matter to rounding and to traps
+# only; and factors of the last rungs, where means that start 2^-536 apart have become equal but
+# for 1e-11 (24).
+KNOWN = 38
 ANY = 20
 SPECIAL = (  # moments, rates, time
     ((3, 4, 6), (2, 1, 1), 3),  # on the separatrix

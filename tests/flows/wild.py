@@ -68,12 +68,22 @@ def share_of_error(motion: Flow, dtype: type, tensor: Any, state: Any, found: An
         kappas = _conditions(motion, dtype, tensor, state, true)
     least, middle, most = sorted(tensor[:3])
     unreal = most > (least + middle) * (1 + 8 * u)
-    momentum = np.linalg.norm(tensor[:3] * state[4:7] / most)
-    phase = momentum * abs(state[7]) * (most / least - 1) if unreal else 0
+    turn = np.linalg.norm(tensor[:3] / most * (state[4:7] * state[7]))  # no square of a tiny rate
+    phase = 2 * turn * (most / least - 1) if unreal else 0  # a constant and three products, halved
     allowed = [max(factor * (kappa + phase), LEAST) * u for kappa in kappas]
     if not np.all(np.isfinite(np.asarray(found, float))):
         return float("inf")
     return max(e / a for e, a in zip(errors(found, true), allowed, strict=True))
+
+
+def without_lost_rates(dtype: type, tensors: Rows, states: Rows) -> Rows:
+    """Return the states without rates that the type cannot hold beside the largest of them."""
+    least = float(np.finfo(dtype).smallest_normal) * 2.0 ** MANTISSA[dtype]
+    spread = np.max(tensors[:, :3], axis=1) / np.min(tensors[:, :3], axis=1)
+    fast = np.maximum(1, np.max(np.abs(states[:, 4:7]), axis=1))
+    kept, lost = states.copy(), np.abs(states[:, 4:7]) < (least * spread * fast)[:, None]
+    kept[:, 4:7][lost] = 0
+    return kept
 
 
 def without_rounding(motion: Flow, tensor: Sequence[Any], state: Sequence[Any]) -> list[Any]:
