@@ -11,7 +11,7 @@ from derive.check.verdict import Verdict
 from derive.library import Library
 from tests.defects import DEFECTS, Defect
 from tests.generated.mutants import Texts, printed
-from tests.made import library_of
+from tests.made import library_of, thinned
 
 SAMPLES = 12
 
@@ -25,13 +25,13 @@ def verdicts(made: Library, texts: Texts, place: Path, with_: Compiler) -> list[
     return list(check_library(made, Files(texts, "made in memory"), place, with_, SAMPLES))
 
 
-@pytest.mark.parametrize("name", sorted({d.scene for d in DEFECTS}))
+@pytest.mark.parametrize("name", thinned(sorted({d.scene for d in DEFECTS}), 4))
 def test_the_scene_as_it_is_passes_every_check(name: str, workshop: Path) -> None:
     rows = verdicts(library_of(name), printed(library_of(name)), workshop, find_compiler())
     assert [row for row in rows if row.outcome == "FAILS"] == []
 
 
-@pytest.mark.parametrize("defect", DEFECTS, ids=lambda d: d.name)
+@pytest.mark.parametrize("defect", thinned(DEFECTS, 4), ids=lambda d: d.name)
 def test_a_seeded_defect_is_caught(defect: Defect, workshop: Path) -> None:
     made = library_of(defect.scene)
     texts = Files(defect.mutant(made), "made in memory")

@@ -25,6 +25,7 @@ from derive.scene import catalogue, load, parse_scene
 from derive.status import INERTIA, LENGTH, MASS, PARAMETER, RIGHT, possible
 from derive.status import refusal as why
 from tests.generated.mutants import printed
+from tests.made import thinned
 
 DRAWS = 120
 SKEWED_ROD = """
@@ -78,7 +79,7 @@ def faults(lib: Library, setup: Program, precision: Precision) -> list[str]:
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("name", WITH_SET_UP)
+@pytest.mark.parametrize("name", thinned(WITH_SET_UP, 6))
 def test_a_set_up_refuses_what_the_declaration_refuses_and_nothing_else(name: str) -> None:
     lib = made(name)
     for precision in PRECISIONS:

@@ -11,6 +11,7 @@ from derive.library import Library, library
 from derive.machine import loads
 from derive.sample import Sample, samples
 from derive.scene import Machine, SceneError, load, parse_scene
+from tests.made import thinned
 
 SCENES = Path(__file__).parent / "scenes"
 TRIALS = Path(__file__).parents[1] / "data" / "trials"
@@ -30,7 +31,7 @@ def outcomes(made: Library) -> set[str]:
     return {v.outcome for v in found}
 
 
-@pytest.mark.parametrize("name", WITH_ENERGY)
+@pytest.mark.parametrize("name", thinned(WITH_ENERGY, 2))
 def test_an_energy_changes_by_the_power_of_the_loads_that_are_not_in_it(name: str) -> None:
     assert outcomes(library(load(SCENES / f"{name}.toml"))) == {"holds"}
 

@@ -22,7 +22,7 @@ from tests.machines.expected import (
     Case,
     Values,
 )
-from tests.made import library_of
+from tests.made import library_of, thinned
 
 DOUBLE, FLOAT = 1e-9, 2e-5  # the relative differences that are allowed
 EARTH_UNIT = 1e38
@@ -67,7 +67,7 @@ def close(found: float, expected: float, allowed: float) -> bool:
     return abs(found - expected) <= (allowed * abs(expected) or ZERO)
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda c: c.scene)
+@pytest.mark.parametrize("case", thinned(CASES, 4), ids=lambda c: c.scene)
 def test_casadi_gives_every_expected_number(case: Case) -> None:
     for answer in case.answers:
         values = case.values | dict(answer.extra)
@@ -75,7 +75,7 @@ def test_casadi_gives_every_expected_number(case: Case) -> None:
         assert close(answer.made(found), case.expected(answer.expected), DOUBLE), answer
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda c: c.scene)
+@pytest.mark.parametrize("case", thinned(CASES, 3), ids=lambda c: c.scene)
 def test_compiled_c_gives_every_expected_number(case: Case, emitted: Built) -> None:
     for one in emitted.of(case.scene):
         allowed = DOUBLE if one.precision.name == "f64" else FLOAT
@@ -125,6 +125,7 @@ def test_compiled_c_vanishes_at_the_expected_roots(
             assert ends[0]["steady"] * ends[1]["steady"] < 0
 
 
+@pytest.mark.long
 def test_the_sleeping_top_wakes_at_the_expected_spin() -> None:
     values = {n: v for n, v in SLEEP.values.items() if n != "n"}
     (found,) = limits(instrument("sleeping_top"), values, "n")

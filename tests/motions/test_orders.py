@@ -15,7 +15,7 @@ from derive.recorded import needed
 from derive.sample import Sample, samples
 from derive.scene import catalogue, load, parse_scene
 from derive.scene.wanted import STEP_DERIVATIVES, moves
-from tests.made import library_of
+from tests.made import library_of, thinned
 
 MOVING = [name for name in catalogue() if any(map(moves, load(name).wanted))]
 MUTANTS = 12  # of each step, spread over its sums
@@ -28,7 +28,7 @@ def one_sample(scene: str) -> Sample:
     return with_motion(library_of(scene), drawn, F64)[0]
 
 
-@pytest.mark.parametrize("scene", MOVING)
+@pytest.mark.parametrize("scene", thinned(MOVING, 3))
 def test_every_step_has_its_order_and_every_flow_is_the_motion(scene: str) -> None:
     drawn = samples(library_of(scene).known, F64, 2, 0).each
     verdicts = list(orders(library_of(scene), with_motion(library_of(scene), drawn, F64)))

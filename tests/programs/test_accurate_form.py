@@ -187,6 +187,7 @@ def of_the_largest(
             yield max(off) / max(map(abs, true[span])) / F32.unit_roundoff
 
 
+@pytest.mark.long
 def test_accurate_steps_of_rods_err_by_one_rounding_of_the_state() -> None:
     assert max(step_errors("fast")) > 10
     assert max(step_errors("accurate")) <= ONE_ROUNDING

@@ -18,7 +18,7 @@ from derive.manifest import manifest
 from derive.program import Op, Operand, Program, Quantity, component_names, run
 from derive.scene import catalogue
 from derive.singular import with_singular
-from tests.made import library_of
+from tests.made import library_of, thinned
 
 Divisor = Callable[[list[str]], tuple[list[Op], Operand]]
 
@@ -90,7 +90,7 @@ def test_a_quaternion_of_no_norm_is_told() -> None:
     assert [s.where for s in step.singular] == ["attitude = 0"]
 
 
-@pytest.mark.parametrize("name", catalogue())
+@pytest.mark.parametrize("name", thinned(catalogue(), 6))
 def test_no_function_is_without_a_value_where_its_comment_is_silent(name: str) -> None:
     lib = library_of(name)
     assert [says for program in lib.printed() for says in unsaid(lib, program)] == []

@@ -11,6 +11,7 @@ import pytest
 from derive.report.contradictions import contradictions
 from derive.report.recall import read, recalled
 from derive.report.record import text
+from tests.made import thinned
 from tests.report.made_up import report
 
 STORED = Path(__file__).parents[2] / "generated" / "report.json"
@@ -99,17 +100,21 @@ def nearer(whole: Data) -> None:
     whole["proposals_say"][0] = whole["proposals_say"][0].replace("nearer in ", "nearer in 1")
 
 
+@cache
+def before() -> frozenset[str]:
+    return frozenset(contradictions(json.loads(few())))
+
+
 @pytest.mark.parametrize(
     "spoilt",
-    [every_case, those_that_any_serves, another_case_is_missed, a_longer_step, a_lower_cost,
-     a_worse_scene, a_verdict, the_best_scene, advice_of_a_case, nearer],
+    thinned([every_case, those_that_any_serves, another_case_is_missed, a_longer_step, a_lower_cost,
+             a_worse_scene, a_verdict, the_best_scene, advice_of_a_case, nearer], 3),
     ids=lambda f: f.__name__,
 )  # fmt: skip
 def test_a_sentence_that_its_figures_contradict_is_found(spoilt: Callable[[Data], None]) -> None:
     whole = json.loads(few())
-    before = set(contradictions(whole))
     spoilt(whole)
-    assert set(contradictions(whole)) - before
+    assert set(contradictions(whole)) - before()
 
 
 def test_what_follows_from_the_record_is_contradicted_by_it_nowhere() -> None:

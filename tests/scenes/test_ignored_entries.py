@@ -9,6 +9,7 @@ from sympy import zeros
 
 from derive import specialise
 from derive.scene import CATALOGUE
+from tests.made import thinned
 from tests.scenes.mutated import ignored
 
 ROOT = Path(__file__).parents[2]
@@ -74,7 +75,7 @@ SHORT = {
 }
 
 
-@pytest.mark.parametrize("name", SHORT)
+@pytest.mark.parametrize("name", thinned(SHORT, 3))
 def test_nothing_in_a_short_scene_is_ignored(name: str) -> None:
     assert ignored(SHORT[name], name) == []
 
