@@ -9,7 +9,7 @@ from derive.files import scene_files
 from derive.gallery.card import Card, card, gallery
 from derive.kept import Measuring, figures_of
 from derive.library import Library, library
-from derive.machine.mechanism import Mechanism, pole
+from derive.machine.mechanism import Mechanism, doubts, pole
 from derive.page import lecture_page
 from derive.program import Measurement
 from derive.prove import prove
@@ -55,7 +55,7 @@ def made(source: str, measuring: Measuring) -> Made:
         why = _poles(programs) or str(error)
         raise SceneError(f"scene '{scene.name}': {rule}, but {why}") from None
     _finite(programs, measured.each)
-    warnings = tuple(f"scene '{scene.name}': {warning}" for warning in scene.warnings)
+    warnings = tuple(f"scene '{scene.name}': {warning}" for warning in doubts(programs.known))
     costs, spared = cost_rows(programs, measured.each), tuple(savings(programs))
     texts = scene_files(programs, measured.each, measured.digest)
     return Made(texts, warnings, costs, spared, card(programs))

@@ -11,7 +11,7 @@ from derive.comment import of_what
 from derive.emit import JACOBIAN_DENSE
 from derive.lecture import LECTURE
 from derive.library import Library
-from derive.machine.mechanism import Mechanism, depends_on, dropped
+from derive.machine.mechanism import Mechanism, depends_on, doubts, dropped
 from derive.notation import equation_text
 from derive.program import Measurement, Program, Quantity, Sparsity
 from derive.scene import argument
@@ -43,7 +43,7 @@ def manifest(library: Library, figures: Sequence[Measurement], digest: str = "")
         "parameters": [_quantity(q) for q in library.known.words.parameters],
         "constants": [{"name": c.name, "formula": c.formula} for c in library.constants],
         "functions": _functions(library, figures),
-        "warnings": list(scene.warnings),
+        "warnings": list(doubts(library.known)),
         "measured": {"digest": digest},
     }
     return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"

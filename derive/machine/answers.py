@@ -9,7 +9,13 @@ from sympy import Expr, Integer, Matrix, Symbol
 from derive.formula import Formula
 from derive.machine.balances import Balance, Balances, Row
 from derive.machine.bodies import centre, centre_velocity, kinetic_energy, mass, momentum
-from derive.machine.choice import chosen, clearly_told, contradiction, unbalanced
+from derive.machine.choice import (
+    chosen,
+    clearly_told,
+    contradiction,
+    require_no_ring,
+    unbalanced,
+)
 from derive.machine.frames import ZERO, Frames
 from derive.machine.linearised import linearised
 from derive.machine.loads import potential_energy
@@ -134,6 +140,7 @@ class Answers:
             raise SceneError(f"no balance holds '{name}', so it cannot be found")
         if not wanted:
             return (), ()
+        require_no_ring(self.balances, frozenset(every.index(s) for s in wanted))
         if self.machine.steady is None and (sentence := contradiction(self.balances)):
             raise SceneError(sentence)
         rows, unknowns = chosen(self.balances, frozenset(every.index(s) for s in wanted), hard)

@@ -98,12 +98,19 @@ class Balances:
     def rows(self) -> tuple[Row, ...]:
         """Return every balance that holds anything, plainest first."""
         with mp.workdps(DIGITS):
-            return tuple(row for row in self._every() if not row.empty)
+            most = min(len(self.efforts), MOST_TOGETHER)
+            return tuple(row for row in self._every(most) if not row.empty)
 
-    def _every(self) -> Iterator[Row]:
+    @cached_property
+    def alone(self) -> tuple[Row, ...]:
+        """Return the balances of single bodies."""
+        with mp.workdps(DIGITS):
+            return tuple(row for row in self._every(1) if not row.empty)
+
+    def _every(self, most: int) -> Iterator[Row]:
         valued = [Valued(self.sides, probe) for probe in self.sides.probes]
         names = list(self.efforts)
-        for size in range(1, min(len(names), MOST_TOGETHER) + 1):
+        for size in range(1, most + 1):
             for bodies in filter(self._joined, combinations(names, size)):
                 if all(self.frames.linked(self.efforts[bodies[0]].frame, self.efforts[b].frame)
                        for b in bodies):  # fmt: skip

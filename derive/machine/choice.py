@@ -124,6 +124,18 @@ def clearly_told(balances: Balances, unknowns: frozenset[int], place: Probe) -> 
     return len(size) == len(unknowns) and bool(size[-1] > FLOORS[-1] * size[0])
 
 
+def require_no_ring(balances: Balances, wanted: frozenset[int]) -> None:
+    """Refuse a closed loop of bodies, by balances of single bodies, of which all others are sums.
+
+    So the thousands of balances of several bodies need not be valued to be found wanting.
+    """
+    label = balances.frames.sheet.label
+    names = {label(balances.unknowns[k]) for k in wanted}
+    loop = closed_loop(balances.frames.machine, names)
+    if loop and _cannot_be_told(balances, [r for r in balances.alone if r.holds], wanted):
+        raise SceneError(loop)
+
+
 def _cannot_be_told(balances: Balances, rows: Sequence[Row], wanted: frozenset[int]) -> bool:
     """Tell whether even all balances together leave some wanted unknown open."""
     count = len(balances.unknowns)

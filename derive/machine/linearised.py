@@ -4,15 +4,18 @@ Every named quantity is carried along with its first derivatives by displacement
 valued at the given motion as it goes, so that the expressions stay as small as their results.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import networkx as nx
+from mpmath import mp, mpf
 from sympy import Expr, Integer, Matrix, Symbol, zeros
 
 from derive.machine.balances import Balances
 from derive.machine.choice import chosen
-from derive.machine.probe import independent, point
+from derive.machine.probe import DIGITS, Probe, at_rest, independent, point, small
+from derive.machine.valued import Valued
+from derive.machine.words import Words
 from derive.scene import Input, Machine, SceneError
 
 
@@ -46,9 +49,9 @@ def linearised(machine: Machine, balances: Balances) -> dict[str, Matrix]:
     velocities = [sheet.symbols[m.rate.name] if isinstance(m.rate, Input) else
                   sheet.symbols[m.name] for m in free]  # fmt: skip
     places = [sheet.symbols[m.name] if m.kind == "coordinate" else None for m in free]
-    small = _Expansion(base, [*velocities, *(p for p in places if p is not None)])
-    small.define(sheet.needed(written))
-    table = _Table(balances, small, written, reactions)
+    about = _Expansion(base, [*velocities, *(p for p in places if p is not None)])
+    about.define(sheet.needed(written))
+    table = _Table(balances, about, written, reactions)
     columns = {
         "mass_matrix": table.coefficients(accelerations),
         "damping_matrix": table.slopes(velocities),
@@ -57,6 +60,51 @@ def linearised(machine: Machine, balances: Balances) -> dict[str, Matrix]:
     made = {name: table.reduced(column) for name, column in columns.items()}
     own = _own_rows(made["mass_matrix"], balances)
     return {name: _in_order(matrix, own) for name, matrix in made.items()}
+
+
+def unsteady(machine: Machine, balances: Balances) -> Iterator[str]:
+    """Yield a sentence for every free coordinate or speed that the given state accelerates.
+
+    All else is in the middle of its range, or at rest if it varies and may be. Where a scene has
+    ``steady``, the given state is an equilibrium at its roots alone, and nothing is said.
+    """
+    if machine.steady is not None or not any("linearised" in a for a in machine.asked.values()):
+        return
+    sheet, words, every = balances.frames.sheet, balances.frames.words, balances.unknowns
+    free = [m for m in (*machine.coordinates, *machine.speeds) if m.free]
+    wanted = [every.index(sheet.symbols[m.unknown]) for m in free]
+    rows, held = chosen(balances, frozenset(wanted))
+    places = [*wanted, *sorted(held - {*wanted})]
+    with mp.workdps(DIGITS):
+        probe = _middle(words)
+        probe.values |= {sheet.symbols[n]: probe.value(words.expression(f))
+                         for n, f in machine.about.items()}  # fmt: skip
+        probe.define(sheet.definitions)
+        valued = Valued(balances.sides, probe)
+        table = [balances.at(row, valued) for row in rows]
+        size = max(abs(row[0]) for row in table)
+        try:
+            found = mp.lu_solve([[row[1 + k] for k in places] for row in table],
+                                [-row[0] for row in table])  # fmt: skip
+        except ZeroDivisionError:
+            return  # these balances do not tell it there
+    for m, x in zip(free, found, strict=False):
+        if not small(x, max(size, 1)):
+            unit = words.vocabulary[m.unknown].unit
+            yield (
+                f"'linearised' is about a state that is no equilibrium: the acceleration of "
+                f"'{m.name}' is {float(x):.3g} {unit} there, with all else in mid-range"
+            )
+
+
+def _middle(words: Words) -> Probe:
+    """Return the middle of all ranges, and zero for what varies and may be zero."""
+    found, book = at_rest(words), words.vocabulary
+    for q in (*book.parameters, *book.states, *book.inputs):
+        twice = sum(q.ends)
+        if q.shape == () and found.values[book.symbols[q.name]] != 0:
+            found.values[book.symbols[q.name]] = mpf(twice.numerator) / (2 * twice.denominator)
+    return Probe(found.values)
 
 
 def _own_rows(mass: Matrix, balances: Balances) -> list[tuple[int, int]]:

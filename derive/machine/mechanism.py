@@ -10,6 +10,7 @@ from derive.draft import Arrangement, Stage
 from derive.machine.answers import Answers
 from derive.machine.balances import Balances
 from derive.machine.frames import Frames
+from derive.machine.linearised import unsteady
 from derive.machine.matter import Lean, lean
 from derive.machine.pivots import Pivots, where
 from derive.machine.probe import point
@@ -69,6 +70,13 @@ def single(known: Known) -> Specialised:
     if isinstance(known, Mechanism):
         raise TypeError(f"scene '{known.scene.name}' is a machine, not a single body")
     return known
+
+
+def doubts(known: Known) -> tuple[str, ...]:
+    """Return the warnings of a scene, and those that take its equations to be found."""
+    if not isinstance(known, Mechanism):
+        return known.scene.warnings
+    return (*known.scene.warnings, *unsteady(known.scene, known.answers.balances))
 
 
 def in_terms(scene: Scene | Machine) -> Known:
