@@ -12,7 +12,7 @@ from derive.graph import Graph, Value
 from derive.machine.mechanism import Known, in_terms
 from derive.motions import motions, needs
 from derive.program import Program, Quantity, read_by
-from derive.scene import Machine, Scene
+from derive.scene import Machine, Scene, SceneError
 from derive.scene.wanted import EQUATIONS, IN_PAIRS, base_of, moves
 from derive.setting import Setting, applied_moment, traced, with_names
 from derive.singular import with_singular
@@ -67,7 +67,19 @@ class Moved:
 
 
 def library(scene: Scene | Machine) -> Library:
-    """Return the programs that ``scene`` asks for."""
+    """Return the programs that ``scene`` asks for.
+
+    Raises SceneError, with one sentence that names the scene, if there can be none.
+    """
+    try:
+        return _library(scene)
+    except SceneError as error:
+        if str(error).startswith("scene '"):
+            raise
+        raise SceneError(f"scene '{scene.name}': {error}") from None
+
+
+def _library(scene: Scene | Machine) -> Library:
     terms = graphed(in_terms(scene))
     asked, hidden = _asked(scene)
     bases = dict.fromkeys(map(base_of, (*asked, *hidden)))

@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-from sympy import Expr, Matrix, Rational, Symbol, cos, pi, sin, sqrt, tan
+from sympy import Abs, Expr, Matrix, Rational, Symbol, cos, pi, sin, sqrt, tan
 
 from derive.formula import Formula
 from derive.program import Quantity
-from derive.scene import Given, Scene
+from derive.scene import Given, Scene, SceneError
 
 XYZ = ("x", "y", "z")
 ANY = (Fraction(-1), Fraction(1))
@@ -55,7 +55,11 @@ class Vocabulary:
             return rational(formula.number)
         if formula.operator == "power":
             return self.expression(formula.operands[0]) ** rational(formula.number)
-        return _OPERATORS[formula.operator](*map(self.expression, formula.operands))
+        found = _OPERATORS[formula.operator](*map(self.expression, formula.operands))
+        if formula.operator == "sqrt" and found.has(Abs):
+            rule = "is of a square, so that its sign is lost and its slope jumps"
+            raise SceneError(f"the root '{formula}' {rule}; write it without the root")
+        return found
 
 
 def rational(value: Fraction) -> Rational:
