@@ -245,3 +245,10 @@ def test_a_number_of_samples_is_a_whole_number_above_zero(capsys):
                 main([command, SCENE, "--samples", wrong])
             assert stopped.value.code == 2
             assert f"must be a whole number above zero, not '{wrong}'" in capsys.readouterr().err
+
+
+def test_a_refusal_is_one_line_where_no_one_reads_it_on_a_screen(tmp_path, capsys):
+    scene = tmp_path / "odd.toml"
+    scene.write_text(f"wanted = ['{'x' * 300}']\nbody = {{ kind = 'spherical', moment = 1 }}\n")
+    assert main(["generate", str(scene)]) == 2
+    assert len(capsys.readouterr().err.strip().splitlines()) == 1

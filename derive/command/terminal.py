@@ -19,7 +19,7 @@ errors = Console(
 def complain(sentence: str, style: str) -> None:
     """Print a sentence on what is wrong; what a file or its name holds is shown, never obeyed."""
     shown = "\n".join(map(visible, sentence.split("\n")))
-    errors.print(shown, style=style, highlight=False)
+    errors.print(shown, style=style, highlight=False, soft_wrap=not errors.is_terminal)
 
 
 def progress() -> Progress:

@@ -199,6 +199,9 @@ def _point(given: Table, scope: Scope) -> Point:
 def _given(value: object, label: str, scope: Scope, expected: Dimension) -> Given:
     if isinstance(value, list):
         return Given(None, None, triple(value, label, scope, expected))
+    if not isinstance(value, dict):
+        rule = "must be { range = [low, high] } or three formulas"
+        raise SceneError(f"{label} {rule}, not {shown(value)}")
     inner = table(value, label)
     keys(inner, ("range",), ())
     return Given(*interval(inner.entries["range"], f"{label}.range"), None)

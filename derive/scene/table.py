@@ -93,7 +93,7 @@ def _require_plain(value: str, label: str) -> None:
         raise SceneError(f"{label} {rule}, {hidden!a}: {shown(value)}")
     for mark in MARKS:
         if mark in value:
-            raise SceneError(f"{label} must not hold {mark}, which ends a comment or a string")
+            raise SceneError(f"{label} must not hold {mark}, which can end a comment or a string")
 
 
 def table(value: object, label: str) -> Table:

@@ -133,3 +133,8 @@ def test_a_folder_in_the_way_does_not_hide_a_scene_of_the_catalogue(
     (tmp_path / "gyrostat").mkdir()
     monkeypatch.chdir(tmp_path)
     assert load("gyrostat").name == "gyrostat"
+
+
+def test_a_known_vector_that_is_neither_a_range_nor_formulas_is_told_of_both() -> None:
+    says = refusal(f"wanted = ['moment']\nknown.moment = 16\n{SPHERE}")
+    assert says.endswith("known.moment must be { range = [low, high] } or three formulas, not 16")
