@@ -27,6 +27,7 @@ from derive.scale import sizing
 
 MEDIAN_BOUND, LARGEST_BOUND = 2.0, 16.0
 """In u: what half of the errors keep, and all at a few samples where no largest one is stated."""
+USUAL = 1.5  # the median of a few samples may be so much above that of all
 MORE = 1.1  # other samples than the printed figure's may find an error this much larger
 ABSURD = 1e6
 """In u: a larger figure says nothing of a result, or is a part of a scale that vanishes."""
@@ -124,9 +125,11 @@ def _accurate(
     most = largest(each_worst)
     middle = median([error for row in found.rows for error in row] or [0.0])
     sample = each[each_worst.index(most)]
-    stated = _stated(printed, emitted, found.output)
+    stated = _stated(printed, emitted, found.output, "largest_ulp")
+    usual = _stated(printed, emitted, found.output, "median_ulp") or 0.0
     allowed = min(ABSURD, LARGEST_BOUND if stated is None else MORE * max(1.0, stated))
-    half = MEDIAN_BOUND if program in emitted.library.functions else allowed
+    half = max(MEDIAN_BOUND, USUAL * usual)
+    half = half if program in emitted.library.functions else allowed
     holds = middle <= half and most <= allowed
     says = (
         f"{found.output}: median {middle:.2g} u, largest {most:.2g} u at sample {sample.number} "
@@ -138,10 +141,12 @@ def _accurate(
     return _verdict(emitted, program, check_, JUDGED[holds], says)
 
 
-def _stated(printed: Mapping[str, Any], emitted: Emitted, output: str) -> float | None:
-    """Return the largest error that the header and the JSON state, None if they state none."""
+def _stated(
+    printed: Mapping[str, Any], emitted: Emitted, output: str, figure: str
+) -> float | None:
+    """Return a figure that the header and the JSON state of an error, None if they state none."""
     stated = printed.get(emitted.precision.name, {}).get(output)
-    return float(stated["largest_ulp"]) if stated else None
+    return float(stated[figure]) if stated else None
 
 
 def casadi_bits(emitted: Emitted, module: Any, each: Sequence[Sample]) -> Iterator[Verdict]:

@@ -126,11 +126,17 @@ class Field:
         return value, size**exponent if exponent > 0 else abs(value)
 
 
+def _attitudes(rows: Array) -> Array:
+    """Return quaternions of length 1 along rows; none is turned where all four are zero."""
+    rows = np.where(np.any(rows != 0, axis=1, keepdims=True), rows, np.eye(4)[0])
+    return np.asarray(rows / np.linalg.norm(rows, axis=1, keepdims=True))
+
+
 def field_at(of: Ranges, points: Array, definitions: Mapping[Symbol, Expr]) -> Field:
     """Return all values at points; what moves has the size of its range, or nothing is at rest."""
     reach, points = np.maximum(abs(of.low), abs(of.high)), points.copy()
     for own in of.quaternions:
-        points[:, own] /= np.linalg.norm(points[:, own], axis=1, keepdims=True)
+        points[:, own] = _attitudes(points[:, own])
     found = Field({
         s: (points[:, k], abs(points[:, k]) if s in of.fixed else np.full(len(points), reach[k]))
         for k, s in enumerate(of.symbols)
@@ -151,6 +157,8 @@ def probe_at(
         for own in of.quaternions:
             q = of.symbols[own]
             size = mp.sqrt(mp.fsum(probe.values[s] ** 2 for s in q))
+            if size == 0:
+                probe.values[q[0]] = size = mpf(1)  # no attitude has length 0: none is turned
             probe.values |= {s: probe.values[s] / size for s in q}
         probe.define(definitions)
     return probe

@@ -165,6 +165,8 @@ def _spring(reader: _Reader, name: str, given: Table) -> Spring:
     keys(given, ("on",), optional)
     on = reader.body(given, "on")
     against = reader.body(given, "against") if "against" in given.entries else ""
+    if on == against:
+        raise SceneError(f"{given.label} acts on '{on}' against itself")
     scope = reader.scalars.known
 
     def one(key: str, unit: Dimension) -> Formula:

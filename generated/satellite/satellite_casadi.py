@@ -28,7 +28,7 @@ def _built(build):
 
 def _missing(count):
     """Make an input that is left out NaN, which shows; CasADi's own would be 0."""
-    return {"default_in": [float("nan")] * count}
+    return {"default_in": [float("nan")] * count} if count else {}
 
 
 def _kept(x):

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from derive.casadi_module import imported
+from derive.casadi_text import casadi_file
 from derive.library import library
 from derive.machine.balances import Balances
 from derive.machine.choice import closed_loop
@@ -134,3 +136,45 @@ def test_the_root_of_a_square_is_refused_in_a_body_and_where_a_machine_changes()
     turned = PLAIN.replace("k = ", "# k = ").replace('"y q"', '"y sqrt(q^2)"')
     assert "sqrt" in turned
     assert refused(turned)
+
+
+FLOATING = """
+wanted = ["accelerations"]
+parameters.m = { unit = "kg", range = [10, 20] }
+coordinates.x = { unit = "m", range = [-1, 1], rate = { range = [-1, 1] } }
+coordinates.y = { unit = "m", range = [-1, 1], rate = { range = [-1, 1] } }
+coordinates.z = { unit = "m", range = [-1, 1], rate = { range = [-1, 1] } }
+speeds.p = { unit = "rad/s", range = [-2, 2] }
+speeds.q = { unit = "rad/s", range = [-2, 2] }
+speeds.r = { unit = "rad/s", range = [-2, 2] }
+frames.base.angular_velocity = ["p", "q", "r"]
+frames.base.attitude = "quaternion"
+frames.base.origin = ["x", "y", "z"]
+bodies.b = { frame = "base", mass = "m", shape = "box", lengths = [1, 2, 3], centre = ["1", 0, 0] }
+"""
+
+
+def test_a_body_that_floats_freely_with_its_centre_aside_has_accelerations() -> None:
+    made = library(parse_scene(FLOATING, "floating"))
+    (program,) = made.functions
+    assert {"attitude_base_w", "p"} <= {c for q in program.inputs for c in q.components}
+
+
+def test_an_answer_that_nothing_moves_is_zero_in_casadi_too(tmp_path: Path) -> None:
+    text = """
+wanted = ["accelerations"]
+parameters.m = { unit = "kg", range = [10, 20] }
+coordinates.x = { unit = "m", range = [-1, 1] }
+frames.base.origin = ["x", "0", "0"]
+bodies.b = { frame = "base", shape = "point", mass = "m" }
+loads.rail = { on = "b", force = ["0", "?Y", "?Z"] }
+"""
+    made = library(parse_scene(text, "rail"))
+    module = imported("rail_casadi", casadi_file(made), tmp_path)
+    assert float(module.accelerations()()["x_ddot"]) == 0
+
+
+def test_a_spring_of_a_body_against_itself_is_refused() -> None:
+    text = FLOATING + 'loads.s = { on = "b", against = "b", spring = "m*1" , to = ["1", "0", "0"] }'
+    with pytest.raises(SceneError, match="load 's' acts on 'b' against itself"):
+        parse_scene(text, "floating")
