@@ -11,7 +11,7 @@ from derive.program import Op, Program
 from derive.prove import ProofError, lectured, prove
 from derive.scene import catalogue, parse_scene
 from derive.scene.wanted import JACOBIAN
-from tests.made import library_of, thinned
+from tests.made import library_of
 
 FLIPPED = {"add": "sub", "sub": "add", "mul": "div", "div": "mul", "sin": "cos", "cos": "sin"}
 
@@ -64,7 +64,7 @@ def same_value(op: Op, other: Op) -> bool:
     return products and op.operands[1] == 1 == other.operands[1]
 
 
-@pytest.mark.parametrize("name", thinned(QUICK_FIRST, 3))
+@pytest.mark.parametrize("name", QUICK_FIRST)
 def test_no_mutant_of_any_program_is_proved(name: str) -> None:
     made = library_of(name)
     survivors = [
@@ -82,7 +82,7 @@ def alone(made: Library, program: Program) -> Library:
     return replace(made, functions=(program,), truths={base: made.truths[base]})
 
 
-@pytest.mark.parametrize("name", thinned(QUICK_FIRST, 3))
+@pytest.mark.parametrize("name", QUICK_FIRST)
 def test_no_mutant_of_any_set_up_is_proved(name: str) -> None:
     made = library_of(name)
     made = replace(made, setup=lectured(made))  # what motions need is checked by their orders
