@@ -227,9 +227,10 @@ def _vanishes(gap: Any) -> bool:
 
 def _sentence(library: Library, program: Program, fault: tuple[str, Any]) -> str:
     name, gap = fault
+    size = float(arb(gap) if isinstance(gap, fmpq) else gap)
     base = program.name.removesuffix(JACOBIAN)
     steps = ", ".join(f"'{step}'" for step in library.truths[base].steps)
     return (
         f"scene '{library.known.scene.name}': function '{program.name}' must satisfy lecture step "
-        f"{steps} exactly, but '{name}' is off by {float(gap):.3g} at a random exact point"
+        f"{steps} exactly, but '{name}' is off by {size:.3g} at a random exact point"
     )
