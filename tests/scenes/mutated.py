@@ -1,8 +1,10 @@
 """Every number and formula of a scene file changed in turn: what does nobody listen to?
 
 An entry is heard if some change of it changes the emitted C, or is refused or warned about. What
-is not heard must not matter: the range of what is no argument, or, in a machine, an entry without
-which a cloud of particles has the same answers.
+is not heard must not matter: the range of what is no argument; in a machine, an entry without which
+a cloud of particles has the same answers; of one body, an entry without which the lecture's
+equations have the same answers, and which is heard as soon as vectors known to be 0 are arguments:
+a body on which no moment acts may not need all of its inertia.
 """
 
 import tomllib
@@ -15,12 +17,16 @@ from mpmath import mp, mpf
 
 from derive.c_text import PRECISIONS
 from derive.check.particles import _of_cloud as of_cloud
+from derive.check.particles import digits
 from derive.cloud import answers
 from derive.cloud.series import DIGITS
 from derive.cloud.small import slopes
 from derive.emit import c_files
+from derive.equations import equations
 from derive.library import Library, library
+from derive.machine.mechanism import in_terms, truth_of
 from derive.machine.words import MATRICES
+from derive.reference import reference
 from derive.sample import samples
 from derive.scene import Machine, Scene, SceneError, parse_scene
 
@@ -44,8 +50,24 @@ def ignored(text: str, name: str = "example") -> list[str]:
         heard = any(_said(other, name) != before for other in others)
         named = {CALLED.get(str(key), key) for key in path}
         if not heard and not ("range" in path and not named & taken):
-            found += [".".join(map(str, path))] * any(_matters(made, o, name) for o in others)
+            one = isinstance(made.known.scene, Scene) and not _heard_if_freed(document, path, name)
+            matters = one or any(_matters(made, o, name) for o in others)
+            found += [".".join(map(str, path))] * matters
     return found
+
+
+def _heard_if_freed(document: Any, path: Path, name: str) -> bool:
+    """Tell whether an entry of one body is heard where no known vector of it is 0."""
+    known = {k: v for k, v in document.get("known", {}).items() if not _is_zero(v)}
+    freed = {**document, "known": known}
+    before = _said(written(freed), name)
+    values = [value for at, value in _leaves(freed, ()) if at == path]
+    others = [written(_with(freed, path, o)) for value in values for o in _others(value)]
+    return any(_said(other, name) != before for other in others)
+
+
+def _is_zero(value: Any) -> bool:
+    return isinstance(value, list) and all(str(x).strip("-+0. ") == "" for x in value)
 
 
 def _said(text: str, name: str) -> tuple[str, ...]:
@@ -58,16 +80,25 @@ def _said(text: str, name: str) -> tuple[str, ...]:
 
 
 def _matters(made: Library, text: str, name: str) -> bool:
-    """Tell whether the particles of a machine see a change; of one body, every change matters."""
-    other, scene = parse_scene(text, name), made.known.scene
-    if not isinstance(other, Machine) or not isinstance(scene, Machine):
-        return True
+    """Tell whether a change changes the answers at a sample; where there are none, it does."""
+    other = parse_scene(text, name)
     (sample,) = samples(made.known, PRECISIONS[1], 1, 0).each[:1]
-    first, second = (_by_particles(made, one, sample.values) for one in (scene, other))
+    by = _by_particles if isinstance(other, Machine) else _by_equations
+    first, second = (by(made, one, sample.values) for one in (made.known.scene, other))
     with mp.workdps(DIGITS):
         pairs = list(zip(first, second, strict=True))
         size = max((abs(x) for pair in pairs for x in pair), default=mpf(0))
         return not pairs or any(abs(a - b) > AGREE * size for a, b in pairs)
+
+
+def _by_equations(made: Library, scene: Scene, values: Mapping[str, float]) -> list[Any]:
+    """Return the answers of one body that the lecture's equations have, in balls."""
+    known, found = in_terms(scene), []
+    for base in made.truths:
+        fact = truth_of(known, base)
+        solved = reference(equations(known, fact), values, ())
+        found += [solved[c].value for q in fact.outputs for c in q.components]
+    return [digits(x) for x in found]
 
 
 def _by_particles(made: Library, scene: Machine, values: Mapping[str, float]) -> list[Any]:

@@ -1,11 +1,12 @@
 """No number and no formula of a scene file is ignored: a change changes the code or is refused."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
-from sympy import zeros
+from sympy import eye, zeros
 
 from derive import specialise
 from derive.scene import CATALOGUE
@@ -67,6 +68,11 @@ body       = { kind = "spherical", moment = 1, mass = 2 }
 position   = { position = { range = [-1, 1] }, velocity = { range = [-1, 1] } }
 known      = { force = ["F", "0", "0.5*F"], moment = [0, 0.5, 0] }
 """
+UNTURNED = """
+wanted     = ["acceleration"]
+body       = { kind = "spherical", moment = 2 }
+known      = { moment = [0, "0", 0] }
+"""
 SHORT = {
     "omega_by_formulas": OMEGA_BY_FORMULAS,
     "omega_dot_by_formulas": OMEGA_DOT_BY_FORMULAS,
@@ -86,6 +92,16 @@ def test_nothing_in_a_short_scene_is_ignored(name: str) -> None:
 def test_a_force_that_is_left_out_is_noticed(monkeypatch: Any) -> None:
     monkeypatch.setattr(specialise, "_force", lambda *_: zeros(3, 1))
     assert {"known.force.0", "known.force.1", "known.force.2"} <= set(ignored(FORCE))
+
+
+def test_an_inertia_on_which_no_moment_acts_does_not_matter() -> None:
+    assert ignored(UNTURNED) == []
+
+
+def test_an_inertia_that_is_left_out_is_noticed(monkeypatch: Any) -> None:
+    before = specialise.motion
+    monkeypatch.setattr(specialise, "motion", lambda *of: replace(before(*of), tensor=eye(3)))
+    assert "body.moment" in ignored(UNTURNED)
 
 
 @pytest.mark.long
