@@ -4,6 +4,11 @@
 its templates, JSON by its writer.
 """
 
+from collections.abc import Mapping
+
+LONGEST_SHOWN, MOST_NAMED = 60, 6
+"""Characters of a formula and names of a place in a sentence: more would hide what it says."""
+
 
 def visible(text: str) -> str:
     r"""Return one line that a terminal shows and does not obey.
@@ -12,6 +17,27 @@ def visible(text: str) -> str:
     a\x1b[31mb\nc
     """
     return "".join(c if c.isprintable() else _spelled(c) for c in text)
+
+
+def brief(value: object) -> str:
+    """Return a formula or a name as a sentence shows it, cut off if it is long.
+
+    >>> brief("m*g"), len(brief("m" * 200))
+    ('m*g', 60)
+    """
+    text = str(value)
+    return text if len(text) <= LONGEST_SHOWN else f"{text[: LONGEST_SHOWN - 3]}..."
+
+
+def at_place(values: Mapping[str, float]) -> str:
+    """Return words for a place in a sentence, "" for none: at most a handful of its quantities.
+
+    >>> at_place({"a": 0.0, "b": 1.25})
+    ' at a = 0, b = 1.25'
+    """
+    each = [f"{name} = {x:.6g}" for name, x in values.items()]
+    more = ", ..." if len(each) > MOST_NAMED else ""
+    return f" at {', '.join(each[:MOST_NAMED])}{more}" if each else ""
 
 
 def _spelled(character: str) -> str:

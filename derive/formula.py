@@ -7,6 +7,7 @@ nothing downstream has to guess. Python never evaluates a formula's text.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -189,6 +190,7 @@ FLOATS: Arithmetic = {
     "sqrt": math.sqrt,
 }
 
+_LONG_TAIL = re.compile("(?<=[0-9])0{16,300}$")
 _SUM, _PRODUCT, _SIGNED, _POWER, _ATOM = range(5)
 _SIGNS = {
     "add": (" + ", _SUM),
@@ -203,7 +205,7 @@ def _text(formula: Formula) -> tuple[str, int]:
     if formula.operator == "number":
         value = formula.number
         binding = _SIGNED if value < 0 else _ATOM
-        return str(value), binding if value.denominator == 1 else _PRODUCT
+        return _digits(value), binding if value.denominator == 1 else _PRODUCT
     if formula.operator == "symbol":
         return formula.name, _ATOM
     if formula.operator in FUNCTIONS:
@@ -215,6 +217,12 @@ def _text(formula: Formula) -> tuple[str, int]:
     sign, binding = _SIGNS[formula.operator]
     left, right = formula.operands
     return _wrapped(left, binding) + sign + _wrapped(right, binding + 1), binding
+
+
+def _digits(value: Fraction) -> str:
+    """Return a number as ``parse`` reads it back, many zeros at its end as a power of ten."""
+    parts = [str(value.numerator), str(value.denominator)][: 1 if value.denominator == 1 else 2]
+    return "/".join(_LONG_TAIL.sub(lambda zeros: f"e{len(zeros[0])}", part) for part in parts)
 
 
 def _wrapped(formula: Formula, binding: int) -> str:

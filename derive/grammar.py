@@ -16,6 +16,7 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 
+from derive.escape import brief
 from derive.formula import FUNCTIONS, ZERO, Formula, FormulaError, apply, number, symbol
 
 LONGEST_TEXT = 1000
@@ -74,7 +75,7 @@ def _tokens(text: str) -> Tokens:
 
 
 def _expected(what: str, found: Token) -> FormulaError:
-    shown = f"'{found.text}'" if found.text else "the end"
+    shown = f"'{brief(found.text)}'" if found.text else "the end"
     return FormulaError(f"at {found.place}: expected {what}, found {shown}")
 
 

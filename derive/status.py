@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.arithmetic import extended, paired
+from derive.escape import at_place
 from derive.program import Operand, Program, run
 
 RIGHT, PARAMETER, MASS, LENGTH, INERTIA, CONSTANT = range(6)
@@ -72,12 +73,12 @@ def refusal(program: Program, given: Sequence[float]) -> str:
     """Return why set-up in double refuses these parameters, a clause; "" if it does not."""
     columns = [np.array([x]) for x in given]
     names = [c for q in program.inputs for c in q.components]
-    at = ", ".join(f"{name} = {x:g}" for name, x in zip(names, given, strict=True))
+    at = at_place(dict(zip(names, given, strict=True)))
     status = int(statuses(program, columns, np.float64)[0])
     if status == RIGHT:
         return ""
     for rule in program.rules:
         alone = replace(program, rules=(rule,), results=())
         if rule.status == status == statuses(alone, columns, np.float64)[0]:
-            return f"{rule.says}, and is not so at {at} (status {status})"
-    return f"{SAYS[status]} at {at} (status {status})"
+            return f"{rule.says}, and is not so{at} (status {status})"
+    return f"{SAYS[status]}{at} (status {status})"

@@ -10,6 +10,8 @@ import re
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from derive.escape import brief
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -86,29 +88,30 @@ def dimension(unit: str) -> Dimension:
     >>> dimension("N m") == dimension("kg m^2/s^2")
     True
     """
-    result, place, divide = NONE, 0, False
+    result, place, divide, shown = NONE, 0, False, brief(unit)
     while True:
         match = _FACTOR.match(unit, place)
         if match is None:
-            raise UnitError(f"unit '{unit}' cannot be read at {place + 1}")
+            raise UnitError(f"unit '{shown}' cannot be read at {place + 1}")
         power = int(match["power"] or 1) * (-1 if divide else 1)
-        result = multiplied(result, raised(_unit(match["name"], unit), Fraction(power)))
+        result = multiplied(result, raised(_unit(match["name"], shown), Fraction(power)))
         place = match.end()
         if place == len(unit):
             return result
         separator = _SEPARATOR.match(unit, place)
         if separator is None:
-            raise UnitError(f"unit '{unit}' cannot be read at {place + 1}")
+            raise UnitError(f"unit '{shown}' cannot be read at {place + 1}")
         if divide and "/" not in separator.group():
-            raise UnitError(f"unit '{unit}' is ambiguous: divide by each factor with its own '/'")
+            raise UnitError(f"unit '{shown}' is ambiguous: divide by each factor with its own '/'")
         divide, place = "/" in separator.group(), separator.end()
 
 
-def _unit(name: str, unit: str) -> Dimension:
+def _unit(name: str, shown: str) -> Dimension:
     if name in REFUSED:
-        raise UnitError(f"unit '{unit}' is not coherent SI: give '{REFUSED[name]}', not '{name}'")
+        raise UnitError(f"unit '{shown}' is not coherent SI: give '{REFUSED[name]}', not '{name}'")
     if name not in UNITS:
-        raise UnitError(f"unit '{unit}' has an unknown part '{name}' (known: {', '.join(UNITS)})")
+        known = ", ".join(UNITS)
+        raise UnitError(f"unit '{shown}' has an unknown part '{brief(name)}' (known: {known})")
     return UNITS[name]
 
 
@@ -192,7 +195,8 @@ def dimension_of(formula: Formula, dims: Mapping[str, Dimension]) -> Dimension |
         case "sqrt":
             return raised(parts[0], Fraction(1, 2))
     if parts[0] != NONE:
-        raise UnitError(f"'{formula}' needs an angle or a plain number, not {spelled(parts[0])}")
+        rule = f"needs an angle or a plain number, not {spelled(parts[0])}"
+        raise UnitError(f"'{brief(formula)}' {rule}")
     return NONE
 
 
@@ -200,7 +204,7 @@ def _agreed(formula: Formula, dims: Mapping[str, Dimension]) -> Dimension | None
     left, right = (dimension_of(part, dims) for part in formula.operands)
     if left is None or right is None or left == right:
         return right if left is None else left
-    first, second = formula.operands
+    first, second = map(brief, formula.operands)
     raise UnitError(
-        f"'{formula}' joins '{first}' in {spelled(left)} and '{second}' in {spelled(right)}"
+        f"'{brief(formula)}' joins '{first}' in {spelled(left)} and '{second}' in {spelled(right)}"
     )

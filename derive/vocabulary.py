@@ -11,6 +11,7 @@ from typing import Any
 
 from sympy import Abs, Expr, Matrix, Rational, Symbol, cos, pi, sin, sqrt, tan
 
+from derive.escape import brief
 from derive.formula import Formula
 from derive.program import Quantity
 from derive.scene import Given, Scene, SceneError
@@ -58,7 +59,7 @@ class Vocabulary:
         found = _OPERATORS[formula.operator](*map(self.expression, formula.operands))
         if formula.operator == "sqrt" and found.has(Abs):
             rule = "is of a square, so that its sign is lost and its slope jumps"
-            raise SceneError(f"the root '{formula}' {rule}; write it without the root")
+            raise SceneError(f"the root '{brief(formula)}' {rule}; write it without the root")
         return found
 
 

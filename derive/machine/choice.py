@@ -177,7 +177,7 @@ def undetermined(balances: Balances, wanted: frozenset[int]) -> str:
         joint = _joint(balances, k)
         if joint:
             also = " and ".join(f"'{names[n]}'" for n in (k, *joint))
-            told = [str(row.balance) for row in holding if k in row.holds][:3]
+            told = [str(row.balance) for row in holding if k in row.holds][:2]
             return (
                 f"unknowns {also} cannot be told apart: every balance that holds '{names[k]}' "
                 f"holds the others too, in one combination ({'; '.join(told)})"

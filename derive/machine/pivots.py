@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from sympy import Expr, Matrix, Symbol
 
+from derive.escape import at_place
 from derive.machine.sweep import Array, Field, Ranges, block, field_at, weakest
 from derive.scene import SceneError
 
@@ -82,5 +83,4 @@ def where(place: Mapping[str, float]) -> str:
     >>> where({"a": 0.0, "b": 1.25})
     'at a = 0, b = 1.25'
     """
-    shown = [f"{name} = {x:.4g}" for name, x in place.items()]
-    return f"at {', '.join(shown)}"
+    return at_place({name: float(f"{x:.4g}") for name, x in place.items()}).strip()

@@ -10,7 +10,7 @@ from random import Random
 from typing import Any
 
 from mpmath import mp, mpf
-from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, pi, sin, tan
+from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, nan, pi, sin, tan, zoo
 
 from derive.machine.words import Words
 from derive.program import Quantity
@@ -41,6 +41,8 @@ class Probe:
         with mp.workdps(DIGITS):
             if e is pi:
                 return +mp.pi
+            if e in (nan, zoo):
+                raise ZeroDivisionError
             match e:
                 case Rational():
                     return mpf(int(e.p)) / int(e.q)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from derive.escape import at_place, brief
 from derive.scene.declaration import SceneError
 from derive.scene.machine import INERTIAL, Force, Spring
 from derive.scene.safe import negative, ranges_of, values_of
@@ -25,10 +26,8 @@ def require_sizes(machine: Machine) -> None:
     for label, size in _sizes(machine):
         place = negative(size, ranges)
         if place is not None:
-            at = ", ".join(f"{name} = {x:.6g}" for name, x in place.items())
-            raise SceneError(
-                f"{label} must not be negative, but '{size}' is{f' at {at}' if at else ''}"
-            )
+            found = f"'{brief(size)}' is{at_place(place)}"
+            raise SceneError(f"{label} must not be negative, but {found}")
 
 
 def beyond(machine: Machine) -> Iterator[str]:

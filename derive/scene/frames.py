@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from derive.escape import brief
 from derive.formula import ZERO
 from derive.scene.declaration import SceneError
 from derive.scene.machine import INERTIAL, Frame, Rolling
@@ -41,9 +42,9 @@ def read_frames(given: Table, scalars: Scalars, bodies: tuple[str, ...]) -> tupl
     if waiting:
         name, entry = next(iter(waiting.items()))
         parent = str(entry.entries.get("parent"))
-        hint = nearest(parent, [*found, *waiting])
-        raise SceneError(f"frame '{name}' has the parent '{parent}', which no chain of frames"
-                         f" carries{'' if parent in waiting else hint}")  # fmt: skip
+        hint = "" if parent in waiting else nearest(parent, [*found, *waiting])
+        rule = "which no chain of frames carries"
+        raise SceneError(f"frame '{name}' has the parent '{brief(parent)}', {rule}{hint}")
     return tuple(found.values())
 
 

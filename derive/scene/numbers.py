@@ -11,6 +11,7 @@ from fractions import Fraction
 from itertools import islice, product
 from typing import TYPE_CHECKING
 
+from derive.escape import at_place, brief
 from derive.formula import FLOATS, ONE, ZERO, Formula, evaluate, symbols
 from derive.scene.declaration import SceneError
 
@@ -51,7 +52,7 @@ def value(formula: Formula, values: Mapping[str, float], label: str) -> float:
     except (ArithmeticError, ValueError):
         found = math.nan
     if not math.isfinite(found):
-        raise SceneError(f"{label} = '{formula}' has no value{_where(values, (formula,))}")
+        raise SceneError(f"{label} = '{brief(formula)}' has no value{_where(values, (formula,))}")
     return found
 
 
@@ -68,8 +69,7 @@ def positive(formula: Formula, label: str, parameters: tuple[Parameter, ...]) ->
 def _where(values: Mapping[str, float], formulas: Iterable[Formula]) -> str:
     """Return the parameter values behind a number, as an error shows them."""
     used = dict.fromkeys(name for formula in formulas for name in symbols(formula))
-    shown = ", ".join(f"{name} = {values[name]:g}" for name in used)
-    return f" at {shown}" if shown else ""
+    return at_place({name: values[name] for name in used})
 
 
 def tensor(inertia: Sextuple, values: Mapping[str, float], label: str) -> Matrix:
@@ -181,9 +181,7 @@ def _whole(inertia: Entries) -> Sextuple | None:
     return xx, yy, zz, xy, xz, yz
 
 
-def member_doubts(
-    label: str, inertia: Entries, parameters: tuple[Parameter, ...]
-) -> Iterator[str]:
+def member_doubts(label: str, inertia: Entries, parameters: tuple[Parameter, ...]) -> Iterator[str]:
     """Yield a sentence on the first inertia of a machine's body that is indefinite, or no masses'.
 
     Nothing is said of a wheel with its axial moment alone: its carrier counts the others.

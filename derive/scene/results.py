@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from derive.escape import brief
 from derive.formula import substitute
 from derive.grammar import parse
 from derive.scene.declaration import SceneError
@@ -67,7 +68,7 @@ def _spelling(value: object, label: str, found: Dimension) -> str:
     except UnitError as error:
         raise SceneError(f"{label}: {error}") from None
     if asked != found:
-        rule = f"a formula in {spelled(found)} cannot be given in '{spelling}'"
+        rule = f"a formula in {spelled(found)} cannot be given in '{brief(spelling)}'"
         raise SceneError(f"{label}: {rule}")
     return spelling
 
@@ -104,7 +105,7 @@ def read_asked(
     for entry in value:
         name, answers = _entry(entry, known_)
         if name in asked:
-            raise SceneError(f"wanted has '{name}' twice")
+            raise SceneError(f"wanted has '{brief(name)}' twice")
         asked[identifier(name, "a wanted function")] = answers
     functions(asked)
     return asked
@@ -119,10 +120,11 @@ def _entry(entry: object, known_: Sequence[str]) -> tuple[str, tuple[str, ...]]:
     answers = tuple(p.strip() for p in parts.split(",")) if colon else (alone,)
     for answer in answers:
         if colon and answer in OF_MACHINES:
-            raise SceneError(f"wanted has '{answer}' within '{name}', but a step stands alone")
+            rule = f"within '{brief(name)}', but a step stands alone"
+            raise SceneError(f"wanted has '{answer}' {rule}")
         if answer not in known_:
             hint = resembling(answer, known_)
-            raise SceneError(f"wanted has '{answer}', which is no answer{hint}")
+            raise SceneError(f"wanted has '{brief(answer)}', which is no answer{hint}")
     return name, answers
 
 

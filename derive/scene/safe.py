@@ -15,6 +15,7 @@ from random import Random
 from typing import TYPE_CHECKING, Any
 
 from derive.added import added
+from derive.escape import at_place, brief
 from derive.formula import FLOATS, Formula, apply, evaluate, symbols
 from derive.scene.declaration import SceneError
 from derive.scene.interval import INTERVALS, Interval
@@ -123,21 +124,20 @@ def _require(label: str, kind: str, part: Formula, ranges: Ranges) -> None:
     used = symbols(part)
     if any(name not in ranges for name in used):
         if kind != "radicand" and _nothing(part):
-            raise SceneError(f"{label}: the {kind} '{part}' is 0 whatever its symbols are")
+            raise SceneError(f"{label}: the {kind} '{brief(part)}' is 0 whatever its symbols are")
         return
     box = {name: ranges[name] for name in used}
     place = _broken(part, box) if kind == "radicand" else _zero(part, box)
     if place is None:
         return
-    at = ", ".join(f"{name} = {x:.6g}" for name, x in place.items())
-    where = f" at {at}" if at else ""
+    where = at_place(place)
     if kind == "radicand":
         found = _sized(part, place)[0]
         raise SceneError(
-            f"{label}: the square root of '{part}' needs what is not negative, but it is "
+            f"{label}: the square root of '{brief(part)}' needs what is not negative, but it is "
             f"{found:.6g}{where}"
         )
-    raise SceneError(f"{label}: the {kind} '{part}' must not vanish, but does{where}")
+    raise SceneError(f"{label}: the {kind} '{brief(part)}' must not vanish, but does{where}")
 
 
 def _nothing(part: Formula) -> bool:

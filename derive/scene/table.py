@@ -11,6 +11,7 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from derive.escape import brief
 from derive.formula import Formula, FormulaError, number, symbols
 from derive.grammar import LARGEST_DECIMAL_EXPONENT, parse
 from derive.scene.declaration import SceneError, Triple
@@ -132,15 +133,14 @@ def shown(value: object) -> str:
         return f"a list of {len(value)}"
     if isinstance(value, int) and value.bit_length() > LONGEST_INTEGER_BITS:
         return f"a number of {value.bit_length()} bits"
-    text = repr(value) if isinstance(value, str) else str(value).lower()
-    return text if len(text) <= 60 else f"{text[:57]}..."
+    return brief(repr(value) if isinstance(value, str) else str(value).lower())
 
 
 def word(value: object, label: str, known: Iterable[str]) -> str:
     """Return a value that must be one of a few words."""
     known = tuple(known)
     if not isinstance(value, str) or value not in known:
-        choice = f"one of {', '.join(known)}" if len(known) > 1 else f"'{known[0]}'"
+        choice = f"one of {', '.join(known)}" if len(known) > 1 else f"'{''.join(known)}'"
         raise SceneError(f"{label} must be {choice}, not {shown(value)}")
     return value
 
@@ -216,7 +216,9 @@ def formula(value: object, label: str, scope: Scope, expected: Dimension) -> For
     except UnitError as error:
         raise SceneError(f"{label}: {error}") from None
     if found is not None and found != expected and read.operator != "number":
-        raise SceneError(f"{label} = '{read}' is in {spelled(found)}, not {spelled(expected)}")
+        raise SceneError(
+            f"{label} = '{brief(read)}' is in {spelled(found)}, not {spelled(expected)}"
+        )
     return read
 
 
@@ -232,8 +234,8 @@ def _check_symbols(read: Formula, label: str, scope: Scope) -> None:
         if name in scope.others:
             raise SceneError(f"{label} uses '{name}', {scope.others[name]}; {scope.rule}")
         if name not in scope.dimensions:
-            hint = nearest(name, scope.dimensions)
-            raise SceneError(f"{label} uses '{name}', which the scene does not declare{hint}")
+            rule = f"which the scene does not declare{nearest(name, scope.dimensions)}"
+            raise SceneError(f"{label} uses '{brief(name)}', {rule}")
 
 
 def triple(value: object, label: str, scope: Scope, expected: Dimension) -> Triple:

@@ -7,6 +7,8 @@ equations have the same answers, and which is heard as soon as vectors known to 
 a body on which no moment acts may not need all of its inertia.
 """
 
+import json
+import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -152,16 +154,20 @@ def _with(document: Any, path: Path, value: Any) -> Any:
 
 def written(document: dict[str, Any]) -> str:
     """Return a document as TOML, a line an entry."""
-    return "".join(f"{key} = {_inline(value)}\n" for key, value in document.items())
+    return "".join(f"{_key(key)} = {_inline(value)}\n" for key, value in document.items())
 
 
 def _inline(value: Any) -> str:
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {_inline(v)}" for key, v in value.items()) + " }"
+        return "{ " + ", ".join(f"{_key(k)} = {_inline(v)}" for k, v in value.items()) + " }"
     if isinstance(value, list):
         return "[" + ", ".join(map(_inline, value)) + "]"
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    return str(value)
+        return json.dumps(value, ensure_ascii=False)
+    return str(value).lower().removesuffix("inity")  # a Decimal says Infinity, TOML says inf
+
+
+def _key(key: str) -> str:
+    return key if re.fullmatch("[A-Za-z0-9_-]+", key) else json.dumps(key, ensure_ascii=False)
