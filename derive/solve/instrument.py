@@ -1,7 +1,7 @@
 """A scene as something to read numbers from: its emitted CasADi functions, called by name."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -28,6 +28,8 @@ class Instrument:
 
     library: Library
     module: ModuleType
+    built: dict[str, Any] = field(default_factory=dict, compare=False)
+    """The functions that were asked for, each made once."""
 
     @property
     def name(self) -> str:
@@ -83,12 +85,13 @@ class Instrument:
         return tuple(says for label, own in each for says in member_doubts(label, own, pinned))
 
     def _called(self, program: Program, given: Values) -> list[Any]:
-        built = getattr(self.module, program.name)()
+        if program.name not in self.built:
+            self.built[program.name] = getattr(self.module, program.name)()
         arguments = [self._column(q, given) for q in program.inputs if q.name != "constants"]
         if any(q.name == "constants" for q in program.inputs):
             of_setup = [self._value(q, q.name, given) for q in self.library.setup.inputs]
             arguments.insert(0, casadi.vertcat(*of_setup))
-        results = built.call(arguments)
+        results = self.built[program.name].call(arguments)
         sparse = program.sparsity or {}
         found = [
             x

@@ -9,7 +9,7 @@ from derive.arithmetic import working
 from derive.flows.steps import step_lie, step_lie_compensated, step_rk4, step_rk4_compensated
 from derive.program import Program, run
 from tests.flows.systems import CONTEXT, EVERY, Values, at, mpf, start, system, without_slopes
-from tests.flows.test_step_jacobian import CASES, EXACTLY
+from tests.flows.test_step_jacobian import EXACTLY, case
 
 pytestmark = pytest.mark.long
 
@@ -25,7 +25,7 @@ def with_remainder(values: Values) -> dict[str, Any]:
 @pytest.mark.parametrize("name", [*EVERY, "hung"])
 @pytest.mark.parametrize("kind", PAIRS)
 def test_it_is_the_same_step(kind: str, name: str) -> None:
-    given, values = CASES[name]
+    given, values = case(name)
     if kind == "lie" and given.place("attitude") is None:
         pytest.skip("no quaternion, no such step")
     plain, carrying = (make(without_slopes(given)) for make in PAIRS[kind])
@@ -63,7 +63,7 @@ def test_a_long_run_of_small_steps_keeps_its_digits(kind: str) -> None:
 
 
 def test_an_attitude_off_the_sphere_is_brought_back() -> None:
-    given, values = CASES["principal"]
+    given, values = case("principal")
     off = with_remainder(values)
     off |= {c: v * mpf("1.01") for c, v in off.items() if c.startswith("attitude_")}
     for _, make in PAIRS.values():

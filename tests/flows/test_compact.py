@@ -28,6 +28,7 @@ from derive.signature import Names, prototype
 from tests.flows.slopes import with_slopes
 from tests.flows.systems import EVERY, Values, at, mpf, start, system, without_slopes
 from tests.flows.test_step_jacobian import EXACTLY, rounding
+from tests.made import thinned
 
 TEXT_OF_CORTEX_M4F = 3 * 1024  # bytes, tables and rates included
 KINDS = {"step": step_rk4, "jacobian": step_rk4_jacobian}
@@ -110,7 +111,7 @@ def floats(values: Values, precision: Precision) -> dict[str, Any]:
 
 @pytest.mark.parametrize("precision", [F32, F64], ids=lambda p: p.name)
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("name", ["principal", "rigid_body"])
+@pytest.mark.parametrize("name", thinned(["principal", "rigid_body"], 2))
 def test_c_gives_the_bits_of_numpy_also_over_its_inputs(
     name: str, kind: str, precision: Precision, tmp_path: Path
 ) -> None:

@@ -9,7 +9,12 @@ from derive.search import Sampling
 from derive.stated import figures
 from tests.made import library_of
 
-TRIALS = sorted((Path(__file__).parents[1] / "data" / "trials").glob("*.toml"))
+CATS = ("bent_cat", "straight_cat")
+"""Trials that take seconds each, in the longer run."""
+TRIALS = [
+    pytest.param(path, marks=pytest.mark.long) if path.stem in CATS else path
+    for path in sorted((Path(__file__).parents[1] / "data" / "trials").glob("*.toml"))
+]
 FEW = Sampling(samples=256, rounds=2, batch=128, balls=2, motion_balls=2, corners=2)
 ABSURD = 2e3
 """In u: ten times what is stated of any function of the catalogue."""

@@ -10,7 +10,7 @@ from derive.check.compiler import find_compiler
 from derive.check.emitted import Files
 from derive.check.verdict import Verdict
 from tests.generated.mutants import printed
-from tests.made import library_of
+from tests.made import library_of, thinned
 
 FEW = 4
 
@@ -27,7 +27,7 @@ def rows(scene: str, workshop: Path) -> tuple[Verdict, ...]:
     return tuple(check_library(made, texts, workshop, find_compiler(), FEW))
 
 
-@pytest.mark.parametrize("scene", ["attitude", "heavy_top", "eulers_disk"])
+@pytest.mark.parametrize("scene", thinned(["attitude", "eulers_disk", "heavy_top"], 2))
 def test_a_row_that_holds_has_compared_something(scene: str, workshop: Path) -> None:
     held = [v for v in rows(scene, workshop) if v.outcome == "holds"]
     assert [v for v in held if v.says.startswith("0 ")] == []

@@ -2,6 +2,7 @@
 
 import hashlib
 from fractions import Fraction
+from functools import cache
 
 import numpy as np
 import pytest
@@ -13,12 +14,18 @@ from derive.sample import CORNERS, LARGE_SPIN, Samples, samples, varying
 from derive.scene import catalogue, load
 
 
+@cache
 def scene(name: str) -> Known:
     return in_terms(load(name))
 
 
 def drawn(name: str, precision: Precision) -> Samples:
-    return samples(scene(name), precision, 6, 2)
+    return _drawn(name, PRECISIONS.index(precision))
+
+
+@cache
+def _drawn(name: str, place: int) -> Samples:
+    return samples(scene(name), PRECISIONS[place], 6, 2)
 
 
 @pytest.mark.parametrize("name", catalogue())

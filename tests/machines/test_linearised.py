@@ -1,17 +1,24 @@
 """The matrices of small motion stand as a reader expects: row by coordinate, masses positive."""
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from derive.solve.instrument import opened
+from derive.solve.instrument import Instrument, opened
+from tests.made import thinned
 
 SCENES = Path(__file__).parent / "scenes"
 
 
+@cache
+def instrument(source: str) -> Instrument:
+    return opened(source)
+
+
 def matrix(source: str, name: str) -> np.ndarray:
-    found = opened(source)
+    found = instrument(source)
     function = next(f for f in found.library.functions if any(q.name == name for q in f.outputs))
     ranges = {c: (q.low or 0, q.high or 0) for q in found.quantities() for c in q.components}
     middle = {c: float(low + high) / 2 for c, (low, high) in ranges.items()}
@@ -22,14 +29,17 @@ def matrix(source: str, name: str) -> np.ndarray:
     return np.array(values).reshape(size, size).T
 
 
-@pytest.mark.parametrize("name", ["gravity_gradient", "monorail", "hartnell", "rotor_whirl"])
+OF_SMALL_MOTION = ("rotor_whirl", "monorail", "hartnell", "gravity_gradient")
+
+
+@pytest.mark.parametrize("name", thinned(OF_SMALL_MOTION, 2))
 def test_the_masses_of_small_motion_are_positive_and_on_the_diagonal(name: str) -> None:
     mass = matrix(str(SCENES / f"{name}.toml"), "mass_matrix")
     assert np.all(np.diag(mass) > 0)
     assert np.all(np.diag(mass) >= 0.999 * np.abs(mass).max(axis=1))
 
 
-@pytest.mark.parametrize("name", ["gravity_gradient", "monorail", "rotor_whirl"])
+@pytest.mark.parametrize("name", thinned(["rotor_whirl", "monorail", "gravity_gradient"], 3))
 def test_gyroscopic_terms_of_uncoupled_masses_do_no_work(name: str) -> None:
     """Two coordinates that only gyroscopic terms couple feel them with opposite signs."""
     damping = matrix(str(SCENES / f"{name}.toml"), "damping_matrix")

@@ -111,7 +111,10 @@ def test_a_step_brings_every_quaternion_back_to_length_one(name: str, precision:
 @pytest.mark.parametrize(
     ("wanted", "emission", "says"),
     [
-        ("step_rk4_tangent", "fast", "is over the errors of one quaternion, and the state has 2"),
+        pytest.param(
+            "step_rk4_tangent", "fast", "is over the errors of one quaternion, and the state has 2",
+            marks=pytest.mark.long,
+        ),
         ("step_rk4", "compact", "is for one quaternion at most, and the state has 2"),
     ],
 )

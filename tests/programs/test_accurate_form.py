@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from derive.scale import measured_outputs
 from derive.scene import SceneError, load, parse_scene
 from derive.scene.wanted import ATTITUDES, OF_MACHINES, WANTED, moves
 from tests.generated.mutants import printed
+from tests.made import thinned
 
 PARAMETERS = [
     Fraction(n, 64) for n in (90, 110, 125, 7, -5, 3)
@@ -33,6 +35,7 @@ ROUNDED_ONCE = 0.501
 CANCELS_TO = Fraction(1, 10**4)
 
 
+@cache
 def made(form: str) -> Library:
     text = load("free_body").text
     return library(parse_scene(f'form = "{form}"\n{text}', "free_body"))
@@ -193,13 +196,9 @@ def test_accurate_steps_of_rods_err_by_one_rounding_of_the_state() -> None:
     assert max(step_errors("accurate")) <= ONE_ROUNDING
 
 
-MORE = ("step_rk4_jacobian", "step_lie_tangent", "step_split")
-
-
-LONGER = [pytest.param(name, marks=pytest.mark.long) for name in MORE]
-
-
-@pytest.mark.parametrize("name", ["step_lie", *LONGER])
+@pytest.mark.parametrize(
+    "name", thinned(["step_split", "step_lie", "step_rk4_jacobian", "step_lie_tangent"], 4)
+)
 def test_accurate_steps_have_the_bits_of_their_programs_in_c_and_casadi(
     name: str, tmp_path: Path
 ) -> None:

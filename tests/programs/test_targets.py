@@ -5,7 +5,7 @@ import pytest
 from derive.arithmetic import TRUTHS
 from derive.program import Op, Program, Repeat, every_op, read_by
 from derive.scene import catalogue, load
-from tests.made import library_of
+from tests.made import library_of, thinned
 
 # Flops (+ - * /), divisions, calls of sin and cos of the best forms written by hand.
 TARGETS = {
@@ -18,7 +18,12 @@ TARGETS = {
 }
 
 
-EVERY = [(name, wanted) for name in catalogue() for wanted in load(name).wanted]
+EVERY = [
+    pytest.param(name, wanted, marks=[] if place % 4 == 0 else pytest.mark.long)
+    for place, name in enumerate(catalogue())
+    for wanted in load(name).wanted
+]
+"""Functions of every fourth scene at once, of the others in the longer run."""
 
 
 @pytest.mark.parametrize(("scene", "function"), TARGETS)
@@ -62,7 +67,7 @@ def test_every_input_is_used(scene, function):
     assert all(read & set(q.components) for q in program.inputs)
 
 
-@pytest.mark.parametrize("scene", catalogue())
+@pytest.mark.parametrize("scene", thinned(catalogue(), 4))
 def test_every_constant_is_used(scene):
     library_ = library_of(scene)
     read = {name for p in library_.printed() for name in read_by(p)}

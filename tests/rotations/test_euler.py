@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from derive.scene.wanted import SEQUENCES
+from tests.made import thinned
 from tests.rotations import cases, truth
 from tests.rotations.measured import PRECISIONS, UNIT, Rows, called, error, errors, promise
 from tests.rotations.truth import plain
 
 both = pytest.mark.parametrize("dtype", PRECISIONS)
-each = pytest.mark.parametrize("sequence", SEQUENCES)
+each = pytest.mark.parametrize("sequence", thinned(SEQUENCES, 5))
 
 
 def locked(sequence: str, q: Rows) -> np.ndarray:
