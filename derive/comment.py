@@ -102,12 +102,10 @@ def looked_at(m: Measurement) -> str:
 
 
 def of_what(program: Program) -> str:
-    """Return what errors are a part of: of the largest term, or of the largest component.
+    """Return what errors are a part of: of the largest product, or of the largest component.
 
     Functions without a step of the lecture (motion, attitudes) are measured for rounding alone.
     """
-    if program.steps:
-        return "of the largest term of the sum that the output is"
     if program.name == FLOW:
         return (
             "of kappa times the largest component, by rounding alone (kappa: what changes of the "
@@ -115,9 +113,11 @@ def of_what(program: Program) -> str:
         )
     if any(q.name.endswith(NEXT) for q in program.outputs):
         return (
-            "of the largest component, before or after, or of the largest term of what the step "
-            "adds, by rounding alone"
+            "of the largest component, before or after, or of the largest product of what the "
+            "step adds, by rounding alone"
         )
+    if program.steps:
+        return "of the largest product in the equation, or of the result where it is larger"
     return "of the largest component, by rounding alone"
 
 

@@ -18,8 +18,9 @@ from derive.library import Library
 from derive.machine.mechanism import single
 from derive.motion_error import LONG_FLOATS
 from derive.program import Program, component_names, run
-from derive.reference import BALLS, solution
+from derive.reference import BALLS
 from derive.scene.wanted import SPLITTINGS, TAYLOR, step_of
+from derive.solution import solution
 from derive.truth import truth
 
 BITS = 500

@@ -19,7 +19,8 @@ from derive.stated import figures
 
 METHOD = (
     *("added", "arithmetic", "body_sample", "columns", "draw", "measure", "motion_error"),
-    *("pair_sine", "pairs", "reference", "sample", "scale", "search", "stated"),
+    *("pair_sine", "pairs", "reference", "sample", "scale", "search", "solution"),
+    "stated",
 )
 """The modules that figures are measured by."""
 

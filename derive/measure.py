@@ -2,7 +2,7 @@
 
 The figures stand in the comment blocks and the JSON. The replay is vectorised over samples and the
 same on every machine: float operations in numpy, sine and cosine correctly rounded. An error is
-counted in u (2^-53, 2^-24) times the largest term of the sum that the output is; no term counts
+counted in u (2^-53, 2^-24) times the largest product in the output's equation; none counts
 as smaller than the smallest normal number, below which floats are spaced alike.
 """
 
@@ -21,9 +21,11 @@ from derive.equations import equations
 from derive.largest import largest
 from derive.library import Library
 from derive.program import Program, component_names, run
-from derive.reference import Known, reference
+from derive.reference import BALLS, reference
 from derive.sample import Sample
 from derive.scale import base_of, columns_of
+from derive.solution import Known
+from derive.valuation import Arithmetic
 
 DIGITS = 2  # of a printed figure, rounded up
 
@@ -56,13 +58,17 @@ def upwards(x: float) -> float:
     return math.ceil(x * unit) / unit if step < 0 else math.ceil(x / unit) * unit
 
 
-def references(library: Library, each: Sequence[Sample]) -> Iterator[tuple[Program, list[True_]]]:
+def references(
+    library: Library, each: Sequence[Sample], arithmetic: Arithmetic = BALLS
+) -> Iterator[tuple[Program, list[True_]]]:
     """Yield each function with what it should return, sample by sample."""
     asked = {base: equations(library.known, fact) for base, fact in library.truths.items()}
     for base, question in asked.items():
         own = [f for f in library.functions if base_of(f) == base]
         columns = tuple(dict.fromkeys(c for f in own for c in columns_of(f)))
-        true: list[True_] = [reference(question, s.values, columns) for s in each] if own else []
+        true: list[True_] = (
+            [reference(question, s.values, columns, arithmetic) for s in each] if own else []
+        )
         yield from ((program, true) for program in own)
 
 
@@ -115,7 +121,7 @@ def errors(
 
 @dataclass(frozen=True)
 class Expected:
-    """What a component should be, its largest term, and how far small terms are magnified."""
+    """What a component should be, its largest product, and how far small ones are magnified."""
 
     value: Any
     scale: float
@@ -136,7 +142,7 @@ def expected(program: Program, output: str, true: True_) -> list[Expected]:
 
 
 def error(found: float, should: Expected, precision: Precision) -> float:
-    """Return how far ``found`` is from what it should be, in u of the largest term."""
+    """Return how far ``found`` is from what it should be, in u of the largest product."""
     if not math.isfinite(found):
         return math.inf
     smallest = float(np.finfo(precision.dtype).smallest_normal)

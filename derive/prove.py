@@ -18,8 +18,9 @@ from derive.equations import Equations, equations
 from derive.library import Library
 from derive.program import Op, Program, component_names, read_by, run
 from derive.recorded import needed
-from derive.reference import BALLS, Known, NoValueError, solution
+from derive.reference import BALLS, NoValueError
 from derive.scene.wanted import JACOBIAN
+from derive.solution import Known, solution
 
 POINTS = 2
 TRIES = 50
@@ -71,12 +72,19 @@ FRACTIONS: Table = _INFIX | {
     "power_of_two": _power_of_two,
     "inverse": _inverse,
     "size": lambda _: 1.0,
+    "coefficient": lambda _: 1.0,
     "most": max,
     "unless_zero": lambda size, other: size or other,
 }
 
 WIDE_BALLS: Table = (
-    _INFIX | dict(BALLS) | {"power_of_two": lambda x: x * 0 + 1, "size": lambda _: 1.0}
+    _INFIX
+    | dict(BALLS)
+    | {
+        "power_of_two": lambda x: x * 0 + 1,
+        "size": lambda _: 1.0,
+        "coefficient": lambda _: 1.0,
+    }
 )
 
 

@@ -1,8 +1,9 @@
 """What errors are counted in: how large the terms of every output are, sample by sample.
 
-A function of the lecture: the largest term of the sum that the output is, by the lecture's own
-equations. A step: the largest component, before and after, or the largest term of what the step
-adds. A flow: kappa times its largest component. No scale knows how a program is arranged.
+A function of the lecture: the largest product in the equation that the output solves, multiplied
+out, by the lecture's own equations, or the output itself where it is larger. A step: the largest
+component, before and after, or the largest product of what the step adds. A flow: kappa times its
+largest component. No scale knows how a program is arranged.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -18,9 +19,9 @@ from derive.equations import Equations, equations
 from derive.library import Library
 from derive.pair_sine import PI
 from derive.program import Program, Quantity, component_names
-from derive.reference import Known as Solved
-from derive.reference import solution
 from derive.scene.wanted import JACOBIAN
+from derive.solution import Known as Solved
+from derive.solution import solution
 
 PLAN = "plan"
 STATE_RATE = "state_rate"
@@ -71,6 +72,7 @@ DOUBLES: dict[str, Callable[..., Any]] = {
     "pi": lambda: float(PI),
     "inverse": _inverse,
     "size": np.abs,
+    "coefficient": lambda products: reduce(np.maximum, map(np.abs, products)),
     "most": np.maximum,
     "unless_zero": lambda size, other: np.where(size == 0, other, size),
 }
@@ -115,7 +117,7 @@ def columns_of(program: Program) -> tuple[str, ...]:
 
 
 def lecture_scales(by: Sizing, program: Program, wide: Wide) -> list[Column]:
-    """Return the largest term of each component of a function of the lecture."""
+    """Return the largest product in the equation of each component of a function of the lecture."""
     found = solution(by.asked[base_of(program)], wide, columns_of(program), DOUBLES)
     scales: list[Column] = []
     for q in program.outputs:

@@ -1,8 +1,8 @@
 """An exact expression multiplied out: a sum of terms, each a coefficient times powers of atoms.
 
 The coefficient of a term holds all that is made of parameters, collected exactly, so that
-(I_yy - I_zz) omega_y omega_z is one term. That is what errors are measured against, and the sum
-can be valued, and differentiated term by term, in any arithmetic: balls, exact fractions.
+(I_yy - I_zz) omega_y omega_z is one term, of two products. The sum can be valued, and
+differentiated term by term, in any arithmetic: balls, exact fractions.
 """
 
 from collections.abc import Callable, Iterable, Mapping

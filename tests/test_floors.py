@@ -31,7 +31,8 @@ FLOORS = (
         *("example", "emit", "casadi_text", "casadi_module", "manifest", "page"),
     ),
     (
-        *("blocks", "equations", "reference", "body_sample", "sample", "prove", "columns", "scale"),
+        *("blocks", "equations", "solution", "reference", "body_sample", "sample", "prove"),
+        *("columns", "scale"),
         *("measure", "motion_error", "draw", "search", "stated", "kept"),
         *("convergence", "differences"),
     ),

@@ -27,6 +27,7 @@ from derive.check.invariants import power_balance, turned_axes
 from derive.check.motion import orders, step_slopes
 from derive.check.particles import clouds
 from derive.check.refusals import casadi_status, refusal
+from derive.check.sphere import near_a_sphere
 from derive.check.verdict import JUDGED, Verdict
 from derive.kept import stated_figures
 from derive.library import Library, library
@@ -133,6 +134,7 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
     printed = {f["name"]: f.get("error", {}) for f in found.manifest["functions"]}
     stated = {n: e for n, e in printed.items() if isinstance(e, dict)}
     yield from accuracy(one, each, stated)
+    yield from near_a_sphere(one, each)
     yield from motion_accuracy(one, few, stated)
     yield from definitions(one)
     yield from replay(one, each)

@@ -17,11 +17,12 @@ from derive.largest import largest
 from derive.library import Library
 from derive.machine.mechanism import Mechanism
 from derive.machine.words import MATRICES
-from derive.reference import BITS, Known, reference
+from derive.reference import BITS, reference
 from derive.sample import Sample
 from derive.scene import Input, Machine
 from derive.scene.machine import Result
 from derive.scene.results import written_out
+from derive.solution import Known
 from derive.truth import Truth
 
 AGREE = mpf(10) ** -25

@@ -17,7 +17,7 @@ def print_costs(results: Sequence[Made]) -> None:
         table.add_row(row.scene, row.function, str(row.flops), str(row.divisions), *row.errors)
     console.print(table)
     console.print(
-        "Errors in u (2^-24 float, 2^-53 double) of the largest term, sampled; of motions and"
+        "Errors in u (2^-24 float, 2^-53 double) of the largest product, sampled; of motions and"
         " attitudes, of the largest component, by rounding alone; of flow_exact, of kappa times it."
     )
     _print_savings([saving for result in results for saving in result.savings])

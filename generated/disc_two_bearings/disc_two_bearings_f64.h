@@ -10,8 +10,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 4fb2438bb33df2e5.
+ * double, times the largest product in the equation of an output, multiplied out, or the output
+ * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 4fb2438bb33df2e5.
  */
 #ifndef DISC_TWO_BEARINGS_F64_H
 #define DISC_TWO_BEARINGS_F64_H
@@ -53,8 +53,9 @@ int disc_two_bearings_setup_f64(double m, double r, double w, double W, double d
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.7, largest 2 u of the largest term of the sum that the output is (of couple;
- *            200000 samples of the ranges, 65536 searched from the worst, 108 hard ones).
+ * Error: median 0.35, largest 1 u of the largest product in the equation, or of the result where
+ *            it is larger (of couple; 200000 samples of the ranges, 65536 searched from the worst,
+ *            108 hard ones).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -72,8 +73,9 @@ void disc_two_bearings_couple_f64(const disc_two_bearings_constants_f64 *constan
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.46, largest 1.9 u of the largest term of the sum that the output is (of R_up;
- *            200000 samples of the ranges, 65536 searched from the worst, 108 hard ones).
+ * Error: median 0.35, largest 1 u of the largest product in the equation, or of the result where
+ *            it is larger (of R_up; 200000 samples of the ranges, 65536 searched from the worst,
+ *            108 hard ones).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -91,8 +93,9 @@ void disc_two_bearings_R_up_f64(const disc_two_bearings_constants_f64 *constants
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.22, largest 0.9 u of the largest term of the sum that the output is (of R_down;
- *            200000 samples of the ranges, 65536 searched from the worst, 108 hard ones).
+ * Error: median 0.22, largest 0.9 u of the largest product in the equation, or of the result where
+ *            it is larger (of R_down; 200000 samples of the ranges, 65536 searched from the worst,
+ *            108 hard ones).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

@@ -10,8 +10,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 435c936b8290b521.
+ * float, times the largest product in the equation of an output, multiplied out, or the output
+ * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 435c936b8290b521.
  */
 #ifndef EULERS_DISK_F32_H
 #define EULERS_DISK_F32_H
@@ -53,8 +53,9 @@ int eulers_disk_setup_f32(float m, float r, float tilt, float g,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.31, largest 2.3 u of the largest term of the sum that the output is (of steady;
- *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
+ * Error: median 0.31, largest 2.3 u of the largest product in the equation, or of the result where
+ *            it is larger (of steady; 200000 samples of the ranges, 65536 searched from the worst,
+ *            114 hard ones).
  * Cost: 1 sub, 2 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -79,8 +80,9 @@ void eulers_disk_spin_rel_f32(const eulers_disk_constants_f32 *constants, float 
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.37, largest 1 u of the largest term of the sum that the output is (of tipping;
- *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
+ * Error: median 0.37, largest 1 u of the largest product in the equation, or of the result where
+ *            it is larger (of tipping; 200000 samples of the ranges, 65536 searched from the
+ *            worst, 114 hard ones).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, composed_turns, constant_mass, further_axes_are_right_handed,
  *            newton, rate_seen_from_N, third_law.

@@ -11,8 +11,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 320e282fde1b6c17.
+ * float, times the largest product in the equation of an output, multiplied out, or the output
+ * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 320e282fde1b6c17.
  */
 #ifndef RIGID_BODY_STEPS_F32_H
 #define RIGID_BODY_STEPS_F32_H
@@ -91,9 +91,9 @@ int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, floa
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: R v = v + 2 q_w (q_v x v) + 2 q_v x (q_v x v)   [lecture step rotation_of_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.26, largest 4.6 u of the largest term of the sum that the output is (of
- *            omega_next; 200000 samples of the ranges, 65536 searched from the worst, 90 hard
- *            ones).
+ * Error: median 0.26, largest 4.6 u of the largest component, before or after, or of the largest
+ *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
+ *            the ranges, 65536 searched from the worst, 90 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 213 add, 56 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
@@ -124,8 +124,9 @@ void rigid_body_steps_step_rk4_f32(const rigid_body_steps_constants_f32 *constan
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: R v = v + 2 q_w (q_v x v) + 2 q_v x (q_v x v)   [lecture step rotation_of_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.26, largest 5.6 u of the largest term of the sum that the output is (of
- *            jacobian; 200000 samples of the ranges, 65536 searched from the worst, 90 hard ones).
+ * Error: median 0.26, largest 5.6 u of the largest component, before or after, or of the largest
+ *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
+ *            ranges, 65536 searched from the worst, 90 hard ones).
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 7608 add, 196 sub, 7986 mul, 1 div, 44 neg, 1 sqrt.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,

@@ -11,8 +11,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest term of the sum that an output is; of motions and attitudes,
- * times the largest component of the output. Body of these files: sha256 4fe8f94b76d92987.
+ * double, times the largest product in the equation of an output, multiplied out, or the output
+ * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 4fe8f94b76d92987.
  */
 #ifndef TUMBLING_DISC_F64_H
 #define TUMBLING_DISC_F64_H
@@ -85,7 +85,7 @@ void tumbling_disc_plan_dmv_f64(const tumbling_disc_constants_f64 *constants, co
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
  *            remainder_next[7]  what rounding left of earlier steps, zeros at the start, next
  * Error: median 0.18, largest 1.3 u of the largest component, before or after, or of the largest
- *            term of what the step adds, by rounding alone (of attitude_next; 200000 samples of
+ *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Cost: 23 add, 21 sub, 27 mul, 1 div, 2 neg, 1 sqrt, 1 less, 1 select.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
@@ -104,7 +104,7 @@ void tumbling_disc_step_dmv_f64(const double plan[6], const double attitude[4],
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
  * Error: median 0.18, largest 2.5 u of the largest component, before or after, or of the largest
- *            term of what the step adds, by rounding alone (of attitude_next; 200000 samples of
+ *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Cost: 40 add, 9 sub, 55 mul, 5 div, 5 neg.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
@@ -125,9 +125,9 @@ void tumbling_disc_step_split_f64(const tumbling_disc_constants_f64 *constants,
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.38, largest 3.7 u of the largest term of the sum that the output is (of
- *            attitude_next; 200000 samples of the ranges, 65536 searched from the worst, 78 hard
- *            ones).
+ * Error: median 0.38, largest 3.7 u of the largest component, before or after, or of the largest
+ *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
+ *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 52 add, 22 sub, 88 mul, 1 div, 1 sqrt.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,

@@ -24,17 +24,12 @@ from derive.stated import figures
 from tests.made import library_of, thinned
 
 GENERATED = Path(__file__).parents[2] / "generated"
-LARGEST = 40.0
+LARGEST = 30.0
 """In u: what a function keeps wherever the search has been."""
-RARE = {
-    ("rigid_body", "state_rate"): 400.0,
-    ("rigid_body_steps", "step_rk4"): 400.0,
-    ("rigid_body_steps", "step_rk4_jacobian"): 400.0,
-    ("reaction_wheel_satellite", "body"): 200.0,
-    ("centrifuge_gondola", "F"): 200.0,
-    ("centrifuge_gondola", "M"): 200.0,
-}
-"""Larger ones: factors that cancel in rare states, and rods whose steps magnify what is rounded."""
+RARE = {("rigid_body_steps", "step_rk4", "f64"): 200.0}
+"""A rod of condition 1e12, of which a step magnifies what is rounded within it."""
+ALIKE = 1.5
+"""Two searches for the worst of one sum end so near each other."""
 FEW = Sampling(samples=256, rounds=2, batch=64, balls=2, corners=1)
 
 
@@ -50,7 +45,18 @@ def test_stated_errors_are_small_and_looked_for_widely(name: str) -> None:
     for m in committed(name):
         assert (m.samples, m.searched) == (SAMPLING.samples, SAMPLING.searched())
         assert m.median <= MEDIAN_BOUND
-        assert m.worst <= RARE.get((name, m.function), LARGEST)
+        assert m.worst <= RARE.get((name, m.function, m.precision), LARGEST)
+
+
+@pytest.mark.parametrize("precision", ["f32", "f64"])
+def test_one_sum_has_one_figure_in_whatever_scene_it_stands(precision: str) -> None:
+    """Scenes draw their own samples, so this compares two searches of different seeds."""
+    first, second = (
+        next(m.worst for m in committed(scene) if wanted == (m.function, m.precision, m.output))
+        for scene, function in (("free_body", "acceleration"), ("rigid_body", "state_rate"))
+        for wanted in [(function, precision, "omega_dot")]
+    )
+    assert max(first, second) <= ALIKE * min(first, second)
 
 
 @pytest.mark.parametrize("name", thinned(catalogue(), 4))

@@ -33,10 +33,10 @@ def test_fresh_samples_keep_the_stated_errors(measured):
     assert {row.outcome for row in rows} == {"holds"}
 
 
-def test_a_figure_lowered_by_a_fifth_below_what_samples_find_is_noticed(measured):
+def test_a_figure_below_two_thirds_of_what_samples_find_is_noticed(measured):
     seen = worst(library_of(SCENE), F32, replace(FEW, samples=4096, rounds=0))
     found = max(w.errors[0] for w in seen if w.function == "kinetic_energy")
-    lowered = [replace(m, worst=0.8 * found) if m.function == "kinetic_energy" else m
+    lowered = [replace(m, worst=0.65 * found) if m.function == "kinetic_energy" else m
                for m in measured]  # fmt: skip
     failed = {
         (row.function, row.precision)

@@ -80,7 +80,7 @@ WHOLE = {
     "notation/symbolic.py: _degree": "powers",
     "notation/symbolic.py: _term_key": "powers",
     "program.py: flops": "operations counted",
-    "reference.py: _solved": "balls",
+    "solution.py: _through": "balls",
     "report/code_size.py: code_size": "bytes",
     "share.py: _negations": "signs counted",
     "tree.py: size": "symbols counted",
