@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 from markupsafe import Markup
@@ -15,7 +16,8 @@ from derive.library import Library
 from derive.machine.mechanism import Mechanism, arrange
 from derive.notation import equation_mathml, sympy_equation_mathml
 from derive.page.machine import written_names
-from derive.program import Program, run
+from derive.program import Program, Quantity, run
+from derive.scene.machine import LEFT_OVER
 from derive.scene.wanted import JACOBIAN
 from derive.unit import behind
 
@@ -83,13 +85,8 @@ def _equation(library: Library, program: Program) -> str:
 
 def _answer(library: Library, program: Program) -> str:
     """Return the first function's results at seven tenths of all ranges."""
-    middle = {
-        c: float((3 * (q.low or 0) + 7 * (q.high or 0)) / 10)
-        for q in (*library.setup.inputs, *program.inputs)
-        if q.name != "constants"
-        for c in q.components
-    }
-    middle |= {c: 1.0 for c in middle if c.startswith("attitude") and c.endswith("_w")}
+    given_to = [q for q in (*library.setup.inputs, *program.inputs) if q.name != "constants"]
+    middle = {c: x for q in given_to for c, x in zip(q.components, _within(q), strict=True)}
     given = [middle[c] for q in library.setup.inputs for c in q.components]
     table, pairs = working(np.float64), extended(np.float64)
     made = run(library.setup, pairs, paired(np.array(given))) if given else []
@@ -99,6 +96,16 @@ def _answer(library: Library, program: Program) -> str:
         return ""
     results = run(program, table, [known[c] for q in program.inputs for c in q.components])
     outputs = [(c, q.unit) for q in program.outputs for c in q.components][:3]
-    return ", ".join(
+    shown = ", ".join(
         f"{c} = {float(r):.4g}{behind(u)}" for (c, u), r in zip(outputs, results, strict=False)
     )
+    return f"{shown}, {LEFT_OVER}" if program.name == "steady" else shown
+
+
+def _within(q: Quantity) -> list[float]:
+    """Return a quantity at seven tenths of its range; an attitude has length 1."""
+    one = float((3 * (q.low or 0) + 7 * (q.high or 0)) / 10)
+    if [c[-2:] for c in q.components] != ["_w", "_x", "_y", "_z"]:
+        return [one] * len(q.components)
+    size = sqrt(1 + 3 * one * one)
+    return [1 / size, *[one / size] * 3]

@@ -17,6 +17,7 @@ from derive.cloud.series import DIGITS
 from derive.formula import FLOATS, ZERO, evaluate
 from derive.scene import Input, Machine, Scene
 from derive.scene.machine import INERTIAL, Force
+from derive.scene.wanted import attitudes_only
 
 WIDTH, HEIGHT, MARGIN = 260, 180, 18
 STEPS = 36  # of an ellipse
@@ -97,7 +98,10 @@ def _around(centre: Any, semi: Sequence[Any], name: str) -> Iterator[Line]:
 
 
 def _of_body(scene: Scene) -> Iterator[Line]:
-    """Return the principal ellipses of a single body about its axes, from its moments."""
+    """Return the principal ellipses of a single body about its axes, from its moments.
+
+    Where formulas of attitudes alone are wanted there is no body, and its axes are all.
+    """
     import numpy as np
 
     known = {p.name: float((p.low + p.high) / 2) for p in scene.parameters}
@@ -105,7 +109,7 @@ def _of_body(scene: Scene) -> Iterator[Line]:
     half = (xx + yy + zz) / 2
     axes = [np.array([mpf(i == k) for i in range(3)], dtype=object) for k in range(3)]
     semi = [mp.sqrt(max(half - m, mpf(0))) * e for m, e in zip((xx, yy, zz), axes, strict=True)]
-    lines = list(_around(0 * axes[0], semi, ""))
+    lines = [] if attitudes_only(list(scene.wanted)) else list(_around(0 * axes[0], semi, ""))
     size = _reach([p for line in lines for p in line.points])
     yield from lines
     for k, e in enumerate(axes):
@@ -115,6 +119,8 @@ def _of_body(scene: Scene) -> Iterator[Line]:
 def _reach(points: Iterable[Point]) -> Any:
     """Return the size of what is drawn."""
     each = list(points)
+    if not each:
+        return mpf(1)
     spans = [max(p[k] for p in each) - min(p[k] for p in each) for k in range(3)]
     return max(spans) or mpf(1)
 

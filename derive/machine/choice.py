@@ -26,6 +26,7 @@ GROUND = "the ground"
 FLOORS = (0.1, 0.02, 0.004)  # of a row of size one: what must be left of it beside the others
 MOST_EXTRA = 5  # unknowns that are solved along without being asked for, before all are
 MOST_SETS = 20_000
+MOST_TOLD = 2  # balances that a sentence names
 CLEAR = mpf(10) ** -25  # of a row of size one: what elimination leaves of 60 digits is far below
 
 Array = NDArray[Any]
@@ -177,7 +178,7 @@ def undetermined(balances: Balances, wanted: frozenset[int]) -> str:
         joint = _joint(balances, k)
         if joint:
             also = " and ".join(f"'{names[n]}'" for n in (k, *joint))
-            told = [str(row.balance) for row in holding if k in row.holds][:2]
+            told = [str(row.balance) for row in holding if k in row.holds][:MOST_TOLD]
             return (
                 f"unknowns {also} cannot be told apart: every balance that holds '{names[k]}' "
                 f"holds the others too, in one combination ({'; '.join(told)})"
@@ -247,18 +248,34 @@ def contradiction(balances: Balances) -> str:
     if rows:
         return (f"the {rows[0].balance} does not vanish and holds no unknown: "
                 "declare a load with an unknown there, or leave a motion free")  # fmt: skip
-    against = [_contradicted(balances, point) for point in range(POINTS)]
+    against = [_contradicted(balances.rows, point) for point in range(POINTS)]
     if not all(against):
         return ""
-    return (f"the {against[0]} contradicts other balances, whatever its unknowns are: "
+    together = _least(against[0], 0)
+    told = " and ".join(f"the {row.balance}" for row in together[:MOST_TOLD])
+    more = f" and {len(together) - MOST_TOLD} more" if len(together) > MOST_TOLD else ""
+    return (f"{told}{more} contradict each other, whatever their unknowns are: "
             "declare a load with an unknown more, or leave a motion free")  # fmt: skip
 
 
-def _contradicted(balances: Balances, point: int) -> str:
-    """Return the first balance that those before it leave no solution for, at a trial point."""
+def _least(rows: Sequence[Row], point: int) -> Sequence[Row]:
+    """Return those of contradictory balances without any of which the others can be satisfied."""
+    for row in rows:
+        fewer = [other for other in rows if other is not row]
+        if _contradicted(fewer, point):
+            rows = fewer
+    return rows
+
+
+def _contradicted(rows: Sequence[Row], point: int) -> list[Row]:
+    """Return the first balance that those before it leave no solution for, and those, at a point.
+
+    Nothing comes back if all balances can be satisfied.
+    """
     kept: list[tuple[int, list[Any]]] = []
+    before: list[Row] = []
     with mp.workdps(DIGITS):
-        for row in balances.rows:
+        for row in rows:
             values = list(row.values[point])
             size = max(map(abs, values))
             left = [v / size for v in values]
@@ -268,6 +285,7 @@ def _contradicted(balances: Balances, point: int) -> str:
             free = max(range(1, len(left)), key=lambda k: abs(left[k]), default=0)
             if free and abs(left[free]) > CLEAR:
                 kept.append((free, [v / left[free] for v in left]))
+                before.append(row)
             elif abs(left[0]) > CLEAR:
-                return str(row.balance)
-    return ""
+                return [*before, row]
+    return []

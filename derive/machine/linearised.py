@@ -6,17 +6,21 @@ valued at the given motion as it goes, so that the expressions stay as small as 
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import networkx as nx
 from mpmath import mp, mpf
 from sympy import Expr, Integer, Matrix, Symbol, zeros
 
-from derive.machine.balances import Balances
+from derive.machine.balances import Balances, Row
 from derive.machine.choice import chosen
 from derive.machine.probe import DIGITS, Probe, at_rest, independent, point, small
 from derive.machine.valued import Valued
 from derive.machine.words import Words
 from derive.scene import Input, Machine, SceneError
+
+NEARBY = 1e-6
+"""Change of what is set, relative to it, that nobody means: values are given to a few digits."""
 
 
 @dataclass(frozen=True)
@@ -62,39 +66,60 @@ def linearised(machine: Machine, balances: Balances) -> dict[str, Matrix]:
     return {name: _in_order(matrix, own) for name, matrix in made.items()}
 
 
-def unsteady(machine: Machine, balances: Balances) -> Iterator[str]:
+def unsteady(machine: Machine, balances: Balances, given: Mapping[str, float]) -> Iterator[str]:
     """Yield a sentence for every free coordinate or speed that the given state accelerates.
 
-    All else is in the middle of its range, or at rest if it varies and may be. Where a scene has
-    ``steady``, the given state is an equilibrium at its roots alone, and nothing is said.
+    given : values that were set; all else is in the middle of its range, or at rest if it varies
+        and may be. What is left is an acceleration if it is more than changes of those values by
+        a millionth make of it. Where a scene has ``steady`` and nothing is set, nothing is said:
+        the state is an equilibrium at its roots alone.
     """
-    if machine.steady is not None or not any("linearised" in a for a in machine.asked.values()):
+    steady = machine.steady is not None and not given
+    if steady or not any("linearised" in a for a in machine.asked.values()):
         return
-    sheet, words, every = balances.frames.sheet, balances.frames.words, balances.unknowns
+    sheet, every = balances.frames.sheet, balances.unknowns
     free = [m for m in (*machine.coordinates, *machine.speeds) if m.free]
+    rows, held = chosen(balances, frozenset(every.index(sheet.symbols[m.unknown]) for m in free))
     wanted = [every.index(sheet.symbols[m.unknown]) for m in free]
-    rows, held = chosen(balances, frozenset(wanted))
     places = [*wanted, *sorted(held - {*wanted})]
+    try:
+        found = _accelerations(machine, balances, rows, places, given)
+        nearby = {name: x * (1 + NEARBY / (2 + k)) for k, (name, x) in enumerate(given.items())}
+        other = _accelerations(machine, balances, rows, places, nearby) if given else found
+    except ZeroDivisionError:
+        return  # these balances do not tell it there
+    where = "at the values that are set" if given else "with all else in mid-range"
+    for m, x, y in zip(free, found, other, strict=False):
+        if not small(x, 1) and abs(x) > abs(x - y):
+            unit = balances.frames.words.vocabulary[m.unknown].unit
+            yield (
+                f"'linearised' is about a state that is no equilibrium: the acceleration of "
+                f"'{m.name}' is {float(x):.3g} {unit} there, {where}"
+            )
+
+
+def _accelerations(
+    machine: Machine,
+    balances: Balances,
+    rows: Sequence[Row],
+    places: Sequence[int],
+    given: Mapping[str, float],
+) -> list[Any]:
+    """Return the unknowns at these places by these balances, in the state of small motion.
+
+    Raises ZeroDivisionError where they do not tell them.
+    """
+    sheet, words = balances.frames.sheet, balances.frames.words
     with mp.workdps(DIGITS):
         probe = _middle(words)
+        probe.values |= {sheet.symbols[n]: mpf(x) for n, x in given.items()}
         probe.values |= {sheet.symbols[n]: probe.value(words.expression(f))
                          for n, f in machine.about.items()}  # fmt: skip
         probe.define(sheet.definitions)
         valued = Valued(balances.sides, probe)
         table = [balances.at(row, valued) for row in rows]
-        size = max(abs(row[0]) for row in table)
-        try:
-            found = mp.lu_solve([[row[1 + k] for k in places] for row in table],
-                                [-row[0] for row in table])  # fmt: skip
-        except ZeroDivisionError:
-            return  # these balances do not tell it there
-    for m, x in zip(free, found, strict=False):
-        if not small(x, max(size, 1)):
-            unit = words.vocabulary[m.unknown].unit
-            yield (
-                f"'linearised' is about a state that is no equilibrium: the acceleration of "
-                f"'{m.name}' is {float(x):.3g} {unit} there, with all else in mid-range"
-            )
+        return list(mp.lu_solve([[row[1 + k] for k in places] for row in table],
+                                [-row[0] for row in table]))  # fmt: skip
 
 
 def _middle(words: Words) -> Probe:

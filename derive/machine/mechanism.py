@@ -74,9 +74,14 @@ def single(known: Known) -> Specialised:
 
 def doubts(known: Known) -> tuple[str, ...]:
     """Return the warnings of a scene, and those that take its equations to be found."""
+    return (*known.scene.warnings, *doubts_at(known, {}))
+
+
+def doubts_at(known: Known, given: Mapping[str, float]) -> tuple[str, ...]:
+    """Return warnings that take a scene's equations to be found, where these values are set."""
     if not isinstance(known, Mechanism):
-        return known.scene.warnings
-    return (*known.scene.warnings, *unsteady(known.scene, known.answers.balances))
+        return ()
+    return tuple(unsteady(known.scene, known.answers.balances, given))
 
 
 def in_terms(scene: Scene | Machine) -> Known:

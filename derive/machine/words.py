@@ -139,7 +139,8 @@ def _outputs(machine: Machine) -> Iterator[Quantity]:
     yield from _matrices(machine)
     count = len(machine.steady.unknown) if machine.steady else 1
     parts = tuple(f"steady_{n + 1}" for n in range(count)) if count > 1 else ("steady",)
-    yield Quantity("steady", parts, (count,) if count > 1 else (), "", "", None, None,
+    unit = machine.steady.unit if machine.steady else ""
+    yield Quantity("steady", parts, (count,) if count > 1 else (), unit, "", None, None,
                    "what vanishes in a steady motion")  # fmt: skip
 
 

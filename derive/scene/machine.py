@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
 INERTIAL = "inertial"
+LEFT_OVER = "0 where motion is steady"
+"""What is said of a value of the function ``steady``, which is no answer but a measure."""
 Entries = tuple[Formula | None, ...]
 
 
@@ -179,10 +181,14 @@ class Place:
 
 @dataclass(frozen=True)
 class Steady:
-    """The unknown rates of a steady motion; what vanishes in it, if that is not a balance."""
+    """The unknowns of a steady motion; what vanishes in it and its unit, if it is no balance.
+
+    A balance is without the factors that never vanish, so it has no unit to be given in.
+    """
 
     unknown: tuple[str, ...]
     vanishes: Formula | None
+    unit: str
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from derive.scene.scalars import PER_SECOND, Scalars, read_scalars
 from derive.scene.table import Scope, Table, formula, keys, several, table, text, triple, word
 from derive.scene.times import read_time
 from derive.scene.wanted import read_emission, read_form
-from derive.unit import BESIDE_SI, LENGTH, dimension, misnamed
+from derive.unit import BESIDE_SI, LENGTH, dimension, misnamed, spelled
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -173,12 +173,13 @@ def _steady(
     scalar = [*(p.name for p in scalars.parameters if p.value is None),
               *(m.name for m in scalars.moving), *scalars.known.dimensions]  # fmt: skip
     names = tuple(word(one, "steady.unknown", scalar) for one in each)
-    vanishes = None
+    vanishes, unit = None, ""
     if "vanishes" in given.entries:
         answers = answer_units(scalars, unknowns) | {
             r.name: dimension(r.unit) for r in results if r.unit not in BESIDE_SI
         }
         both = Scope(dict(scalars.known.dimensions) | answers, {}, "")
-        vanishes, _ = of_any_unit(given.entries["vanishes"], "steady.vanishes", both)
+        vanishes, found = of_any_unit(given.entries["vanishes"], "steady.vanishes", both)
+        unit = spelled(found)
         vanishes = written_out(vanishes, results)
-    return Steady(names, vanishes)
+    return Steady(names, vanishes, unit)

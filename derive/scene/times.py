@@ -20,7 +20,7 @@ TIMES = {
 
 
 def read_time(given: Table, name: str) -> Given:
-    """Return the range of a time in s; a step goes forward, a time may be negative."""
+    """Return the range of a time in s; below zero it is motion backwards."""
     if name not in given.entries:
         return Given(*TIMES[name], None)
     inner = table(given.entries[name], f"motion.{name}")

@@ -11,6 +11,7 @@ from numpy.linalg import LinAlgError
 
 from derive.files import require_writable, write
 from derive.scene import Machine, SceneError
+from derive.scene.machine import LEFT_OVER
 from derive.scene.table import nearest, shown
 from derive.solve.instrument import Instrument, opened
 from derive.solve.motions import frequencies, growth, limits, roots
@@ -187,7 +188,8 @@ def _rows(found: Instrument, name: str, values: dict[str, float]) -> Iterator[Ro
                 f"scene '{found.name}': '{name}' must be finite, but with these values "
                 f"{component} is {value}"
             )
-        yield name, component, f"{value:.12g}", units[component]
+        shown = f"{component}, {LEFT_OVER}" if name == "steady" else component
+        yield name, shown, f"{value:.12g}", units[component]
     if name == "linearised":
         for number, value in enumerate(frequencies(found, values), 1):
             yield "small motion", f"frequency {number}", f"{value:.12g}", "rad/s"

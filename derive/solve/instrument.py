@@ -13,7 +13,7 @@ import casadi
 from derive.casadi_module import imported
 from derive.casadi_text import casadi_file
 from derive.library import Library, library
-from derive.machine.mechanism import Mechanism, depends_on
+from derive.machine.mechanism import Mechanism, depends_on, doubts_at
 from derive.program import Program, Quantity
 from derive.scene import Machine, SceneError, load
 from derive.scene.numbers import doubts, member_doubts
@@ -82,7 +82,12 @@ class Instrument:
         if not isinstance(scene, Machine):
             return tuple(doubts(scene.body, pinned))
         each = ((f"body '{body.name}'", body.inertia) for body in scene.bodies)
-        return tuple(says for label, own in each for says in member_doubts(label, own, pinned))
+        found = tuple(says for label, own in each for says in member_doubts(label, own, pinned))
+        told = [p.name for p in scene.parameters if p.value is None]
+        linear = "linearised" in self.library.truths
+        whole = linear and {*told, *self.needed("linearised")} <= given.keys()
+        own = {n: x for n, x in given.items() if n not in scene.about}
+        return (*found, *doubts_at(self.library.known, own)) if whole else found
 
     def _called(self, program: Program, given: Values) -> list[Any]:
         if program.name not in self.built:

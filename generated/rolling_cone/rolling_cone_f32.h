@@ -86,7 +86,7 @@ void rolling_cone_x_N_f32(const rolling_cone_constants_f32 *constants, float W, 
 /* What vanishes in a steady motion.
  * Given:     constants  constants made of parameters only, for the functions of this scene
  *            W  rad/s  1 .. 20  rate at which the contact line turns
- * Returned:  steady  what vanishes in a steady motion
+ * Returned:  steady  m  what vanishes in a steady motion
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture

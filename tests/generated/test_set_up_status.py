@@ -25,7 +25,7 @@ from derive.scene import catalogue, load, parse_scene
 from derive.status import INERTIA, LENGTH, MASS, PARAMETER, RIGHT, possible
 from derive.status import refusal as why
 from tests.generated.mutants import printed
-from tests.made import thinned
+from tests.made import library_of, thinned
 
 DRAWS = 120
 SKEWED_ROD = """
@@ -209,3 +209,20 @@ def test_a_clause_names_the_quantity_of_the_rule() -> None:
     assert why(setup, (1200.0, -0.6, 0.9, 9.81)).startswith("body 'roller'.radius must be positive")
     assert why(setup, (1200.0, 0.6, 0.9, 9.81)) == ""
     assert f"(status {LENGTH})" in why(setup, (1200.0, 0.0, 0.9, 9.81))
+
+
+@pytest.mark.parametrize("set_", [{"m": -5.0}, {"l": -1.0}])
+def test_a_parameter_that_stands_in_formulas_only_is_not_tried(set_: dict[str, float]) -> None:
+    setup = made("heavy_top").setup
+    middle = {q.name: float(sum(q.ends) / 2) for q in setup.inputs}
+    assert why(setup, [*(middle | set_).values()]) == ""
+    assert "(status 4)" in why(setup, [*(middle | {"A": -1.0}).values()])
+
+
+def test_numbers_of_springs_are_not_tried_and_masses_beside_them_are() -> None:
+    trial = Path(__file__).parents[1] / "data" / "trials" / "spring_at_rest.toml"
+    setup = library_of(str(trial)).setup
+    middle = {q.name: float(sum(q.ends) / 2) for q in setup.inputs}
+    for name in ("k", "c"):
+        assert why(setup, [*(middle | {name: -1.0}).values()]) == ""
+    assert "(status 2)" in why(setup, [*(middle | {"m": -1.0}).values()])

@@ -7,6 +7,7 @@ import pytest
 from derive.gallery import card, gallery
 from derive.gallery.drawing import HEIGHT, WIDTH, drawing
 from derive.scene import Machine, catalogue, load, parse_scene
+from derive.scene.machine import LEFT_OVER
 from tests.made import library_of, thinned
 
 
@@ -24,6 +25,24 @@ def test_a_closed_form_is_shown_where_it_is_short() -> None:
     found = card(library_of("edge_runner_flat"))
     assert "<mfrac>" in found.equation
     assert found.answer.startswith("N = ")
+
+
+def test_formulas_of_attitudes_have_axes_and_no_body() -> None:
+    found = card(library_of("attitude"))
+    assert 'class="frame"' in found.drawing
+    assert 'class="body"' not in found.drawing
+    assert 'class="body"' in card(library_of("heavy_top")).drawing
+
+
+def test_attitudes_are_turned_by_quaternions_of_length_one() -> None:
+    parts = re.findall(r"= (-?[0-9.]+)", card(library_of("attitude")).answer)
+    w, x, y = map(float, parts)
+    assert w * w + x * x + 2 * y * y == pytest.approx(1, abs=2e-3)  # all parts alike but w
+
+
+@pytest.mark.parametrize("name", [n for n in catalogue() if load(n).wanted[0] == "steady"])
+def test_what_is_left_of_a_balance_is_not_shown_as_an_answer(name: str) -> None:
+    assert card(library_of(name)).answer.endswith(LEFT_OVER)
 
 
 def test_a_drawing_moves_with_the_scene() -> None:

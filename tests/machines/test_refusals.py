@@ -6,7 +6,11 @@ from pathlib import Path
 import pytest
 
 from derive.library import library
-from derive.scene import CATALOGUE, SceneError, parse_scene
+from derive.machine.choice import _contradicted as contradicted
+from derive.machine.choice import _least as least
+from derive.machine.choice import contradiction
+from derive.machine.mechanism import mechanism
+from derive.scene import CATALOGUE, Machine, SceneError, parse_scene
 
 EDITS = tomllib.loads((Path(__file__).parent / "refusals.toml").read_text(encoding="utf-8"))["edit"]
 EDGE = (CATALOGUE / "edge_runner_flat.toml").read_text(encoding="utf-8")
@@ -19,6 +23,17 @@ def test_an_edit_that_breaks_a_rule_is_refused_by_its_sentence(edit: dict[str, s
     with pytest.raises(SceneError) as refusal:
         library(parse_scene(text, "edge_runner_flat"))
     assert str(refusal.value).startswith(f"scene 'edge_runner_flat': {edit['says']}")
+
+
+def test_the_balances_that_are_named_contradict_each_other_and_no_fewer_do() -> None:
+    machine = parse_scene(EDGE.replace('"?friction", "?N"', '"0.1*?N", "?N"'), "edge")
+    assert isinstance(machine, Machine)
+    balances = mechanism(machine).answers.balances
+    together = least(contradicted(balances.rows, 0), 0)
+    assert contradicted(together, 0)
+    for one in together:
+        assert str(one.balance) in contradiction(balances)
+        assert not contradicted([row for row in together if row is not one], 0)
 
 
 def test_a_parameter_that_nothing_uses_is_a_warning() -> None:

@@ -5,8 +5,11 @@ from pathlib import Path
 
 import pytest
 
+from derive.cli import parser
 from derive.scene import SceneError
+from derive.scene.machine import LEFT_OVER
 from derive.solve import opened, roots
+from derive.solve.command import Row, solved
 
 HOOP = Path(__file__).parent / "scenes" / "hoop_steady.toml"
 GIVEN = {"m": 0.015, "r": 0.013, "g": 9.81, "theta": 0.8, "s": 47.0}
@@ -38,3 +41,35 @@ def test_a_root_at_zero_is_found_once_and_no_scale_of_the_residual_makes_another
         other.write_text(text, encoding="utf-8")
         found = [root["W"] for root in roots(opened(str(other)), GIVEN)]
         assert found == [pytest.approx(0, abs=1e-9), pytest.approx(47)]
+
+
+def test_what_is_left_of_a_balance_is_said_to_be_no_answer() -> None:
+    rows = _solved(str(HOOP), GIVEN | {"W": 5.0})
+    assert [row[1] for row in rows if row[0] == "steady"] == [f"steady, {LEFT_OVER}"]
+
+
+def test_what_vanishes_and_what_is_found_have_their_units(tmp_path: Path) -> None:
+    text = HOOP.read_text(encoding="utf-8").replace('unknown = "W"', 'unknown = "theta"')
+    other = tmp_path / "hoop.toml"
+    other.write_text(text + "vanishes = 'theta_ddot*m*r^2'\n", encoding="utf-8")
+    given = {n: x for n, x in GIVEN.items() if n != "theta"} | {"W": -20.0, "theta_dot": 0.0}
+    assert {row[3] for row in _solved(str(other), given) if row[0].startswith("steady")} == {"rad"}
+    left = _solved(str(other), given | {"theta": 0.8})
+    assert [row[3] for row in left if row[0] == "steady"] == ["N m"]
+
+
+def _solved(scene: str, values: dict[str, float]) -> list[Row]:
+    texts = [f"{name}={value}" for name, value in values.items()]
+    return solved(parser().parse_args(["solve", scene, "--set", *texts])).rows
+
+
+def test_small_motion_off_the_root_of_a_steady_motion_is_warned_about() -> None:
+    governor = opened(str(HOOP.with_name("governor.toml")))
+    given = {"m": 0.75, "M": 7.5, "l": 0.25, "g": 9.81, "theta0": 0.6}
+    (root,) = (r for r in roots(governor, given | {"theta": 0.6, "theta_dot": 0.0}) if r["W"] > 0)
+    steady = float(f"{root['W']:.12g}")  # as `derive solve` prints it
+    assert governor.doubts(given | {"W": steady}) == ()
+    assert governor.doubts({n: x for n, x in given.items() if n != "g"} | {"W": 1.0}) == ()
+    (doubt,) = governor.doubts(given | {"W": 1.001 * steady})
+    assert "no equilibrium: the acceleration of 'theta' is" in doubt
+    assert doubt.endswith("at the values that are set")
