@@ -10,7 +10,6 @@ from derive.c_text import F64, machine_number, pair_functions
 from derive.comment import told
 from derive.emit import TEMPLATES, first_line, works_in_pairs
 from derive.flows.compact import Compact
-from derive.flows.orbit import NEARLY_ZERO
 from derive.flows.series import Series
 from derive.library import Library
 from derive.pair_sine import quarter_turn, series
@@ -22,12 +21,6 @@ from derive.status import CONSTANT, PARAMETER, computed, possible
 Text = Callable[[Operand], str]
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/", "less": "<", "at_most": "<="}
 KEPT = "_kept("
-NOWHERE = "without_slope"
-LOST = {
-    "flow_exact": "flow_exact at rest and on the separatrix, so about the middle axis",
-    "plan_dmv": "plan_dmv at rest and for no time",
-}
-RESTING = {"flow_exact": "omega", "plan_dmv": "time_step"}
 _CALLS = {"select": "if_else", "both": "logic_and", "either": "logic_or"}
 
 
@@ -49,7 +42,8 @@ def casadi_file(library: Library) -> str:
         even=[tuple(map(float, pair_of(c, F64.dtype))) for c in series(F64.bits, 0)],
         quarter=[float(part) for part in quarter_turn(lambda q: rounded(q, F64.dtype))],
         functions=functions,
-        lost="; ".join(LOST[p.name] for p in library.printed() if p.name in LOST),
+        sloped=any(p.free or p.slopes for p in library.printed()),
+        free=any(p.free for p in library.printed()),
     )
 
 
@@ -178,9 +172,9 @@ def _function(program: Program, scene: str) -> dict[str, object]:
         lines, text = series_casadi(program.loops, _operation), _read(place)
     else:
         lines, text = (_pairs if program.arithmetic == "pairs" else plain_lines)(program, place)
+    lines, ends = _ends(program, lines, text, place)
     given = [q.name for q in program.inputs]
     require_free(scene, program.name, given, declared_in_python(lines))
-    lines, nowhere = [*lines, *_nowhere(program, text)], program.name in RESTING
     return {
         "builder": program.name,
         "name": f"{scene}_{program.name}",
@@ -189,24 +183,31 @@ def _function(program: Program, scene: str) -> dict[str, object]:
         "inputs": [{"name": q.name, "size": len(q.components)} for q in program.inputs],
         "needs_constants": any(q.name == "constants" for q in program.inputs),
         "lines": lines,
-        "outputs": _outputs(program, lambda x: f"{text(x)} + {NOWHERE}" if nowhere else text(x)),
+        "outputs": _outputs(program, ends),
     }
 
 
-def _nowhere(program: Program, text: Text) -> Iterator[str]:
-    """Yield a value 0 whose slope is no number where CasADi loses a slope that there is.
+def _ends(
+    program: Program, lines: list[str], text: Text, place: dict[str, str]
+) -> tuple[list[str], list[str]]:
+    """Return the lines with those that mend slopes, and how to read the results."""
+    ends = [text(x) for x in program.results]
+    if program.free:
+        return [*lines, *_with_slope(program, text)], [f"ends[{k}]" for k in range(len(ends))]
+    if program.slopes is not None:
+        more, own = plain_lines(program.slopes, place)
+        ends_too = ", ".join(own(x) for x in program.slopes.results)
+        given = ", ".join(q.name for q in program.inputs if q.name != "constants")
+        made = f"ends = _sloped(ca.vertcat({', '.join(ends)}), ca.vertcat({ends_too}), {given})"
+        return [*lines, *more, made], [f"ends[{k}]" for k in range(len(ends))]
+    return lines, ends
 
-    At rest and for no time the formulas of ``RESTING`` work with another state; on the separatrix
-    (and so about the middle axis) the modulus is a number.
-    """
-    if program.name not in RESTING:
-        return
-    yield f"stir = ca.sum1(ca.fabs({RESTING[program.name]}))"
-    yield f"{NOWHERE} = ca.if_else(stir > 0.0, 0.0, ca.sqrt(stir))"
-    for op, _ in every_op(program.ops):
-        if op.operator == "select" and op.operands[1] == NEARLY_ZERO:
-            condition, _, found = (text(operand) for operand in op.operands)
-            yield f"{NOWHERE} = {NOWHERE} + ca.if_else({condition}, {found}, 0.0)"
+
+def _with_slope(program: Program, text: Text) -> Iterator[str]:
+    free, results = (", ".join(map(text, operands)) for operands in (program.free, program.results))
+    yield f"free = [{free}]"
+    given = ", ".join(q.name for q in program.inputs if q.name != "constants")
+    yield f"ends = _with_slope(ca.vertcat({results}), free, {given})"
 
 
 def _operation(op: Op, text: Text) -> str:
@@ -225,11 +226,11 @@ def _operation(op: Op, text: Text) -> str:
     return f"ca.{_CALLS.get(op.operator, op.operator)}({', '.join(operands)})"
 
 
-def _outputs(program: Program, text: Text) -> list[dict[str, object]]:
+def _outputs(program: Program, ends: Sequence[str]) -> list[dict[str, object]]:
     outputs: list[dict[str, object]] = []
     place = 0
     for q in program.outputs:
-        values = [text(r) for r in program.results[place : place + len(q.components)]]
+        values = ends[place : place + len(q.components)]
         pattern = (program.sparsity or {}).get(q.name)
         shape = None
         if pattern is not None:

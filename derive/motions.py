@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from derive.flows import steps
 from derive.flows.carried import remainder
 from derive.flows.compact import compact
-from derive.flows.exact import flow_exact
-from derive.flows.moser_veselov import plan_dmv, step_dmv
+from derive.flows.exact import flow_exact, principal, turned
+from derive.flows.moser_veselov import plan_dmv, plan_slopes, step_dmv
 from derive.flows.splitting import step_split, step_split_compensated
 from derive.flows.system import System, next_of
 from derive.flows.taylor import taylor_step
@@ -25,7 +25,7 @@ from derive.scene.declaration import Given
 from derive.scene.wanted import ATTITUDES, SPLITTINGS, STEP_DERIVATIVES, TAYLOR, moves, step_of
 from derive.setting import Setting
 from derive.stage import used_inputs
-from derive.trace import Number, Tape, number
+from derive.trace import Number, Tape, number, seen_from
 from derive.vocabulary import Vocabulary
 
 LOOPED = ("step_rk4", "step_rk4_jacobian", "step_rk4_sensitivity")
@@ -180,11 +180,15 @@ def _flow_exact(setting: Setting) -> Program:
     given = single(setting.known).scene.time
     time = _seconds("time", given, "time from the given to the new state")
     (t,) = _inputs(tape, time)
-    q, w = flow_exact(tape, setting.inertia(), _inputs(tape, attitude), _inputs(tape, omega), t)
+    body, rates = setting.inertia(), _inputs(tape, omega)
+    q, w = flow_exact(tape, body, _inputs(tape, attitude), rates, t)
     outputs = (next_of(attitude), next_of(omega))
     says = "Attitude and angular velocity after any time without torque (exact solution)."
     made = Recorded((attitude, omega, time), outputs, (*map(number, q), *map(number, w)))
-    return _program("flow_exact", says, tape, made)
+    moments, axes = principal(body)
+    free = (*moments, *(x for axis in axes for x in axis), *turned(body, rates, t)[0])
+    program = _program("flow_exact", says, tape, made)
+    return replace(program, free=tuple(seen_from(tape, n) for n in free))
 
 
 def _dmv(setting: Setting) -> tuple[Program, ...]:
@@ -201,6 +205,9 @@ def _dmv(setting: Setting) -> tuple[Program, ...]:
     says = "Plan many steps of one length from an angular velocity; call it once."
     made = Recorded((omega, step), (plan,), tuple(number(n) for _, n, _ in entries))
     planned = _program("plan_dmv", says, tape, made)
+    values = plan_slopes(tape, setting.inertia(), _inputs(tape, omega), h)
+    slopes = _program("plan_dmv", says, tape, replace(made, results=tuple(map(number, values))))
+    planned = replace(planned, slopes=slopes)
     return planned, _dmv_step(setting, plan, [name for name, _, _ in entries])
 
 

@@ -141,7 +141,8 @@ class Program:
     of an output that holds the nonzeros of a matrix; ``rules`` are what ``ops`` find out about
     the inputs of set-up. ``singular`` are the places that comments warn of. In ``arithmetic``
     "pairs" every operation works on pairs of floats, and results are rounded once. With ``loops``
-    there are no ``ops``.
+    there are no ``ops``. ``free`` is what the slopes of an exact flow rest on (``flows.exact``),
+    ``slopes`` a program with the same values, by operations that may be differentiated.
     """
 
     name: str
@@ -157,6 +158,8 @@ class Program:
     arithmetic: Literal["working", "pairs"] = "working"
     loops: Loops | None = None
     singular: tuple[Singular, ...] = ()
+    free: tuple[Operand, ...] = ()
+    slopes: "Program | None" = None
 
     def count(self) -> dict[str, int]:
         """Return how often each operator is used at most, every pass of a loop counted."""

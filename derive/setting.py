@@ -106,4 +106,7 @@ def _parameter(graph: Graph, value: Value) -> str:
 def with_names(program: Program, names: Mapping[str, str]) -> Program:
     """Return a program whose constants are called by their new names."""
     results = tuple(names.get(r, r) if isinstance(r, str) else r for r in program.results)
-    return replace(program, ops=renamed(program.ops, names), results=results)
+    free = tuple(names.get(r, r) if isinstance(r, str) else r for r in program.free)
+    slopes = None if program.slopes is None else with_names(program.slopes, names)
+    ops = renamed(program.ops, names)
+    return replace(program, ops=ops, results=results, free=free, slopes=slopes)

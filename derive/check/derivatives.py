@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
+from itertools import combinations
 from math import inf
 from random import Random
 from typing import Any
@@ -26,6 +27,9 @@ from derive.sample import Sample
 
 SHIFT = arb(2) ** -20  # exact; what formulas take for zero is less
 POINTS = range(1, 7)
+NEAR = tuple(2.0**-k for k in (10, 20, 30, 40, 60))
+"""How far from an axis, and from zero: formulas lose digits next to where they have other cases."""
+MOMENT, SAMPLES = "kg m^2", 3
 SMOOTH, JUMP = 1e-9, 1e-3
 """How far derivatives of both sides may differ, and results: differences err by 2^-80 of the
 fifth derivative; results move by 2^-20 of their slope, or they jump."""
@@ -47,26 +51,30 @@ class Place:
 
 def derivatives(library: Library, module: Any, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether CasADi differentiates every function rightly, once and twice, or says NaN."""
-    ordinary = [s for s in each if s.kind == "ordinary"][:1]
+    ordinary = [s for s in each if s.kind == "ordinary"][:SAMPLES]
     for program in library.printed() if ordinary else ():
         built = getattr(module, program.name)()
-        wrong, missing = compared(library, program, built, ordinary[0])
+        wrong, missing = compared(library, program, built, ordinary)
         says = "; ".join(wrong[:1] or ["first and second ones", *missing[:3]])
         scene, outcome = library.known.scene.name, JUDGED[not wrong]
         yield Verdict(scene, program.name, "f64", "CasADi's derivatives", outcome, says)
 
 
 def compared(
-    library: Library, program: Program, function: Any, sample: Sample
+    library: Library, program: Program, function: Any, each: Sequence[Sample]
 ) -> tuple[list[str], list[str]]:
-    """Return where CasADi's derivatives are wrong numbers, and where they are none but exist."""
+    """Return where CasADi's derivatives are wrong numbers, and where they are none but exist.
+
+    each : the first of them with every place that may be special, the others as they are
+    """
     takes = [q for q in program.inputs if q.name != "constants"]
     if len(takes) < len(program.inputs):
         takes = [*library.setup.inputs, *takes]
     names = [c for q in takes for c in q.components]
     differentiated = _differentiated(function)
     wrong, missing = [], []
-    for place in places(takes, sample):
+    beside = NEAR if "select" in program.count() else ()
+    for place in places(takes, each, (0.0, *beside)):
         first, second = differences(library, program, place)
         given = ([w[c] for c in names] for w in (place.values, place.direction))
         own = (list(x.nonzeros()) for x in differentiated(*given))
@@ -79,20 +87,34 @@ def compared(
     return wrong, missing
 
 
-def places(takes: Sequence[Quantity], sample: Sample) -> Iterator[Place]:
-    """Yield a sample, and the same with each input where a formula may have a case of its own."""
-    dice = Random(sample.number)  # noqa: S311  no secret
+def places(
+    takes: Sequence[Quantity], each: Sequence[Sample], beside: Sequence[float]
+) -> Iterator[Place]:
+    """Yield samples, and the first with each input where a formula may have a case of its own.
+
+    beside : how far from axes and zeros to go, relative to the sample
+    """
+    dice = Random(each[0].number)  # noqa: S311  no secret
     names = [c for q in takes for c in q.components]
-    plain = {c: float(sample.values[c]) for c in names}
+    several = [{c: float(sample.values[c]) for c in names} for sample in each]
+    plain = several[0]
     direction = {c: dice.uniform(-1, 1) * max(abs(plain[c]), 0.1) for c in names}
-    yield Place("at a sample", plain, direction)
+    for sample, values in zip(each, several, strict=True):
+        yield Place(f"at sample {sample.number}", values, direction)
+    moments = [q.name for q in takes if q.unit == MOMENT and q.low is not None and q.low > 0]
+    for one, other in combinations(moments, 2):
+        yield Place(f"{other} as {one}", plain | {other: plain[one]}, direction)
+    if len(moments) > 1:
+        yield Place("equal moments", plain | dict.fromkeys(moments, plain[moments[0]]), direction)
     for q in takes:
-        for says, values in _special(q, [plain[c] for c in q.components]):
-            own = dict(zip(q.components, values, strict=True))
+        for says, special in _special(q, [plain[c] for c in q.components], beside):
+            own = dict(zip(q.components, special, strict=True))
             yield Place(f"{q.name} {says}", plain | own, direction)
 
 
-def _special(q: Quantity, plain: Sequence[float]) -> Iterator[tuple[str, list[float]]]:
+def _special(
+    q: Quantity, plain: Sequence[float], beside: Sequence[float]
+) -> Iterator[tuple[str, list[float]]]:
     if q.name == "parameters" or (q.low is not None and q.low > 0):
         return
     if q.shape == (4,):
@@ -104,9 +126,16 @@ def _special(q: Quantity, plain: Sequence[float]) -> Iterator[tuple[str, list[fl
         yield "half a turn about x", [1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0]
     if q.shape == (3,):
         for k, axis in enumerate("xyz"):
-            yield f"along {axis}", [x if i == k else 0.0 for i, x in enumerate(plain)]
+            for near in beside:
+                near_axis = [x if i == k else near * x for i, x in enumerate(plain)]
+                yield f"along {axis}{_apart(near)}", near_axis
     if q.shape in ((3,), (), (1,)):
-        yield "zero", [0.0] * len(plain)
+        for near in beside:
+            yield f"zero{_apart(near)}", [near * x for x in plain]
+
+
+def _apart(near: float) -> str:
+    return f", {near:.0e} of a sample beside" if near else ""
 
 
 def differences(library: Library, program: Program, place: Place) -> tuple[list[Any], list[Any]]:

@@ -4,23 +4,32 @@ In one step the body turns about its angular momentum, which stands still in spa
 its own axis; both angles are the same in every step of a motion, and so are their sines.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
 from derive.flows.inertia import Inertia
 from derive.operations import cos, less, select, sin, sqrt
+from derive.rotations.lengths import squares
 from derive.trace import Number, named, number
 
 Plan = list[tuple[str, Number, str]]
 AXES = "xyz"
+DOUBLED, TERMS = 24, 6
+"""Up to 2^20 rad: of 2^-4 rad, six terms leave out 2^-64."""
 
 
-def plan_revolution(body: Inertia, omega: Sequence[Number], time_step: Number) -> Plan:
+About = Callable[[Sequence[Number], Number], tuple[Number, Number]]
+"""From mu and h to sin(|mu| h/2)/|mu| and 1 - cos(|mu| h/2)."""
+
+
+def plan_revolution(
+    body: Inertia, omega: Sequence[Number], time_step: Number, about: About
+) -> Plan:
     """Return what every step of a body of revolution has in common: name, value, meaning."""
     i, j, k = order(body)
     across, own = body.tensor[i], body.tensor[k]
     along = named("ratio", own / across, "moment about the axis over the other") * omega[k]
-    sine, versed = _about_momentum([omega[i], omega[j], along], time_step)
+    sine, versed = about([omega[i], omega[j], along], time_step)
     slip = named("slip", (across - own) / across, "one less that ratio")
     angle = time_step * (slip * omega[k])
     half, quarter = sin(angle * Fraction(1, 2)), sin(angle * Fraction(1, 4))
@@ -36,16 +45,16 @@ def plan_revolution(body: Inertia, omega: Sequence[Number], time_step: Number) -
     ]
 
 
-def plan_sphere(omega: Sequence[Number], time_step: Number) -> Plan:
+def plan_sphere(omega: Sequence[Number], time_step: Number, about: About) -> Plan:
     """Return what every step of a sphere has in common: the attitude change itself."""
-    sine, versed = _about_momentum(omega, time_step)
+    sine, versed = about(omega, time_step)
     names = zip(AXES, omega, strict=True)
     return [("less", versed, "1 - scalar part of the attitude change")] + [
         (f"turn_{axis}", sine * w, "vector part of the attitude change") for axis, w in names
     ]
 
 
-def _about_momentum(mu: Sequence[Number], time_step: Number) -> tuple[Number, Number]:
+def about_momentum(mu: Sequence[Number], time_step: Number) -> tuple[Number, Number]:
     """Return sin(|mu| h/2)/|mu| and 1 - cos(|mu| h/2)."""
     size = sqrt(mu[0] * mu[0] + mu[1] * mu[1] + mu[2] * mu[2])
     turns = less(0, size)
@@ -53,6 +62,24 @@ def _about_momentum(mu: Sequence[Number], time_step: Number) -> tuple[Number, Nu
     sine = sin(angle * Fraction(1, 2)) / select(turns, size, 1)
     quarter = sin(angle * Fraction(1, 4))
     return select(turns, sine, time_step * Fraction(1, 2)), 2 * quarter * quarter
+
+
+def about_any(mu: Sequence[Number], time_step: Number) -> tuple[Number, Number]:
+    """Return the same with slopes that keep their digits near mu = 0: both are functions of mu^2.
+
+    A small part of the angle is doubled, up to ``DOUBLED`` times.
+    """
+    z = squares([time_step * m for m in mu]) * Fraction(1, 4 ** (DOUBLED + 1))
+    sine, versed = number(1), number(0)
+    for n in reversed(range(1, TERMS)):
+        versed = z * Fraction(1, 2 * n * (2 * n - 1)) * (1 - versed)
+    for n in reversed(range(1, TERMS)):
+        sine = 1 - z * Fraction(1, 2 * n * (2 * n + 1)) * sine
+    for _ in range(DOUBLED):
+        cosine, square = 1 - versed, z * sine * sine
+        size = cosine * cosine + square
+        sine, versed, z = sine * cosine / size, 2 * square / size, 4 * z
+    return time_step * Fraction(1, 2) * sine, versed
 
 
 def change_of_revolution(

@@ -11,7 +11,7 @@ from derive.flows.tumbling import tumble
 from derive.operations import less, power_of_two, select
 from derive.rotations.lengths import largest
 from derive.rotations.quaternion import product
-from derive.trace import Number, Tape, named
+from derive.trace import Number, Tape, named, number
 
 Motion = tuple[list[Number], list[Number]]
 
@@ -31,12 +31,38 @@ def flow_exact(
     Rates are worked out over a power of two near the largest, and a body at rest as one that spins
     for no time: nothing overflows, and nothing is divided by zero.
     """
+    turn, after, size = turned(body, omega, time)
+    return product(attitude, turn), [w * size for w in after]
+
+
+def turned(
+    body: Inertia, omega: Sequence[Number], time: Number
+) -> tuple[list[Number], list[Number], Number]:
+    """Return the turn (4,) from body axes to those after ``time``; rates (3,) then; their unit."""
     size = power_of_two(largest(omega))
     moves = less(0, size)
     scaled = [w / select(moves, size, 1) for w in omega]
     scaled[0] = select(moves, scaled[0], 1)
     turn, after = _moved(body, (scaled[0], scaled[1], scaled[2]), time * size)
-    return product(attitude, turn), [w * size for w in after]
+    return turn, after, size
+
+
+def principal(body: Inertia) -> tuple[Three, tuple[Row, Row, Row]]:
+    """Return three moments over the second, which lies between the others, and their axes.
+
+    The axes are right-handed unit vectors along body axes, as rows. Slopes of the motion rest on
+    this and on the turn, which is why ``Program.free`` holds the three.
+    """
+    axes: list[Row] = [[number(int(i == j)) for j in range(3)] for i in range(3)]
+    if body.kind == "spherical":
+        return (number(1), number(1), number(1)), (axes[0], axes[1], axes[2])
+    if body.kind == "axisymmetric":
+        k = "xyz".index(body.axis or "z")
+        ratio = body.tensor[k] / body.tensor[(k + 1) % 3]
+        return (number(1), number(1), ratio), (axes[(k + 1) % 3], axes[(k + 2) % 3], axes[k])
+    found = principal_axes(body)
+    one, two, three = found.moments
+    return (one / two, number(1), three / two), found.axes
 
 
 def _moved(body: Inertia, omega: Three, time: Number) -> Motion:

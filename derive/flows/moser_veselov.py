@@ -10,6 +10,8 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from derive.flows.closed_steps import (
+    about_any,
+    about_momentum,
     change_of_revolution,
     less_than_one,
     plan_revolution,
@@ -46,23 +48,18 @@ def plan_dmv(tape: Tape, body: Inertia, omega: Vector, time_step: Number) -> Pla
     """
     match body.kind:
         case "spherical":
-            return plan_sphere(omega, time_step)
+            return plan_sphere(omega, time_step, about_momentum)
         case "axisymmetric":
-            return plan_revolution(body, omega, time_step)
+            return plan_revolution(body, omega, time_step, about_momentum)
     axes = _axes(body)
-    turned = axes.along([time_step * w for w in omega])
-    s, d, moments = _modified(axes.moments, turned)
-    ratios = [s + d * moment for moment in moments]
+    s, moments, ratios = _ratios(axes, omega, time_step)
     plan: Plan = []
     factor = splitter(tape)
     moves = less(0, absolute(time_step))  # in no time nothing changes, whatever gain is
     quarter = select(moves, time_step * Fraction(1, 4), 1)
-    for (i, j, k), axis in zip(CYCLIC, AXES, strict=True):
-        asymmetry = named(
-            f"asymmetry_{axis}", (moments[j] - moments[k]) / moments[i], "(I_j - I_k) / I_i"
-        )
-        half = time_step * Fraction(1, 2) * ratios[i]
-        gain = s * asymmetry / (ratios[j] * ratios[k]) / quarter
+    for n, axis in enumerate(AXES):
+        half = time_step * Fraction(1, 2) * ratios[n]
+        gain = _share(n, s, moments, ratios) / quarter
         double, error = two_product(gain, half, factor)
         plan += [
             (f"half_{axis}", half, "half a time step, times I / It of the modified body, s"),
@@ -72,10 +69,50 @@ def plan_dmv(tape: Tape, body: Inertia, omega: Vector, time_step: Number) -> Pla
         ]
     couple = plan[2][1] * plan[6][1] * Fraction(1, 2)
     plan.append(("couple", couple, "half the product of couple_x and couple_y"))
-    for x, row in zip(AXES, lacking(tape, axes.rows) if axes.rows else (), strict=False):
-        says = "what the way back from principal axes lacks by rounding"
-        plan += [(f"back_{x}{a}", entry, says) for a, entry in zip("abc", row, strict=True)]
-    return plan
+    return plan + _back(tape, axes)
+
+
+def plan_slopes(tape: Tape, body: Inertia, omega: Vector, time_step: Number) -> list[Number]:
+    """Return the values of ``plan_dmv`` by operations whose slopes keep their digits everywhere.
+
+    Near rest and for hardly any time those of the plan lose them; what rounding kept has no slope.
+    """
+    match body.kind:
+        case "spherical":
+            return [value for _, value, _ in plan_sphere(omega, time_step, about_any)]
+        case "axisymmetric":
+            return [value for _, value, _ in plan_revolution(body, omega, time_step, about_any)]
+    axes = _axes(body)
+    s, moments, ratios = _ratios(axes, omega, time_step)
+    plan: list[Number] = []
+    for n in range(3):
+        share = _share(n, s, moments, ratios)
+        half, gain = time_step * Fraction(1, 2) * ratios[n], share / (time_step * Fraction(1, 4))
+        plan += [half, gain, share * ratios[n], number(0)]
+    return [*plan, plan[2] * plan[6] * Fraction(1, 2), *(x for _, x, _ in _back(tape, axes))]
+
+
+def _ratios(
+    axes: Frame, omega: Vector, time_step: Number
+) -> tuple[Number, list[Number], list[Number]]:
+    """Return s, the moments, and those over the modified body's."""
+    s, d, moments = _modified(axes.moments, axes.along([time_step * w for w in omega]))
+    return s, moments, [s + d * moment for moment in moments]
+
+
+def _share(n: int, s: Number, moments: Vector, ratios: Vector) -> Number:
+    """Return what gain and couple of an axis have in common."""
+    i, j, k = CYCLIC[n]
+    difference = (moments[j] - moments[k]) / moments[i]
+    asymmetry = named(f"asymmetry_{AXES[n]}", difference, "(I_j - I_k) / I_i")
+    return s * asymmetry / (ratios[j] * ratios[k])
+
+
+def _back(tape: Tape, axes: Frame) -> Plan:
+    says = "what the way back from principal axes lacks by rounding"
+    rows = zip(AXES, lacking(tape, axes.rows) if axes.rows else (), strict=False)
+    each = ((x, zip("abc", row, strict=True)) for x, row in rows)
+    return [(f"back_{x}{a}", entry, says) for x, row in each for a, entry in row]
 
 
 def _axes(body: Inertia) -> Frame:

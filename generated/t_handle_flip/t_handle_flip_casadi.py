@@ -3,7 +3,7 @@
 
 Every builder returns a CasADi Function with the operations of the C files in their order, so the
 numbers agree with double C to the last bit. CasADi differentiates them, sparsely, once and twice;
-where it cannot and a derivative exists, it gives NaN or an infinity: flow_exact at rest and on the separatrix, so about the middle axis.
+where it cannot and a derivative exists, it gives NaN or an infinity.
 
     state function : kinetic_energy()          inputs parameters, omega
     in a loop      : kinetic_energy_hot()      takes constants = setup()(parameters), made once
@@ -127,6 +127,151 @@ def _at_most(a, b):
 
 def _select(condition, yes, no):
     return ca.if_else(condition, yes[0], no[0]), ca.if_else(condition, yes[1], no[1])
+
+
+def _still(x):
+    """Return x without its slope: the floor of x over a power of two by which it is whole."""
+    size = ca.fabs(x)
+    a = ca.if_else(size < 2.0**-800, 2.0**1000, ca.if_else(size < 2.0**60, 2.0**900, 1.0))
+    b = ca.if_else(size < 2.0**-800, 2.0**150, 1.0)
+    return ca.floor(x * a * b) / b / a
+
+
+def _sloped(result, own, *inputs):
+    """Return the result with the slopes of ``own``, the same by operations that may be derived.
+
+    Where that is no number slopes are infinite by every input.
+    """
+    known, every = ca.fabs(own) < ca.inf, ca.sum1(ca.vertcat(*inputs))
+    never = ca.sqrt(ca.if_else(known, 1, every - _still(every))) - ca.if_else(known, 1, 0)
+    return _still(result) + ca.if_else(known, own - _still(own), 0) + never
+
+
+def _simplified(build):
+    """Build a Function whose rounding errors are worth nothing."""
+    before = ca.GlobalOptions.getSimplificationOnTheFly()
+    ca.GlobalOptions.setSimplificationOnTheFly(True)
+    try:
+        return build()
+    finally:
+        ca.GlobalOptions.setSimplificationOnTheFly(before)
+
+
+def _largest(x):
+    return ca.mmax(ca.fabs(x))
+
+
+def _product(p, q):
+    scalar = p[0] * q[0] - ca.dot(p[1:], q[1:])
+    return ca.vertcat(scalar, p[0] * q[1:] + q[0] * p[1:] + ca.cross(p[1:], q[1:]))
+
+
+def _rotated(q, v):
+    across = 2 * ca.cross(q[1:], v)
+    return v + q[0] * across + ca.cross(q[1:], across)
+
+
+def _begun(high, low, t):
+    """Return y, cn and the integral of y^2 after a short time, y' = cn dn."""
+    square, sum_ = t * t, high + low
+    mixed = sum_ * sum_ + 12 * high * low
+    y = t * (1 - square * (sum_ / 6 - square * mixed / 120))
+    third = sum_ * sum_ / 36 + mixed / 60
+    area = t * square * (1 / 3 - square * (sum_ / 15 - square * third / 7))
+    return y, ca.sqrt(1 - high * y * y), area
+
+
+def _free_rates(moments, omega, time):
+    """Return omega after a time, the integrals of its squares, and the phase, all along axes.
+
+    y, c, d are sn, cn, dn over powers of the rates, doubled from a short time on: polynomials of
+    the rates wherever that is (at rest, about each axis, on the separatrix), and so are slopes.
+    """
+    (a, b, c), (u, v, w) = ca.vertsplit(moments), ca.vertsplit(omega)
+    e, f, g = (b - c) / a, (c - a) / b, (a - b) / c
+    one, three = -e * f * w * w, -f * g * u * u
+    is_cn = three <= one
+    part, gap = ca.if_else(is_cn, one, three), f * (g * u * u - e * w * w)
+    low, gap = ca.if_else(is_cn, three, one) + e * g * v * v, ca.if_else(is_cn, gap, -gap)
+    high = part + e * g * v * v
+    y, cn, area = _begun(high, low, time / 2.0**24)
+    for _ in range(24):
+        yy, cc = y * y, cn * cn
+        dd = cc + gap * yy
+        over = cc + high * yy * dd
+        short = 2 * high * yy < 1
+        y, cn = (
+            2 * y * cn * ca.sqrt(dd) / over,
+            ca.if_else(short, cc - high * yy * dd, cc * cc - high * gap * yy * yy) / over,
+        )
+        area = 2 * area + yy * y
+    dn = ca.sqrt(cn * cn + gap * y * y)
+    of_u, of_w = ca.if_else(is_cn, cn, dn), ca.if_else(is_cn, dn, cn)
+    along_u, along_w = u * of_u + e * v * w * y * of_w, w * of_w + g * u * v * y * of_u
+    after = ca.vertcat(along_u, v * cn * dn + f * u * w * y, along_w) / (cn * cn + part * y * y)
+    whole = (f * u * u - e * v * v) * (f * w * w - g * v * v) * area + v * after[1] * y
+    lags = ca.vertcat(e, f, g)
+    near = ca.fabs(time) * _largest(lags) * _largest(omega) < 2.0**-8
+    first, second = u * v * w, e * (v * w) ** 2 + f * (w * u) ** 2 + g * (u * v) ** 2
+    third = 4 * first * (e * f * w * w + f * g * u * u + g * e * v * v)
+    series = time**2 * (first / 2 + time * (second / 6 + time * third / 24))
+    twice = ca.if_else(near, series, (whole - time * v * v) / (2 * ca.if_else(near, 1, f)))
+    return after, time * omega**2 + 2 * lags * twice, ca.sqrt(high) * ca.fabs(time), lags
+
+
+def _short_turn(lags, omega, time):
+    """Return the turn after a short time, by its Taylor series."""
+    turn, q, w = ca.vertcat(1, 0, 0, 0), [ca.vertcat(1, 0, 0, 0)], [omega]
+    for k in range(1, 7):
+        pairs = [(j, k - 1 - j) for j in range(k)]
+        q.append(sum(_product(q[i], ca.vertcat(0, w[j])) for i, j in pairs) / (2 * k))
+        w.append(lags * sum(w[i][[1, 2, 0]] * w[j][[2, 0, 1]] for i, j in pairs) / k)
+        turn = turn + q[k] * time**k
+    return turn
+
+
+def _free_slope():
+    """Return the Function moments, omega, time, a change of these, turn -> change of the turn.
+
+    The momentum l stays in space, so a change theta of attitude has l x theta = R dm' - dm, and
+    l . theta is the time times the change of energy, less what changed moments take of it.
+    """
+    x, dx, turn = ca.SX.sym("x", 7), ca.SX.sym("dx", 7), ca.SX.sym("turn", 4)
+    moments, omega, time = x[:3], x[3:6], x[6]
+    after, squares, phase, lags = _free_rates(moments, omega, time)
+    angle = ca.fabs(time) * _largest(omega) * ca.fmax(1, _largest(lags))
+    short, known = angle < 2.0**-8, phase < 2.0**20
+    momentum = moments * omega
+    energy = ca.dot(momentum, omega) / 2
+    along = 2 * energy * dx[6] + time * ca.jtimes(energy, x, dx) - ca.dot(squares, dx[:3]) / 2
+    across = _rotated(turn, ca.jtimes(moments * after, x, dx)) - ca.jtimes(momentum, x, dx)
+    theta = along * momentum + ca.cross(across, momentum)
+    theta = theta / ca.if_else(short, 1, ca.dot(momentum, momentum))
+    change = _product(ca.vertcat(0, theta), turn) / 2
+    series = _short_turn(lags, omega, time)
+    return ca.Function("slope", [x, dx, turn], [change, after, series, short, known])
+
+
+def _with_slope(result, free, attitude, omega, time):
+    """Return the result of an exact flow with slopes that are right, once and twice, everywhere.
+
+    The flow's own are lost where its formulas have another case. Along the changes dx, which are
+    0, the mean of the slopes at both ends (one not to be differentiated) has the right two.
+    """
+    moments, turn = ca.vertcat(*free[:3]), ca.vertcat(*free[12:])
+    axes = ca.reshape(ca.vertcat(*free[3:12]), 3, 3)
+    size = _still(_largest(omega))
+    size = ca.if_else(size > 0, size, 1)
+    x = ca.vertcat(moments, axes.T @ omega / size, time * size)
+    dx, slope = x - _still(x), _simplified(_free_slope)
+    turn = _still(ca.vertcat(turn[0], axes.T @ turn[1:]))
+    change = slope(_still(x), dx, turn)[0]
+    again, after, series, short, known = slope(x, dx, turn + change)
+    never = ca.constpow(ca.dot(dx, range(1, 8)), 2.5)
+    turn = ca.if_else(short, series, turn + (change + again) / 2 + never)
+    turn = ca.vertcat(turn[0], axes @ turn[1:])
+    own = ca.vertcat(_product(attitude, turn), axes @ after * size)
+    return _sloped(result, ca.if_else(known, own, float("nan")), attitude, omega, time, moments)
 
 
 def setup():
@@ -1157,15 +1302,14 @@ def _flow_exact():
     t854 = t815 * t7
     t855 = t820 * t7
     t856 = t825 * t7
-    stir = ca.sum1(ca.fabs(omega))
-    without_slope = ca.if_else(stir > 0.0, 0.0, ca.sqrt(stir))
-    without_slope = without_slope + ca.if_else(t82, t80, 0.0)
+    free = [constants[15], 1.0, constants[21], constants[6], constants[7], constants[8], constants[9], constants[10], constants[11], constants[12], constants[13], constants[14], t779, t800, t805, t810]
+    ends = _with_slope(ca.vertcat(t832, t839, t846, t853, t854, t855, t856), free, attitude, omega, time)
     return ca.Function(
         "t_handle_flip_flow_exact_hot",
         [constants, attitude, omega, time],
         [
-            ca.vertcat(t832 + without_slope, t839 + without_slope, t846 + without_slope, t853 + without_slope),
-            ca.vertcat(t854 + without_slope, t855 + without_slope, t856 + without_slope),
+            ca.vertcat(ends[0], ends[1], ends[2], ends[3]),
+            ca.vertcat(ends[4], ends[5], ends[6]),
         ],
         ['constants', 'attitude', 'omega', 'time'],
         ['attitude_next', 'omega_next'],

@@ -3,7 +3,7 @@
 
 Every builder returns a CasADi Function with the operations of the C files in their order, so the
 numbers agree with double C to the last bit. CasADi differentiates them, sparsely, once and twice;
-where it cannot and a derivative exists, it gives NaN or an infinity: flow_exact at rest and on the separatrix, so about the middle axis; plan_dmv at rest and for no time.
+where it cannot and a derivative exists, it gives NaN or an infinity.
 
     state function : flow_exact()          inputs parameters, attitude, omega, time
     in a loop      : flow_exact_hot()      takes constants = setup()(parameters), made once
@@ -127,6 +127,151 @@ def _at_most(a, b):
 
 def _select(condition, yes, no):
     return ca.if_else(condition, yes[0], no[0]), ca.if_else(condition, yes[1], no[1])
+
+
+def _still(x):
+    """Return x without its slope: the floor of x over a power of two by which it is whole."""
+    size = ca.fabs(x)
+    a = ca.if_else(size < 2.0**-800, 2.0**1000, ca.if_else(size < 2.0**60, 2.0**900, 1.0))
+    b = ca.if_else(size < 2.0**-800, 2.0**150, 1.0)
+    return ca.floor(x * a * b) / b / a
+
+
+def _sloped(result, own, *inputs):
+    """Return the result with the slopes of ``own``, the same by operations that may be derived.
+
+    Where that is no number slopes are infinite by every input.
+    """
+    known, every = ca.fabs(own) < ca.inf, ca.sum1(ca.vertcat(*inputs))
+    never = ca.sqrt(ca.if_else(known, 1, every - _still(every))) - ca.if_else(known, 1, 0)
+    return _still(result) + ca.if_else(known, own - _still(own), 0) + never
+
+
+def _simplified(build):
+    """Build a Function whose rounding errors are worth nothing."""
+    before = ca.GlobalOptions.getSimplificationOnTheFly()
+    ca.GlobalOptions.setSimplificationOnTheFly(True)
+    try:
+        return build()
+    finally:
+        ca.GlobalOptions.setSimplificationOnTheFly(before)
+
+
+def _largest(x):
+    return ca.mmax(ca.fabs(x))
+
+
+def _product(p, q):
+    scalar = p[0] * q[0] - ca.dot(p[1:], q[1:])
+    return ca.vertcat(scalar, p[0] * q[1:] + q[0] * p[1:] + ca.cross(p[1:], q[1:]))
+
+
+def _rotated(q, v):
+    across = 2 * ca.cross(q[1:], v)
+    return v + q[0] * across + ca.cross(q[1:], across)
+
+
+def _begun(high, low, t):
+    """Return y, cn and the integral of y^2 after a short time, y' = cn dn."""
+    square, sum_ = t * t, high + low
+    mixed = sum_ * sum_ + 12 * high * low
+    y = t * (1 - square * (sum_ / 6 - square * mixed / 120))
+    third = sum_ * sum_ / 36 + mixed / 60
+    area = t * square * (1 / 3 - square * (sum_ / 15 - square * third / 7))
+    return y, ca.sqrt(1 - high * y * y), area
+
+
+def _free_rates(moments, omega, time):
+    """Return omega after a time, the integrals of its squares, and the phase, all along axes.
+
+    y, c, d are sn, cn, dn over powers of the rates, doubled from a short time on: polynomials of
+    the rates wherever that is (at rest, about each axis, on the separatrix), and so are slopes.
+    """
+    (a, b, c), (u, v, w) = ca.vertsplit(moments), ca.vertsplit(omega)
+    e, f, g = (b - c) / a, (c - a) / b, (a - b) / c
+    one, three = -e * f * w * w, -f * g * u * u
+    is_cn = three <= one
+    part, gap = ca.if_else(is_cn, one, three), f * (g * u * u - e * w * w)
+    low, gap = ca.if_else(is_cn, three, one) + e * g * v * v, ca.if_else(is_cn, gap, -gap)
+    high = part + e * g * v * v
+    y, cn, area = _begun(high, low, time / 2.0**24)
+    for _ in range(24):
+        yy, cc = y * y, cn * cn
+        dd = cc + gap * yy
+        over = cc + high * yy * dd
+        short = 2 * high * yy < 1
+        y, cn = (
+            2 * y * cn * ca.sqrt(dd) / over,
+            ca.if_else(short, cc - high * yy * dd, cc * cc - high * gap * yy * yy) / over,
+        )
+        area = 2 * area + yy * y
+    dn = ca.sqrt(cn * cn + gap * y * y)
+    of_u, of_w = ca.if_else(is_cn, cn, dn), ca.if_else(is_cn, dn, cn)
+    along_u, along_w = u * of_u + e * v * w * y * of_w, w * of_w + g * u * v * y * of_u
+    after = ca.vertcat(along_u, v * cn * dn + f * u * w * y, along_w) / (cn * cn + part * y * y)
+    whole = (f * u * u - e * v * v) * (f * w * w - g * v * v) * area + v * after[1] * y
+    lags = ca.vertcat(e, f, g)
+    near = ca.fabs(time) * _largest(lags) * _largest(omega) < 2.0**-8
+    first, second = u * v * w, e * (v * w) ** 2 + f * (w * u) ** 2 + g * (u * v) ** 2
+    third = 4 * first * (e * f * w * w + f * g * u * u + g * e * v * v)
+    series = time**2 * (first / 2 + time * (second / 6 + time * third / 24))
+    twice = ca.if_else(near, series, (whole - time * v * v) / (2 * ca.if_else(near, 1, f)))
+    return after, time * omega**2 + 2 * lags * twice, ca.sqrt(high) * ca.fabs(time), lags
+
+
+def _short_turn(lags, omega, time):
+    """Return the turn after a short time, by its Taylor series."""
+    turn, q, w = ca.vertcat(1, 0, 0, 0), [ca.vertcat(1, 0, 0, 0)], [omega]
+    for k in range(1, 7):
+        pairs = [(j, k - 1 - j) for j in range(k)]
+        q.append(sum(_product(q[i], ca.vertcat(0, w[j])) for i, j in pairs) / (2 * k))
+        w.append(lags * sum(w[i][[1, 2, 0]] * w[j][[2, 0, 1]] for i, j in pairs) / k)
+        turn = turn + q[k] * time**k
+    return turn
+
+
+def _free_slope():
+    """Return the Function moments, omega, time, a change of these, turn -> change of the turn.
+
+    The momentum l stays in space, so a change theta of attitude has l x theta = R dm' - dm, and
+    l . theta is the time times the change of energy, less what changed moments take of it.
+    """
+    x, dx, turn = ca.SX.sym("x", 7), ca.SX.sym("dx", 7), ca.SX.sym("turn", 4)
+    moments, omega, time = x[:3], x[3:6], x[6]
+    after, squares, phase, lags = _free_rates(moments, omega, time)
+    angle = ca.fabs(time) * _largest(omega) * ca.fmax(1, _largest(lags))
+    short, known = angle < 2.0**-8, phase < 2.0**20
+    momentum = moments * omega
+    energy = ca.dot(momentum, omega) / 2
+    along = 2 * energy * dx[6] + time * ca.jtimes(energy, x, dx) - ca.dot(squares, dx[:3]) / 2
+    across = _rotated(turn, ca.jtimes(moments * after, x, dx)) - ca.jtimes(momentum, x, dx)
+    theta = along * momentum + ca.cross(across, momentum)
+    theta = theta / ca.if_else(short, 1, ca.dot(momentum, momentum))
+    change = _product(ca.vertcat(0, theta), turn) / 2
+    series = _short_turn(lags, omega, time)
+    return ca.Function("slope", [x, dx, turn], [change, after, series, short, known])
+
+
+def _with_slope(result, free, attitude, omega, time):
+    """Return the result of an exact flow with slopes that are right, once and twice, everywhere.
+
+    The flow's own are lost where its formulas have another case. Along the changes dx, which are
+    0, the mean of the slopes at both ends (one not to be differentiated) has the right two.
+    """
+    moments, turn = ca.vertcat(*free[:3]), ca.vertcat(*free[12:])
+    axes = ca.reshape(ca.vertcat(*free[3:12]), 3, 3)
+    size = _still(_largest(omega))
+    size = ca.if_else(size > 0, size, 1)
+    x = ca.vertcat(moments, axes.T @ omega / size, time * size)
+    dx, slope = x - _still(x), _simplified(_free_slope)
+    turn = _still(ca.vertcat(turn[0], axes.T @ turn[1:]))
+    change = slope(_still(x), dx, turn)[0]
+    again, after, series, short, known = slope(x, dx, turn + change)
+    never = ca.constpow(ca.dot(dx, range(1, 8)), 2.5)
+    turn = ca.if_else(short, series, turn + (change + again) / 2 + never)
+    turn = ca.vertcat(turn[0], axes @ turn[1:])
+    own = ca.vertcat(_product(attitude, turn), axes @ after * size)
+    return _sloped(result, ca.if_else(known, own, float("nan")), attitude, omega, time, moments)
 
 
 def setup():
@@ -308,14 +453,14 @@ def _flow_exact():
     t98 = t66 * t7
     t99 = t69 * t7
     t100 = t12 * t7
-    stir = ca.sum1(ca.fabs(omega))
-    without_slope = ca.if_else(stir > 0.0, 0.0, ca.sqrt(stir))
+    free = [1.0, 1.0, constants[1], 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, t48, t51, t55, t58]
+    ends = _with_slope(ca.vertcat(t76, t83, t90, t97, t98, t99, t100), free, attitude, omega, time)
     return ca.Function(
         "tumbling_disc_flow_exact_hot",
         [constants, attitude, omega, time],
         [
-            ca.vertcat(t76 + without_slope, t83 + without_slope, t90 + without_slope, t97 + without_slope),
-            ca.vertcat(t98 + without_slope, t99 + without_slope, t100 + without_slope),
+            ca.vertcat(ends[0], ends[1], ends[2], ends[3]),
+            ca.vertcat(ends[4], ends[5], ends[6]),
         ],
         ['constants', 'attitude', 'omega', 'time'],
         ['attitude_next', 'omega_next'],
@@ -379,13 +524,313 @@ def _plan_dmv():
     t39 = ca.cos(t21)
     t40 = t38 * t39
     t41 = t38 * t22
-    stir = ca.sum1(ca.fabs(time_step))
-    without_slope = ca.if_else(stir > 0.0, 0.0, ca.sqrt(stir))
+    t0 = constants[1] * omega[2]
+    t15 = time_step[0] * 0.5
+    t19 = constants[2] * omega[2]
+    t20 = time_step[0] * t19
+    t21 = t20 * 0.5
+    t22 = ca.sin(t21)
+    t23 = t20 * 0.25
+    t24 = ca.sin(t23)
+    t25 = t24 * 2.0
+    t26 = t25 * t24
+    t28 = 1.0 - t26
+    t38 = t22 * 2.0
+    t39 = ca.cos(t21)
+    t40 = t38 * t39
+    t41 = t38 * t22
+    t42 = time_step[0] * omega[0]
+    t43 = time_step[0] * omega[1]
+    t44 = time_step[0] * t0
+    t45 = t42 * t42
+    t46 = t43 * t43
+    t47 = t44 * t44
+    t48 = t45 + t46
+    t49 = t48 + t47
+    t50 = t49 * 8.881784197001252e-16
+    t51 = t50 * 0.011111111111111112
+    t52 = t50 * 0.017857142857142856
+    t53 = 1.0 - t51
+    t54 = t52 * t53
+    t55 = t50 * 0.03333333333333333
+    t56 = 1.0 - t54
+    t57 = t55 * t56
+    t58 = t50 * 0.08333333333333333
+    t59 = 1.0 - t57
+    t60 = t58 * t59
+    t61 = t50 * 0.5
+    t62 = 1.0 - t60
+    t63 = t61 * t62
+    t64 = t50 * 0.00909090909090909
+    t65 = 1.0 - t64
+    t66 = t50 * 0.013888888888888888
+    t67 = t66 * t65
+    t68 = 1.0 - t67
+    t69 = t50 * 0.023809523809523808
+    t70 = t69 * t68
+    t71 = 1.0 - t70
+    t72 = t50 * 0.05
+    t73 = t72 * t71
+    t74 = 1.0 - t73
+    t75 = t50 * 0.16666666666666666
+    t76 = t75 * t74
+    t77 = 1.0 - t76
+    t78 = 1.0 - t63
+    t79 = t50 * t77
+    t80 = t79 * t77
+    t81 = t78 * t78
+    t82 = t81 + t80
+    t83 = t77 * t78
+    t84 = t83 / t82
+    t85 = t80 * 2.0
+    t86 = t85 / t82
+    t87 = t50 * 4.0
+    t88 = 1.0 - t86
+    t89 = t87 * t84
+    t90 = t89 * t84
+    t91 = t88 * t88
+    t92 = t91 + t90
+    t93 = t84 * t88
+    t94 = t93 / t92
+    t95 = t90 * 2.0
+    t96 = t95 / t92
+    t97 = t87 * 4.0
+    t98 = 1.0 - t96
+    t99 = t97 * t94
+    t100 = t99 * t94
+    t101 = t98 * t98
+    t102 = t101 + t100
+    t103 = t94 * t98
+    t104 = t103 / t102
+    t105 = t100 * 2.0
+    t106 = t105 / t102
+    t107 = t97 * 4.0
+    t108 = 1.0 - t106
+    t109 = t107 * t104
+    t110 = t109 * t104
+    t111 = t108 * t108
+    t112 = t111 + t110
+    t113 = t104 * t108
+    t114 = t113 / t112
+    t115 = t110 * 2.0
+    t116 = t115 / t112
+    t117 = t107 * 4.0
+    t118 = 1.0 - t116
+    t119 = t117 * t114
+    t120 = t119 * t114
+    t121 = t118 * t118
+    t122 = t121 + t120
+    t123 = t114 * t118
+    t124 = t123 / t122
+    t125 = t120 * 2.0
+    t126 = t125 / t122
+    t127 = t117 * 4.0
+    t128 = 1.0 - t126
+    t129 = t127 * t124
+    t130 = t129 * t124
+    t131 = t128 * t128
+    t132 = t131 + t130
+    t133 = t124 * t128
+    t134 = t133 / t132
+    t135 = t130 * 2.0
+    t136 = t135 / t132
+    t137 = t127 * 4.0
+    t138 = 1.0 - t136
+    t139 = t137 * t134
+    t140 = t139 * t134
+    t141 = t138 * t138
+    t142 = t141 + t140
+    t143 = t134 * t138
+    t144 = t143 / t142
+    t145 = t140 * 2.0
+    t146 = t145 / t142
+    t147 = t137 * 4.0
+    t148 = 1.0 - t146
+    t149 = t147 * t144
+    t150 = t149 * t144
+    t151 = t148 * t148
+    t152 = t151 + t150
+    t153 = t144 * t148
+    t154 = t153 / t152
+    t155 = t150 * 2.0
+    t156 = t155 / t152
+    t157 = t147 * 4.0
+    t158 = 1.0 - t156
+    t159 = t157 * t154
+    t160 = t159 * t154
+    t161 = t158 * t158
+    t162 = t161 + t160
+    t163 = t154 * t158
+    t164 = t163 / t162
+    t165 = t160 * 2.0
+    t166 = t165 / t162
+    t167 = t157 * 4.0
+    t168 = 1.0 - t166
+    t169 = t167 * t164
+    t170 = t169 * t164
+    t171 = t168 * t168
+    t172 = t171 + t170
+    t173 = t164 * t168
+    t174 = t173 / t172
+    t175 = t170 * 2.0
+    t176 = t175 / t172
+    t177 = t167 * 4.0
+    t178 = 1.0 - t176
+    t179 = t177 * t174
+    t180 = t179 * t174
+    t181 = t178 * t178
+    t182 = t181 + t180
+    t183 = t174 * t178
+    t184 = t183 / t182
+    t185 = t180 * 2.0
+    t186 = t185 / t182
+    t187 = t177 * 4.0
+    t188 = 1.0 - t186
+    t189 = t187 * t184
+    t190 = t189 * t184
+    t191 = t188 * t188
+    t192 = t191 + t190
+    t193 = t184 * t188
+    t194 = t193 / t192
+    t195 = t190 * 2.0
+    t196 = t195 / t192
+    t197 = t187 * 4.0
+    t198 = 1.0 - t196
+    t199 = t197 * t194
+    t200 = t199 * t194
+    t201 = t198 * t198
+    t202 = t201 + t200
+    t203 = t194 * t198
+    t204 = t203 / t202
+    t205 = t200 * 2.0
+    t206 = t205 / t202
+    t207 = t197 * 4.0
+    t208 = 1.0 - t206
+    t209 = t207 * t204
+    t210 = t209 * t204
+    t211 = t208 * t208
+    t212 = t211 + t210
+    t213 = t204 * t208
+    t214 = t213 / t212
+    t215 = t210 * 2.0
+    t216 = t215 / t212
+    t217 = t207 * 4.0
+    t218 = 1.0 - t216
+    t219 = t217 * t214
+    t220 = t219 * t214
+    t221 = t218 * t218
+    t222 = t221 + t220
+    t223 = t214 * t218
+    t224 = t223 / t222
+    t225 = t220 * 2.0
+    t226 = t225 / t222
+    t227 = t217 * 4.0
+    t228 = 1.0 - t226
+    t229 = t227 * t224
+    t230 = t229 * t224
+    t231 = t228 * t228
+    t232 = t231 + t230
+    t233 = t224 * t228
+    t234 = t233 / t232
+    t235 = t230 * 2.0
+    t236 = t235 / t232
+    t237 = t227 * 4.0
+    t238 = 1.0 - t236
+    t239 = t237 * t234
+    t240 = t239 * t234
+    t241 = t238 * t238
+    t242 = t241 + t240
+    t243 = t234 * t238
+    t244 = t243 / t242
+    t245 = t240 * 2.0
+    t246 = t245 / t242
+    t247 = t237 * 4.0
+    t248 = 1.0 - t246
+    t249 = t247 * t244
+    t250 = t249 * t244
+    t251 = t248 * t248
+    t252 = t251 + t250
+    t253 = t244 * t248
+    t254 = t253 / t252
+    t255 = t250 * 2.0
+    t256 = t255 / t252
+    t257 = t247 * 4.0
+    t258 = 1.0 - t256
+    t259 = t257 * t254
+    t260 = t259 * t254
+    t261 = t258 * t258
+    t262 = t261 + t260
+    t263 = t254 * t258
+    t264 = t263 / t262
+    t265 = t260 * 2.0
+    t266 = t265 / t262
+    t267 = t257 * 4.0
+    t268 = 1.0 - t266
+    t269 = t267 * t264
+    t270 = t269 * t264
+    t271 = t268 * t268
+    t272 = t271 + t270
+    t273 = t264 * t268
+    t274 = t273 / t272
+    t275 = t270 * 2.0
+    t276 = t275 / t272
+    t277 = t267 * 4.0
+    t278 = 1.0 - t276
+    t279 = t277 * t274
+    t280 = t279 * t274
+    t281 = t278 * t278
+    t282 = t281 + t280
+    t283 = t274 * t278
+    t284 = t283 / t282
+    t285 = t280 * 2.0
+    t286 = t285 / t282
+    t287 = t277 * 4.0
+    t288 = 1.0 - t286
+    t289 = t287 * t284
+    t290 = t289 * t284
+    t291 = t288 * t288
+    t292 = t291 + t290
+    t293 = t284 * t288
+    t294 = t293 / t292
+    t295 = t290 * 2.0
+    t296 = t295 / t292
+    t297 = t287 * 4.0
+    t298 = 1.0 - t296
+    t299 = t297 * t294
+    t300 = t299 * t294
+    t301 = t298 * t298
+    t302 = t301 + t300
+    t303 = t294 * t298
+    t304 = t303 / t302
+    t305 = t300 * 2.0
+    t306 = t305 / t302
+    t307 = t297 * 4.0
+    t308 = 1.0 - t306
+    t309 = t307 * t304
+    t310 = t309 * t304
+    t311 = t308 * t308
+    t312 = t311 + t310
+    t313 = t304 * t308
+    t314 = t313 / t312
+    t315 = t310 * 2.0
+    t316 = t315 / t312
+    t318 = t15 * t314
+    t319 = 1.0 - t316
+    t320 = t319 * t28
+    t321 = t318 * t0
+    t322 = t321 * t22
+    t323 = t320 - t322
+    t324 = t318 * t28
+    t325 = t318 * t22
+    t326 = t319 * t22
+    t327 = t321 * t28
+    t328 = t326 + t327
+    ends = _sloped(ca.vertcat(t33, t34, t37, t32, t40, t41), ca.vertcat(t324, t325, t328, t323, t40, t41), omega, time_step)
     return ca.Function(
         "tumbling_disc_plan_dmv_hot",
         [constants, omega, time_step],
         [
-            ca.vertcat(t33 + without_slope, t34 + without_slope, t37 + without_slope, t32 + without_slope, t40 + without_slope, t41 + without_slope),
+            ca.vertcat(ends[0], ends[1], ends[2], ends[3], ends[4], ends[5]),
         ],
         ['constants', 'omega', 'time_step'],
         ['plan'],

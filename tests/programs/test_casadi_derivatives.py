@@ -20,7 +20,6 @@ from derive.sample import Sample, samples
 from derive.scene import catalogue, load
 
 QUICK = ("attitude", "t_handle_flip", "tumbling_disc")
-NOWHERE = {"t_handle_flip": {"omega along y", "omega zero"}, "tumbling_disc": {"omega zero"}}
 
 
 @cache
@@ -48,13 +47,6 @@ def test_no_derivative_of_any_other_scene_is_a_wrong_number(scene: str) -> None:
     assert not wrong(scene)
 
 
-@pytest.mark.parametrize("scene", NOWHERE)
-def test_an_exact_flow_has_no_slope_in_casadi_only_where_it_is_said(scene: str) -> None:
-    found, module, sample = made(scene)
-    _, missing = compared(found, found["flow_exact"], module.flow_exact(), sample)
-    assert {one.partition(", ")[2] for one in missing} == NOWHERE[scene]
-
-
 def test_a_slope_that_is_lost_is_noticed() -> None:
     """A rotation vector near zero whose cosine is taken for 1 has no second derivative."""
     found, _, sample = made("attitude")
@@ -69,5 +61,5 @@ def test_a_slope_that_is_lost_is_noticed() -> None:
     motions = tuple(replace(p, ops=ops) if p.name == "quaternion_exp" else p for p in found.motions)
     text = casadi_file(replace(found, motions=motions))
     broken = imported("attitude_casadi", text, Path(mkdtemp())).quaternion_exp()
-    faults, _ = compared(found, program, broken, sample)
+    faults, _ = compared(found, program, broken, (sample,))
     assert any("rotation_vector zero" in fault for fault in faults)
