@@ -37,3 +37,17 @@ def cost_at(
             part = math.log(e0 / error) / math.log(e0 / e1)
             return math.exp(math.log(c0) + part * math.log(c1 / c0))
     return None
+
+
+def by_scene(points: Sequence[Point]) -> list[list[Point]]:
+    """Return the points of each scene that describes a case; peers have one without a name."""
+    return [[p for p in points if p.scene == s] for s in dict.fromkeys(p.scene for p in points)]
+
+
+def cost_in_all(
+    points: Sequence[Point], error: float, cost: Callable[[Point], float | None]
+) -> float | None:
+    """Return the cost of an error in the dearest scene, None if one does not keep to it."""
+    each = [cost_at(own, error, cost) for own in by_scene(points)]
+    known = [c for c in each if c is not None]
+    return max(known) if known and len(known) == len(each) else None

@@ -14,7 +14,7 @@ from derive.bench.own import AUTHOR
 from derive.largest import largest
 from derive.report.case_run import PRECISIONS, Found
 from derive.report.counts import BYTES, COMPACT, DERIVED, SPECIAL, STEPPERS, THIRTEEN, Count
-from derive.report.curve import cost_at, instructions, seconds
+from derive.report.curve import by_scene, cost_in_all, instructions, seconds
 from derive.report.gyroscopic import ASPHERICITIES, Gyroscopic
 from derive.report.gyroscopic import SCENES as FORMS
 from derive.report.hard import ROD, ROD_BOUNDS, SCALED, Hard
@@ -172,7 +172,9 @@ def _dmv(given: Evidence) -> Iterator[Target]:
 
 def _each_step(given: Evidence, precision: str, limit: int) -> Verdict:
     """Return the most instructions of a step of about ``USUAL`` rad, over all cases and scenes."""
-    each = [_near(own) for name in given.found for own in _scenes(_of(given, name, DMV, precision))]
+    each = [
+        _near(own) for name in given.found for own in by_scene(_of(given, name, DMV, precision))
+    ]
     counts = [(count / p.passes, p) for p, count in filter(None, each)]
     if not counts:
         return NOT
@@ -185,23 +187,9 @@ def _near(points: Sequence[Point]) -> tuple[Point, float] | None:
     return min(counts, key=lambda c: abs(math.log(c[0].radians / USUAL)), default=None)
 
 
-def _scenes(points: Sequence[Point]) -> list[list[Point]]:
-    """Return the points of each scene that describes a case; peers have one without a name."""
-    return [[p for p in points if p.scene == s] for s in dict.fromkeys(p.scene for p in points)]
-
-
-def _cost(
-    points: Sequence[Point], error: float, cost: Callable[[Point], float | None]
-) -> float | None:
-    """Return the cost of an error in the dearest scene, None if one does not keep to it."""
-    each = [cost_at(own, error, cost) for own in _scenes(points)]
-    known = [c for c in each if c is not None]
-    return max(known) if known and len(known) == len(each) else None
-
-
 def _generic(given: Evidence) -> Verdict:
     points = _of(given, GENERIC, DMV)
-    ours = _cost(points, 1e-12, instructions)
+    ours = cost_in_all(points, 1e-12, instructions)
     if ours is None:
         return _why_no_cost(points, 1e-12, instructions)
     return f"{ours / 1e6:.2f} M Ir", ours <= 1e6
@@ -209,8 +197,8 @@ def _generic(given: Evidence) -> Verdict:
 
 def _below_dop853(given: Evidence) -> Verdict:
     points = _of(given, GENERIC, DMV)
-    ours = _cost(points, 1e-12, instructions)
-    dop = _cost(_of(given, GENERIC, DOP853), 1e-12, instructions)
+    ours = cost_in_all(points, 1e-12, instructions)
+    dop = cost_in_all(_of(given, GENERIC, DOP853), 1e-12, instructions)
     if ours is None:
         return _why_no_cost(points, 1e-12, instructions)
     if dop is None:
@@ -225,9 +213,11 @@ def _faster(
     """Yield whether a stepper of ours takes at most ``times`` heyoka's time to an error."""
     names = [method, f"{method}_adaptive"] if method == TAYLOR else [method]
     points = [_of(given, case, m) for m in names]
-    costs = [(_cost(own, error, seconds), name) for own, name in zip(points, names, strict=True)]
+    costs = [
+        (cost_in_all(own, error, seconds), name) for own, name in zip(points, names, strict=True)
+    ]
     own, by = min(((c, name) for c, name in costs if c is not None), default=(None, ""))
-    peer = _cost(_of(given, case, HEYOKA), error, seconds)
+    peer = cost_in_all(_of(given, case, HEYOKA), error, seconds)
     verdict: Verdict = NOT
     if own is None:
         verdict = _why_no_cost([p for each in points for p in each], error, seconds)
