@@ -11,7 +11,7 @@ from statistics import median
 
 import numpy as np
 
-from derive.check.agreement import MEDIAN_BOUND
+from derive.check.agreement import LARGEST_BOUND
 from derive.check.emitted import Emitted
 from derive.check.verdict import JUDGED, Verdict
 from derive.largest import largest
@@ -35,8 +35,8 @@ def near_a_sphere(one: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
             each_worst = [largest([median(column)]) for column in zip(*found.rows, strict=True)]
             most = max(each_worst, default=0.0)
             says = f"{found.output}: median of a component at most {most:.2g} u of the differences"
-            says += f" at {len(own)} samples; allowed {MEDIAN_BOUND:g} u"
-            holds = JUDGED[most <= MEDIAN_BOUND]
+            says += f" at {len(own)} samples; allowed {LARGEST_BOUND:g} u"
+            holds = JUDGED[most <= LARGEST_BOUND]
             yield Verdict(scene, program.name, one.precision.name, "near a sphere", holds, says)
 
 
