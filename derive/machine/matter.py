@@ -4,7 +4,7 @@ A quantity that is changed without any answer changing does not matter: a number
 The programs that follow are proved against the equations in which it still stands.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -32,22 +32,41 @@ def lean(question: Question, words: Words) -> Lean:
 
     Raises SceneError if an answer depends on data that the user left out.
     """
-    for number in range(POINTS):
-        if _answers(question, words, number, {}) is None:
-            raise SceneError(f"'{question.name}' has no answer at a trial point: "
-                             "its balances are singular there")  # fmt: skip
-    idle = [s for s in sorted(question.arguments(), key=str) if not _matters(question, words, s)]
+    own = _everywhere(question, words, [{}] * POINTS)
+    if own is None:
+        raise SceneError(f"'{question.name}' has no answer at a trial point: "
+                         "its balances are singular there")  # fmt: skip
+
+    def stay(changed: Sequence[Mapping[Symbol, Any]]) -> bool:
+        return _same(own, _everywhere(question, words, changed))
+
+    arguments = sorted(question.arguments(), key=str)
+    idle = [s for s in arguments if stay([{s: another(words, s, n)} for n in range(POINTS)])]
     for symbol, what in words.hidden.items():
-        if symbol in question.arguments() and symbol not in idle:
+        if symbol in arguments and symbol not in idle:
             raise SceneError(f"'{question.name}' depends on {what}, which is not given")
     taken: dict[Symbol, Expr] = {}
     for symbol in idle:
         for number in STAND_INS:
-            if _stands_in(question, words, taken | {symbol: Integer(number)}):
+            held = {s: mpf(int(x)) for s, x in (taken | {symbol: Integer(number)}).items()}
+            if stay([held] * POINTS):
                 taken[symbol] = Integer(number)
                 break
     current = substituted(question, taken)
     return Lean(current, tuple(s for s in idle if s in taken and s not in words.hidden))
+
+
+def _everywhere(
+    question: Question, words: Words, changed: Sequence[Mapping[Symbol, Any]]
+) -> list[Any] | None:
+    """Return the answers at all trial points in one list, each with values of its own changed."""
+    found: list[Any] = []
+    for number, values in enumerate(changed):
+        here = _answers(question, words, number, values)
+        if here is None:
+            return None
+        found += here
+    return found
 
 
 def _answers(
@@ -68,26 +87,6 @@ def _same(first: list[Any] | None, second: list[Any] | None) -> bool:
         return False
     return all(
         abs(a - b) <= NOTHING * max(abs(a), abs(b)) for a, b in zip(first, second, strict=True)
-    )
-
-
-def _matters(question: Question, words: Words, symbol: Symbol) -> bool:
-    """Tell whether some answer changes with a symbol."""
-    return any(
-        not _same(
-            _answers(question, words, number, {}),
-            _answers(question, words, number, {symbol: another(words, symbol, number)}),
-        )
-        for number in range(POINTS)
-    )
-
-
-def _stands_in(question: Question, words: Words, taken: Mapping[Symbol, Expr]) -> bool:
-    """Tell whether answers stay as they are with numbers in the place of symbols."""
-    changed = {symbol: mpf(int(number)) for symbol, number in taken.items()}
-    return all(
-        _same(_answers(question, words, n, {}), _answers(question, words, n, changed))
-        for n in range(POINTS)
     )
 
 

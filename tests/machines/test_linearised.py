@@ -1,6 +1,8 @@
 """The matrices of small motion stand as a reader expects: row by coordinate, masses positive."""
 
+from collections.abc import Mapping
 from functools import cache
+from math import cos, sin, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +12,7 @@ from derive.solve.instrument import Instrument, opened
 from tests.made import thinned
 
 SCENES = Path(__file__).parent / "scenes"
+MIDDLE: Mapping[str, float] = {}
 
 
 @cache
@@ -17,13 +20,14 @@ def instrument(source: str) -> Instrument:
     return opened(source)
 
 
-def matrix(source: str, name: str) -> np.ndarray:
+def matrix(source: str, name: str, given: Mapping[str, float] = MIDDLE) -> np.ndarray:
+    """Return a matrix of small motion; what is not given is in the middle of its range."""
     found = instrument(source)
     function = next(f for f in found.library.functions if any(q.name == name for q in f.outputs))
     ranges = {c: (q.low or 0, q.high or 0) for q in found.quantities() for c in q.components}
     middle = {c: float(low + high) / 2 for c, (low, high) in ranges.items()}
     values = [
-        x for c, x in found.answer(function.name, middle).items() if c.startswith(f"{name}_")
+        x for c, x in found.answer(function.name, middle | dict(given)).items() if c.startswith(f"{name}_")
     ]
     size = round(len(values) ** 0.5)
     return np.array(values).reshape(size, size).T
@@ -45,3 +49,17 @@ def test_gyroscopic_terms_of_uncoupled_masses_do_no_work(name: str) -> None:
     damping = matrix(str(SCENES / f"{name}.toml"), "damping_matrix")
     assert np.any(damping != 0)
     assert np.allclose(damping, -damping.T, atol=1e-12 * np.abs(damping).max())
+
+
+def test_a_governor_in_balance_swings_as_its_energies_say() -> None:
+    """Links whose pull changes direction stiffen it: T = m v^2 + M u^2/2, u = 2 l sin(theta) w."""
+    m, sleeve, l, g, theta = 0.75, 7.5, 0.25, 9.8, 0.6
+    speed = sqrt((m + sleeve) * g / (m * l * cos(theta)))
+    given = {"m": m, "M": sleeve, "l": l, "g": g, "theta0": theta, "W": speed}
+    mass, stiffness = (
+        float(matrix(str(SCENES / "governor.toml"), name, given)[0, 0])
+        for name in ("mass_matrix", "stiffness_matrix")
+    )
+    inertia = 2 * m * l**2 + 4 * sleeve * (l * sin(theta)) ** 2
+    curvature = 2 * (m + sleeve) * g * l * cos(theta) - 2 * m * (l * speed) ** 2 * cos(2 * theta)
+    assert stiffness / mass == pytest.approx(curvature / inertia, rel=1e-12)
