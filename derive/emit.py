@@ -16,7 +16,6 @@ from derive.c_text import (
     literal,
     pair_body,
     pair_functions,
-    status,
     table,
 )
 from derive.comment import comment
@@ -30,6 +29,7 @@ from derive.program import Measurement, Program
 from derive.scene import argument
 from derive.scope import declared_in_c, require_free
 from derive.signature import Names, dense_prototype, dense_size, prototype
+from derive.status_text import status
 
 _HERE = Path(__file__).parent
 TEMPLATES = jinja2.Environment(

@@ -172,36 +172,42 @@ def setup(
     traced : what the formulas of motion need, worked out after the graph's constants
     tried  : what is found out about the parameters, last
     """
+    ops, own, placed, asked = _scheduled(graph, constants, traced, tried)
+    made = (*own, *(placed.get(o, o) for o in traced.names))
+    rules = tuple(replace(r, value=asked.get(str(r.value), r.value)) for r in tried.rules)
+    whole = (*ops, *renamed(traced.ops, placed), *renamed(tried.ops, asked))
+    asking = (*placed.values(), *asked.values(), *(rule.value for rule in rules))
+    whole = needed(whole, (*made, *asking))  # a trace may hold what no constant rests on
+    names = (*constants.names.values(), *traced.names.values())
+    says = "constants made of parameters only, for the functions of this scene"
+    output = Quantity("constants", names, (len(names),), "", "", None, None, says)
+    return Program(
+        "setup",
+        "Make the constants of this scene from its parameters; call it once.",
+        used_inputs(parameters, whole, (*own, *placed.values(), *asked.values())),
+        (output,) if names else (),
+        whole,
+        made,
+        rules=rules,
+    )
+
+
+def _scheduled(
+    graph: Graph, constants: Constants, traced: Traced, tried: Tried
+) -> tuple[tuple[Op, ...], tuple[Operand, ...], dict[str, Operand], dict[str, Operand]]:
+    """Return operations, the graph's constants, and the operands given to ``traced``, ``tried``."""
     values = [*constants.names, *traced.given.values(), *tried.given.values()]
-
-    def number(value: Value) -> Fraction:
-        return value[0]
-
     ops, results = schedule(
-        graph, values, lambda node: node == ONE, number, free_prefix("s", graph.leaf_names())
+        graph,
+        values,
+        lambda node: node == ONE,
+        lambda value: value[0],
+        free_prefix("s", graph.leaf_names()),
     )
     own, given = len(constants.names), len(traced.given)
     placed = dict(zip(traced.given, results[own : own + given], strict=True))
     asked = dict(zip(tried.given, results[own + given :], strict=True))
-    rules = tuple(replace(r, value=asked.get(str(r.value), r.value)) for r in tried.rules)
-    whole = (*ops, *renamed(traced.ops, placed), *renamed(tried.ops, asked))
-    made = [placed.get(o, o) for o in traced.names]
-    # a trace may hold what no constant rests on
-    whole = needed(whole, (*results, *made, *(rule.value for rule in rules)))
-    names = (*constants.names.values(), *traced.names.values())
-    says = "constants made of parameters only, for the functions of this scene"
-    output = Quantity("constants", names, (len(names),), "", "", None, None, says)
-    used = operands_of(whole, results)
-    inputs = tuple(p for p in parameters if used & set(p.components))
-    return Program(
-        "setup",
-        "Make the constants of this scene from its parameters; call it once.",
-        inputs,
-        (output,) if names else (),
-        whole,
-        (*results[:own], *made),
-        rules=rules,
-    )
+    return ops, results[:own], placed, asked
 
 
 def used_inputs(

@@ -27,8 +27,9 @@ FLOORS = (
     ("setting", "admission", "motions", "singular", "library"),
     ("saving",),
     (
-        *("c_text", "scope", "series_text", "compact_text", "definition", "comment", "signature"),
-        *("example", "emit", "casadi_text", "casadi_module", "manifest", "page"),
+        *("c_text", "status_text", "scope", "series_text", "compact_text", "definition"),
+        *("comment", "signature", "example", "emit", "casadi_text", "casadi_module"),
+        *("manifest", "page"),
     ),
     (
         *("blocks", "equations", "solution", "reference", "body_sample", "sample", "prove"),
@@ -58,7 +59,8 @@ WITHOUT_SYMPY = (
         "share",
         "write",
     ),
-    *("schedule", "derivative", "forms", "stage", "arithmetic", "c_text", "casadi_text", "emit"),
+    *("schedule", "derivative", "forms", "stage", "arithmetic", "c_text", "status_text"),
+    *("casadi_text", "emit"),
 )
 PACKAGE = Path(__file__).parent.parent / "derive"
 PAGE = PACKAGE.parent / "docs" / "architecture.md"

@@ -26,9 +26,8 @@ def matrix(source: str, name: str, given: Mapping[str, float] = MIDDLE) -> np.nd
     function = next(f for f in found.library.functions if any(q.name == name for q in f.outputs))
     ranges = {c: (q.low or 0, q.high or 0) for q in found.quantities() for c in q.components}
     middle = {c: float(low + high) / 2 for c, (low, high) in ranges.items()}
-    values = [
-        x for c, x in found.answer(function.name, middle | dict(given)).items() if c.startswith(f"{name}_")
-    ]
+    answer = found.answer(function.name, middle | dict(given))
+    values = [x for c, x in answer.items() if c.startswith(f"{name}_")]
     size = round(len(values) ** 0.5)
     return np.array(values).reshape(size, size).T
 
@@ -53,13 +52,14 @@ def test_gyroscopic_terms_of_uncoupled_masses_do_no_work(name: str) -> None:
 
 def test_a_governor_in_balance_swings_as_its_energies_say() -> None:
     """Links whose pull changes direction stiffen it: T = m v^2 + M u^2/2, u = 2 l sin(theta) w."""
-    m, sleeve, l, g, theta = 0.75, 7.5, 0.25, 9.8, 0.6
-    speed = sqrt((m + sleeve) * g / (m * l * cos(theta)))
-    given = {"m": m, "M": sleeve, "l": l, "g": g, "theta0": theta, "W": speed}
+    m, sleeve, link, g, theta = 0.75, 7.5, 0.25, 9.8, 0.6
+    speed = sqrt((m + sleeve) * g / (m * link * cos(theta)))
+    given = {"m": m, "M": sleeve, "l": link, "g": g, "theta0": theta, "W": speed}
     mass, stiffness = (
         float(matrix(str(SCENES / "governor.toml"), name, given)[0, 0])
         for name in ("mass_matrix", "stiffness_matrix")
     )
-    inertia = 2 * m * l**2 + 4 * sleeve * (l * sin(theta)) ** 2
-    curvature = 2 * (m + sleeve) * g * l * cos(theta) - 2 * m * (l * speed) ** 2 * cos(2 * theta)
+    inertia = 2 * m * link**2 + 4 * sleeve * (link * sin(theta)) ** 2
+    weight = 2 * (m + sleeve) * g * link * cos(theta)
+    curvature = weight - 2 * m * (link * speed) ** 2 * cos(2 * theta)
     assert stiffness / mass == pytest.approx(curvature / inertia, rel=1e-12)
