@@ -27,7 +27,7 @@ from derive.pair_sine import PI, quarter_turn, series
 from derive.pairs import splitter
 from derive.program import Measurement, Program
 from derive.scene import argument
-from derive.scope import declared_in_c, require_free
+from derive.scope import declared_in_c, require_free, require_no_symbol
 from derive.signature import Names, dense_prototype, dense_size, prototype
 from derive.status_text import status
 
@@ -84,6 +84,9 @@ def _pair_of_files(
     header = _header(
         library, names, precision, figures, hashlib.sha256(source.encode()).hexdigest()[:16]
     )
+    every = [q for p in (library.setup, *library.printed()) for q in (*p.inputs, *p.outputs)]
+    given = [name for q in every for name in (q.name, *q.components)]
+    require_no_symbol(names.scene, given, header + source)
     return {names.file(precision, "h"): header, names.file(precision, "c"): source}
 
 

@@ -14,6 +14,8 @@ _DECLARED = re.compile(rf"\s*(?:for \()?(?:static )?(?:const )?{_TYPE} ([^;]*);?
 _FIRST = re.compile(r"\*?([A-Za-z_]\w*)(?:\[\w+\])*(?: =.*)?")
 _ASSIGNED = re.compile(r"\s*(?:for )?([A-Za-z_]\w*(?:, [A-Za-z_]\w*)*)(?: =| in) ")
 
+_AT_THE_EDGE = re.compile(r"^(?:\} (\w+);|[A-Za-z_][\w *]*?\b(\w+)\()", re.MULTILINE)
+
 
 def declared_in_c(lines: Iterable[str]) -> Iterator[str]:
     """Yield the names that lines of C declare.
@@ -40,6 +42,24 @@ def declared_in_python(lines: Iterable[str]) -> Iterator[str]:
         found = _ASSIGNED.match(line)
         if found:
             yield from found[1].split(", ")
+
+
+def declared_by_file(text: str) -> set[str]:
+    r"""Return the types and functions that a text of C declares, each where its line begins.
+
+    >>> sorted(declared_by_file("} a_constants_f32;\nstatic int a_setup_f32(float b);\n  c(d);"))
+    ['a_constants_f32', 'a_setup_f32']
+    """
+    return {name for pair in _AT_THE_EDGE.findall(text) for name in pair if name}
+
+
+def require_no_symbol(scene: str, given: Iterable[str], text: str) -> None:
+    """Refuse a name of the scene that its C has for a type or a function."""
+    taken = declared_by_file(text)
+    for name in given:
+        if name in taken:
+            rule = "is what the emitted C calls a type or a function; give it another name"
+            raise SceneError(f"scene '{scene}': '{name}' {rule}")
 
 
 def require_free(scene: str, function: str, given: Sequence[str], declared: Iterable[str]) -> None:

@@ -11,6 +11,7 @@ from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 
+from derive.escape import brief, visible
 from derive.scene.declaration import (
     Axes,
     Body,
@@ -91,6 +92,9 @@ def load(source: str | Path) -> Scene | Machine:
     if isinstance(source, str) and source in catalogue():
         source = CATALOGUE / f"{source}.toml"
     path = Path(source)
+    if not path.stem:
+        says = "a name of the catalogue or the path of a TOML file is needed"
+        raise SceneError(f"scene {shown(str(source))}: {says}")
     if path.suffix != ".toml" and not os.path.exists(path):
         hint = nearest(str(source), catalogue())
         raise SceneError(f"scene {shown(str(source))}: neither in the catalogue nor a file{hint}")
@@ -98,7 +102,7 @@ def load(source: str | Path) -> Scene | Machine:
 
 
 def _contents(path: Path) -> str:
-    start = f"scene '{path.stem}': {path}"
+    start = f"scene {_quoted(path.stem)}: {visible(str(path))}"
     if not os.path.isfile(path):
         state = "is not a file" if os.path.exists(path) else "does not exist"
         raise SceneError(f"{start} {state}")
@@ -131,7 +135,11 @@ def parse_scene(text: str, name: str) -> Scene | Machine:
         idle = idle_times(times, scene.wanted)
         return replace(scene, warnings=(*scene.warnings, *idle))
     except SceneError as error:
-        raise SceneError(f"scene '{name}': {error}") from None
+        raise SceneError(f"scene {_quoted(name)}: {error}") from None
+
+
+def _quoted(name: str) -> str:
+    return f"'{brief(visible(name))}'"
 
 
 def _read(document: dict[str, object], name: str, text: str) -> Scene | Machine:

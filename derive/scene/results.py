@@ -99,6 +99,10 @@ def read_asked(
     """Return the answers that each wanted function gives."""
     if not isinstance(value, list) or not value:
         raise SceneError(f"wanted must be a list of at least one answer, not {shown(value)}")
+    for result in results:
+        if result.name in groups(unknowns):
+            rule = f"is the vector of the unknowns '{result.name}_x' to '{result.name}_z' already"
+            raise SceneError(f"result '{result.name}' needs another name: '{result.name}' {rule}")
     known_ = [*FUNCTIONS, *OF_MACHINES, *groups(unknowns), *(u.name for u in unknowns),
               *(r.name for r in results), *unknown_rates(scalars)]  # fmt: skip
     asked: dict[str, tuple[str, ...]] = {}

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 LONGEST_INTEGER_BITS = 1000
 LONGEST_LINE, LONGEST_KEY = 1000, 100
+DEEPEST, MANY = 20, 12
+"""Tables and lists within each other, of which scenes need a few; names that a sentence lists."""
 MARKS = ("*/", "/*", "\\", '"""', "??")
 SPACES = "\t\n"
 """What may part the words of a formula beside blanks."""
@@ -58,22 +60,24 @@ class Scope:
     rule: str
 
 
-def gate(value: object, label: str) -> None:
+def gate(value: object, label: str, depth: int = 0) -> None:
     """Refuse a string anywhere in a document, key or value, that is not plain text.
 
     Every string passes here before anything else reads it: characters that can be seen, in either
     direction of writing as they stand, and no mark that ends a comment or a string.
     """
+    if depth > DEEPEST:
+        raise SceneError(f"{brief(label)} is nested deeper than {DEEPEST} tables or lists")
     if isinstance(value, dict):
         for key, inner in value.items():
             _require_plain(key, f"a key in {label}")
             if len(key) > LONGEST_KEY:
                 rule = f"has a key of {len(key)} characters; {LONGEST_KEY} is the most"
                 raise SceneError(f"{label} {rule}")
-            gate(inner, _place(label, key))
+            gate(inner, _place(label, key), depth + 1)
     elif isinstance(value, list):
         for inner in value:
-            gate(inner, label)
+            gate(inner, label, depth + 1)
     elif isinstance(value, str):
         _require_plain(value, label)
 
@@ -122,7 +126,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
     close = difflib.get_close_matches(name, known, 1)
     if close:
         return f" (did you mean '{close[0]}'?)"
-    return f" (known: {', '.join(known)})" if 0 < len(known) <= 12 else ""
+    return f" (known: {', '.join(known)})" if 0 < len(known) <= MANY else ""
 
 
 def shown(value: object) -> str:
@@ -140,9 +144,15 @@ def word(value: object, label: str, known: Iterable[str]) -> str:
     """Return a value that must be one of a few words."""
     known = tuple(known)
     if not isinstance(value, str) or value not in known:
-        choice = f"one of {', '.join(known)}" if len(known) > 1 else f"'{''.join(known)}'"
-        raise SceneError(f"{label} must be {choice}, not {shown(value)}")
+        raise SceneError(f"{label} must be {_choice(known)}, not {shown(value)}")
     return value
+
+
+def _choice(known: tuple[str, ...]) -> str:
+    if len(known) < 2:
+        return f"'{known[0]}'" if known else "one that is declared, but none is"
+    more = f" or {len(known) - MANY} others" if len(known) > MANY else ""
+    return f"one of {', '.join(known[:MANY])}{more}"
 
 
 def several(value: object, label: str, known: Iterable[str]) -> tuple[str, ...]:
