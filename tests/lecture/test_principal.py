@@ -56,7 +56,7 @@ masses = st.lists(
 )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(masses)
 def test_the_axes_of_any_cloud_are_found(cloud: list[tuple[float, float, float, float]]) -> None:
     sums = [

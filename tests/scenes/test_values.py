@@ -99,7 +99,7 @@ FORMULAS = [
 PART = st.floats(0, 1)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.sampled_from(FORMULAS), st.tuples(*[st.floats(-4, 4)] * 4), PART, PART)
 def test_an_interval_holds_every_value_in_it(
     text: str, ends: tuple[float, float, float, float], s: float, t: float
