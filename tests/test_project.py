@@ -1,5 +1,6 @@
 """The project's own promises: two commands, five verbs, and a wheel that is complete."""
 
+import ast
 import re
 import tomllib
 import zipfile
@@ -55,3 +56,22 @@ def test_every_dependency_has_a_lower_bound() -> None:
     assert own == ["derive[test]"]
     bounded = re.compile(r"[\w-]+>=[\d.]+")
     assert [name for name in every if name not in own and not bounded.fullmatch(name)] == []
+
+
+def test_every_test_shows_what_it_asserts_or_which_error_it_expects() -> None:
+    files = sorted((ROOT / "tests").rglob("test_*.py"))
+    tests = [
+        (file.name, node.name, node)
+        for file in files
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef) and node.name.startswith("test_")
+    ]
+    assert len(tests) > len(files)
+    assert [test[:2] for test in tests if not asserts(test[2])] == []
+    assert not asserts(ast.parse("def test_nothing(): print()"))
+
+
+def asserts(function: ast.AST) -> bool:
+    inner = list(ast.walk(function))
+    names = {node.attr for node in inner if isinstance(node, ast.Attribute)}
+    return bool({"raises", "warns"} & names) or any(isinstance(n, ast.Assert) for n in inner)

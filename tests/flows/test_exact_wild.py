@@ -43,18 +43,23 @@ def shares(kind: str, dtype: type, tensors: Rows, states: Rows) -> list[float]:
     return [share_of_error(flow(kind), dtype, *one) for one in each]
 
 
-def judge(kind: str, dtype: type, seed: int, many: int, few: int) -> None:
+def worst(kind: str, dtype: type, seed: int, many: int, few: int) -> float:
+    """Return the largest share of its error that an end uses up, infinite where one is no number.
+
+    many : of which every end must be finite        few : of which the errors are measured
+    """
     tensors, states = wild(np.random.default_rng(seed), many, dtype)
     tensors = of_kind(kind, tensors)
-    assert np.all(np.isfinite(ends(kind, dtype, tensors, states)))
+    if not np.all(np.isfinite(ends(kind, dtype, tensors, states))):
+        return float("inf")
     judged = without_lost_rates(dtype, tensors[:few], states[:few])
-    assert max(shares(kind, dtype, tensors[:few], judged)) <= 1
+    return max(shares(kind, dtype, tensors[:few], judged))
 
 
 @pytest.mark.parametrize("dtype", PRECISIONS)
 @pytest.mark.parametrize("kind", thinned(KINDS, 2))
 def test_no_body_ends_in_nan_or_further_off_than_its_condition(kind: str, dtype: type) -> None:
-    judge(kind, dtype, 1, MANY, FEW)
+    assert worst(kind, dtype, 1, MANY, FEW) <= 1
 
 
 @pytest.mark.long
@@ -62,7 +67,7 @@ def test_no_body_ends_in_nan_or_further_off_than_its_condition(kind: str, dtype:
 @pytest.mark.parametrize("dtype", PRECISIONS)
 @pytest.mark.parametrize("kind", KINDS)
 def test_nor_do_many_more(kind: str, dtype: type, seed: int) -> None:
-    judge(kind, dtype, 100 + seed, 20 * MANY, 40 * FEW)
+    assert worst(kind, dtype, 100 + seed, 20 * MANY, 40 * FEW) <= 1
 
 
 @pytest.mark.parametrize("case", range(len(FOUND)))

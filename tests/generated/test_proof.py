@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import pytest
 
+from derive.check import proof
 from derive.library import Library, library
 from derive.program import Op, Program
 from derive.prove import ProofError, lectured, prove
@@ -27,7 +28,8 @@ SMALL_SET_UPS = thinned(catalogue(), 4)
 
 @pytest.mark.parametrize("name", catalogue())
 def test_every_scene_of_the_catalogue_is_proved(name: str) -> None:
-    prove(library_of(name))
+    made = library_of(name)
+    assert proof(made).outcome == ("holds" if made.functions else "skipped")
 
 
 def mutants_of(op: Op, unlike: str) -> Iterator[Op]:

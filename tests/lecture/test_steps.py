@@ -4,7 +4,7 @@ import pytest
 
 from derive.lecture import CHAPTERS, LECTURE
 from derive.relations import ContradictionError
-from derive.step import Step, require
+from derive.step import Step, verify
 from tests.lecture.mutants import Mutant, with_fewer_reasons, with_wrong_sides
 from tests.made import thinned
 
@@ -20,7 +20,7 @@ def stands(mutant: Mutant) -> bool:
 
 
 def test_every_step_follows_from_its_reasons() -> None:
-    require(LECTURE)
+    assert [row.fault for row in verify(LECTURE) if not row.holds] == []
 
 
 @pytest.mark.parametrize("step", thinned(DEDUCED, 4), ids=lambda step: step.name)

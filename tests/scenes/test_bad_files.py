@@ -50,7 +50,7 @@ def test_any_scene_with_odd_values_is_a_scene_or_a_scene_error(
         start, end = data.draw(st.sampled_from(places or [(0, 0)]))
         text = text[:start] + data.draw(st.sampled_from(ODD)) + text[end:]
     with suppress(SceneError):
-        parse_scene(text, "odd")
+        assert parse_scene(text, "odd").name == "odd"
 
 
 @given(st.sampled_from(TEXTS), st.data())
@@ -61,7 +61,7 @@ def test_any_scene_with_lines_lost_or_moved_is_a_scene_or_a_scene_error(
     kept = data.draw(st.permutations(lines)) if data.draw(st.booleans()) else lines
     first, last = sorted(data.draw(st.tuples(*[st.integers(0, len(kept))] * 2)))
     with suppress(SceneError):
-        parse_scene("\n".join(kept[:first] + kept[last:]), "odd")
+        assert parse_scene("\n".join(kept[:first] + kept[last:]), "odd").name == "odd"
 
 
 @pytest.mark.parametrize(

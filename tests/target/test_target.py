@@ -62,7 +62,8 @@ def test_there_are_scenes_to_compile() -> None:
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_it_compiles_without_a_warning(compiler, precision, manifest, tmp_path) -> None:
     out = str(tmp_path / "scene.o")
-    run(*COMPILERS[compiler], "-O2", *WARNINGS, "-c", source(manifest, precision), "-o", out)
+    told = run(*COMPILERS[compiler], "-O2", *WARNINGS, "-c", source(manifest, precision), "-o", out)
+    assert told == ""
 
 
 @scenes
