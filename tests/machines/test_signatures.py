@@ -3,6 +3,7 @@
 import pytest
 
 from derive.machine.mechanism import Mechanism, depends_on, mechanism, truth
+from derive.machine.probe import POINTS, another, point
 from derive.scene import Machine, load
 
 # What the data file lists under answer_depends_on, in the names of the catalogue's parameters; a
@@ -49,3 +50,13 @@ def test_the_hinge_force_stays_outside_when_only_the_press_is_asked() -> None:
         "moment on roller about the origin of axle along y of axle"
     ]
     assert len(question.unknowns) == 1
+
+
+def test_trial_values_lie_within_the_ranges_and_no_two_are_alike() -> None:
+    words = known("sleeping_top").made
+    book, points = words.vocabulary, [point(words, n).values for n in range(POINTS)]
+    for q in (*book.parameters, *book.states, *book.inputs):
+        for symbol in (book.symbols[c] for c in q.components):
+            values = [*(float(each[symbol]) for each in points), float(another(words, symbol, 0))]
+            assert len({*values}) == POINTS + 1
+            assert all(float(q.ends[0]) < x < float(q.ends[1]) for x in values)
