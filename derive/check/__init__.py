@@ -23,6 +23,7 @@ from derive.check.derivatives import derivatives
 from derive.check.emitted import Emitted, Files, casadi_module, files, is_double, loaded
 from derive.check.energy import energy_balance
 from derive.check.fresh import fresh
+from derive.check.inlined import inlined
 from derive.check.invariants import power_balance, turned_axes
 from derive.check.motion import orders, step_slopes
 from derive.check.particles import clouds
@@ -146,6 +147,7 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
         yield from step_slopes(one.library, each)
         module = casadi_module(one.library, found, workshop)
         yield from casadi_bits(one, module, each)
+        yield from inlined(one.library, module, each)
         yield from derivatives(one.library, module, each)
         if one.library.constants:
             yield casadi_status(one, module)

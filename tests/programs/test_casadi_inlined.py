@@ -18,9 +18,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from derive.c_text import F64
 from derive.casadi_module import imported
 from derive.casadi_text import casadi_file
+from derive.check.inlined import inlined
 from derive.library import library
+from derive.motion_error import with_motion
+from derive.sample import samples
 from derive.scene import load, parse_scene
 
 U = 2.0**-53
@@ -156,3 +160,25 @@ def test_an_input_that_is_left_out_shows(left_out: str) -> None:
     assert np.array_equal(values(f, *given.values())[0], np.array(f(**given)["omega_dot"])[:, 0])
     del given[left_out]
     assert np.all(np.isnan(np.array(f(**given)["omega_dot"])))
+
+
+def inlined_rows(name: str, old: str, new: str) -> list[str]:
+    """Return the outcomes of ``derive check`` on a CasADi file with a change in its text."""
+    source = parse_scene(COMPENSATED, "steps") if name == "steps" else load(name)
+    found = library(source)
+    text = casadi_file(found)
+    assert old in text
+    each = samples(found.known, F64, 2, 0).each
+    given = with_motion(found, each, F64)
+    return [v.outcome for v in inlined(found, module(text.replace(old, new), name), given)]
+
+
+@pytest.mark.parametrize("name", ["free_body", "steps", "attitude", "tumbling_disc"])
+def test_every_function_is_the_same_where_it_is_called_with_sx(name: str) -> None:
+    assert set(inlined_rows(name, "", "")) == {"holds"}
+
+
+@pytest.mark.parametrize("name", ["free_body", "steps"])
+def test_pairs_that_casadi_sees_through_are_noticed(name: str) -> None:
+    rows = inlined_rows(name, 'return ca.remainder(x, float("inf"))', "return x")
+    assert "FAILS" in rows
