@@ -12,7 +12,7 @@ from numpy.linalg import LinAlgError
 from derive.files import require_writable, write
 from derive.scene import Machine, SceneError
 from derive.scene.machine import LEFT_OVER
-from derive.scene.table import nearest, shown
+from derive.scene.table import MANY, nearest, shown
 from derive.solve.instrument import Instrument, opened
 from derive.solve.motions import frequencies, growth, limits, roots
 from derive.solve.simulation import plot, simulated
@@ -148,7 +148,9 @@ def settings(found: Instrument, texts: Sequence[str]) -> dict[str, float]:
 def _known(found: Instrument, name: str) -> str:
     names = [c for q in found.quantities() for c in q.components]
     if name not in names:
-        raise SceneError(f"scene '{found.name}' has no {shown(name)} to set{nearest(name, names)}")
+        few = f" (known: {', '.join(names[:MANY])} and {len(names) - MANY} more)"
+        hint = nearest(name, names) or few
+        raise SceneError(f"scene '{found.name}' has no {shown(name)} to set{hint}")
     return name
 
 

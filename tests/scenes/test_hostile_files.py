@@ -115,6 +115,14 @@ def test_hostile_values_are_refused_in_one_line(
     assert len(said) < 400
 
 
+@pytest.mark.parametrize("scene", ["free_body_principal", "gyrostat", "edge_runner_flat"])
+def test_a_value_that_no_scene_has_is_answered_by_those_that_it_has(
+    scene: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["solve", scene, "--set", "q9=1"]) == 2
+    assert "has no 'q9' to set (known: " in capsys.readouterr().err
+
+
 def test_a_folder_that_is_a_file_or_not_to_be_written_is_refused_and_left(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

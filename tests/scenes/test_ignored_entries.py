@@ -9,9 +9,10 @@ import pytest
 from sympy import eye, zeros
 
 from derive import specialise
-from derive.scene import CATALOGUE
+from derive.scene import CATALOGUE, parse_scene
 from tests.made import thinned
-from tests.scenes.mutated import ignored
+from tests.scenes import mutated
+from tests.scenes.mutated import ignored, unread
 
 ROOT = Path(__file__).parents[2]
 TRIALS = ROOT / "tests" / "data" / "trials"
@@ -21,6 +22,12 @@ FILES = (
     *(TRIALS / f"{name}.toml" for name in ("force_by_attitude", "force_by_parameters")),
 )  # each of their entries makes a scene anew: those of larger machines would take an hour
 EVERY = {path.stem: path.read_text(encoding="utf-8") for path in FILES}
+TEXTS = {
+    path.stem: path.read_text(encoding="utf-8")
+    for folder in (CATALOGUE, TRIALS)
+    for path in sorted(folder.glob("*.toml"))
+    if not path.stem.startswith("meaning_")
+}  # those are refused, whatever else is changed
 BLOCKS = [
     text
     for page in ("scenes", "motion", "machines")
@@ -102,6 +109,20 @@ def test_an_inertia_that_is_left_out_is_noticed(monkeypatch: Any) -> None:
     before = specialise.motion
     monkeypatch.setattr(specialise, "motion", lambda *of: replace(before(*of), tensor=eye(3)))
     assert "body.moment" in ignored(UNTURNED)
+
+
+@pytest.mark.parametrize("name", thinned(sorted(TEXTS), 20))
+def test_nothing_in_a_scene_is_left_unread(name: str) -> None:
+    assert unread(TEXTS[name], name) == []
+
+
+def test_an_entry_that_is_left_unread_is_noticed(monkeypatch: Any) -> None:
+    def deaf(text: str, name: str) -> Any:
+        return replace(parse_scene(text, name), known={})
+
+    assert unread(FORCE) == []
+    monkeypatch.setattr(mutated, "parse_scene", deaf)
+    assert {"known.force.0", "known.force.2", "known.moment.1"} <= set(unread(FORCE))
 
 
 @pytest.mark.long
