@@ -22,7 +22,7 @@ from derive.measure import Errors, replayed
 from derive.program import Program, Quantity, component_names, run
 from derive.reference import BALLS, BITS
 from derive.sample import Sample, Source, Values, source, uniform
-from derive.scale import PLAN, Sizing, measured_outputs, motion_scales
+from derive.scale import PLAN, Sizing, around, measured_outputs, motion_scales
 
 REACH = 0.3
 """Turn in rad, by omega and by its rate, that a sampled step covers at most."""
@@ -166,12 +166,13 @@ def motion_errors(
     """Yield the errors of each output, from the results by component and sample."""
     true = [[arb(x).mid() for x in exact(by.library, program, s)] for s in each]
     scales = _scales(by, program, true, each, precision)
+    wholes = around(program)
     for q, span in measured_outputs(program):
         rows = tuple(
             tuple(
-                _error(column[n], should, scale[n]) / precision.unit_roundoff
-                for column, should, scale in zip(
-                    columns[span], true[n][span], scales[span], strict=True
+                _error(column[n], should, scale[n], whole) / precision.unit_roundoff
+                for column, should, scale, whole in zip(
+                    columns[span], true[n][span], scales[span], wholes[span], strict=True
                 )
             )
             for n in range(len(each))
@@ -211,8 +212,12 @@ def _inputs(program: Program) -> list[str]:
     return [c for q in program.inputs for c in q.components]
 
 
-def _error(found: float, should: Any, scale: float) -> float:
+def _error(found: float, should: Any, scale: float, whole: object) -> float:
     if not (math.isfinite(found) and should.is_finite() and math.isfinite(scale)):
         return math.inf  # samples lie where every function has a value
     with ctx.workprec(BITS):
-        return abs(float((arb(found) - should) / arb(scale)))
+        gap = arb(found) - should
+        if whole:
+            turn = 2 * arb.pi()
+            gap -= turn * round(float(gap / turn))
+        return abs(float(gap / arb(scale)))

@@ -24,6 +24,7 @@ from derive.solution import Known as Solved
 from derive.solution import solution
 
 PLAN = "plan"
+ANGLES = "angles"
 STATE_RATE = "state_rate"
 UNMEASURED = ("remainder_next", "step_proposed")
 """What rounding left, and a length that is proposed: neither has a true value."""
@@ -104,6 +105,11 @@ def measured_outputs(program: Program) -> list[tuple[Quantity, slice]]:
         if q.name not in UNMEASURED:
             found.append((q, span))
     return found
+
+
+def around(program: Program) -> list[bool]:
+    """Tell of each component whether it is the same a turn later: -pi and pi are one angle."""
+    return [q.name == ANGLES for q in program.outputs for _ in q.components]
 
 
 def base_of(program: Program) -> str:

@@ -24,9 +24,11 @@ from derive.draw import (
     ranges,
 )
 from derive.library import Library
-from derive.scale import Sizing, lecture_scales, measured_outputs, motion_scales, sizing
+from derive.pair_sine import PI
+from derive.scale import Sizing, around, lecture_scales, measured_outputs, motion_scales, sizing
 
 CHUNK = 8192
+TURN = 2 * float(PI)
 MIDDLE = 16384
 """Samples that a median is taken of."""
 
@@ -112,11 +114,16 @@ def errors_at(of: Field, plan: Plan, at: Known) -> list[Column]:
             true = [t if single else t[0] for _, t in pairs]
             scales = motion_scales(of.sizing, plan, at.wide, true)
         off = [
-            np.abs(by.off(f, t)) / scale / of.precision.unit_roundoff
-            for (f, t), scale in zip(pairs, scales, strict=True)
+            np.abs(_apart(by.off(f, t), whole)) / scale / of.precision.unit_roundoff
+            for (f, t), scale, whole in zip(pairs, scales, around(plan.program), strict=True)
         ]
     rows = np.array([np.where(np.isfinite(x), x, np.inf) for x in off])
     return [rows[span] for _, span in measured_outputs(plan.program)]
+
+
+def _apart(gaps: Column, whole: object) -> Column:
+    """Return how far numbers are apart, without whole turns if they are angles."""
+    return gaps - TURN * np.round(gaps / TURN) if whole else gaps
 
 
 @dataclass

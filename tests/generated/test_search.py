@@ -5,12 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from derive.arithmetic import working
 from derive.c_text import F32, F64, Precision
 from derive.check.fresh import fresh
 from derive.columns import arithmetics
 from derive.draw import Dice, complete, completing, drawn, ranges
 from derive.kept import Measuring, figures_of, stated_figures
 from derive.largest import largest
+from derive.measure import replayed
+from derive.sample import Sample
 from derive.search import Sampling, errors_at, field, worst
 from derive.stated import at_rows, at_samples, balls, figures
 from tests.made import library_of
@@ -120,3 +123,21 @@ def test_figures_are_kept_while_nothing_changes_and_measured_when_something_does
     assert figures_of(library, Measuring(by, None)) == first
     assert figures_of(library, Measuring(replace(by, kept=7), tmp_path)).digest != first.digest
     assert largest(m.worst for m in figures_of(library, Measuring(by, tmp_path)).each) > 90
+
+
+def test_an_angle_next_to_half_a_turn_may_come_out_at_either_end():
+    """Quaternions whose first angle is half a turn but for rounding: its sign is rounding too."""
+    library, rows = library_of("attitude"), []
+    dice = Dice("half a turn")
+    w, x, z = dice.uniform(3, 64)
+    turned = np.array([w, -x, z * x / w, z])
+    turned = (turned / np.sqrt((turned**2).sum(axis=0))).astype(np.float32).tolist()
+    names = ("attitude_w", "attitude_x", "attitude_y", "attitude_z")
+    for n, values in enumerate(zip(*turned, strict=True)):
+        rows.append(Sample(n, "found", dict(zip(names, values, strict=True))))
+    (program,) = (f for f in library.printed() if f.name == "quaternion_to_euler_zxz")
+    (found,) = at_samples(balls(library, F32), program, rows)
+    assert largest(found.largest()) < 8
+    only = replace(library, functions=(), motions=(program,))
+    first = replayed(only, rows, F32, working(np.float32))[program.name][0]
+    assert {bool(x > 3) for x in first} == {True, False} == {bool(x < -3) for x in first}
