@@ -125,7 +125,7 @@ def _places(trial: _Trial) -> list[Place]:
 
 
 def _hits(trial: _Trial, places: Sequence[Place], usual: NDArray[Any]) -> list[frozenset[str]]:
-    """Return at each place the outputs that have no value there, whatever the others are."""
+    """Return at each place the components that have no value there, whatever the others are."""
     columns = {n: np.tile(x, len(places)) for n, x in _drawn(trial, OTHERS, 1.0).items()}
     for k, (components, value) in enumerate(places):
         for c in components:
@@ -133,21 +133,20 @@ def _hits(trial: _Trial, places: Sequence[Place], usual: NDArray[Any]) -> list[f
     results = np.abs(trial.results(columns, trial.table))
     beyond = ~(results / BEYOND <= usual[:, None])
     every = beyond.reshape(len(beyond), len(places), OTHERS).all(axis=2)
-    owner = [q.name for q in trial.program.outputs for _ in q.components]
-    return [frozenset(o for o, bad in zip(owner, column, strict=True) if bad) for column in every.T]
+    names = component_names(trial.program)
+    return [frozenset(c for c, bad in zip(names, column, strict=True) if bad) for column in every.T]
 
 
 def _told(trial: _Trial, found: Sequence[tuple[Place, frozenset[str]]]) -> list[Singular]:
     """Return the places in words: turns of an angle together, and none that another holds."""
     told: list[Singular] = []
     least: list[frozenset[str]] = []
-    order = [q.name for q in trial.program.outputs]
     turned = {q.components: q.name for q in trial.free() if q.unit == "rad" and not q.shape}
     for components, name in turned.items():
         own = {round(v * 2 / np.pi): hit for (c, v), hit in found if c == components and hit}
         if own:
             outputs = frozenset().union(*own.values())
-            told.append(Singular(_turns(name, set(own)), _ordered(outputs, order)))
+            told.append(Singular(_turns(name, set(own)), _outputs(trial, outputs)))
             least += [frozenset(components)] if 0 in own else []
     by_size = sorted(
         (f for f in found if f[0][0] not in turned and f[1]), key=lambda f: len(f[0][0])
@@ -155,12 +154,21 @@ def _told(trial: _Trial, found: Sequence[tuple[Place, frozenset[str]]]) -> list[
     for (components, _), hit in by_size:
         if not any(held <= set(components) for held in least):
             least.append(frozenset(components))
-            told.append(Singular(f"{_named(trial, components)} = 0", _ordered(hit, order)))
+            told.append(Singular(f"{_named(trial, components)} = 0", _outputs(trial, hit)))
     return told
 
 
-def _ordered(names: frozenset[str], order: Sequence[str]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(n for n in order if n in names))
+def _outputs(trial: _Trial, bad: frozenset[str]) -> tuple[str, ...]:
+    """Return the outputs whose components are bad, by their names if all of them are.
+
+    A matrix is named as a whole: nobody knows its entries by their names.
+    """
+    told: list[str] = []
+    for q in trial.program.outputs:
+        own = [c for c in q.components if c in bad]
+        whole = len(own) == len(q.components) or q.name in (trial.program.sparsity or {})
+        told += [q.name] if own and whole else own
+    return tuple(told)
 
 
 def _named(trial: _Trial, components: tuple[str, ...]) -> str:
@@ -249,8 +257,8 @@ def _zero(trial: _Trial, divisor: str, ends: tuple[Columns, Any, Any]) -> Column
 def _at(trial: _Trial, state: Columns, own: set[str], usual: NDArray[Any]) -> list[Singular]:
     """Return what is told of a state, if an output has no value there."""
     beyond = ~(np.abs(trial.results(state, trial.table)[:, 0]) / BEYOND <= usual)
-    owner = [q.name for q in trial.program.outputs for _ in q.components]
-    outputs = tuple(dict.fromkeys(o for o, bad in zip(owner, beyond, strict=True) if bad))
+    names = component_names(trial.program)
+    outputs = _outputs(trial, frozenset(c for c, bad in zip(names, beyond, strict=True) if bad))
     if not outputs:
         return []
     at = ", ".join(f"{c} = {x[0]:.4g}" for c, x in state.items() if c in own)

@@ -283,7 +283,7 @@ def state_rate():
     """Rate of the state from the state and the inputs (forward dynamics). Inputs: parameters, theta, phi, omega, wheel_speeds, moment, wheel_torques.
 
     Singular:
-    at theta = pi/2 + k pi, coordinate_rates infinite, no number or beyond all measure
+    at theta = pi/2 + k pi, psi_dot, phi_dot infinite, no number or beyond all measure
 """
     return _built(lambda: _from_parameters(_state_rate(), "gyrostat_state_rate"))
 
@@ -387,7 +387,7 @@ def state_rate_jacobian():
     """Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. Inputs: parameters, theta, phi, omega, wheel_speeds, moment, wheel_torques.
 
     Singular:
-    at theta = pi/2 + k pi, coordinate_rates, jacobian infinite, no number or beyond all measure
+    at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all measure
 """
     return _built(lambda: _from_parameters(_state_rate_jacobian(), "gyrostat_state_rate_jacobian"))
 

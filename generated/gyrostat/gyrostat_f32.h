@@ -111,7 +111,7 @@ int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_x
  * Error: median 0.78, largest 19 u of the largest product in the equation, or of the result where
  *            it is larger (of omega_dot; 200000 samples of the ranges, 65536 searched from the
  *            worst, 162 hard ones).
- * Singular: at theta = pi/2 + k pi, coordinate_rates infinite, no number or beyond all measure.
+ * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot infinite, no number or beyond all measure.
  * Cost: 12 add, 17 sub, 34 mul, 1 div, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
  *            composed_turns, constant_mass, further_axes_are_right_handed, gyrostat_parts, newton,
@@ -142,7 +142,7 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
  * Error: median 0.78, largest 16 u of the largest product in the equation, or of the result where
  *            it is larger (of omega_dot; 200000 samples of the ranges, 65536 searched from the
  *            worst, 162 hard ones).
- * Singular: at theta = pi/2 + k pi, coordinate_rates, jacobian infinite, no number or beyond all
+ * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 24 add, 46 sub, 98 mul, 1 div, 20 neg, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,

@@ -197,7 +197,7 @@ def state_rate():
     """Rate of the state from the state and the inputs (forward dynamics). Inputs: parameters, theta, omega.
 
     Singular:
-    at theta = k pi, coordinate_rates, omega_dot infinite, no number or beyond all measure
+    at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y infinite, no number or beyond all measure
 """
     return _built(lambda: _from_parameters(_state_rate(), "heavy_top_state_rate"))
 
@@ -239,7 +239,7 @@ def state_rate_jacobian():
     """Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. Inputs: parameters, theta, omega.
 
     Singular:
-    at theta = k pi, coordinate_rates, omega_dot, jacobian infinite, no number or beyond all measure
+    at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y, jacobian infinite, no number or beyond all measure
 """
     return _built(lambda: _from_parameters(_state_rate_jacobian(), "heavy_top_state_rate_jacobian"))
 

@@ -57,8 +57,8 @@ int heavy_top_setup_f64(double A, double C, double m, double g, double l,
  * Error: median 0.29, largest 7.4 u of the largest product in the equation, or of the result where
  *            it is larger (of omega_dot; 200000 samples of the ranges, 65536 searched from the
  *            worst, 150 hard ones).
- * Singular: at theta = k pi, coordinate_rates, omega_dot infinite, no number or beyond all
- *            measure.
+ * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y infinite, no number or
+ *            beyond all measure.
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -79,8 +79,8 @@ void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double t
  * Error: median 0.48, largest 11 u of the largest product in the equation, or of the result where
  *            it is larger (of jacobian; 200000 samples of the ranges, 65536 searched from the
  *            worst, 150 hard ones).
- * Singular: at theta = k pi, coordinate_rates, omega_dot, jacobian infinite, no number or beyond
- *            all measure.
+ * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y, jacobian infinite, no
+ *            number or beyond all measure.
  * Cost: 1 add, 5 sub, 17 mul, 1 div, 4 neg, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
