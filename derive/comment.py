@@ -10,6 +10,12 @@ from derive.program import Measurement, Program, Quantity, Singular
 from derive.status import possible
 
 FLOW, NEXT = "flow_exact", "_next"
+WITHIN = ("ordinary", "found")
+"""The kinds of samples that lie in the declared ranges; the others are hard ones."""
+SETUP_ERROR = (
+    "each constant is worked out in twice the working precision and rounded once: at most 1 ulp, "
+    "unless the sum that it is cancels to less than 16 u of its largest product"
+)
 
 WIDTH = 96
 
@@ -38,9 +44,7 @@ def _setup(program: Program) -> list[str]:
     lines = [program.says, *_arguments(program)]
     says = "; ".join(f"{number} {words}" for number, words in possible(program).items())
     lines += _labelled("Returns:", f"{says}.")
-    lines += _labelled(
-        "Error:", "each constant is rounded once from twice the working precision; at most 1 ulp."
-    )
+    lines += _labelled("Error:", f"{SETUP_ERROR}.")
     return [*lines, *_labelled("Cost:", f"once; {program.flops()} operations on pairs.")]
 
 
@@ -89,8 +93,13 @@ def _error(program: Program, figures: Sequence[Measurement]) -> str:
     median = max(m.median for m in own)
     return (
         f"median {median:.2g}, largest {worst.worst:.2g} u {of_what(program)} "
-        f"(of {worst.output}; {looked_at(worst)})."
+        f"(of {worst.output}{at_what(worst)}; {looked_at(worst)})."
     )
+
+
+def at_what(m: Measurement) -> str:
+    """Return at what hard sample a figure stands, if it is one."""
+    return "" if m.kind in WITHIN else f" at a hard sample, {m.kind}"
 
 
 def looked_at(m: Measurement) -> str:
@@ -117,7 +126,7 @@ def of_what(program: Program) -> str:
             "step adds, by rounding alone"
         )
     if program.steps:
-        return "of the largest product in the equation, or of the result where it is larger"
+        return "of the largest product or sum in the equation"
     return "of the largest component, by rounding alone"
 
 

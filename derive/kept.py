@@ -106,12 +106,14 @@ def stated_figures(manifest: Any) -> tuple[Measurement, ...]:
 
 
 def _measurement(function: str, precision: str, output: str, row: Any) -> Measurement:
-    numbers = ("worst_sample", "samples", "searched", "hard_samples")
+    numbers = ("samples", "searched", "hard_samples")
     return Measurement(
         function,
         precision,
         output,
         float(row["median_ulp"]),
         float(row["largest_ulp"]),
+        int(row["worst_sample"]),
+        str(row["worst_kind"]),
         *(int(row[name]) for name in numbers),
     )

@@ -7,7 +7,7 @@ from typing import Any
 
 from derive import __version__
 from derive.c_text import F32, F64, PRECISIONS, pair_functions
-from derive.comment import of_what
+from derive.comment import SETUP_ERROR, of_what
 from derive.emit import JACOBIAN_DENSE
 from derive.lecture import LECTURE
 from derive.library import Library
@@ -112,7 +112,7 @@ def _setup(library: Library) -> dict[str, Any]:
         "status": {str(number): says for number, says in possible(program).items()},
         "arguments": given + returned,
         "cost": cost | program.count(),
-        "error": "each constant is rounded once from twice the working precision; at most 1 ulp",
+        "error": SETUP_ERROR,
     }
 
 
@@ -180,6 +180,7 @@ def _error(program: Program, figures: Sequence[Measurement]) -> dict[str, Any]:
                 "median_ulp": m.median,
                 "largest_ulp": m.worst,
                 "worst_sample": m.sample,
+                "worst_kind": m.kind,
                 "samples": m.samples,
                 "searched": m.searched,
                 "hard_samples": m.hard,

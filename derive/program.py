@@ -284,7 +284,7 @@ def _repeat(loop: Repeat, arithmetic: Table, known: dict[str, Any]) -> None:
 class Measurement:
     """The error of one output of one function in one precision, in u of what it is counted in.
 
-    sample                  : number of the worst sample
+    sample, kind            : number of the worst sample, and which kind of sample it is
     samples, searched, hard : how many were drawn on the ranges, searched from the worst, and hard
     """
 
@@ -294,6 +294,7 @@ class Measurement:
     median: float
     worst: float
     sample: int
+    kind: str
     samples: int
     searched: int
     hard: int

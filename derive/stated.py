@@ -75,6 +75,7 @@ def _measurement(
         upwards(searched.median),
         upwards(most),
         each[worst_.index(most)].number,
+        each[worst_.index(most)].kind,
         by.samples,
         by.searched(),
         hard,

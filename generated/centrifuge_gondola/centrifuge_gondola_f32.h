@@ -10,8 +10,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 a6c60385a9259908.
+ * float, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 a6c60385a9259908.
  */
 #ifndef CENTRIFUGE_GONDOLA_F32_H
 #define CENTRIFUGE_GONDOLA_F32_H
@@ -46,7 +46,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
  *            none that a body can have; 5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
  */
 int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xz, float e_x,
@@ -70,9 +71,8 @@ int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, fl
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.63, largest 18 u of the largest product in the equation, or of the result where
- *            it is larger (of F; 200000 samples of the ranges, 65536 searched from the worst, 120
- *            hard ones).
+ * Error: median 0.63, largest 18 u of the largest product or sum in the equation (of F; 200000
+ *            samples of the ranges, 65536 searched from the worst, 120 hard ones).
  * Cost: 11 add, 16 sub, 48 mul, 3 sin, 3 cos.
  * Rests on: axes_are_orthonormal, composed_turns, constant_mass, further_axes_are_right_handed,
  *            newton, rate_seen_from_N, third_law.
@@ -102,9 +102,8 @@ void centrifuge_gondola_F_f32(const centrifuge_gondola_constants_f32 *constants,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.93, largest 26 u of the largest product in the equation, or of the result where
- *            it is larger (of M; 200000 samples of the ranges, 65536 searched from the worst, 120
- *            hard ones).
+ * Error: median 0.93, largest 26 u of the largest product or sum in the equation (of M; 200000
+ *            samples of the ranges, 65536 searched from the worst, 120 hard ones).
  * Cost: 17 add, 19 sub, 62 mul, 1 neg, 3 sin, 3 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

@@ -10,8 +10,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 4f51c120828da41d.
+ * double, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 4f51c120828da41d.
  */
 #ifndef CHANDLER_RIGID_EARTH_F64_H
 #define CHANDLER_RIGID_EARTH_F64_H
@@ -32,7 +32,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 5 operations on pairs.
  */
 int chandler_rigid_earth_setup_f64(double A, double C, double rate,
@@ -48,9 +49,9 @@ int chandler_rigid_earth_setup_f64(double A, double C, double rate,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.0012, largest 0.0051 u of the largest product in the equation, or of the result
- *            where it is larger (of period_days; 200000 samples of the ranges, 65536 searched from
- *            the worst, 114 hard ones).
+ * Error: median 0.0012, largest 0.0051 u of the largest product or sum in the equation (of
+ *            period_days; 200000 samples of the ranges, 65536 searched from the worst, 114 hard
+ *            ones).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

@@ -11,8 +11,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 7a924e14e9ab26f7.
+ * float, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 7a924e14e9ab26f7.
  */
 #ifndef FREE_BODY_PRINCIPAL_F32_H
 #define FREE_BODY_PRINCIPAL_F32_H
@@ -47,7 +47,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 12 operations on pairs.
  */
 int free_body_principal_setup_f32(float I_xx, float I_yy, float I_zz,
@@ -59,9 +60,8 @@ int free_body_principal_setup_f32(float I_xx, float I_yy, float I_zz,
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
  * Returned:  omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.14, largest 2.9 u of the largest product in the equation, or of the result where
- *            it is larger (of omega_dot; 200000 samples of the ranges, 65536 searched from the
- *            worst, 144 hard ones).
+ * Error: median 0.14, largest 2.9 u of the largest product or sum in the equation (of omega_dot;
+ *            200000 samples of the ranges, 65536 searched from the worst, 144 hard ones).
  * Cost: 2 add, 1 sub, 9 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -76,9 +76,8 @@ void free_body_principal_acceleration_f32(const free_body_principal_constants_f3
  * Returned:  omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  *            jacobian[9]  nonzeros of the Jacobian, in compressed-column order
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.14, largest 3 u of the largest product in the equation, or of the result where
- *            it is larger (of omega_dot; 200000 samples of the ranges, 65536 searched from the
- *            worst, 144 hard ones).
+ * Error: median 0.14, largest 3 u of the largest product or sum in the equation (of omega_dot;
+ *            200000 samples of the ranges, 65536 searched from the worst, 144 hard ones).
  * Cost: 3 add, 12 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -96,9 +95,8 @@ void free_body_principal_acceleration_jacobian_dense_f32(const free_body_princip
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
  * Returned:  moment[3]  N m  along B  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.28, largest 2 u of the largest product in the equation, or of the result where
- *            it is larger (of moment; 200000 samples of the ranges, 65536 searched from the worst,
- *            144 hard ones).
+ * Error: median 0.28, largest 2 u of the largest product or sum in the equation (of moment; 200000
+ *            samples of the ranges, 65536 searched from the worst, 144 hard ones).
  * Cost: 1 add, 2 sub, 9 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -111,9 +109,9 @@ void free_body_principal_moment_f32(const free_body_principal_constants_f32 *con
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
- * Error: median 0.34, largest 1 u of the largest product in the equation, or of the result where
- *            it is larger (of angular_momentum; 200000 samples of the ranges, 65536 searched from
- *            the worst, 144 hard ones).
+ * Error: median 0.34, largest 1 u of the largest product or sum in the equation (of
+ *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 144
+ *            hard ones).
  * Cost: 3 mul.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
@@ -125,9 +123,9 @@ void free_body_principal_angular_momentum_f32(const free_body_principal_constant
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.5, largest 3.7 u of the largest product in the equation, or of the result where
- *            it is larger (of kinetic_energy; 200000 samples of the ranges, 65536 searched from
- *            the worst, 144 hard ones).
+ * Error: median 0.5, largest 3.7 u of the largest product or sum in the equation (of
+ *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 144 hard
+ *            ones).
  * Cost: 2 add, 6 mul.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
  */

@@ -11,8 +11,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 ed681df5498e0d64.
+ * double, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 ed681df5498e0d64.
  */
 #ifndef GYROSTAT_F64_H
 #define GYROSTAT_F64_H
@@ -88,7 +88,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 83 operations on pairs.
  */
 int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, double I_xz, double I_yz,
@@ -108,9 +109,8 @@ int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doubl
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: M = I omega_dot + h_dot + omega x (I omega + h)   [lecture step gyrostat_form]
  * Postcondition: u = C (a . omega_dot + s_dot)   [lecture step wheel_equation]
- * Error: median 0.78, largest 11 u of the largest product in the equation, or of the result where
- *            it is larger (of omega_dot; 200000 samples of the ranges, 65536 searched from the
- *            worst, 162 hard ones).
+ * Error: median 0.78, largest 11 u of the largest product or sum in the equation (of omega_dot;
+ *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot infinite, no number or beyond all measure.
  * Cost: 12 add, 17 sub, 34 mul, 1 div, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
@@ -139,9 +139,8 @@ void gyrostat_state_rate_f64(const gyrostat_constants_f64 *constants, double the
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: M = I omega_dot + h_dot + omega x (I omega + h)   [lecture step gyrostat_form]
  * Postcondition: u = C (a . omega_dot + s_dot)   [lecture step wheel_equation]
- * Error: median 0.78, largest 14 u of the largest product in the equation, or of the result where
- *            it is larger (of omega_dot; 200000 samples of the ranges, 65536 searched from the
- *            worst, 162 hard ones).
+ * Error: median 0.78, largest 14 u of the largest product or sum in the equation (of omega_dot;
+ *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 24 add, 46 sub, 98 mul, 1 div, 20 neg, 2 sin, 2 cos.
@@ -169,9 +168,9 @@ void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *consta
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
  * Postcondition: T_w = C s a . omega + 1/2 C s^2   [lecture step wheel_energy]
- * Error: median 0.69, largest 6.1 u of the largest product in the equation, or of the result where
- *            it is larger (of kinetic_energy; 200000 samples of the ranges, 65536 searched from
- *            the worst, 162 hard ones).
+ * Error: median 0.69, largest 6.1 u of the largest product or sum in the equation (of
+ *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 162 hard
+ *            ones).
  * Cost: 8 add, 3 sub, 18 mul.
  * Rests on: A_is_fixed, axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
  *            rate_seen_from_N, rigid, wheel_axis_is_unit, wheel_is_axisymmetric,
@@ -186,9 +185,9 @@ void gyrostat_kinetic_energy_f64(const gyrostat_constants_f64 *constants, const 
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
  * Postcondition: l = I omega + h   [lecture step gyrostat_momentum]
- * Error: median 0.51, largest 6.9 u of the largest product in the equation, or of the result where
- *            it is larger (of angular_momentum; 200000 samples of the ranges, 65536 searched from
- *            the worst, 162 hard ones).
+ * Error: median 0.51, largest 6.9 u of the largest product or sum in the equation (of
+ *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 162
+ *            hard ones).
  * Cost: 3 add, 6 sub, 12 mul.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
  *            gyrostat_parts, rate_seen_from_N, rigid, wheel_axis_is_unit, wheel_is_axisymmetric,

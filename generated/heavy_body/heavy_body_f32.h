@@ -11,8 +11,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 1dddb99f4c2bc660.
+ * float, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 1dddb99f4c2bc660.
  */
 #ifndef HEAVY_BODY_F32_H
 #define HEAVY_BODY_F32_H
@@ -51,7 +51,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
  */
 int heavy_body_setup_f32(float I_xx, float I_yy, float I_zz, float w,
@@ -62,9 +63,9 @@ int heavy_body_setup_f32(float I_xx, float I_yy, float I_zz, float w,
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.5, largest 3.7 u of the largest product in the equation, or of the result where
- *            it is larger (of kinetic_energy; 200000 samples of the ranges, 65536 searched from
- *            the worst, 150 hard ones).
+ * Error: median 0.5, largest 3.7 u of the largest product or sum in the equation (of
+ *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 150 hard
+ *            ones).
  * Cost: 2 add, 6 mul.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
  */
@@ -97,8 +98,8 @@ void heavy_body_step_split2_f32(const heavy_body_constants_f32 *constants, const
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
  * Error: median 0.2, largest 2.8 u of the largest component, before or after, or of the largest
- *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
- *            the ranges, 65536 searched from the worst, 78 hard ones).
+ *            product of what the step adds, by rounding alone (of omega_next at a hard sample, at
+ *            rest; 200000 samples of the ranges, 65536 searched from the worst, 78 hard ones).
  * Cost: 588 add, 137 sub, 716 mul, 54 div, 49 neg, 2 less, 90 select.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -138,8 +139,8 @@ void heavy_body_step_rk4_f32(const heavy_body_constants_f32 *constants, const fl
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
  *            step_proposed  s  length at which a step's last terms are within rounding, a quarter to four times time_step; for an error of e instead of u, (e/u)^(1/order) times it
  * Error: median 0.2, largest 2.3 u of the largest component, before or after, or of the largest
- *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
- *            the ranges, 65536 searched from the worst, 78 hard ones).
+ *            product of what the step adds, by rounding alone (of omega_next at a hard sample, at
+ *            rest; 200000 samples of the ranges, 65536 searched from the worst, 78 hard ones).
  * Cost: 2720 add, 1467 sub, 4296 mul, 22 div, 21 neg, 9 sqrt, 28 abs, 3 less, 3 select.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,

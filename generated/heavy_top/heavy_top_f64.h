@@ -11,8 +11,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 fbc06a2a1918c342.
+ * double, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 fbc06a2a1918c342.
  */
 #ifndef HEAVY_TOP_F64_H
 #define HEAVY_TOP_F64_H
@@ -40,7 +40,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 7 operations on pairs.
  */
 int heavy_top_setup_f64(double A, double C, double m, double g, double l,
@@ -54,9 +55,8 @@ int heavy_top_setup_f64(double A, double C, double m, double g, double l,
  *            omega_dot[3]  rad/s^2  along xyz  rate of the components of omega along the axes
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.29, largest 7.4 u of the largest product in the equation, or of the result where
- *            it is larger (of omega_dot; 200000 samples of the ranges, 65536 searched from the
- *            worst, 150 hard ones).
+ * Error: median 0.29, largest 7.4 u of the largest product or sum in the equation (of omega_dot;
+ *            200000 samples of the ranges, 65536 searched from the worst, 150 hard ones).
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y infinite, no number or
  *            beyond all measure.
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
@@ -76,9 +76,8 @@ void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double t
  *            jacobian[13]  nonzeros of the Jacobian, in compressed-column order
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.48, largest 11 u of the largest product in the equation, or of the result where
- *            it is larger (of jacobian; 200000 samples of the ranges, 65536 searched from the
- *            worst, 150 hard ones).
+ * Error: median 0.48, largest 11 u of the largest product or sum in the equation (of jacobian;
+ *            200000 samples of the ranges, 65536 searched from the worst, 150 hard ones).
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y, jacobian infinite, no
  *            number or beyond all measure.
  * Cost: 1 add, 5 sub, 17 mul, 1 div, 4 neg, 1 sin, 1 cos.
@@ -98,9 +97,9 @@ void heavy_top_state_rate_jacobian_dense_f64(const heavy_top_constants_f64 *cons
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.52, largest 3.7 u of the largest product in the equation, or of the result where
- *            it is larger (of kinetic_energy; 200000 samples of the ranges, 65536 searched from
- *            the worst, 150 hard ones).
+ * Error: median 0.52, largest 3.7 u of the largest product or sum in the equation (of
+ *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 150 hard
+ *            ones).
  * Cost: 2 add, 5 mul.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
  */
@@ -112,9 +111,9 @@ void heavy_top_kinetic_energy_f64(const heavy_top_constants_f64 *constants, cons
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
- * Error: median 0.35, largest 1 u of the largest product in the equation, or of the result where
- *            it is larger (of angular_momentum; 200000 samples of the ranges, 65536 searched from
- *            the worst, 150 hard ones).
+ * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of
+ *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 150
+ *            hard ones).
  * Cost: 3 mul.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */

@@ -11,8 +11,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 efe488ecf8b1978c.
+ * double, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 efe488ecf8b1978c.
  */
 #ifndef RIGID_BODY_F64_H
 #define RIGID_BODY_F64_H
@@ -74,7 +74,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
  *            none that a body can have; 5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 123 operations on pairs.
  */
 int rigid_body_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xy, double I_xz,
@@ -96,9 +97,9 @@ int rigid_body_setup_f64(double m, double I_xx, double I_yy, double I_zz, double
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: R v = v + 2 q_w (q_v x v) + 2 q_v x (q_v x v)   [lecture step rotation_of_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.72, largest 11 u of the largest product in the equation, or of the result where
- *            it is larger (of velocity_rate; 200000 samples of the ranges, 65536 searched from the
- *            worst, 162 hard ones).
+ * Error: median 0.72, largest 11 u of the largest product or sum in the equation (of
+ *            velocity_rate; 200000 samples of the ranges, 65536 searched from the worst, 162 hard
+ *            ones).
  * Cost: 23 add, 14 sub, 59 mul, 1 neg.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -125,9 +126,8 @@ void rigid_body_state_rate_f64(const rigid_body_constants_f64 *constants, const 
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: R v = v + 2 q_w (q_v x v) + 2 q_v x (q_v x v)   [lecture step rotation_of_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.66, largest 8.4 u of the largest product in the equation, or of the result where
- *            it is larger (of omega_dot; 200000 samples of the ranges, 65536 searched from the
- *            worst, 162 hard ones).
+ * Error: median 0.66, largest 8.4 u of the largest product or sum in the equation (of omega_dot;
+ *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
  * Cost: 43 add, 30 sub, 98 mul, 11 neg.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -150,9 +150,9 @@ void rigid_body_state_rate_jacobian_dense_f64(const rigid_body_constants_f64 *co
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
- * Error: median 0.72, largest 6.5 u of the largest product in the equation, or of the result where
- *            it is larger (of kinetic_energy; 200000 samples of the ranges, 65536 searched from
- *            the worst, 162 hard ones).
+ * Error: median 0.72, largest 6.5 u of the largest product or sum in the equation (of
+ *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 162 hard
+ *            ones).
  * Cost: 4 add, 4 sub, 13 mul.
  * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
  */
@@ -165,9 +165,8 @@ void rigid_body_kinetic_energy_f64(const rigid_body_constants_f64 *constants,
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
  * Returned:  moment[3]  N m  along B  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.43, largest 9.6 u of the largest product in the equation, or of the result where
- *            it is larger (of moment; 200000 samples of the ranges, 65536 searched from the worst,
- *            162 hard ones).
+ * Error: median 0.43, largest 9.6 u of the largest product or sum in the equation (of moment;
+ *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
  * Cost: 6 add, 11 sub, 23 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.

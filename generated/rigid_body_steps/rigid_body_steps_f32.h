@@ -11,8 +11,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 320e282fde1b6c17.
+ * float, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 320e282fde1b6c17.
  */
 #ifndef RIGID_BODY_STEPS_F32_H
 #define RIGID_BODY_STEPS_F32_H
@@ -67,7 +67,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
  *            none that a body can have; 5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 119 operations on pairs.
  */
 int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xy, float I_xz,

@@ -11,8 +11,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 df2b3da82f6c9313.
+ * double, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 df2b3da82f6c9313.
  */
 #ifndef RIGID_BODY_STEPS_F64_H
 #define RIGID_BODY_STEPS_F64_H
@@ -67,7 +67,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
  *            none that a body can have; 5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 119 operations on pairs.
  */
 int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xy,
@@ -92,8 +93,9 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  * Postcondition: R v = v + 2 q_w (q_v x v) + 2 q_v x (q_v x v)   [lecture step rotation_of_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.37, largest 1.4e+02 u of the largest component, before or after, or of the
- *            largest product of what the step adds, by rounding alone (of attitude_next; 200000
- *            samples of the ranges, 65536 searched from the worst, 90 hard ones).
+ *            largest product of what the step adds, by rounding alone (of attitude_next at a hard
+ *            sample, turned, ill-conditioned; 200000 samples of the ranges, 65536 searched from
+ *            the worst, 90 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 213 add, 56 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,

@@ -10,8 +10,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 ab87076d4cdad207.
+ * double, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 ab87076d4cdad207.
  */
 #ifndef ROD_WIRE_VERTICAL_SHAFT_F64_H
 #define ROD_WIRE_VERTICAL_SHAFT_F64_H
@@ -36,7 +36,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
  *            body is not positive; 5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 19 operations on pairs.
  */
 int rod_wire_vertical_shaft_setup_f64(double W, double L, double beta, double w, double g,
@@ -52,9 +53,8 @@ int rod_wire_vertical_shaft_setup_f64(double W, double L, double beta, double w,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.35, largest 1 u of the largest product in the equation, or of the result where
- *            it is larger (of T; 200000 samples of the ranges, 65536 searched from the worst, 108
- *            hard ones).
+ * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of T; 200000
+ *            samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -74,9 +74,8 @@ void rod_wire_vertical_shaft_T_f64(const rod_wire_vertical_shaft_constants_f64 *
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.23, largest 0.66 u of the largest product in the equation, or of the result
- *            where it is larger (of A_x; 200000 samples of the ranges, 65536 searched from the
- *            worst, 108 hard ones).
+ * Error: median 0.23, largest 0.66 u of the largest product or sum in the equation (of A_x; 200000
+ *            samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -89,9 +88,8 @@ void rod_wire_vertical_shaft_A_x_f64(const rod_wire_vertical_shaft_constants_f64
  * Given:     constants  constants made of parameters only, for the functions of this scene
  * Returned:  A_z  N  force of pin along z
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
- * Error: median 0, largest 0 u of the largest product in the equation, or of the result where it
- *            is larger (of A_z; 200000 samples of the ranges, 65536 searched from the worst, 108
- *            hard ones).
+ * Error: median 0, largest 0 u of the largest product or sum in the equation (of A_z; 200000
+ *            samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
  * Rests on: constant_mass, newton, third_law.
  */

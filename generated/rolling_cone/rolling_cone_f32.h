@@ -10,8 +10,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 4fe085bce8bc9eed.
+ * float, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 4fe085bce8bc9eed.
  */
 #ifndef ROLLING_CONE_F32_H
 #define ROLLING_CONE_F32_H
@@ -37,7 +37,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
  *            body is not positive; 5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 31 operations on pairs.
  */
 int rolling_cone_setup_f32(float m, float h, float r, float a, float g,
@@ -51,9 +52,9 @@ int rolling_cone_setup_f32(float m, float h, float r, float a, float g,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.52, largest 2.9 u of the largest product in the equation, or of the result where
- *            it is larger (of kinetic_energy; 200000 samples of the ranges, 65536 searched from
- *            the worst, 114 hard ones).
+ * Error: median 0.52, largest 2.9 u of the largest product or sum in the equation (of
+ *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 114 hard
+ *            ones).
  * Cost: 2 mul.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, rate_seen_from_N, rigid.
@@ -73,9 +74,8 @@ void rolling_cone_kinetic_energy_f32(const rolling_cone_constants_f32 *constants
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.48, largest 2.9 u of the largest product in the equation, or of the result where
- *            it is larger (of x_N; 200000 samples of the ranges, 65536 searched from the worst,
- *            114 hard ones).
+ * Error: median 0.48, largest 2.9 u of the largest product or sum in the equation (of x_N; 200000
+ *            samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 1 add, 2 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -95,9 +95,8 @@ void rolling_cone_x_N_f32(const rolling_cone_constants_f32 *constants, float W, 
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.3, largest 3.1 u of the largest product in the equation, or of the result where
- *            it is larger (of steady; 200000 samples of the ranges, 65536 searched from the worst,
- *            114 hard ones).
+ * Error: median 0.3, largest 3.1 u of the largest product or sum in the equation (of steady;
+ *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 1 sub, 2 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

@@ -10,8 +10,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 69be3848859707cf.
+ * float, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 69be3848859707cf.
  */
 #ifndef ROTOR_ON_TURNING_AXES_F32_H
 #define ROTOR_ON_TURNING_AXES_F32_H
@@ -33,7 +33,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 1 operations on pairs.
  */
 int rotor_on_turning_axes_setup_f32(float A, float C,
@@ -51,9 +52,8 @@ int rotor_on_turning_axes_setup_f32(float A, float C,
  *            p_dot  rad/s^2  -50 .. 50
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.52, largest 4 u of the largest product in the equation, or of the result where
- *            it is larger (of moment; 200000 samples of the ranges, 65536 searched from the worst,
- *            144 hard ones).
+ * Error: median 0.52, largest 4 u of the largest product or sum in the equation (of moment; 200000
+ *            samples of the ranges, 65536 searched from the worst, 144 hard ones).
  * Cost: 2 add, 2 sub, 7 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -70,9 +70,9 @@ void rotor_on_turning_axes_moment_f32(const rotor_on_turning_axes_constants_f32 
  *            p  rad/s  -500 .. 500  spin of the rotor in its bearings
  * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
- * Error: median 0.37, largest 2 u of the largest product in the equation, or of the result where
- *            it is larger (of angular_momentum; 200000 samples of the ranges, 65536 searched from
- *            the worst, 144 hard ones).
+ * Error: median 0.37, largest 2 u of the largest product or sum in the equation (of
+ *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 144
+ *            hard ones).
  * Cost: 1 add, 3 mul.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
@@ -93,9 +93,9 @@ void rotor_on_turning_axes_angular_momentum_f32(const rotor_on_turning_axes_cons
  *            rate_absolute[3]  N m  along xyz  rate of angular momentum seen from the inertial frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
- * Error: median 0.52, largest 3.7 u of the largest product in the equation, or of the result where
- *            it is larger (of rate_absolute; 200000 samples of the ranges, 65536 searched from the
- *            worst, 144 hard ones).
+ * Error: median 0.52, largest 3.7 u of the largest product or sum in the equation (of
+ *            rate_absolute; 200000 samples of the ranges, 65536 searched from the worst, 144 hard
+ *            ones).
  * Cost: 2 add, 2 sub, 7 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
  */
@@ -111,9 +111,9 @@ void rotor_on_turning_axes_angular_momentum_rate_f32(const rotor_on_turning_axes
  *            p  rad/s  -500 .. 500  spin of the rotor in its bearings
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.8, largest 5.5 u of the largest product in the equation, or of the result where
- *            it is larger (of kinetic_energy; 200000 samples of the ranges, 65536 searched from
- *            the worst, 144 hard ones).
+ * Error: median 0.8, largest 5.5 u of the largest product or sum in the equation (of
+ *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 144 hard
+ *            ones).
  * Cost: 3 add, 7 mul.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
  */

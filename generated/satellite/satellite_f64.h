@@ -11,8 +11,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 2e1f2515bdc79365.
+ * double, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 2e1f2515bdc79365.
  */
 #ifndef SATELLITE_F64_H
 #define SATELLITE_F64_H
@@ -56,7 +56,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 24 operations on pairs.
  */
 int satellite_setup_f64(double I_xx, double I_yy, double I_zz, satellite_constants_f64 *constants);
@@ -71,9 +72,9 @@ int satellite_setup_f64(double I_xx, double I_yy, double I_zz, satellite_constan
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.46, largest 5.1 u of the largest product in the equation, or of the result where
- *            it is larger (of attitude_rate; 200000 samples of the ranges, 65536 searched from the
- *            worst, 150 hard ones).
+ * Error: median 0.46, largest 5.1 u of the largest product or sum in the equation (of
+ *            attitude_rate; 200000 samples of the ranges, 65536 searched from the worst, 150 hard
+ *            ones).
  * Cost: 7 add, 4 sub, 24 mul, 1 neg.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -230,8 +231,8 @@ void satellite_step_lie_f64(const satellite_constants_f64 *constants, const doub
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
  * Error: median 0.2, largest 4.8 u of the largest component, before or after, or of the largest
- *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
- *            the ranges, 65536 searched from the worst, 78 hard ones).
+ *            product of what the step adds, by rounding alone (of omega_next at a hard sample,
+ *            denormal; 200000 samples of the ranges, 65536 searched from the worst, 78 hard ones).
  * Cost: 531 add, 100 sub, 585 mul, 54 div, 44 neg, 2 less, 24 select.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,

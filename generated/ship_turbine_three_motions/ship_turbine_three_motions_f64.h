@@ -10,8 +10,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 c73cc66b04fec6e7.
+ * double, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 c73cc66b04fec6e7.
  */
 #ifndef SHIP_TURBINE_THREE_MOTIONS_F64_H
 #define SHIP_TURBINE_THREE_MOTIONS_F64_H
@@ -41,7 +41,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
  *            none that a body can have; 5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 16 operations on pairs.
  */
 int ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double a, double b,
@@ -58,9 +59,8 @@ int ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double 
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.37, largest 1 u of the largest product in the equation, or of the result where
- *            it is larger (of A_roll; 200000 samples of the ranges, 65536 searched from the worst,
- *            108 hard ones).
+ * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of A_roll; 200000
+ *            samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -80,9 +80,8 @@ void ship_turbine_three_motions_roll_case_f64(const ship_turbine_three_motions_c
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.35, largest 1 u of the largest product in the equation, or of the result where
- *            it is larger (of B_turn; 200000 samples of the ranges, 65536 searched from the worst,
- *            108 hard ones).
+ * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of B_turn; 200000
+ *            samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -102,9 +101,8 @@ void ship_turbine_three_motions_turn_case_f64(const ship_turbine_three_motions_c
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.37, largest 1 u of the largest product in the equation, or of the result where
- *            it is larger (of A_pitch; 200000 samples of the ranges, 65536 searched from the
- *            worst, 108 hard ones).
+ * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of A_pitch;
+ *            200000 samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -123,9 +121,9 @@ void ship_turbine_three_motions_pitch_case_f64(const ship_turbine_three_motions_
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.35, largest 1 u of the largest product in the equation, or of the result where
- *            it is larger (of pitch_horizontal_couple; 200000 samples of the ranges, 65536
- *            searched from the worst, 108 hard ones).
+ * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of
+ *            pitch_horizontal_couple; 200000 samples of the ranges, 65536 searched from the worst,
+ *            108 hard ones).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

@@ -10,8 +10,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 52cebf6c2168da5c.
+ * double, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 52cebf6c2168da5c.
  */
 #ifndef SKEWED_DISC_F64_H
 #define SKEWED_DISC_F64_H
@@ -34,7 +34,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
  *            body is not positive; 5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 7 operations on pairs.
  */
 int skewed_disc_setup_f64(double m, double r, double skew, double b,
@@ -53,9 +54,8 @@ int skewed_disc_setup_f64(double m, double r, double skew, double b,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.52, largest 3 u of the largest product in the equation, or of the result where
- *            it is larger (of M_y; 200000 samples of the ranges, 65536 searched from the worst,
- *            120 hard ones).
+ * Error: median 0.52, largest 3 u of the largest product or sum in the equation (of M_y; 200000
+ *            samples of the ranges, 65536 searched from the worst, 120 hard ones).
  * Cost: 2 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -75,9 +75,9 @@ void skewed_disc_M_f64(const skewed_disc_constants_f64 *constants, double w, dou
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.52, largest 2.9 u of the largest product in the equation, or of the result where
- *            it is larger (of bearing_force; 200000 samples of the ranges, 65536 searched from the
- *            worst, 120 hard ones).
+ * Error: median 0.52, largest 2.9 u of the largest product or sum in the equation (of
+ *            bearing_force; 200000 samples of the ranges, 65536 searched from the worst, 120 hard
+ *            ones).
  * Cost: 2 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

@@ -10,8 +10,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 a1efd0beb2724c74.
+ * double, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 a1efd0beb2724c74.
  */
 #ifndef SLEEPING_TOP_F64_H
 #define SLEEPING_TOP_F64_H
@@ -46,7 +46,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
  *            body is not positive; 5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
  */
 int sleeping_top_setup_f64(double m, double r, double l, double n, double g,
@@ -61,9 +62,9 @@ int sleeping_top_setup_f64(double m, double r, double l, double n, double g,
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
  *            step moving_point_form]
  * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
- * Error: median 1.5e-05, largest 1 u of the largest product in the equation, or of the result
- *            where it is larger (of mass_matrix; 200000 samples of the ranges, 65536 searched from
- *            the worst, 114 hard ones).
+ * Error: median 1.5e-05, largest 1 u of the largest product or sum in the equation (of
+ *            mass_matrix; 200000 samples of the ranges, 65536 searched from the worst, 114 hard
+ *            ones).
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -86,9 +87,8 @@ void sleeping_top_linearised_f64(const sleeping_top_constants_f64 *constants, do
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.72, largest 7.4 u of the largest product in the equation, or of the result where
- *            it is larger (of beta_ddot; 200000 samples of the ranges, 65536 searched from the
- *            worst, 114 hard ones).
+ * Error: median 0.72, largest 7.4 u of the largest product or sum in the equation (of beta_ddot;
+ *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Singular: at beta = pi/2 + k pi, alpha_ddot infinite, no number or beyond all measure.
  * Cost: 4 sub, 9 mul, 1 div, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -109,9 +109,8 @@ void sleeping_top_accelerations_f64(const sleeping_top_constants_f64 *constants,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.42, largest 4.1 u of the largest product in the equation, or of the result where
- *            it is larger (of energy; 200000 samples of the ranges, 65536 searched from the worst,
- *            114 hard ones).
+ * Error: median 0.42, largest 4.1 u of the largest product or sum in the equation (of energy;
+ *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 3 add, 6 mul, 2 cos.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, rate_seen_from_N, rigid.

@@ -11,8 +11,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 a0e368f87b8fc610.
+ * float, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 a0e368f87b8fc610.
  */
 #ifndef T_HANDLE_FLIP_F32_H
 #define T_HANDLE_FLIP_F32_H
@@ -59,7 +59,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 26 operations on pairs.
  */
 int t_handle_flip_setup_f32(float I_xx, float I_yy, float I_zz,
@@ -70,9 +71,9 @@ int t_handle_flip_setup_f32(float I_xx, float I_yy, float I_zz,
  *            omega[3]  rad/s  along B  -15 .. 15  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.5, largest 3.6 u of the largest product in the equation, or of the result where
- *            it is larger (of kinetic_energy; 200000 samples of the ranges, 65536 searched from
- *            the worst, 150 hard ones).
+ * Error: median 0.5, largest 3.6 u of the largest product or sum in the equation (of
+ *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 150 hard
+ *            ones).
  * Cost: 2 add, 6 mul.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
  */
@@ -84,9 +85,9 @@ void t_handle_flip_kinetic_energy_f32(const t_handle_flip_constants_f32 *constan
  *            omega[3]  rad/s  along B  -15 .. 15  angular velocity of the body in the inertial frame
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
- * Error: median 0.35, largest 1 u of the largest product in the equation, or of the result where
- *            it is larger (of angular_momentum; 200000 samples of the ranges, 65536 searched from
- *            the worst, 150 hard ones).
+ * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of
+ *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 150
+ *            hard ones).
  * Cost: 3 mul.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */

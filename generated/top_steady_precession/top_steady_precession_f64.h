@@ -10,8 +10,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 f538cb6c04d69a66.
+ * double, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 f538cb6c04d69a66.
  */
 #ifndef TOP_STEADY_PRECESSION_F64_H
 #define TOP_STEADY_PRECESSION_F64_H
@@ -36,7 +36,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 3 a length of a body is not positive; 5 a
  *            constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 11 operations on pairs.
  */
 int top_steady_precession_setup_f64(double r, double l, double theta, double n, double g,
@@ -53,9 +54,8 @@ int top_steady_precession_setup_f64(double r, double l, double theta, double n, 
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.52, largest 3.7 u of the largest product in the equation, or of the result where
- *            it is larger (of steady; 200000 samples of the ranges, 65536 searched from the worst,
- *            120 hard ones).
+ * Error: median 0.52, largest 3.7 u of the largest product or sum in the equation (of steady;
+ *            200000 samples of the ranges, 65536 searched from the worst, 120 hard ones).
  * Cost: 2 sub, 2 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

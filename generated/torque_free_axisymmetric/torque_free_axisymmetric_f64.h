@@ -10,8 +10,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 9ca751f070696995.
+ * double, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 9ca751f070696995.
  */
 #ifndef TORQUE_FREE_AXISYMMETRIC_F64_H
 #define TORQUE_FREE_AXISYMMETRIC_F64_H
@@ -33,7 +33,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 2 operations on pairs.
  */
 int torque_free_axisymmetric_setup_f64(double A, double C,
@@ -48,9 +49,8 @@ int torque_free_axisymmetric_setup_f64(double A, double C,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.85, largest 7.2 u of the largest product in the equation, or of the result where
- *            it is larger (of precession; 200000 samples of the ranges, 65536 searched from the
- *            worst, 114 hard ones).
+ * Error: median 0.85, largest 7.2 u of the largest product or sum in the equation (of precession;
+ *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Singular: at w_x = w_y = 0, precession infinite, no number or beyond all measure.
  * Cost: 3 add, 9 mul, 1 div, 3 sqrt.
  * Rests on: axes_are_orthonormal, composed_turns, further_axes_are_right_handed, rate_seen_from_N.
@@ -69,9 +69,8 @@ void torque_free_axisymmetric_precession_f64(const torque_free_axisymmetric_cons
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.14, largest 0.73 u of the largest product in the equation, or of the result
- *            where it is larger (of body_rate; 200000 samples of the ranges, 65536 searched from
- *            the worst, 114 hard ones).
+ * Error: median 0.14, largest 0.73 u of the largest product or sum in the equation (of body_rate;
+ *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 1 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -89,9 +88,8 @@ void torque_free_axisymmetric_body_rate_f64(const torque_free_axisymmetric_const
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.62, largest 4.4 u of the largest product in the equation, or of the result where
- *            it is larger (of tan_theta; 200000 samples of the ranges, 65536 searched from the
- *            worst, 114 hard ones).
+ * Error: median 0.62, largest 4.4 u of the largest product or sum in the equation (of tan_theta;
+ *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Singular: at w_z = 0, tan_theta infinite, no number or beyond all measure.
  * Cost: 1 add, 5 mul, 1 div, 1 sqrt.
  * Rests on: axes_are_orthonormal, composed_turns, further_axes_are_right_handed, rate_seen_from_N.
@@ -120,9 +118,8 @@ void torque_free_axisymmetric_tan_beta_f64(double w_x, double w_y, double w_z, d
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.43, largest 2.9 u of the largest product in the equation, or of the result where
- *            it is larger (of L; 200000 samples of the ranges, 65536 searched from the worst, 114
- *            hard ones).
+ * Error: median 0.43, largest 2.9 u of the largest product or sum in the equation (of L; 200000
+ *            samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 2 add, 6 mul, 1 sqrt.
  * Rests on: axes_are_orthonormal, composed_turns, further_axes_are_right_handed, rate_seen_from_N.
  */

@@ -11,8 +11,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 8cb5270d6292e0b6.
+ * float, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 8cb5270d6292e0b6.
  */
 #ifndef TUMBLING_BODY_F32_H
 #define TUMBLING_BODY_F32_H
@@ -106,7 +106,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 349 operations on pairs.
  */
 int tumbling_body_setup_f32(float I_xx, float I_yy, float I_zz,
@@ -117,9 +118,9 @@ int tumbling_body_setup_f32(float I_xx, float I_yy, float I_zz,
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.5, largest 3.8 u of the largest product in the equation, or of the result where
- *            it is larger (of kinetic_energy; 200000 samples of the ranges, 65536 searched from
- *            the worst, 150 hard ones).
+ * Error: median 0.5, largest 3.8 u of the largest product or sum in the equation (of
+ *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 150 hard
+ *            ones).
  * Cost: 2 add, 6 mul.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
  */
@@ -152,8 +153,9 @@ void tumbling_body_flow_exact_f32(const tumbling_body_constants_f32 *constants,
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step
  * Returned:  plan[13]  what a motion without torque and a length of step keep
- * Error: median 0.91, largest 4.5 u of the largest component, by rounding alone (of plan; 200000
- *            samples of the ranges, 65536 searched from the worst, 78 hard ones).
+ * Error: median 0.91, largest 4.5 u of the largest component, by rounding alone (of plan at a hard
+ *            sample, extremes; 200000 samples of the ranges, 65536 searched from the worst, 78
+ *            hard ones).
  * Cost: 43 add, 21 sub, 101 mul, 6 div, 1 abs, 1 less, 1 select, 1 splitter.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,

@@ -11,8 +11,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 4fe8f94b76d92987.
+ * double, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 4fe8f94b76d92987.
  */
 #ifndef TUMBLING_DISC_F64_H
 #define TUMBLING_DISC_F64_H
@@ -35,7 +35,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
  */
 int tumbling_disc_setup_f64(double A, double C, tumbling_disc_constants_f64 *constants);

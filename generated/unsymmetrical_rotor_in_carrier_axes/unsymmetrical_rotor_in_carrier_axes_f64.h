@@ -10,8 +10,8 @@
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product in the equation of an output, multiplied out, or the output
- * itself where it is larger; of motions and attitudes, times the largest component. Body of these files: sha256 a2bf3451575cbf41.
+ * double, times the largest product or sum in the equation of an output, multiplied out and
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 a2bf3451575cbf41.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
@@ -36,7 +36,8 @@ typedef struct {
  * Returned:  constants  constants made of parameters only, for the functions of this scene
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
- * Error: each constant is rounded once from twice the working precision; at most 1 ulp.
+ * Error: each constant is worked out in twice the working precision and rounded once: at most 1
+ *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 3 operations on pairs.
  */
 int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, double I_zz,
@@ -51,9 +52,8 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, doub
  *            W_dot  rad/s^2  -1 .. 1
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.51, largest 7.5 u of the largest product in the equation, or of the result where
- *            it is larger (of moment; 200000 samples of the ranges, 65536 searched from the worst,
- *            150 hard ones).
+ * Error: median 0.51, largest 7.5 u of the largest product or sum in the equation (of moment;
+ *            200000 samples of the ranges, 65536 searched from the worst, 150 hard ones).
  * Cost: 3 add, 2 sub, 15 mul, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -71,9 +71,8 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
  *            jacobian[11]  nonzeros of the Jacobian, in compressed-column order
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.51, largest 5.9 u of the largest product in the equation, or of the result where
- *            it is larger (of jacobian; 200000 samples of the ranges, 65536 searched from the
- *            worst, 150 hard ones).
+ * Error: median 0.51, largest 5.9 u of the largest product or sum in the equation (of jacobian;
+ *            200000 samples of the ranges, 65536 searched from the worst, 150 hard ones).
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -94,9 +93,9 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(const unsymme
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
  * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
- * Error: median 0.42, largest 3.9 u of the largest product in the equation, or of the result where
- *            it is larger (of angular_momentum; 200000 samples of the ranges, 65536 searched from
- *            the worst, 150 hard ones).
+ * Error: median 0.42, largest 3.9 u of the largest product or sum in the equation (of
+ *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 150
+ *            hard ones).
  * Cost: 1 sub, 6 mul, 1 sin, 1 cos.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
@@ -114,9 +113,9 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(const unsymmetrica
  *            rate_absolute[3]  N m  along xyz  rate of angular momentum seen from the inertial frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
- * Error: median 0.51, largest 6.7 u of the largest product in the equation, or of the result where
- *            it is larger (of rate_in_axes; 200000 samples of the ranges, 65536 searched from the
- *            worst, 150 hard ones).
+ * Error: median 0.51, largest 6.7 u of the largest product or sum in the equation (of
+ *            rate_in_axes; 200000 samples of the ranges, 65536 searched from the worst, 150 hard
+ *            ones).
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
  */
@@ -131,9 +130,9 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(const unsymme
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.52, largest 2.9 u of the largest product in the equation, or of the result where
- *            it is larger (of kinetic_energy; 200000 samples of the ranges, 65536 searched from
- *            the worst, 150 hard ones).
+ * Error: median 0.52, largest 2.9 u of the largest product or sum in the equation (of
+ *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 150 hard
+ *            ones).
  * Cost: 1 add, 1 sub, 7 mul, 1 cos.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
  */

@@ -120,6 +120,50 @@ def test_constants_of_every_scene_are_within_an_ulp(name: str, precision: Precis
     assert max(largest_ulps(made, dict(s.values), precision) for s in drawn) <= 1.0
 
 
+@pytest.mark.parametrize("precision", [F32, F64], ids=lambda p: p.name)
+def test_a_constant_that_cancels_is_within_16_u_squared_of_its_products(precision) -> None:
+    """k3 is 2 (I_xz J_xy - I_xy J_xz): I_xz is moved until nothing is left of it."""
+    made, u = library_of("free_body"), precision.unit_roundoff
+    worst = 0.0
+    for sample in samples(made.known, precision, 8, 0).each:
+        low, high = (sample.values | {"I_xz": end} for end in (-0.2, 0.2))
+        held = [float(precision.dtype(-0.2)), float(precision.dtype(0.2))]
+        if signs_of(made, low, precision) == signs_of(made, high, precision):
+            continue
+        while np.nextafter(precision.dtype(held[0]), precision.dtype(1)) < held[1]:
+            middle = float(precision.dtype((held[0] + held[1]) / 2))
+            same = signs_of(made, sample.values | {"I_xz": middle}, precision)
+            held[same != signs_of(made, low, precision)] = middle
+        for end in held:
+            found, true, product = k3(made, sample.values | {"I_xz": end}, precision)
+            wrong = abs(float((arb(found) - true).mid()))
+            assert wrong <= max(ulp_of(true, precision), 16 * u * u * product)
+            worst = max(worst, wrong / ulp_of(true, precision))
+    assert worst > 1  # without the second bound the header would say too much
+
+
+def ulp_of(true: arb, precision: Precision) -> float:
+    return abs(float(np.spacing(precision.dtype(abs(float(true.mid()))))))
+
+
+def k3(made: Library, values: dict[str, float], precision: Precision) -> tuple[float, arb, float]:
+    """Return the constant k3, what it is, and the larger of its two products."""
+    names = [c for q in made.setup.inputs for c in q.components]
+    given = np.array([[values[n]] for n in names], precision.dtype)
+    results = run(made.setup, extended(precision.dtype), paired(given))
+    found = float(results[component_names(made.setup).index("k3")][0][0])
+    with ctx.workprec(400):
+        entries = ("xx", "yy", "zz", "xy", "xz", "yz")
+        xx, yy, zz, xy, xz, yz = (arb(values[f"I_{p}"]) for p in entries)
+        j = arb_mat([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]).inv()
+        one, other = 2 * xz * j[0, 1], 2 * xy * j[0, 2]
+        return found, one - other, float(max(abs(one.mid()), abs(other.mid())))
+
+
+def signs_of(made: Library, values: dict[str, float], precision: Precision) -> bool:
+    return bool(k3(made, values, precision)[1] > 0)
+
+
 def slender(small: float, precision: Precision) -> dict[str, float]:
     """Return the parameters of a slender body, turned so that its tensor is full."""
     turn = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])

@@ -152,7 +152,7 @@ def test_every_dot_is_drawn_clear_of_its_letter(tmp_path: Path) -> None:
 
 @pytest.mark.long
 def test_nothing_is_wider_than_what_holds_it_on_a_desk_or_a_telephone(tmp_path: Path) -> None:
-    found = too_wide(pages, (1400, 390), tmp_path)
+    found = too_wide(PAGES, (1400, 390), tmp_path)
     assert {key: wide for key, wide in found.items() if wide} == {}
 
 
