@@ -41,6 +41,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (SceneError, OutputError, CompilerError, NoValueError) as error:
         complain(f"derive: {error}", "red")
         return 2
+    except OSError as error:
+        if error.filename is None:
+            raise
+        complain(f"derive: '{error.filename}': {error.strerror}", "red")
+        return 2
     except KeyboardInterrupt:
         errors.print("derive: stopped; every file is whole, some may be new")
         return STOPPED

@@ -5,6 +5,7 @@ was about to replace, and by temporary files whose process is gone: the next run
 """
 
 import os
+import stat
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -135,6 +136,19 @@ def _read(file: Path) -> str:
         ) from error
 
 
+def require_folder(folder: Path) -> None:
+    """Raise OutputError if what lies at ``folder`` is no folder, or nothing can lie there."""
+    try:
+        if not stat.S_ISDIR(os.stat(folder).st_mode):
+            raise NotADirectoryError(0, "it is no folder")
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        raise OutputError(
+            f"output folder '{folder}' must be writable, but: {error.strerror or error}"
+        ) from error
+
+
 def require_writable(file: Path) -> None:
     """Raise OutputError unless ``file`` can be written; leave it as it is."""
     try:
@@ -148,6 +162,8 @@ def require_writable(file: Path) -> None:
 def _temporary(target: Path, text: str) -> Path:
     if target.is_dir():
         raise IsADirectoryError(0, f"'{target.name}' is a folder")
+    if os.path.lexists(target) and not target.is_file():
+        raise OSError(0, f"'{target.name}' is no regular file")
     prefix = f".{target.name}.derive-{os.getpid()}-"
     descriptor, path = tempfile.mkstemp(dir=target.parent, prefix=prefix)
     try:

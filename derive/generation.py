@@ -19,6 +19,7 @@ from derive.scene import SceneError, load
 
 LECTURE_PAGE = "lecture.html"
 GALLERY_PAGE = "index.html"
+LARGEST_FLOAT = (2 - 2.0**-23) * 2.0**127
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,7 @@ def made(source: str, measuring: Measuring) -> Made:
     """Return everything that a scene becomes; its programs are proved before they are printed."""
     scene = load(source)
     programs = library(scene)
+    _ranges_of_floats(programs)
     try:
         prove(programs)
         measured = figures_of(programs, measuring)
@@ -59,6 +61,18 @@ def made(source: str, measuring: Measuring) -> Made:
     costs, spared = cost_rows(programs, measured.each), tuple(savings(programs))
     texts = scene_files(programs, measured.each, measured.digest)
     return Made(texts, warnings, costs, spared, card(programs))
+
+
+def _ranges_of_floats(programs: Library) -> None:
+    """Refuse a range whose ends are beyond the smaller of the float types."""
+    words = programs.known.words
+    for q in (*words.parameters, *words.states, *words.inputs):
+        end = max(abs(float(q.low or 0)), abs(float(q.high or 0)))
+        if end > LARGEST_FLOAT:
+            raise SceneError(
+                f"scene '{programs.known.scene.name}': the range of '{q.name}' must fit a float, "
+                f"up to 3.4e38, not {end:.3g}"
+            )
 
 
 def _poles(programs: Library) -> str:

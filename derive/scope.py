@@ -14,6 +14,7 @@ _DECLARED = re.compile(rf"\s*(?:for \()?(?:static )?(?:const )?{_TYPE} ([^;]*);?
 _FIRST = re.compile(r"\*?([A-Za-z_]\w*)(?:\[\w+\])*(?: =.*)?")
 _ASSIGNED = re.compile(r"\s*(?:for )?([A-Za-z_]\w*(?:, [A-Za-z_]\w*)*)(?: =| in) ")
 
+_MACRO = re.compile(r"^#define (\w+)|\bdefined\((\w+)\)", re.MULTILINE)
 _AT_THE_EDGE = re.compile(r"^(?:\} (\w+);|[A-Za-z_][\w *]*?\b(\w+)\()", re.MULTILINE)
 
 
@@ -45,20 +46,21 @@ def declared_in_python(lines: Iterable[str]) -> Iterator[str]:
 
 
 def declared_by_file(text: str) -> set[str]:
-    r"""Return the types and functions that a text of C declares, each where its line begins.
+    r"""Return the types, functions and macros that a text of C declares or asks for.
 
     >>> sorted(declared_by_file("} a_constants_f32;\nstatic int a_setup_f32(float b);\n  c(d);"))
     ['a_constants_f32', 'a_setup_f32']
     """
-    return {name for pair in _AT_THE_EDGE.findall(text) for name in pair if name}
+    found = (*_AT_THE_EDGE.findall(text), *_MACRO.findall(text))
+    return {name for pair in found for name in pair if name}
 
 
 def require_no_symbol(scene: str, given: Iterable[str], text: str) -> None:
-    """Refuse a name of the scene that its C has for a type or a function."""
+    """Refuse a name of the scene that its C has for a type, a function or a macro."""
     taken = declared_by_file(text)
     for name in given:
         if name in taken:
-            rule = "is what the emitted C calls a type or a function; give it another name"
+            rule = "is what the emitted C calls a type, a function or a macro; give it another name"
             raise SceneError(f"scene '{scene}': '{name}' {rule}")
 
 

@@ -183,6 +183,14 @@ def test_a_body_beyond_the_float_range_is_refused(tmp_path, capsys):
     assert not (tmp_path / "out").exists()
 
 
+def test_a_range_beyond_the_float_range_is_refused(tmp_path, capsys):
+    body = '[parameters]\nB = { unit = "kg m^2", range = [1e40, 1e41] }\n'
+    body += '[body]\nkind = "spherical"\nmoment = "B"\n'
+    source = scene(tmp_path, "huge", '"acceleration"', body)
+    assert main(["generate", *FEW, source, "--out", str(tmp_path / "out")]) == 2
+    assert "the range of 'B' must fit a float, up to 3.4e38" in capsys.readouterr().err
+
+
 def test_bench_names_a_file_that_it_cannot_write(tmp_path, capsys):
     assert main(["bench", "--out", str(tmp_path / "missing" / "file.json")]) == 2
     assert "must be writable" in capsys.readouterr().err

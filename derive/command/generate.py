@@ -10,7 +10,14 @@ from derive.command.costs import print_costs
 from derive.command.scenes import samples_argument, scene_argument
 from derive.command.terminal import OUT, complain, console, errors, progress
 from derive.escape import visible
-from derive.files import Difference, differences, folders_left_over, unfinished, write
+from derive.files import (
+    Difference,
+    differences,
+    folders_left_over,
+    require_folder,
+    unfinished,
+    write,
+)
 from derive.generation import Made, all_made, gallery_of, lecture_made
 from derive.kept import Measuring
 from derive.scene import SceneError, catalogue
@@ -43,6 +50,7 @@ def options(command: argparse.ArgumentParser) -> None:
 
 def generate(given: argparse.Namespace) -> int:
     """Write, or with --check compare, the files of scenes."""
+    require_folder(given.out)
     by = Measuring(sampled_at(given.samples), None if given.anew else given.out)
     results = made_of(given.scenes, () if given.scenes else (lecture_made,), by)
     texts = {name: text for result in results for name, text in result.texts.items()}

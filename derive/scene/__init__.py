@@ -26,7 +26,13 @@ from derive.scene.declaration import (
     Turn,
     Wheel,
 )
-from derive.scene.doubtful import beyond, idle_frames, in_degrees, require_sizes
+from derive.scene.doubtful import (
+    beyond,
+    idle_frames,
+    in_degrees,
+    require_sizes,
+    turns_in_degrees,
+)
 from derive.scene.file import read_scene
 from derive.scene.machine import Machine
 from derive.scene.machine_file import is_machine, read_machine
@@ -146,8 +152,10 @@ def _read(document: dict[str, object], name: str, text: str) -> Scene | Machine:
     if is_machine(document):
         machine = read_machine(document, name, text)
         require_sizes(machine)
-        more = (*beyond(machine), *idle_frames(machine), *in_degrees(machine.coordinates))
-        return replace(machine, warnings=(*machine.warnings, *more))
+        angles = in_degrees((*machine.coordinates, *machine.inputs))
+        more = (*beyond(machine), *idle_frames(machine), *angles, *in_degrees(machine.parameters))
+        every = (*machine.warnings, *more, *turns_in_degrees(machine))
+        return replace(machine, warnings=every)
     scene = read_scene(document, name, text)
     said = tuple(table(document.get("known", {}), "known").entries)
     check(scene, said)
@@ -161,8 +169,10 @@ def _document(text: str) -> dict[str, object]:
         raise SceneError(f"the file is longer than {LONGEST_FILE} characters")
     try:
         return tomllib.loads(text, parse_float=_decimal)
-    except ValueError as error:
+    except tomllib.TOMLDecodeError as error:
         raise SceneError(f"the file is not TOML: {error}") from None
+    except ValueError:  # what Python says of it is advice to programmers
+        raise SceneError("the file holds a whole number of too many digits") from None
     except RecursionError:
         raise SceneError("the file is not TOML: brackets are nested too deeply") from None
 

@@ -11,10 +11,11 @@ from derive.scene.safe import negative, ranges_of, values_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
+    from fractions import Fraction
 
     from derive.formula import Formula
-    from derive.scene.declaration import Coordinate
-    from derive.scene.machine import Machine, Moving
+    from derive.scene.declaration import Coordinate, Input, Parameter
+    from derive.scene.machine import Machine, Member, Moving
 
 MANY_RADIANS = 20
 """More than three turns: an angle in degrees that was not converted looks so."""
@@ -28,6 +29,10 @@ def require_sizes(machine: Machine) -> None:
         if place is not None:
             found = f"'{brief(size)}' is{at_place(place)}"
             raise SceneError(f"{label} must not be negative, but {found}")
+    for body in machine.bodies:
+        walls = values_of(_wall(body), ranges) if body.look == "tube" else []
+        if walls and not any(walls):
+            raise SceneError(f"body '{body.name}': outer must be more than inner, but is the same")
 
 
 def beyond(machine: Machine) -> Iterator[str]:
@@ -53,12 +58,17 @@ def _sizes(machine: Machine) -> Iterator[tuple[str, Formula]]:
         for name, length in lengths.items():
             yield f"body '{body.name}': {name.replace('_', ' ')}", length
         if body.look == "tube":
-            yield f"body '{body.name}': outer - inner", lengths["outer"] - lengths["inner"]
+            yield f"body '{body.name}': outer - inner", _wall(body)
     for load in machine.loads:
         if isinstance(load, Spring):
             yield f"load '{load.name}': spring", load.stiffness
             yield f"load '{load.name}': damper", load.damping
             yield f"load '{load.name}': length", load.length
+
+
+def _wall(tube: Member) -> Formula:
+    """Return how thick the wall of a tube is."""
+    return tube.lengths["outer"] - tube.lengths["inner"]
 
 
 def idle_frames(machine: Machine) -> Iterator[str]:
@@ -75,9 +85,31 @@ def idle_frames(machine: Machine) -> Iterator[str]:
             yield f"frame '{frame.name}' carries nothing"
 
 
-def in_degrees(coordinates: Iterable[Coordinate | Moving]) -> Iterator[str]:
-    """Yield a sentence for every angle whose range looks as if it were in degrees."""
-    for c in coordinates:
+def in_degrees(scalars: Iterable[Coordinate | Moving | Parameter | Input]) -> Iterator[str]:
+    """Yield a sentence for every angle whose range or value looks as if it were in degrees."""
+    for c in scalars:
         end = max(c.low, c.high, key=abs)
         if c.unit == "rad" and abs(end) >= MANY_RADIANS:
-            yield f"the range of '{c.name}' goes to {float(end):g} rad; are degrees meant?"
+            says = f"'{c.name}' is" if c.low == c.high else f"the range of '{c.name}' goes to"
+            yield f"{says} {float(end):g} rad; are degrees meant?"
+
+
+def turns_in_degrees(machine: Machine) -> Iterator[str]:
+    """Yield a sentence for every turn by a formula that holds a number as of degrees."""
+    turned = [(f"frame '{f.name}'", f.turned) for f in machine.frames]
+    turned += [(f"body '{b.name}'", b.turned) for b in machine.bodies]
+    for label, turns in turned:
+        for turn in turns:
+            alone = [n for n in _terms(turn.angle) if abs(n) >= MANY_RADIANS]
+            if alone:
+                says = f"turns about {turn.axis} through '{brief(turn.angle)}'"
+                yield f"{label} {says}, and {float(alone[0]):g} is in rad; are degrees meant?"
+
+
+def _terms(angle: Formula) -> Iterator[Fraction]:
+    """Yield the numbers that are terms of a sum."""
+    if angle.operator == "number":
+        yield angle.number
+    elif angle.operator in ("add", "sub", "neg"):
+        for part in angle.operands:
+            yield from _terms(part)

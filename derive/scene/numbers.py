@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from derive.escape import at_place, brief
 from derive.formula import FLOATS, ONE, ZERO, Formula, evaluate, symbols
 from derive.scene.declaration import SceneError
+from derive.scene.shape import moved
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -94,11 +95,12 @@ def triangle(matrix: Matrix) -> bool:
 
     Along principal axes this is the triangle inequality of the three moments.
     """
+    return semidefinite(_second_moments(matrix), abs(_trace(matrix)))
+
+
+def _second_moments(matrix: Matrix) -> Matrix:
     half = _trace(matrix) / 2
-    second = tuple(
-        tuple((half if i == j else 0) - matrix[i][j] for j in range(3)) for i in range(3)
-    )
-    return semidefinite(second, abs(half) * 2)
+    return tuple(tuple((half if i == j else 0) - matrix[i][j] for j in range(3)) for i in range(3))
 
 
 def semidefinite(matrix: Matrix, size: Fraction) -> bool:
@@ -147,6 +149,24 @@ def doubts(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str]:
         yield f"body inertia is not positive definite{_where(values, body.inertia)}"
     for values in broken[:1]:
         yield f"body inertia breaks the triangle inequality{_where(values, body.inertia)}"
+    yield from _central_doubts(body, parameters)
+
+
+def _central_doubts(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str]:
+    """Yield a sentence on the first inertia about a point that leaves none about the centre."""
+    if body.mass is None or body.centre is None:
+        return
+    formulas = (*body.inertia, body.mass, *body.centre)
+    used = [name for part in formulas for name in symbols(part)]
+    for values in (middle(parameters), *ends(parameters, used)):
+        about = tensor(body.inertia, values, "body inertia")
+        own = tensor(moved(body.inertia, -body.mass, body.centre), values, "body inertia")
+        size = abs(_trace(about))
+        masses = semidefinite(own, size) and semidefinite(_second_moments(own), size)
+        if semidefinite(about, size) and triangle(about) and not masses:
+            rule = "body inertia less that of its mass at body.centre is no masses'"
+            yield f"{rule}{_where(values, formulas)}"
+            return
 
 
 def check_member(label: str, inertia: Entries, parameters: tuple[Parameter, ...]) -> None:

@@ -128,7 +128,8 @@ def _entry(entry: object, known_: Sequence[str]) -> tuple[str, tuple[str, ...]]:
             raise SceneError(f"wanted has '{answer}' {rule}")
         if answer not in known_:
             hint = resembling(answer, known_)
-            raise SceneError(f"wanted has '{brief(answer)}', which is no answer{hint}")
+            shown_ = answer if colon else name
+            raise SceneError(f"wanted has '{brief(shown_)}', which is no answer{hint}")
     return name, answers
 
 

@@ -215,7 +215,7 @@ def warnings(scene: Scene, said: tuple[str, ...]) -> tuple[str, ...]:
         *carrier_doubts(scene.body, scene.wheels, scene.parameters),
         *_unused(scene, said),
         *_doubtful_angles(scene),
-        *in_degrees(scene.coordinates),
+        *in_degrees((*scene.coordinates, *scene.parameters, *scene.inputs)),
     )
 
 

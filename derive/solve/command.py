@@ -1,6 +1,7 @@
 """``derive solve``: the answers of a machine as numbers with units, from the command line."""
 
 import argparse
+import os
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -10,16 +11,19 @@ from pathlib import Path
 from numpy.linalg import LinAlgError
 
 from derive.files import require_writable, write
-from derive.scene import Machine, SceneError
+from derive.scene import CATALOGUE, Machine, SceneError
 from derive.scene.machine import LEFT_OVER
 from derive.scene.table import MANY, nearest, shown
 from derive.solve.instrument import Instrument, opened
 from derive.solve.motions import frequencies, growth, limits, roots
 from derive.solve.simulation import plot, simulated
+from derive.unit import ANGULAR_VELOCITY, NONE, dimension
 
 Row = tuple[str, str, str, str]
 FACTORS = {"": 1.0, "deg": pi / 180, "rpm": 2 * pi / 60}
 """Units that a value may be set in beside SI: ``skew=3deg``."""
+OF = {"deg": NONE, "rpm": ANGULAR_VELOCITY}
+STEP = 1e-3  # s
 NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,6})?) ?(|deg|rpm)")
 
 
@@ -57,7 +61,7 @@ def options(command: argparse.ArgumentParser) -> None:
         "--until", type=float, metavar="SECONDS", help="move in time by the scene's step_rk4"
     )
     command.add_argument(
-        "--step", type=float, default=1e-3, metavar="SECONDS", help="length of a step (0.001)"
+        "--step", type=float, metavar="SECONDS", help=f"length of a step ({STEP:g}, with --until)"
     )
     command.add_argument(
         "--plot", type=Path, metavar="FILE", help="write the motion as SVG (with --until)"
@@ -67,12 +71,21 @@ def options(command: argparse.ArgumentParser) -> None:
 def _moved(given: argparse.Namespace, found: Instrument, values: dict[str, float]) -> list[Row]:
     """Return the state at the end of a motion, its plot written if a file is named."""
     if given.plot is not None:
+        _require_another_file(given.plot, given.scene)
         require_writable(given.plot)
-    motion = simulated(found, values, given.until, given.step)
+    step = STEP if given.step is None else given.step
+    motion = simulated(found, values, given.until, step)
     if given.plot is not None:
         write(given.plot.parent, {given.plot.name: plot(motion)})
     at = f"at {motion.times[-1]:.6g} s"
     return [(at, n, f"{v[-1]:.12g}", motion.units[n]) for n, v in motion.states.items()]
+
+
+def _require_another_file(file: Path, scene: str) -> None:
+    """Refuse to write over the scene itself."""
+    for own in (Path(scene), CATALOGUE / f"{scene}.toml"):
+        if os.path.exists(file) and os.path.isfile(own) and file.samefile(own):
+            raise SceneError(f"--plot {file}: the scene itself lies there; name another file")
 
 
 def solved(given: argparse.Namespace) -> Solved:
@@ -103,6 +116,8 @@ def _solved(given: argparse.Namespace, found: Instrument, values: dict[str, floa
 def _require_one_question(given: argparse.Namespace) -> None:
     if given.plot is not None and given.until is None:
         raise SceneError(f"--plot {given.plot}: a plot shows a motion and needs --until SECONDS")
+    if given.step is not None and given.until is None:
+        raise SceneError(f"--step {given.step:g}: a step is of a motion and needs --until SECONDS")
     if given.limit and given.until is not None:
         raise SceneError(
             f"--limit {given.limit[0]}: limits of stability are no motion; leave out "
@@ -136,12 +151,17 @@ def _every_answer(found: Instrument, values: dict[str, float]) -> Solved:
 def settings(found: Instrument, texts: Sequence[str]) -> dict[str, float]:
     """Return the values of a list such as ``m=1200 skew=3deg``.
 
-    Raises SceneError for a name that the scene does not have or a value that is no number.
+    Raises SceneError for a name that the scene does not have or that is set twice, and for a value
+    that is no number or in a unit of something else.
     """
-    values = {}
+    values: dict[str, float] = {}
+    units = {c: q.unit for q in found.quantities() for c in q.components}
     for text in texts:
         name, _, value = text.partition("=")
-        values[_known(found, name.strip())] = _number(text, value.strip())
+        known = _known(found, name.strip())
+        if known in values:
+            raise SceneError(f"--set {text[:60]}: '{known}' is set twice")
+        values[known] = _number(text, value.strip(), units[known])
     return values
 
 
@@ -154,8 +174,10 @@ def _known(found: Instrument, name: str) -> str:
     return name
 
 
-def _number(text: str, value: str) -> float:
+def _number(text: str, value: str, unit: str) -> float:
     found = NUMBER.fullmatch(value)
+    if found and found[2] and dimension(unit) != OF[found[2]]:
+        raise SceneError(f"--set {text[:60]}: the value is in {unit}, not in {found[2]}")
     number = float(found[1]) * FACTORS[found[2]] if found else nan
     if not isfinite(number):
         raise SceneError(

@@ -43,6 +43,11 @@ SPRING = 'spring = {{ on = "bob", at = ["0", "0", "-b"], to = ["b", "0", "0"], {
 TUBE = 'shape = "tube"\ninner = "a"\nouter = "a + b"\nlength = "b"'
 
 
+RAD = "rad; are degrees meant?"
+DEGREES = f"in {RAD}"
+ANGLE = 't = { unit = "rad"'
+
+
 def refused(text: str) -> str:
     """Return the sentence that refuses a machine or its programs, "" if nothing does."""
     try:
@@ -60,6 +65,7 @@ def test_the_plain_machine_is_accepted_without_a_warning() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
+        ('"a + b"', '"a"', "body 'bob': outer must be more than inner, but is the same"),
         ('"a + b"', '"b"', "body 'bob': outer - inner must not be negative, but 'b - a' is at"),
         (TUBE, 'shape = "plate"\nlengths = ["a", "-b"]', "body 'bob'.lengths must be positive"),
         ("weight =", SPRING.format('spring = "k"') + "weight =", "load 'spring': spring must not"),
@@ -77,6 +83,9 @@ def test_a_size_or_a_list_that_cannot_be_is_refused(old: str, new: str, says: st
     ("old", "new", "says"),
     [
         ("[-1, 1]", "[-180, 180]", "the range of 'q' goes to -180 rad; are degrees meant?"),
+        ("y q", "y q - 30", f"frame 'arm' turns about y through 'q - 30', and 30 is {DEGREES}"),
+        ("m = {", f"{ANGLE}, value = 60 }}\n#t\nm = {{", "'t' is 60 rad; are degrees meant?"),
+        ("m = {", f"{ANGLE}, range = [0, 90] }}\n#t\nm = {{", f"the range of 't' goes to 90 {RAD}"),
         ("[bodies.bob]", "[frames.idle]\n[bodies.bob]", "frame 'idle' carries nothing"),
         ("[-1, 1]", "[0.5, 1]", "linearised.q is 0, outside the range of 'q', [0.5, 1]"),
     ],

@@ -1,5 +1,6 @@
 """``derive solve`` answers, finds roots and limits, moves in time, and says what it still needs."""
 
+import os
 from functools import cache
 from math import pi
 from pathlib import Path
@@ -7,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from derive.cli import main
-from derive.scene import SceneError
+from derive.scene import CATALOGUE, SceneError
 from derive.solve import Instrument, opened, plot, simulated
 from derive.solve.command import settings
 from tests.made import thinned
@@ -59,6 +60,9 @@ REFUSED = {
     ],
     "--plot x.svg: a plot shows a motion and needs --until": ["--plot=x.svg"],
     "--limit n: limits of stability are no motion": ["--limit=n", "--until=1"],
+    "--step 0.1: a step is of a motion and needs --until": ["--step=0.1"],
+    "--set m=1deg: the value is in kg, not in deg": ["--set", "m=1deg"],
+    "--set alpha=1rpm: the value is in rad, not in rpm": ["--set", "alpha=1rpm"],
     "--set m=nan: a value is a number": ["--set", "m=nan"],
     "--set m=-infdeg: a value is a number": ["--set", "m=-infdeg"],
     "body 'disc'.mass must be positive, and is not so at m = 0": ["--set", "m=0"],
@@ -69,8 +73,10 @@ REFUSED = {
 def test_what_makes_no_sense_is_refused_in_one_sentence(
     sentence: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    data = [f"{name}={value}" for name, value in (TOP | START).items()]
-    assert main(["solve", "sleeping_top", "--set", *data, *REFUSED[sentence]]) == 2
+    told = REFUSED[sentence]
+    own = [text.partition("=")[0] for text in told]
+    data = [f"{n}={value}" for n, value in (TOP | START).items() if n not in own]
+    assert main(["solve", "sleeping_top", "--set", *data, *told]) == 2
     assert sentence in " ".join(capsys.readouterr().err.split())
 
 
@@ -112,6 +118,29 @@ def test_a_motion_keeps_its_energy_and_is_plotted(tmp_path: Path) -> None:
     command = ["solve", "sleeping_top", "--set", *data, "--until", "0.1", "--plot", str(target)]
     assert main(command) == 0
     assert target.read_text(encoding="utf-8").startswith("<svg")
+
+
+def test_a_value_that_is_set_twice_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["solve", "sleeping_top", "--set", "m=1", "--set", "m=2"]) == 2
+    assert "--set m=2: 'm' is set twice" in capsys.readouterr().err
+
+
+def test_a_plot_replaces_no_scene_and_nothing_but_a_regular_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene, pipe, linked = (tmp_path / name for name in ("own.toml", "pipe", "linked.svg"))
+    scene.write_text((CATALOGUE / "sleeping_top.toml").read_text(encoding="utf-8"))
+    os.mkfifo(pipe)
+    linked.symlink_to(scene)
+    before = scene.read_bytes()
+    data = [f"{name}={value}" for name, value in (TOP | START).items()]
+    for file in (scene, linked, pipe, tmp_path, tmp_path / ("x" * 300)):
+        command = ["solve", str(scene), "--set", *data, "--until=0.1", f"--plot={file}"]
+        assert main(command) == 2
+        assert "derive: " in capsys.readouterr().err
+    assert scene.read_bytes() == before
+    assert pipe.is_fifo()
+    assert linked.is_symlink()
 
 
 def test_a_motion_needs_a_step_and_a_start() -> None:

@@ -31,6 +31,7 @@ NAMES = (
     *("odd_constants_f32", "odd_constants_f64", "odd_setup_f32", "odd_acceleration_f32"),
     *("odd_pair_f32", "odd_add_f32", "A_f32", "A_low", "A_next", "A_dot", "A_x", "attitude_w"),
     *("P", "P_x", "q_ddot", "one_over_A", "one_over_A_low", "c0", "jacobian_dense", "entry"),
+    *("ODD_F64_H", "ODD_F32_H", "DERIVE_ALLOW_CONTRACTION"),
 )
 
 
@@ -78,6 +79,7 @@ def test_a_link_to_a_scene_is_a_scene(tmp_path: Path) -> None:
         f"x = {'{a=' * 100}1{'}' * 100}",
         "# " + "a" * 50_000_000,
         "[parameters.A]",
+        f"x = {'9' * 5000}",
     ],
 )
 def test_a_huge_or_deep_file_is_refused_in_one_line(more: str, tmp_path: Path) -> None:
@@ -130,7 +132,7 @@ def test_a_folder_that_is_a_file_or_not_to_be_written_is_refused_and_left(
     scene.write_text(PLAIN, encoding="utf-8")
     file.write_text("mine", encoding="utf-8")
     (tmp_path / "gone").symlink_to(tmp_path / "nowhere" / "deeper")
-    for out in (file, file / "below", tmp_path / "gone"):
+    for out in (file, file / "below", tmp_path / "gone", tmp_path / ("x" * 300)):
         assert main(["generate", "--samples", "64", "--out", str(out), str(scene)]) == 2
         assert capsys.readouterr().err.strip().isprintable()
     assert file.read_text(encoding="utf-8") == "mine"

@@ -93,6 +93,18 @@ def warned(name: str, old: str, new: str) -> tuple[str, ...]:
             'n = { unit = "kg", value = 1 }\nm = {',
             "parameter 'n' is not used",
         ),
+        (
+            "heavy_top",
+            'turned     = ["z phi"]',
+            'turned = ["z phi"]\nmass = 1\ncentre = [0, 0, "l"]',
+            "body inertia less that of its mass at body.centre is no masses' at A = 0.0015",
+        ),
+        (
+            "heavy_top",
+            'turned     = ["z phi"]',
+            'turned = ["z phi"]\nmass = "m"\ncentre = [0, 0, "l"]',
+            "at body.centre is no masses' at A = 0.001, C = 0.0004, m = 1, l = 0.06",
+        ),
         ("heavy_top", "[0.2, 2.9]", "[0, 2.9]", "the range of 'theta' holds an angle"),
         ("gyrostat", "[-1.4, 1.4]", "[-1.4, 1.6]", "the range of 'theta' holds an angle"),
         (
