@@ -32,10 +32,12 @@ def brief(value: object) -> str:
 def at_place(values: Mapping[str, float]) -> str:
     """Return words for a place in a sentence, "" for none: at most a handful of its quantities.
 
+    pi is the same at every place, and not named.
+
     >>> at_place({"a": 0.0, "b": 1.25})
     ' at a = 0, b = 1.25'
     """
-    each = [f"{name} = {x:.6g}" for name, x in values.items()]
+    each = [f"{name} = {x:.6g}" for name, x in values.items() if name != "pi"]
     more = ", ..." if len(each) > MOST_NAMED else ""
     return f" at {', '.join(each[:MOST_NAMED])}{more}" if each else ""
 

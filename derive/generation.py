@@ -15,7 +15,8 @@ from derive.program import Measurement
 from derive.prove import prove
 from derive.reference import NoValueError
 from derive.saving import Saving, savings
-from derive.scene import SceneError, load
+from derive.scene import Machine, Scene, SceneError, load
+from derive.scene.rules import singular_attitude
 
 LECTURE_PAGE = "lecture.html"
 GALLERY_PAGE = "index.html"
@@ -54,7 +55,7 @@ def made(source: str, measuring: Measuring) -> Made:
         measured = figures_of(programs, measuring)
     except NoValueError as error:
         rule = "formulas must have a value on all of the declared ranges"
-        why = _poles(programs) or str(error)
+        why = _poles(programs) or _attitude(scene) or str(error)
         raise SceneError(f"scene '{scene.name}': {rule}, but {why}") from None
     _finite(programs, measured.each)
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in doubts(programs.known))
@@ -80,6 +81,11 @@ def _poles(programs: Library) -> str:
     known = programs.known
     each = [pole(known, base) for base in programs.truths] if isinstance(known, Mechanism) else []
     return next(filter(None, each), "")
+
+
+def _attitude(scene: Scene | Machine) -> str:
+    """Return where a body's three angles cannot be told apart; "" if nowhere."""
+    return "" if isinstance(scene, Machine) else singular_attitude(scene)
 
 
 def _finite(programs: Library, measured: Sequence[Measurement]) -> None:

@@ -89,7 +89,7 @@ def _answer(library: Library, program: Program) -> str:
     middle = {c: x for q in given_to for c, x in zip(q.components, _within(q), strict=True)}
     given = [middle[c] for q in library.setup.inputs for c in q.components]
     table, pairs = working(np.float64), extended(np.float64)
-    made = run(library.setup, pairs, paired(np.array(given))) if given else []
+    made = run(library.setup, pairs, paired(np.array(given, float)))
     names = [c for q in library.setup.outputs for c in q.components]
     known = middle | {n: r[0] for n, r in zip(names, made, strict=True)}
     if program.arithmetic == "pairs" or program.loops is not None:

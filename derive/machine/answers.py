@@ -247,7 +247,8 @@ class Answers:
         found = self._asked(base, (q,), answers, balance_steps(held))
         found = replace(found, balances=held)
         still = substituted(found, dict.fromkeys(self._velocities, Integer(0)))
-        return without_factors(still, self.frames.words)
+        sought = {self.frames.sheet.symbols[name] for name in steady.unknown}
+        return without_factors(still, self.frames.words, sought)
 
     @property
     def _velocities(self) -> list[Symbol]:

@@ -5,6 +5,7 @@ The programs that follow are proved against the equations in which it still stan
 """
 
 from collections.abc import Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from typing import Any
 
@@ -90,13 +91,16 @@ def _same(first: list[Any] | None, second: list[Any] | None) -> bool:
     )
 
 
-def without_factors(question: Question, words: Words) -> Question:
-    """Return a question of what vanishes without the symbols that only multiply it.
+def without_factors(question: Question, words: Words, sought: AbstractSet[Symbol]) -> Question:
+    """Return a question of what vanishes without the parameters that only multiply it.
+
+    sought : what it vanishes at, which is kept; so is a state: sines of angles have roots too
 
     A factor moves no root: with it and without it the answers at two points are in one ratio.
     """
     taken: dict[Symbol, Expr] = {}
-    for symbol in sorted(question.arguments(), key=str):
+    fixed = {words.sheet.symbols[c] for q in words.vocabulary.parameters for c in q.components}
+    for symbol in sorted((question.arguments() & fixed) - sought, key=str):
         if _is_factor(question, words, symbol):
             taken[symbol] = Integer(1)
     return substituted(question, taken)

@@ -54,8 +54,23 @@ class Mechanism:
     def lean(self, base: str) -> Lean:
         """Return the question without what does not matter."""
         if base not in self.leans:
-            self.leans[base] = lean(self.question(base), self.made)
+            found = lean(self.question(base), self.made)
+            _require_unknowns(self, found.question)
+            self.leans[base] = found
         return self.leans[base]
+
+
+def _require_unknowns(known: Mechanism, question: Question) -> None:
+    """Refuse a residual of steady motion that does not change with each of its unknowns."""
+    steady = known.scene.steady
+    if steady is None or question.outputs[0].name != "steady":
+        return
+    used = {known.made.sheet.label(s) for s in question.arguments()}
+    if missing := [name for name in steady.unknown if name not in used]:
+        raise SceneError(
+            f"the steady residual must depend on {' and '.join(missing)}, but it does not; "
+            "name another steady.unknown, or what vanishes by steady.vanishes"
+        )
 
 
 Known = Specialised | Mechanism

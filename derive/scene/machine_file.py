@@ -14,7 +14,14 @@ from derive.scene.machine import INERTIAL, Frame, Machine, Member, Place, Result
 from derive.scene.member import read_member
 from derive.scene.names import distinct, label
 from derive.scene.numbers import member_doubts
-from derive.scene.results import answer_units, of_any_unit, read_asked, read_results, written_out
+from derive.scene.results import (
+    answer_units,
+    groups,
+    of_any_unit,
+    read_asked,
+    read_results,
+    written_out,
+)
 from derive.scene.scalars import PER_SECOND, Scalars, read_scalars
 from derive.scene.table import Scope, Table, formula, keys, several, table, text, triple, word
 from derive.scene.times import read_time
@@ -46,6 +53,7 @@ def read_machine(document: Mapping[str, object], name: str, source: str) -> Mach
     results = read_results(part["results"], scalars, unknowns)
     distinct(_declared(scalars, unknowns, results))
     asked = read_asked(document["wanted"], scalars, unknowns, results)
+    distinct([*_declared(scalars, (), ()), *_vectors(unknowns, asked)])
     return Machine(
         name=name, title=text(document.get("title", name), "title"),
         source=text(document.get("source", "own"), "source"), text=source,
@@ -109,6 +117,16 @@ def _declared(
     return found + [(r.name, f"the result '{r.name}'") for r in results]
 
 
+def _vectors(
+    unknowns: tuple[Unknown, ...], asked: Mapping[str, tuple[str, ...]]
+) -> Iterator[tuple[str, str]]:
+    """Yield the vectors of unknowns that are wanted, with what each is."""
+    answers = {name for each in asked.values() for name in each}
+    for name in groups(unknowns):
+        if name in answers:
+            yield name, f"the vector of the unknowns '{name}_x' to '{name}_z'"
+
+
 def _unused(scalars: Scalars, source: str) -> tuple[str, ...]:
     """Return a sentence for every scalar whose name, or rate, the file never mentions again."""
     words = Counter(re.findall(r"[A-Za-z][A-Za-z0-9_]*", source))
@@ -168,11 +186,11 @@ def _steady(
             raise SceneError("wanted has 'steady', which needs [steady] with its unknown")
         return None
     keys(given, ("unknown",), ("vanishes",))
-    value = given.entries["unknown"]
-    each = value if isinstance(value, list) else [value]
-    scalar = [*(p.name for p in scalars.parameters if p.value is None),
-              *(m.name for m in scalars.moving), *scalars.known.dimensions]  # fmt: skip
-    names = tuple(word(one, "steady.unknown", scalar) for one in each)
+    if given.entries["unknown"] == []:
+        raise SceneError("steady.unknown is an empty list; it must name what is to be found")
+    fixed = {"pi", *(p.name for p in scalars.parameters if p.value is not None)}
+    scalar = [n for n in scalars.known.dimensions if n not in fixed]
+    names = several(given.entries["unknown"], "steady.unknown", scalar)
     vanishes, unit = None, ""
     if "vanishes" in given.entries:
         answers = answer_units(scalars, unknowns) | {

@@ -275,11 +275,11 @@ def _without(body: Body, wheels: tuple[Wheel, ...], values: Mapping[str, float])
     return matrix
 
 
-def merges(middle_turn: Coordinate, angle: float) -> bool:
-    """Return whether the range of a middle turn holds ``angle`` plus a whole number of pi.
+def merging(middle_turn: Coordinate, angle: float) -> float | None:
+    """Return ``angle`` plus a whole number of pi in the range of a middle turn; None without one.
 
     There the first and the third turn are about one line and merge: at 0 for axes as z, x, z,
     at a right angle for axes as z, y, x.
     """
     low, high = ((float(end) - angle) / math.pi for end in (middle_turn.low, middle_turn.high))
-    return math.floor(high) >= math.ceil(low)
+    return angle + math.ceil(low) * math.pi if math.floor(high) >= math.ceil(low) else None

@@ -20,7 +20,7 @@ from derive.scene.numbers import (
     check_inertia,
     doubts,
     inexact_axis,
-    merges,
+    merging,
 )
 from derive.scene.wanted import moves
 
@@ -255,10 +255,19 @@ def _doubtful_angles(scene: Scene) -> Iterator[str]:
     for wheel in scene.wheels:
         if inexact_axis(wheel):
             yield f"wheel '{wheel.name}': axis has unit length only nearly; write it as a formula"
+    if where := singular_attitude(scene):
+        yield where
+
+
+def singular_attitude(scene: Scene) -> str:
+    """Return words on where two of three free angles merge in the ranges, "" if nowhere."""
     ranges = {entry.name: entry for entry in scene.coordinates}
     chain = _chain(scene)
     if len(chain) != 3 or any(ranges[turn.coordinate].motion != "free" for turn in chain):
-        return
+        return ""
     middle = ranges[chain[1].coordinate]
-    if merges(middle, 0 if chain[0].axis == chain[2].axis else math.pi / 2):
-        yield f"the range of '{middle.name}' holds an angle at which the other two merge"
+    angle = merging(middle, 0 if chain[0].axis == chain[2].axis else math.pi / 2)
+    if angle is None:
+        return ""
+    at = f"{middle.name} = {angle:.6g}"
+    return f"the range of '{middle.name}' holds an angle at which the other two merge, {at}"

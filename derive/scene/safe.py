@@ -50,8 +50,8 @@ def require_values(scene: object) -> None:
 
 
 def ranges_of(scene: object) -> dict[str, Interval]:
-    """Return the range of everything in a scene that has one, by its name."""
-    return dict(_ranges(scene))
+    """Return the range of everything in a scene that has one, by its name; pi is a point."""
+    return {"pi": (math.pi, math.pi), **dict(_ranges(scene))}
 
 
 def negative(part: Formula, ranges: Ranges) -> Point | None:

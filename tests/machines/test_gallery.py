@@ -6,6 +6,7 @@ import pytest
 
 from derive.gallery import card, gallery
 from derive.gallery.drawing import HEIGHT, WIDTH, drawing
+from derive.library import library
 from derive.scene import Machine, catalogue, load, parse_scene
 from derive.scene.machine import LEFT_OVER
 from tests.made import library_of, thinned
@@ -25,6 +26,14 @@ def test_a_closed_form_is_shown_where_it_is_short() -> None:
     found = card(library_of("edge_runner_flat"))
     assert "<mfrac>" in found.equation
     assert found.answer.startswith("N = ")
+
+
+@pytest.mark.parametrize("formula", ['"2*pi"', '{ formula = "W", unit = "rpm" }', '"sin(w)"'])
+def test_an_answer_whose_constants_need_no_parameter_is_shown(formula: str) -> None:
+    text = load("edge_runner_flat").text
+    text = f'wanted = ["turn"]\n{text[text.index("[parameters]") :]}\nturn = {formula}'
+    text = text.replace("[parameters]", '[parameters]\nw = { unit = "1", value = 0.3 }')
+    assert card(library(parse_scene(text, "edge"))).answer.startswith("turn = ")
 
 
 def test_formulas_of_attitudes_have_axes_and_no_body() -> None:

@@ -40,6 +40,7 @@ weight = { gravity = ["0", "0", "-9.81"] }
 pin = { on = "bob", force = "?pin", couple = ["?cx", "0", "?cz"] }
 """
 SPRING = 'spring = {{ on = "bob", at = ["0", "0", "-b"], to = ["b", "0", "0"], {} }}\n'
+PUSH = 'push = { on = "bob", force = ["0", "0", "k*b/(q - pi/4)"] }\n'
 TUBE = 'shape = "tube"\ninner = "a"\nouter = "a + b"\nlength = "b"'
 
 
@@ -68,6 +69,7 @@ def test_the_plain_machine_is_accepted_without_a_warning() -> None:
         ('"a + b"', '"a"', "body 'bob': outer must be more than inner, but is the same"),
         ('"a + b"', '"b"', "body 'bob': outer - inner must not be negative, but 'b - a' is at"),
         (TUBE, 'shape = "plate"\nlengths = ["a", "-b"]', "body 'bob'.lengths must be positive"),
+        ("weight =", PUSH + "weight =", "load 'push': the divisor 'q - pi/4' must not vanish"),
         ("weight =", SPRING.format('spring = "k"') + "weight =", "load 'spring': spring must not"),
         ("weight =", SPRING.format('damper = "-m/1"') + "weight =", "load 'spring'.damper = '-m"),
         ('-9.81"]', '-9.81"], on = []', "load 'weight'.on is an empty list"),
@@ -88,11 +90,25 @@ def test_a_size_or_a_list_that_cannot_be_is_refused(old: str, new: str, says: st
         ("m = {", f"{ANGLE}, range = [0, 90] }}\n#t\nm = {{", f"the range of 't' goes to 90 {RAD}"),
         ("[bodies.bob]", "[frames.idle]\n[bodies.bob]", "frame 'idle' carries nothing"),
         ("[-1, 1]", "[0.5, 1]", "linearised.q is 0, outside the range of 'q', [0.5, 1]"),
+        (
+            "[coordinates]",
+            "[linearised]\nq = '4*pi/3'\n[coordinates]",
+            "linearised.q is 4.18879, outside the range of 'q', [-1, 1]",
+        ),
     ],
 )
 def test_what_is_hardly_meant_is_a_warning(old: str, new: str, says: str) -> None:
     text = PLAIN.replace("k = ", "# k = ").replace(old, new)
     assert parse_scene(text, "odd").warnings == (says,)
+
+
+@pytest.mark.parametrize("name", ["k", "q", "thrust"])
+def test_a_name_beside_a_vector_of_unknowns_that_is_wanted_is_refused(name: str) -> None:
+    text = PLAIN.replace("?pin", f"?{name}")
+    text += '[inputs]\nthrust = { unit = "N", range = [0, 1] }\n'
+    assert refused(text) == ""
+    says = f"and the vector of the unknowns '{name}_x' to '{name}_z'"
+    assert refused(text.replace('"q_ddot"', f'"{name}"')).endswith(says)
 
 
 @pytest.mark.parametrize(("q", "size"), [("0", ""), ("0.5", "-6 rad/s^2")])

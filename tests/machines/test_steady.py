@@ -1,17 +1,31 @@
 """Steady motions: the balance that lasts is found; a residual must hold its unknown."""
 
+import re
 from math import cos, isclose, sin
 from pathlib import Path
 
 import pytest
 
 from derive.cli import parser
-from derive.scene import SceneError
+from derive.library import library
+from derive.machine.mechanism import Mechanism, depends_on, in_terms
+from derive.scene import SceneError, parse_scene
 from derive.scene.machine import LEFT_OVER
 from derive.solve import opened, roots
 from derive.solve.command import Row, solved
 
 HOOP = Path(__file__).parent / "scenes" / "hoop_steady.toml"
+PENDULUM = """
+wanted = ["steady"]
+parameters.m = { unit = "kg", range = [1, 2] }
+parameters.l = { unit = "m", range = [0.3, 0.5] }
+coordinates.q = { unit = "rad", range = [-1, 1], rate = { range = [-2, 2] } }
+frames.arm.turned = ["x q"]
+bodies.bob = { frame = "arm", shape = "point", mass = "m", centre = ["0", "0", "-l"] }
+loads.weight.gravity = ["0", "0", "-9.81"]
+loads.pin = { on = "bob", force = "?pin", couple = ["0", "?cy", "?cz"] }
+steady.unknown = "@"
+"""
 GIVEN = {"m": 0.015, "r": 0.013, "g": 9.81, "theta": 0.8, "s": 47.0}
 
 
@@ -29,6 +43,31 @@ def test_a_residual_that_does_not_hold_its_unknown_is_refused(tmp_path: Path) ->
     other.write_text(text, encoding="utf-8")
     with pytest.raises(SceneError, match="must depend on W, but it does not"):
         roots(opened(str(other)), GIVEN)
+
+
+@pytest.mark.parametrize(
+    ("unknown", "inputs"), [("q", {"q"}), ("m", {"m", "q"})], ids=["an angle", "a parameter"]
+)
+def test_what_is_sought_and_angles_stay_in_what_only_they_multiply(
+    unknown: str, inputs: set[str]
+) -> None:
+    known = in_terms(parse_scene(PENDULUM.replace("@", unknown), "pendulum"))
+    assert isinstance(known, Mechanism)
+    assert {*depends_on(known, "steady")} == inputs
+
+
+@pytest.mark.parametrize(
+    ("unknown", "says"),
+    [
+        ('"q_dot"', "the steady residual must depend on q_dot, but it does not"),
+        ('"pi"', "steady.unknown must be one of m, l, q, q_dot, not 'pi'"),
+        ('["q", "q"]', "steady.unknown has 'q' twice"),
+        ("[]", "steady.unknown is an empty list"),
+    ],
+)
+def test_an_unknown_that_cannot_be_found_is_refused(unknown: str, says: str) -> None:
+    with pytest.raises(SceneError, match=re.escape(says)):
+        library(parse_scene(PENDULUM.replace('"@"', unknown), "pendulum"))
 
 
 def test_a_root_at_zero_is_found_once_and_no_scale_of_the_residual_makes_another(

@@ -2,15 +2,19 @@
 
 import math
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from derive.formula import FLOATS, evaluate
+from derive.generation import made
 from derive.grammar import parse
-from derive.scene import SceneError, parse_scene, safe
+from derive.kept import Measuring
+from derive.scene import CATALOGUE, SceneError, parse_scene, safe
 from derive.scene.interval import INTERVALS
+from derive.search import QUICK
 
 PENDULUM = """
 wanted = ["q_ddot", "N"]
@@ -118,3 +122,12 @@ def test_an_interval_holds_every_value_in_it(
         terms = Fraction(2**-44) * (1 + Fraction(max(map(abs, ends))) ** 3)
         assert Fraction(found) >= Fraction(low) - slack - terms if math.isfinite(low) else True
         assert Fraction(found) <= Fraction(high) + slack + terms if math.isfinite(high) else True
+
+
+def test_a_scene_without_a_value_at_a_singular_attitude_is_refused_by_its_angle(
+    tmp_path: Path,
+) -> None:
+    text = (CATALOGUE / "heavy_top.toml").read_text(encoding="utf-8")
+    (tmp_path / "top.toml").write_text(text.replace("[0.2, 2.9]", "[-0.5, 1]"), encoding="utf-8")
+    with pytest.raises(SceneError, match=r"other two merge, theta = 0$"):
+        made(str(tmp_path / "top.toml"), Measuring(QUICK, None))
