@@ -19,6 +19,7 @@ from tests.flows.systems import (
     system,
     without_slopes,
 )
+from tests.made import thinned
 
 TIME = mpf("0.04")  # s; short enough for the extrapolated reference to be exact
 
@@ -39,7 +40,7 @@ def order(program: Program, given: System, values: Values) -> float:
     return float(np.log2(float(coarse / fine)))
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", thinned(EVERY, 3))
 def test_the_order_is_four(name: str) -> None:
     given = without_slopes(system(name))
     # an order is a limit: at h = T/16 the next power still has a few per cent

@@ -12,6 +12,7 @@ from derive.c_text import F32, F64, PRECISIONS, Precision
 from derive.machine.mechanism import Known, in_terms
 from derive.sample import CORNERS, LARGE_SPIN, Samples, samples, varying
 from derive.scene import catalogue, load
+from tests.made import thinned
 
 
 @cache
@@ -28,21 +29,21 @@ def _drawn(name: str, place: int) -> Samples:
     return samples(scene(name), PRECISIONS[place], 6, 2)
 
 
-@pytest.mark.parametrize("name", catalogue())
+@pytest.mark.parametrize("name", thinned(catalogue(), 5))
 @pytest.mark.parametrize("precision", PRECISIONS, ids=lambda p: p.name)
 def test_every_value_is_a_float_of_the_precision(name: str, precision: Precision) -> None:
     for sample in drawn(name, precision).each:
         assert all(float(precision.dtype(x)) == x for x in sample.values.values())
 
 
-@pytest.mark.parametrize("name", catalogue())
+@pytest.mark.parametrize("name", thinned(catalogue(), 5))
 def test_every_sample_is_a_body(name: str) -> None:
     known = scene(name)
     each = drawn(name, F64).each
     assert all(admissible(known, s.values) for s in each)
 
 
-@pytest.mark.parametrize("name", catalogue())
+@pytest.mark.parametrize("name", thinned(catalogue(), 5))
 def test_ordinary_samples_lie_on_the_declared_ranges(name: str) -> None:
     known = scene(name)
     for sample in drawn(name, F64).each:
@@ -52,7 +53,7 @@ def test_ordinary_samples_lie_on_the_declared_ranges(name: str) -> None:
                 assert all((q.low or 0) <= Fraction(x) <= (q.high or 0) for x in values), q.name
 
 
-@pytest.mark.parametrize("name", catalogue())
+@pytest.mark.parametrize("name", thinned(catalogue(), 5))
 def test_every_corner_is_there_or_counted_as_skipped(name: str) -> None:
     found = drawn(name, F32)
     kinds = {s.kind for s in found.each} - {"ordinary"}

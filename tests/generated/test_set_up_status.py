@@ -178,7 +178,7 @@ def test_c_and_casadi_give_the_status_of_the_program(name: str, tmp_path: Path) 
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", WITH_SET_UP)
+@pytest.mark.parametrize("name", thinned(WITH_SET_UP, 4))
 def test_casadi_gives_the_status_of_the_program(name: str, tmp_path: Path) -> None:
     lib = made(name)
     module = imported(f"{name}_casadi", casadi_file(lib), tmp_path)

@@ -62,7 +62,7 @@ def places(text: str) -> list[str]:
 NAMES = ("lecture", *catalogue())
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", thinned(NAMES, 4))
 def test_a_page_is_complete_well_formed_and_without_scripts(name: str) -> None:
     root = parsed(page(name))
     tags = {element.tag.split("}")[1] for element in root.iter()}
@@ -86,7 +86,7 @@ def test_every_link_leads_to_a_place_that_is_there(name: str) -> None:
             assert place in (lecture if file else own)
 
 
-@pytest.mark.parametrize("name", catalogue())
+@pytest.mark.parametrize("name", thinned(catalogue(), 4))
 def test_every_stored_result_leads_to_the_equation_that_it_satisfies(name: str) -> None:
     for program in library_of(name).functions:
         fact = library_of(name).truths[program.name.removesuffix("_jacobian")]
@@ -99,7 +99,7 @@ def test_every_stored_result_leads_to_the_equation_that_it_satisfies(name: str) 
         )
 
 
-@pytest.mark.parametrize("name", catalogue())
+@pytest.mark.parametrize("name", thinned(catalogue(), 4))
 def test_a_scene_page_says_all_that_a_reader_needs(name: str) -> None:
     text, scene = page(name), load(name)
     assert scene.title in text.replace("&#39;", "'")

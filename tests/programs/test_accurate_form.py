@@ -129,7 +129,7 @@ OF_A_MACHINE = (
 )
 
 
-@pytest.mark.parametrize("name", WANTED)
+@pytest.mark.parametrize("name", thinned(WANTED, 2))
 def test_whatever_is_wanted_is_in_pairs_or_refuses_the_accurate_form_by_its_name(name: str) -> None:
     try:
         lib = library(parse_scene(SPINNING.replace("WANTED", name), "spinning"))
@@ -141,7 +141,7 @@ def test_whatever_is_wanted_is_in_pairs_or_refuses_the_accurate_form_by_its_name
     assert kinds == ({"working"} if name in ATTITUDES else {"pairs"})
 
 
-@pytest.mark.parametrize("name", [*OF_A_MACHINE, *OF_MACHINES])
+@pytest.mark.parametrize("name", thinned([*OF_A_MACHINE, *OF_MACHINES], 3))
 def test_answers_of_machines_are_in_pairs_or_refuse_the_accurate_form(name: str) -> None:
     if name.endswith("_tangent"):
         pytest.skip("over the errors of a quaternion, and this machine has none")
@@ -196,8 +196,9 @@ def test_accurate_steps_of_rods_err_by_one_rounding_of_the_state() -> None:
     assert max(step_errors("accurate")) <= ONE_ROUNDING
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
-    "name", thinned(["step_split", "step_lie", "step_rk4_jacobian", "step_lie_tangent"], 4)
+    "name", ["step_split", "step_lie", "step_rk4_jacobian", "step_lie_tangent"]
 )
 def test_accurate_steps_have_the_bits_of_their_programs_in_c_and_casadi(
     name: str, tmp_path: Path
