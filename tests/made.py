@@ -7,13 +7,19 @@ from typing import Any
 import pytest
 
 from derive.library import Library, library
-from derive.scene import load
+from derive.scene import Machine, Scene, load
+
+
+@cache
+def scene_of(source: str) -> Scene | Machine:
+    """Return a scene, by its name or path."""
+    return load(source)
 
 
 @cache
 def library_of(source: str) -> Library:
     """Return the library of a scene, by its name or path."""
-    return library(load(source))
+    return library(scene_of(source))
 
 
 def thinned(values: Iterable[Any], step: int) -> list[Any]:

@@ -18,6 +18,7 @@ from derive.bench.peers import casadi, kane, symforce
 from derive.bench.problem import FREE_BODY, HEAVY_TOP, PROBLEMS, RIGID_JACOBIAN
 from derive.bench.sample import SETS, samples
 from derive.bench.truth import truth
+from tests.made import thinned
 
 # Ordinary bodies: condition numbers below 100, so 1000 units tell rounding from a wrong equation.
 ROUNDING = 1000
@@ -45,7 +46,7 @@ def test_the_handwritten_minimum_solves_its_problem(problem, tmp_path) -> None:
     assert found.largest <= ROUNDING
 
 
-@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: p.name)
+@pytest.mark.parametrize("problem", thinned(PROBLEMS, 3), ids=lambda p: p.name)
 @pytest.mark.parametrize("peer", PEERS)
 def test_a_peer_solves_the_same_problem(peer, problem, tmp_path) -> None:
     try:

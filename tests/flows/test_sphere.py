@@ -85,6 +85,7 @@ def test_the_length_says_nothing_of_the_error() -> None:
     assert errors[0] == pytest.approx(errors[1], rel=1e-3)
 
 
+@pytest.mark.long
 def test_an_attitude_that_was_not_of_length_one_is_after_a_step() -> None:
     given = without_slopes(system("rigid_body"))
     values = dict(start("rigid_body"))

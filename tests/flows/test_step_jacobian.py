@@ -210,6 +210,7 @@ def test_known_zeros_are_not_stored() -> None:
     assert len(places) == 16 + 12 + 9 + 12 + 9
 
 
+@pytest.mark.long
 def test_an_attitude_turns_freely_if_its_angular_velocity_never_knows_it() -> None:
     found = {name: free_omega(case(name)[0]) for name in CASES}
     assert [name for name, place in found.items() if place] == ["principal", "rigid_body"]

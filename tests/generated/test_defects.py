@@ -32,7 +32,7 @@ def test_the_scene_as_it_is_passes_every_check(name: str, workshop: Path) -> Non
     assert [row for row in rows if row.outcome == "FAILS"] == []
 
 
-@pytest.mark.parametrize("defect", thinned(DEFECTS, 4), ids=lambda d: d.name)
+@pytest.mark.parametrize("defect", thinned(DEFECTS, 8), ids=lambda d: d.name)
 def test_a_seeded_defect_is_caught(defect: Defect, workshop: Path) -> None:
     made = library_of(defect.scene)
     texts = Files(defect.mutant(made), "made in memory")

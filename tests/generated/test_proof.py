@@ -23,7 +23,7 @@ QUICK_FIRST = [
     for name in catalogue()
 ]
 """Scenes whose mutants take a minute together are tried in the longer run."""
-SMALL_SET_UPS = thinned(catalogue(), 4)
+SMALL_SET_UPS = thinned(catalogue(), 8)
 
 
 @pytest.mark.parametrize("name", thinned(catalogue(), 4))

@@ -16,7 +16,7 @@ from derive.measure import replayed
 from derive.sample import Sample
 from derive.search import Sampling, errors_at, field, worst
 from derive.stated import at_rows, at_samples, balls, figures
-from tests.made import library_of
+from tests.made import library_of, thinned
 
 FEW = Sampling(samples=8192, rounds=8, batch=1024, balls=4, corners=1)
 SCENE = "heavy_top"
@@ -61,7 +61,9 @@ def test_a_figure_that_is_missing_or_absurd_fails(measured):
 
 
 @pytest.mark.parametrize("precision", [F32, F64], ids=lambda p: p.name)
-@pytest.mark.parametrize("scene", ["free_body", "tumbling_disc", "attitude", "sleeping_top"])
+@pytest.mark.parametrize(
+    "scene", thinned(["free_body", "tumbling_disc", "attitude", "sleeping_top"], 2)
+)
 def test_pairs_of_doubles_find_the_errors_that_balls_do(scene: str, precision: Precision) -> None:
     library, of = library_of(scene), field(library_of(scene), precision)
     rows = drawn(of.ranges, Dice("beside balls"), 6)

@@ -100,6 +100,7 @@ def test_a_set_up_without_one_of_its_rules_is_caught(name: str) -> None:
         assert faults(lib, replace(lib.setup, rules=rules), F64) != []
 
 
+@pytest.mark.long
 def test_a_rule_that_lets_zero_pass_is_caught() -> None:
     lib = made("rigid_body_steps")
     lax = tuple(replace(rule, relation="not negative") for rule in lib.setup.rules)

@@ -102,6 +102,7 @@ def test_a_run_that_is_killed_at_any_call_is_mended_by_the_next(tmp_path: Path) 
     assert states == ["mixed", "whole"]
 
 
+@pytest.mark.long
 def test_a_run_that_is_shot_is_mended_by_the_next(tmp_path: Path) -> None:
     assert ran(SHOT, tmp_path).split("\n") == [*["90 0"] * 4, ""]
 

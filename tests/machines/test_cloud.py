@@ -16,9 +16,9 @@ from derive.reference import reference
 from derive.sample import samples
 from derive.scene import Machine, catalogue, load, parse_scene
 from derive.solve import opened, roots
-from tests.made import library_of, thinned
+from tests.made import library_of, scene_of, thinned
 
-MACHINES = [name for name in catalogue() if isinstance(load(name), Machine)]
+MACHINES = [name for name in catalogue() if isinstance(scene_of(name), Machine)]
 FEW = 3
 SHORT = ("edge_runner_flat", "eulers_disk", "skewed_disc")
 """Machines of the short run; `derive check` and the longer run have all."""

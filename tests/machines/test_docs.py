@@ -19,6 +19,7 @@ from derive.scene import (
 )
 from derive.scene.load import MAIN
 from derive.scene.wanted import OF_MACHINES
+from tests.made import scene_of
 
 PAGE = (Path(__file__).parents[2] / "docs" / "machines.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"^```toml\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
@@ -44,7 +45,7 @@ def test_every_word_that_a_machine_may_use_stands_on_the_page() -> None:
     assert [word for word in words if not re.search(rf"\b{word}\b", PAGE)] == []
 
 
-@pytest.mark.parametrize("name", [n for n in catalogue() if isinstance(load(n), Machine)])
+@pytest.mark.parametrize("name", [n for n in catalogue() if isinstance(scene_of(n), Machine)])
 def test_a_machine_of_the_catalogue_is_short_and_has_a_source(name: str) -> None:
     scene = load(name)
     assert isinstance(scene, Machine)

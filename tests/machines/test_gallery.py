@@ -9,7 +9,7 @@ from derive.gallery.drawing import HEIGHT, WIDTH, drawing
 from derive.library import library
 from derive.scene import Machine, catalogue, load, parse_scene
 from derive.scene.machine import LEFT_OVER
-from tests.made import library_of, thinned
+from tests.made import library_of, scene_of, thinned
 
 
 @pytest.mark.parametrize("name", thinned(catalogue(), 4))
@@ -49,7 +49,7 @@ def test_attitudes_are_turned_by_quaternions_of_length_one() -> None:
     assert w * w + x * x + 2 * y * y == pytest.approx(1, abs=2e-3)  # all parts alike but w
 
 
-@pytest.mark.parametrize("name", [n for n in catalogue() if load(n).wanted[0] == "steady"])
+@pytest.mark.parametrize("name", [n for n in catalogue() if scene_of(n).wanted[0] == "steady"])
 def test_what_is_left_of_a_balance_is_not_shown_as_an_answer(name: str) -> None:
     assert card(library_of(name)).answer.endswith(LEFT_OVER)
 

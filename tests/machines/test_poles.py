@@ -58,6 +58,7 @@ def test_a_straight_cat_is_no_pole() -> None:
     assert poles(made_of("bent_cat", text("bent_cat", "waist"))) == []
 
 
+@pytest.mark.long
 def test_without_the_search_the_pole_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(answers, "weakest", lambda *_: Weakest(1.0, {}))
     monkeypatch.setattr(Pivots, "vanish", lambda *_: False)

@@ -102,6 +102,7 @@ def _solved(scene: str, values: dict[str, float]) -> list[Row]:
     return solved(parser().parse_args(["solve", scene, "--set", *texts])).rows
 
 
+@pytest.mark.long
 def test_small_motion_off_the_root_of_a_steady_motion_is_warned_about() -> None:
     governor = opened(str(HOOP.with_name("governor.toml")))
     given = {"m": 0.75, "M": 7.5, "l": 0.25, "g": 9.81, "theta0": 0.6}

@@ -15,9 +15,9 @@ from derive.recorded import needed
 from derive.sample import Sample, samples
 from derive.scene import catalogue, load, parse_scene
 from derive.scene.wanted import STEP_DERIVATIVES, moves
-from tests.made import library_of, thinned
+from tests.made import library_of, scene_of, thinned
 
-MOVING = [name for name in catalogue() if any(map(moves, load(name).wanted))]
+MOVING = [name for name in catalogue() if any(map(moves, scene_of(name).wanted))]
 MUTANTS = 12  # of each step, spread over its sums
 MUTATED = ("step_split", "step_rk4", "step_dmv")  # an order of two hides too much
 

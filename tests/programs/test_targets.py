@@ -4,8 +4,8 @@ import pytest
 
 from derive.arithmetic import TRUTHS
 from derive.program import Op, Program, Repeat, every_op, read_by
-from derive.scene import catalogue, load
-from tests.made import library_of, thinned
+from derive.scene import catalogue
+from tests.made import library_of, scene_of, thinned
 
 # Flops (+ - * /), divisions, calls of sin and cos of the best forms written by hand.
 TARGETS = {
@@ -21,7 +21,7 @@ TARGETS = {
 EVERY = [
     pytest.param(name, wanted, marks=[] if place % 4 == 0 else pytest.mark.long)
     for place, name in enumerate(catalogue())
-    for wanted in load(name).wanted
+    for wanted in scene_of(name).wanted
 ]
 """Functions of every fourth scene at once, of the others in the longer run."""
 

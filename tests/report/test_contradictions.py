@@ -108,7 +108,7 @@ def before() -> frozenset[str]:
 @pytest.mark.parametrize(
     "spoilt",
     thinned([a_verdict, those_that_any_serves, another_case_is_missed, a_longer_step, a_lower_cost,
-             a_worse_scene, every_case, the_best_scene, advice_of_a_case, nearer], 6),
+             a_worse_scene, every_case, the_best_scene, advice_of_a_case, nearer], 10),
     ids=lambda f: f.__name__,
 )  # fmt: skip
 def test_a_sentence_that_its_figures_contradict_is_found(spoilt: Callable[[Data], None]) -> None:
