@@ -25,7 +25,7 @@ def can_be_given(case: Case, dtype: type) -> bool:
 
 
 @pytest.mark.parametrize("dtype", PRECISIONS)
-@pytest.mark.parametrize("case", thinned(cases(), 2), ids=lambda c: c.name)
+@pytest.mark.parametrize("case", thinned(cases(), 4), ids=lambda c: c.name)
 def test_a_reference_case_ends_within_its_condition(case: Case, dtype: type) -> None:
     if can_be_given(case, dtype):
         assert share_of(case, dtype, flow(case.kind)) <= 1
@@ -82,7 +82,7 @@ def test_a_body_of_numbers_needs_no_set_up_and_moves_the_same(name: str) -> None
 
 
 @pytest.mark.parametrize("dtype", PRECISIONS)
-@pytest.mark.parametrize("case", thinned(cases(), 2), ids=lambda c: c.name)
+@pytest.mark.parametrize("case", thinned(cases(), 4), ids=lambda c: c.name)
 def test_other_names_for_the_axes_change_names_only(case: Case, dtype: type) -> None:
     if not can_be_given(case, dtype):
         return
@@ -108,7 +108,7 @@ def relabelled(case: Case, order: tuple[int, ...], sign: float) -> Case:
 
 
 @pytest.mark.parametrize("dtype", PRECISIONS)
-@pytest.mark.parametrize("case", thinned(NO_FLIP, 2), ids=lambda c: c.name)
+@pytest.mark.parametrize("case", thinned(NO_FLIP, 4), ids=lambda c: c.name)
 def test_two_motions_in_a_row_are_one(case: Case, dtype: type) -> None:
     if not can_be_given(case, dtype):
         return

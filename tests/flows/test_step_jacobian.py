@@ -81,7 +81,7 @@ def worst(made: Program, plain: Program, values: Values) -> Any:
     return error
 
 
-@pytest.mark.parametrize("name", thinned(CASES, 3))
+@pytest.mark.parametrize("name", thinned(CASES, 6))
 def test_the_jacobian_is_the_slope_of_the_step(name: str) -> None:
     given, values = case(name)
     assert worst(step_rk4_jacobian(given), step_rk4(without_slopes(given)), values) < EXACTLY
@@ -93,7 +93,7 @@ def test_the_jacobian_is_the_slope_where_the_attitude_is_off_the_sphere_too() ->
     assert worst(step_rk4_jacobian(given), step_rk4(without_slopes(given)), off) < EXACTLY
 
 
-@pytest.mark.parametrize("name", thinned(CASES, 3))
+@pytest.mark.parametrize("name", thinned(CASES, 6))
 def test_the_step_is_the_same_with_its_jacobian(name: str) -> None:
     given, values = case(name)
     alone, with_jacobian = step_rk4(without_slopes(given)), step_rk4_jacobian(given)

@@ -67,7 +67,7 @@ def close(found: float, expected: float, allowed: float) -> bool:
     return abs(found - expected) <= (allowed * abs(expected) or ZERO)
 
 
-@pytest.mark.parametrize("case", thinned(CASES, 6), ids=lambda c: c.scene)
+@pytest.mark.parametrize("case", thinned(CASES, 9), ids=lambda c: c.scene)
 def test_casadi_gives_every_expected_number(case: Case) -> None:
     for answer in case.answers:
         values = case.values | dict(answer.extra)
@@ -75,7 +75,7 @@ def test_casadi_gives_every_expected_number(case: Case) -> None:
         assert close(answer.made(found), case.expected(answer.expected), DOUBLE), answer
 
 
-@pytest.mark.parametrize("case", thinned(CASES, 5), ids=lambda c: c.scene)
+@pytest.mark.parametrize("case", thinned(CASES, 9), ids=lambda c: c.scene)
 def test_compiled_c_gives_every_expected_number(case: Case, emitted: Built) -> None:
     for one in emitted.of(case.scene):
         allowed = DOUBLE if one.precision.name == "f64" else FLOAT

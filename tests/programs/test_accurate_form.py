@@ -129,7 +129,7 @@ OF_A_MACHINE = (
 )
 
 
-@pytest.mark.parametrize("name", thinned(WANTED, 2))
+@pytest.mark.parametrize("name", thinned(WANTED, 4))
 def test_whatever_is_wanted_is_in_pairs_or_refuses_the_accurate_form_by_its_name(name: str) -> None:
     try:
         lib = library(parse_scene(SPINNING.replace("WANTED", name), "spinning"))
@@ -141,7 +141,7 @@ def test_whatever_is_wanted_is_in_pairs_or_refuses_the_accurate_form_by_its_name
     assert kinds == ({"working"} if name in ATTITUDES else {"pairs"})
 
 
-@pytest.mark.parametrize("name", thinned([*OF_A_MACHINE, *OF_MACHINES], 3))
+@pytest.mark.parametrize("name", thinned([*OF_A_MACHINE, *OF_MACHINES], 6))
 def test_answers_of_machines_are_in_pairs_or_refuse_the_accurate_form(name: str) -> None:
     if name.endswith("_tangent"):
         pytest.skip("over the errors of a quaternion, and this machine has none")
