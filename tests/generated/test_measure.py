@@ -120,6 +120,7 @@ def test_constants_of_every_scene_are_within_an_ulp(name: str, precision: Precis
     assert max(largest_ulps(made, dict(s.values), precision) for s in drawn) <= 1.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("precision", [F32, F64], ids=lambda p: p.name)
 def test_a_constant_that_cancels_is_within_16_u_squared_of_its_products(precision) -> None:
     """k3 is 2 (I_xz J_xy - I_xy J_xz): I_xz is moved until nothing is left of it."""

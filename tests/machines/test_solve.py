@@ -97,6 +97,7 @@ def test_degrees_and_turns_a_minute_may_be_set() -> None:
     assert found == {"alpha": pytest.approx(pi / 60), "n": pytest.approx(2 * pi)}
 
 
+@pytest.mark.long
 def test_every_root_and_every_limit_is_listed(capsys: pytest.CaptureFixture[str]) -> None:
     data = ["m=0.5", "r=0.05", "l=0.06", "g=9.81"]
     assert main(["solve", "top_steady_precession", "--set", *data, "n=250", "theta=30deg"]) == 0

@@ -133,6 +133,7 @@ def test_a_step_is_no_answer_beside_others() -> None:
         two_hubs("both: accelerations, step_rk4")
 
 
+@pytest.mark.long
 def test_a_machine_may_want_steps_and_nothing_else(tmp_path: Path) -> None:
     names = TWO_HUBS.format(wanted='"step_rk4"', emission="fast")
     scene = tmp_path / "two_hubs.toml"

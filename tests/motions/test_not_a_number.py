@@ -76,6 +76,7 @@ def test_an_error_that_is_no_number_is_measured_as_infinite() -> None:
     assert Errors("f", "x", ((0.5, 0.5), (0.5, NAN))).largest() == [0.5, math.inf]
 
 
+@pytest.mark.long
 def test_a_step_or_flow_without_a_value_is_no_motion() -> None:
     broken = ("step_rk4", "flow_exact")
     verdicts = list(orders(spoilt(library_of("tumbling_disc"), *broken), drawn("tumbling_disc")))

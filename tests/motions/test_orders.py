@@ -67,6 +67,7 @@ def test_a_closed_form_with_an_error_is_no_closed_form() -> None:
     assert not Order(4, (1.6e-7, 5e-9), closed=True).holds
 
 
+@pytest.mark.long
 def test_a_taylor_step_of_the_order_below_is_not_of_the_order_that_it_claims() -> None:
     text = load("tumbling_body").text.replace('"step_taylor"', '"step_taylor", "step_taylor19"')
     whole = library(parse_scene(text, "tumbling_body"))

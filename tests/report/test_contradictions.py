@@ -117,6 +117,7 @@ def test_a_sentence_that_its_figures_contradict_is_found(spoilt: Callable[[Data]
     assert set(contradictions(whole)) - before()
 
 
+@pytest.mark.long
 def test_what_follows_from_the_record_is_contradicted_by_it_nowhere() -> None:
     assert contradictions(json.loads(written())) == []
 
