@@ -4,6 +4,7 @@ Measuring a catalogue takes minutes. A digest of all that the figures depend on 
 the scene, its programs, how samples are taken, and the text of the modules that measure.
 """
 
+import ast
 import json
 from dataclasses import dataclass
 from functools import cache
@@ -70,9 +71,23 @@ def _numbers(program: Program) -> tuple[Any, ...]:
 
 @cache
 def _method() -> str:
+    """Return what the modules that measure say, wherever they and what they import stand."""
     here = Path(__file__).parent
     texts = [(here / f"{name}.py").read_text(encoding="utf-8") for name in METHOD]
-    return sha256("\n".join(texts).encode()).hexdigest()
+    return sha256("\n".join(sorted(map(unplaced, texts))).encode()).hexdigest()
+
+
+def unplaced(text: str) -> str:
+    """Return the text of a module without its imports and without spaces.
+
+    >>> unplaced("import a\\nx = a.b\\n")
+    'x=a.b'
+    """
+    lines = text.splitlines()
+    for node in ast.parse(text).body:
+        if isinstance(node, ast.Import | ast.ImportFrom) and node.end_lineno:
+            lines[node.lineno - 1 : node.end_lineno] = [""] * (node.end_lineno - node.lineno + 1)
+    return "".join("".join(lines).split())
 
 
 def _read(file: Path) -> Any:
