@@ -1,6 +1,6 @@
 BIN ?= .venv/bin
 
-.PHONY: generate test lint check bench
+.PHONY: generate test lint check bench report
 
 generate:
 	$(BIN)/derive generate
@@ -17,4 +17,7 @@ check:
 	$(BIN)/derive check
 
 bench:
-	$(BIN)/derive bench
+	$(BIN)/python -m bench
+
+report:
+	$(BIN)/python -m bench.report

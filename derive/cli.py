@@ -1,4 +1,4 @@
-"""The command line: derive lecture | generate | check | report | bench | solve | scenes.
+"""The command line: derive lecture | generate | check | report | solve | scenes.
 
 Exit code 0: done. 1: something differs, or fails its check or its proof. 2: the input is bad, and
 one sentence says what, by which rule, and what was found.
@@ -9,12 +9,12 @@ from collections.abc import Callable, Sequence
 
 from derive import __version__
 from derive.check.compiler import CompilerError
-from derive.command import bench, check, generate, lecture, report, scenes, solve
+from derive.command import check, generate, lecture, report, scenes, solve
 from derive.command.terminal import complain, errors
-from derive.files import OutputError
-from derive.prove import ProofError
-from derive.reference import NoValueError
+from derive.emit.files import OutputError
 from derive.scene import SceneError
+from derive.verify.prove import ProofError
+from derive.verify.reference import NoValueError
 
 STOPPED = 130  # what a shell expects after an interrupt
 COMMANDS = {
@@ -22,7 +22,6 @@ COMMANDS = {
     "generate": (generate.options, "write the C, CasADi, JSON and HTML of scenes"),
     "check": (check.options, "compile what was emitted and compare it with ball arithmetic"),
     "report": (report.options, "show what every function costs and how wrong it is"),
-    "bench": (bench.options, "compare cost and error with peers, in one run"),
     "solve": (solve.options, "evaluate the answers of a scene, roots included"),
     "scenes": (scenes.options, "list the catalogue"),
 }

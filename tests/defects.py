@@ -6,8 +6,8 @@ Thread numbers are GitHub's. The checks compare a mutant with the scene as it sh
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from derive.library import Library
-from tests.generated.mutants import (
+from derive.library.library import Library
+from tests.check.mutants import (
     Texts,
     first_sign_flipped,
     half_forgotten,

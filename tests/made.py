@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from derive.library import Library, library
+from derive.library.library import Library, library
 from derive.scene import Machine, Scene, load
 
 

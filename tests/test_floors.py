@@ -1,69 +1,30 @@
-"""Imports go down the floors, never up and never in a circle; SymPy stays with the symbols."""
+"""Twelve rooms, lowest first: imports go down, never up and never in a circle.
+
+SymPy stays with the symbols, and what only the checkout has stays out of the package.
+"""
 
 import ast
 import re
 from collections.abc import Iterator
-from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
 
-FLOORS = (
-    (
-        *("escape", "added", "vectors", "formula", "grammar", "unit", "scene", "catalogue"),
-        *("program", "graph", "largest"),
-    ),
-    (
-        *("particles", "pairs", "pair_sine", "arithmetic", "status"),
-        *("trace", "operations", "recorded", "rotations", "tree", "rate", "facts", "relations"),
-    ),
-    ("expand", "derivative", "table", "share", "write"),
-    ("step", "notation", "principal", "vocabulary", "valuation", "wording"),
-    ("lecture", "schedule", "motion"),
-    ("specialise", "truth", "draft", "staging", "inverse", "attitude", "along_body", "arrange"),
-    ("machine",),
-    ("lower", "forms", "stage", "function"),
-    ("flows",),
-    ("setting", "admission", "motions", "singular", "library"),
-    ("saving",),
-    (
-        *("c_text", "status_text", "scope", "series_text", "compact_text", "definition"),
-        *("comment", "signature", "example", "emit", "casadi_text", "casadi_module"),
-        *("manifest", "page"),
-    ),
-    (
-        *("blocks", "equations", "solution", "reference", "body_sample", "sample", "prove"),
-        *("columns", "scale"),
-        *("measure", "motion_error", "draw", "search", "stated", "kept"),
-        *("convergence", "differences"),
-    ),
-    ("cloud", "gallery"),
-    ("files", "generation", "check", "bench", "report", "solve"),
-    ("command",),
-    ("cli", "__main__"),
+ROOMS = (
+    *("lecture", "scene", "program", "mechanics", "lower", "motion"),
+    *("library", "verify", "emit", "check", "solve", "command"),
 )
+MODULES = ("__init__", "__main__", "cli")
 WITHOUT_SYMPY = (
-    *(
-        "program",
-        "formula",
-        "unit",
-        "scene",
-        "trace",
-        "operations",
-        "recorded",
-        "flows",
-        "rotations",
-        "graph",
-        "expand",
-        "table",
-        "share",
-        "write",
-    ),
-    *("schedule", "derivative", "forms", "stage", "arithmetic", "c_text", "status_text"),
-    *("casadi_text", "emit"),
+    *("scene", "program", "motion", "emit/c", "emit/casadi_text", "emit/casadi_module"),
+    *("lower/graph", "lower/expand", "lower/table", "lower/share", "lower/write"),
+    *("lower/schedule", "lower/derivative", "lower/forms", "lower/stage"),
 )
-PACKAGE = Path(__file__).parent.parent / "derive"
-PAGE = PACKAGE.parent / "docs" / "architecture.md"
+"""Folders and modules that must not know the symbols."""
+ROOT = Path(__file__).parent.parent
+PACKAGE = ROOT / "derive"
+TESTS = ROOT / "tests"
+PAGE = ROOT / "docs" / "architecture.md"
 FILES = sorted(p for p in PACKAGE.rglob("*.py") if p.relative_to(PACKAGE).parts != ("__init__.py",))
 
 
@@ -74,10 +35,11 @@ def room(path: Path) -> str:
 
 def floor(name: str) -> int:
     """Return the height of a room; a room without a floor is an error with a sentence."""
-    for height, patterns in enumerate(FLOORS):
-        if any(fnmatch(name, pattern) for pattern in patterns):
-            return height
-    raise LookupError(f"module 'derive.{name}' has no floor: give it one in tests/test_floors.py")
+    if name in MODULES:
+        return len(ROOMS)
+    if name not in ROOMS:
+        raise LookupError(f"'derive/{name}' has no floor: give it one in tests/test_floors.py")
+    return ROOMS.index(name)
 
 
 def imported(text: str) -> Iterator[str]:
@@ -92,14 +54,15 @@ def imported(text: str) -> Iterator[str]:
 
 
 def faults(name: str, text: str) -> list[str]:
-    """Return a sentence for every import of room ``name`` that goes up."""
-    rooms = {m.split(".")[1] for m in imported(text) if m.startswith("derive.")}
-    rooms -= {name, "__version__"}
-    return [
-        f"derive.{name} (floor {floor(name)}) imports derive.{other} (floor {floor(other)})"
+    """Return a sentence for every import of room ``name`` that goes up, or out of the package."""
+    modules = set(imported(text))
+    rooms = {m.split(".")[1] for m in modules if m.startswith("derive.")} - {name, "__version__"}
+    up = [
+        f"derive/{name} (floor {floor(name)}) imports derive/{other} (floor {floor(other)})"
         for other in sorted(rooms)
         if floor(other) > floor(name)
     ]
+    return up + [f"derive/{name} imports {m}" for m in modules if m.split(".")[0] == "bench"]
 
 
 def test_a_module_imports_only_from_its_floor_or_below() -> None:
@@ -110,45 +73,67 @@ def knows_sympy(path: Path) -> bool:
     return "sympy" in {m.split(".")[0] for m in imported(path.read_text(encoding="utf-8"))}
 
 
+def barred() -> list[Path]:
+    named = [PACKAGE / name for name in WITHOUT_SYMPY]
+    return [
+        p
+        for place in named
+        for p in (place.rglob("*.py") if place.is_dir() else [place.with_suffix(".py")])
+    ]
+
+
 def test_sympy_stays_out_of_the_modules_that_must_not_know_it() -> None:
-    barred = [p for p in FILES if any(fnmatch(room(p), pattern) for pattern in WITHOUT_SYMPY)]
-    assert [str(p) for p in barred if knows_sympy(p)] == []
+    assert [str(p) for p in barred() if knows_sympy(p)] == []
     assert any(map(knows_sympy, FILES))
 
 
-def rows(text: str) -> list[list[str]]:
-    """Return the rooms that each row of the page's table of floors names."""
+def rows(text: str) -> list[str]:
+    """Return the room that each row of the page's table names."""
     table = [line.split("|") for line in text.splitlines() if line.startswith("| ")]
-    named = [re.findall(r"`(\w+)/?`", row[2]) for row in table]
-    return [row for row in named if row]
+    return [name for row in table for name in re.findall(r"^ `(\w+)/`", row[1])]
 
 
 def test_the_page_names_every_room_in_the_order_of_the_floors() -> None:
-    assert list(map(sorted, rows(PAGE.read_text(encoding="utf-8")))) == list(map(sorted, FLOORS))
+    assert rows(PAGE.read_text(encoding="utf-8")) == list(ROOMS)
 
 
 def test_a_room_that_the_page_leaves_out_or_moves_is_found() -> None:
     page = PAGE.read_text(encoding="utf-8")
-    for before, after in ((", `grammar`", ""), ("`machine/`", "`saving`"), ("`flows/`", "")):
+    for before, after in (("| `scene/`", "| scene"), ("| `lower/`", "| `check/`")):
         assert before in page
-        assert list(map(sorted, rows(page.replace(before, after)))) != list(map(sorted, FLOORS))
+        assert rows(page.replace(before, after)) != list(ROOMS)
 
 
-def test_every_floor_and_pattern_is_of_a_room_that_is_there() -> None:
-    rooms = {room(path) for path in FILES} | {"catalogue"}
-    assert {name for names in FLOORS for name in names} == rooms
-    assert all(any(fnmatch(name, pattern) for name in rooms) for pattern in WITHOUT_SYMPY)
+def test_the_package_holds_three_modules_and_the_rooms_and_nothing_else() -> None:
+    held = {p.name for p in PACKAGE.iterdir() if p.name != "__pycache__"}
+    assert held == {*ROOMS, *(f"{name}.py" for name in MODULES), *({"py.typed"} & held)}
+
+
+def test_every_room_has_a_folder_of_tests_with_its_name() -> None:
+    folders = {p.parent.relative_to(TESTS).parts[:1] for p in TESTS.rglob("test_*.py")}
+    assert folders == {(), ("bench",), *((name,) for name in ROOMS)}
+
+
+@pytest.mark.parametrize("name", ROOMS)
+def test_every_room_says_in_one_sentence_what_comes_in_and_goes_out(name: str) -> None:
+    said = ast.get_docstring(
+        ast.parse((PACKAGE / name / "__init__.py").read_text(encoding="utf-8"))
+    )
+    assert said is not None
+    first = said.split("\n\n")[0]
+    assert re.search(r"\bin, .*\bout\b", first)
 
 
 def test_an_import_that_goes_up_is_found() -> None:
     assert faults("program", "from derive.cli import main") == [
-        "derive.program (floor 0) imports derive.cli (floor 16)"
+        "derive/program (floor 2) imports derive/cli (floor 12)"
     ]
     assert faults("program", "def f():\n    from derive import emit") != []
+    assert faults("command", "from bench import show") == ["derive/command imports bench"]
 
 
 def test_a_module_without_a_floor_is_named() -> None:
-    with pytest.raises(LookupError, match=r"'derive\.helpers' has no floor"):
+    with pytest.raises(LookupError, match=r"'derive/helpers' has no floor"):
         floor("helpers")
 
 

@@ -1,4 +1,4 @@
-"""Everything that is checked of a scene's emitted files, as rows of evidence.
+"""Emitted files in, rows of evidence out: everything that is checked of a scene.
 
 C is compiled with warnings as errors, loaded, and compared with its programs, with CasADi, with
 the reference, and with laws of mechanics. Nothing is left out silently: a check that a scene
@@ -30,13 +30,13 @@ from derive.check.particles import clouds
 from derive.check.refusals import casadi_status, refusal
 from derive.check.sphere import near_a_sphere
 from derive.check.verdict import JUDGED, Verdict
-from derive.kept import stated_figures
-from derive.library import Library, library
-from derive.machine.mechanism import Mechanism
-from derive.motion_error import with_motion
-from derive.prove import ProofError, prove
-from derive.sample import Sample, samples
+from derive.library.library import Library, library
+from derive.mechanics.mechanism import Mechanism
 from derive.scene import load
+from derive.verify.kept import stated_figures
+from derive.verify.motion_error import with_motion
+from derive.verify.prove import ProofError, prove
+from derive.verify.sample import Sample, samples
 
 ORDINARY, CORNERS, FEW, TWO = 300, 6, 8, 2
 

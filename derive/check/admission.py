@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 from flint import arb, arb_mat, ctx
 
-from derive.c_text import Precision
-from derive.formula import Formula, evaluate, symbols
-from derive.program import Program
+from derive.program.precision import Precision
+from derive.program.program import Program
+from derive.program.status import CONSTANT, INERTIA, LENGTH, MASS, PARAMETER, RIGHT, SAYS, statuses
 from derive.scene import Machine, Scene
-from derive.status import CONSTANT, INERTIA, LENGTH, MASS, PARAMETER, RIGHT, SAYS, statuses
+from derive.scene.formula import Formula, evaluate, symbols
 
 BITS = 400
 Values = Mapping[str, float]
@@ -79,9 +79,7 @@ def allowed(scene: Scene | Machine, values: Values, precision: Precision) -> set
         return found | {RIGHT}
 
 
-def _margins(
-    scene: Scene | Machine, told: Told, precision: Precision
-) -> Iterator[tuple[int, int]]:
+def _margins(scene: Scene | Machine, told: Told, precision: Precision) -> Iterator[tuple[int, int]]:
     """Yield the status of every rule, with 1 where it is kept, -1 where broken, 0 for close."""
     bodies = scene.bodies if isinstance(scene, Machine) else (scene.body,)
     for body in bodies:
@@ -217,4 +215,3 @@ def replayed(setup: Program, each: Sequence[Values], precision: Precision) -> li
     names = [c for q in setup.inputs for c in q.components]
     columns = [np.array([values[n] for values in each]) for n in names]
     return [int(s) for s in statuses(setup, columns, precision.dtype)]
-

@@ -14,16 +14,16 @@ from typing import Any
 import casadi
 import numpy as np
 
-from derive.arithmetic import LIBM, Table, working
 from derive.check.emitted import Emitted, inputs
 from derive.check.verdict import JUDGED, Outcome, Verdict
-from derive.flows.compact import Compact
-from derive.largest import largest
-from derive.measure import Errors, errors, references, replayed
-from derive.motion_error import motion_errors
-from derive.program import Program
-from derive.sample import Sample
-from derive.scale import sizing
+from derive.motion.runge_kutta.compact import Compact
+from derive.program.arithmetic import LIBM, Table, working
+from derive.program.largest import largest
+from derive.program.program import Program
+from derive.verify.measure import Errors, errors, references, replayed
+from derive.verify.motion_error import motion_errors
+from derive.verify.sample import Sample
+from derive.verify.scale import sizing
 
 MEDIAN_BOUND, LARGEST_BOUND = 2.0, 16.0
 """In u: what half of the errors keep, and all at a few samples where no largest one is stated."""
@@ -141,9 +141,7 @@ def _accurate(
     return _verdict(emitted, program, check_, JUDGED[holds], says)
 
 
-def _stated(
-    printed: Mapping[str, Any], emitted: Emitted, output: str, figure: str
-) -> float | None:
+def _stated(printed: Mapping[str, Any], emitted: Emitted, output: str, figure: str) -> float | None:
     """Return a figure that the header and the JSON state of an error, None if they state none."""
     stated = printed.get(emitted.precision.name, {}).get(output)
     return float(stated[figure]) if stated else None

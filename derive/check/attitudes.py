@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import atan, atan2, cos, hypot, inf, pi, sin, sqrt
 from random import Random
 
-from derive.added import added
 from derive.check.emitted import Emitted
 from derive.check.verdict import JUDGED, Verdict
-from derive.largest import largest
+from derive.program.added import added
+from derive.program.largest import largest
 from derive.scene.wanted import ATTITUDES
 
 Row = Sequence[float]

@@ -18,12 +18,12 @@ import casadi
 from flint import arb, ctx
 
 from derive.check.verdict import JUDGED, Verdict
-from derive.convergence import BITS
-from derive.largest import largest
-from derive.library import Library
-from derive.motion_error import LONG_FLOATS
-from derive.program import Program, Quantity, component_names, run
-from derive.sample import Sample
+from derive.library.library import Library
+from derive.program.largest import largest
+from derive.program.program import Program, Quantity, component_names, run
+from derive.verify.convergence import BITS
+from derive.verify.motion_error import LONG_FLOATS
+from derive.verify.sample import Sample
 
 SHIFT = arb(2) ** -20  # exact; what formulas take for zero is less
 POINTS = range(1, 7)

@@ -7,16 +7,16 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from derive.c_text import F64, PRECISIONS, Precision
-from derive.casadi_module import imported
 from derive.check.call import Function, functions
 from derive.check.compiler import Compiler, compiled
-from derive.files import differences, scene_files
-from derive.kept import Measuring, figures_of
-from derive.library import Library
-from derive.program import Program
-from derive.sample import Sample
-from derive.search import SAMPLING, Sampling
+from derive.emit.casadi_module import imported
+from derive.emit.files import differences, scene_files
+from derive.library.library import Library
+from derive.program.precision import F64, PRECISIONS, Precision
+from derive.program.program import Program
+from derive.verify.kept import Measuring, figures_of
+from derive.verify.sample import Sample
+from derive.verify.search import SAMPLING, Sampling
 
 
 @dataclass(frozen=True)

@@ -13,18 +13,18 @@ from mpmath import mp, mpf
 
 from derive.check.particles import AGREE, digits
 from derive.check.verdict import JUDGED, Verdict
-from derive.cloud import Answers, answers
-from derive.cloud.power import Powers, powers
-from derive.cloud.series import DIGITS
-from derive.convergence import unit_attitude
-from derive.largest import largest
-from derive.library import Library, library
-from derive.machine.mechanism import Mechanism
-from derive.motion_error import LONG_FLOATS
-from derive.program import Program, component_names, run
-from derive.sample import Sample
+from derive.library.library import Library, library
+from derive.mechanics.mechanism import Mechanism
+from derive.program.largest import largest
+from derive.program.program import Program, component_names, run
 from derive.scene import Machine, SceneError
 from derive.scene.results import ENERGIES
+from derive.verify.cloud import Answers, answers
+from derive.verify.cloud.power import Powers, powers
+from derive.verify.cloud.series import DIGITS
+from derive.verify.convergence import unit_attitude
+from derive.verify.motion_error import LONG_FLOATS
+from derive.verify.sample import Sample
 
 BITS = 600
 STEP_BITS = 150  # a central difference leaves out the square of the step: 90 digits agree
@@ -71,9 +71,7 @@ def rates_of(made: Library) -> Library | None:
     return library(replace(scene, wanted=(RATES,), asked={RATES: (RATES,)}))
 
 
-def power_gaps(
-    made: Library, rates: Library | None, program: Program, sample: Sample
-) -> list[Any]:
+def power_gaps(made: Library, rates: Library | None, program: Program, sample: Sample) -> list[Any]:
     """Return how far the rates of a program's energies are from powers, beside their terms."""
     scene = made.known.scene
     assert isinstance(scene, Machine)  # noqa: S101

@@ -6,15 +6,15 @@ balls before it counts.
 
 from collections.abc import Callable, Iterator, Sequence
 
-from derive.c_text import PRECISIONS, Precision
 from derive.check.agreement import ABSURD, MORE
 from derive.check.verdict import JUDGED, Verdict
-from derive.largest import largest
-from derive.library import Library
-from derive.program import Measurement, Program
-from derive.scale import measured_outputs
-from derive.search import Best, Field, Worst, field, sampled, worst_of
-from derive.stated import at_rows, at_samples, balls
+from derive.library.library import Library
+from derive.program.largest import largest
+from derive.program.precision import PRECISIONS, Precision
+from derive.program.program import Measurement, Program
+from derive.verify.scale import measured_outputs
+from derive.verify.search import Best, Field, Worst, field, sampled, worst_of
+from derive.verify.stated import at_rows, at_samples, balls
 
 SEED = "checked"
 KEPT = 4

@@ -10,10 +10,10 @@ from typing import Any
 import casadi
 
 from derive.check.verdict import JUDGED, Verdict
-from derive.largest import largest
-from derive.library import Library
-from derive.program import Program, Quantity
-from derive.sample import Sample
+from derive.library.library import Library
+from derive.program.largest import largest
+from derive.program.program import Program, Quantity
+from derive.verify.sample import Sample
 
 SAMPLES = 2
 LAST = 2 * 2.0**-53  # of each constant: its own rounding, once here and once there

@@ -8,17 +8,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import frexp, isfinite
 
-from derive.added import added
 from derive.check.emitted import Emitted
 from derive.check.turning import Turning, turnings
 from derive.check.verdict import JUDGED, Outcome, Verdict
-from derive.formula import FLOATS, evaluate
-from derive.largest import largest
-from derive.machine.mechanism import single
-from derive.program import Quantity
-from derive.sample import Sample, Values, varying
+from derive.mechanics.mechanism import single
+from derive.mechanics.specialise import Specialised
+from derive.program.added import added
+from derive.program.largest import largest
+from derive.program.program import Quantity
+from derive.scene.formula import FLOATS, evaluate
 from derive.scene.wanted import JACOBIAN
-from derive.specialise import Specialised
+from derive.verify.sample import Sample, Values, varying
 
 ROUNDING = 256 * 2.0**-53  # of the largest energy or power in the balance
 TURNED = 1e-12  # of the largest value met: entering a turned tensor rounds it

@@ -7,12 +7,12 @@ Orders are measured in balls of 500 bits, so they are free of rounding; what rou
 from collections.abc import Iterator, Sequence
 
 from derive.check.verdict import JUDGED, Verdict
-from derive.convergence import BITS, EXACT, LEVELS, course, exactness, order
-from derive.differences import GAP, slopes
-from derive.largest import largest
-from derive.library import Library
-from derive.sample import Sample
+from derive.library.library import Library
+from derive.program.largest import largest
 from derive.scene.wanted import COMPENSATED, STEPS
+from derive.verify.convergence import BITS, EXACT, LEVELS, course, exactness, order
+from derive.verify.differences import GAP, slopes
+from derive.verify.sample import Sample
 
 FEW = 2
 

@@ -7,23 +7,23 @@ from flint import arb, ctx
 from mpmath import mp, mpf
 
 from derive.check.verdict import JUDGED, Verdict
-from derive.cloud import Answers, answers
-from derive.cloud.series import DIGITS
-from derive.cloud.small import at_rest, slopes
-from derive.convergence import unit_attitude
-from derive.equations import Equations, equations
-from derive.formula import symbols
-from derive.largest import largest
-from derive.library import Library
-from derive.machine.mechanism import Mechanism
-from derive.machine.words import MATRICES
-from derive.reference import BITS, reference
-from derive.sample import Sample
+from derive.library.library import Library
+from derive.mechanics.mechanism import Mechanism
+from derive.mechanics.truth import Truth
+from derive.mechanics.words import MATRICES
+from derive.program.largest import largest
 from derive.scene import Input, Machine
+from derive.scene.formula import symbols
 from derive.scene.machine import Result
 from derive.scene.results import written_out
-from derive.solution import Known
-from derive.truth import Truth
+from derive.verify.cloud import Answers, answers
+from derive.verify.cloud.series import DIGITS
+from derive.verify.cloud.small import at_rest, slopes
+from derive.verify.convergence import unit_attitude
+from derive.verify.equations import Equations, equations
+from derive.verify.reference import BITS, reference
+from derive.verify.sample import Sample
+from derive.verify.solution import Known
 
 AGREE = mpf(10) ** -25
 SECANTS = 60

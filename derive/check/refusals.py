@@ -10,8 +10,8 @@ import casadi
 from derive.check.admission import ends_of, fault, hostile, replayed
 from derive.check.emitted import Emitted
 from derive.check.verdict import JUDGED, Outcome, Verdict
-from derive.sample import Sample
-from derive.status import RIGHT
+from derive.program.status import RIGHT
+from derive.verify.sample import Sample
 
 HOSTILE = 40  # draws of parameters that no body may have, beside one bad parameter at a time
 

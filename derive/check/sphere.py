@@ -14,10 +14,10 @@ import numpy as np
 from derive.check.agreement import LARGEST_BOUND
 from derive.check.emitted import Emitted
 from derive.check.verdict import JUDGED, Verdict
-from derive.largest import largest
-from derive.measure import errors, references
-from derive.reference import DIFFERENCES
-from derive.sample import Sample
+from derive.program.largest import largest
+from derive.verify.measure import errors, references
+from derive.verify.reference import DIFFERENCES
+from derive.verify.sample import Sample
 
 KIND = "near sphere"
 

@@ -7,11 +7,11 @@ are the moments and products themselves can be described anew.
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from derive.added import added
-from derive.formula import FLOATS, Formula, evaluate, symbols
-from derive.program import Quantity
-from derive.sample import Values, varying
-from derive.specialise import Specialised
+from derive.mechanics.specialise import Specialised
+from derive.program.added import added
+from derive.program.program import Quantity
+from derive.scene.formula import FLOATS, Formula, evaluate, symbols
+from derive.verify.sample import Values, varying
 
 Rows = tuple[tuple[float, float, float], ...]
 TURN: Rows = ((0.36, 0.48, -0.8), (-0.8, 0.6, 0.0), (0.48, 0.64, 0.6))

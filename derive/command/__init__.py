@@ -1,1 +1,1 @@
-"""What the command line does, a command a file: its options, and what runs it."""
+"""Arguments in, files, tables and an exit code out: a command a file."""

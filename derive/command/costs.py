@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 from rich.table import Table
 
+from derive.command.generation import Made
 from derive.command.terminal import console
-from derive.generation import Made
-from derive.saving import Saving
+from derive.library.saving import Saving
 
 
 def print_costs(results: Sequence[Made]) -> None:

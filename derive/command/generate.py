@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from derive.command.costs import print_costs
+from derive.command.generation import Made, all_made, gallery_of, lecture_made
 from derive.command.scenes import samples_argument, scene_argument
 from derive.command.terminal import OUT, complain, console, errors, progress
-from derive.escape import visible
-from derive.files import (
+from derive.emit.files import (
     Difference,
     differences,
     folders_left_over,
@@ -18,10 +18,10 @@ from derive.files import (
     unfinished,
     write,
 )
-from derive.generation import Made, all_made, gallery_of, lecture_made
-from derive.kept import Measuring
 from derive.scene import SceneError, catalogue
-from derive.search import SAMPLING, sampled_at
+from derive.scene.escape import visible
+from derive.verify.kept import Measuring
+from derive.verify.search import SAMPLING, sampled_at
 
 
 def options(command: argparse.ArgumentParser) -> None:

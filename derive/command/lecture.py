@@ -6,10 +6,10 @@ from difflib import get_close_matches
 from rich.table import Table
 
 from derive.command.terminal import console, progress
-from derive.lecture import LECTURE
-from derive.notation import expression_text
+from derive.emit.notation import expression_text
+from derive.lecture.chapters import LECTURE
+from derive.lecture.step import first_fall, verify
 from derive.scene import SceneError
-from derive.step import first_fall, verify
 
 
 def options(command: argparse.ArgumentParser) -> None:

@@ -6,8 +6,8 @@ from rich.table import Table
 
 from derive.command.terminal import console, errors
 from derive.scene import SceneError
+from derive.scene.unit import behind
 from derive.solve import command as answers
-from derive.unit import behind
 
 
 def options(command: argparse.ArgumentParser) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from derive.escape import visible
+from derive.scene.escape import visible
 
 OUT = Path("generated")
 WIDE = 150  # columns of a table that goes to a file or a pipe

@@ -1,4 +1,4 @@
-"""Scenes: what the user declares in a TOML file, read, checked and returned as plain values.
+"""A TOML file in, a scene out: what the user declares, read, checked, as plain values.
 
 ``load`` takes the name of a scene of the catalogue or the path of a file.
 """
@@ -11,7 +11,6 @@ from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 
-from derive.escape import brief, visible
 from derive.scene.declaration import (
     Axes,
     Body,
@@ -33,6 +32,7 @@ from derive.scene.doubtful import (
     require_sizes,
     turns_in_degrees,
 )
+from derive.scene.escape import brief, visible
 from derive.scene.file import read_scene
 from derive.scene.machine import Machine
 from derive.scene.machine_file import is_machine, read_machine
@@ -63,7 +63,7 @@ __all__ = [
     "parse_scene",
 ]
 
-CATALOGUE = Path(__file__).parent.parent / "catalogue"
+CATALOGUE = Path(__file__).parent / "catalogue"
 LONGEST_FILE = 200_000
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, cast
 
-from derive.formula import ZERO, Formula, number
 from derive.scene.declaration import Axis, Body, SceneError, Sextuple, Triple
+from derive.scene.formula import ZERO, Formula, number
 from derive.scene.numbers import positive
 from derive.scene.shape import CONE_CENTRE, ROUND, SHAPES, about_axis, box, diagonal, moment, moved
 from derive.scene.symbols import Symbols, constants, motions, turns
 from derive.scene.table import Scope, Table, formula, keys, shown, triple, word
-from derive.unit import ANGULAR_VELOCITY, INERTIA, LENGTH, MASS, Dimension
+from derive.scene.unit import ANGULAR_VELOCITY, INERTIA, LENGTH, MASS, Dimension
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from derive.formula import Formula
+from derive.scene.formula import Formula
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

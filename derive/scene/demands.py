@@ -14,8 +14,8 @@ from derive.scene.machine import Machine
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from derive.formula import Formula
     from derive.scene.declaration import Body, Scene, Sextuple
+    from derive.scene.formula import Formula
     from derive.scene.machine import Entries
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from derive.escape import at_place, brief
 from derive.scene.declaration import SceneError
+from derive.scene.escape import at_place, brief
 from derive.scene.machine import INERTIAL, Force, Spring
 from derive.scene.safe import negative, ranges_of, values_of
 
@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from fractions import Fraction
 
-    from derive.formula import Formula
     from derive.scene.declaration import Coordinate, Input, Parameter
+    from derive.scene.formula import Formula
     from derive.scene.machine import Machine, Member, Moving
 
 MANY_RADIANS = 20

@@ -37,8 +37,7 @@ from derive.scene.table import (
     word,
 )
 from derive.scene.times import TIMES, read_time
-from derive.scene.wanted import attitudes_only, read_emission, read_form, read_wanted
-from derive.unit import (
+from derive.scene.unit import (
     ACCELERATION,
     ANGULAR_ACCELERATION,
     ANGULAR_VELOCITY,
@@ -50,6 +49,7 @@ from derive.unit import (
     VELOCITY,
     Dimension,
 )
+from derive.scene.wanted import attitudes_only, read_emission, read_form, read_wanted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from derive.escape import brief
-from derive.formula import ZERO
 from derive.scene.declaration import SceneError
+from derive.scene.escape import brief
+from derive.scene.formula import ZERO
 from derive.scene.machine import INERTIAL, Frame, Rolling
 from derive.scene.names import label
 from derive.scene.scalars import Scalars, turnings
 from derive.scene.table import Table, keys, nearest, table, text, triple, word
-from derive.unit import ACCELERATION, ANGULAR_VELOCITY, LENGTH, VELOCITY
+from derive.scene.unit import ACCELERATION, ANGULAR_VELOCITY, LENGTH, VELOCITY
 
 if TYPE_CHECKING:
     from derive.scene.declaration import Triple

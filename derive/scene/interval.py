@@ -93,4 +93,4 @@ INTERVALS: Mapping[str, Any] = {
     "tan": lambda a: _div(_sin(a), _cos(a)),
     "sqrt": _sqrt,
 }
-"""An arithmetic for ``derive.formula.evaluate``."""
+"""An arithmetic for ``derive.scene.formula.evaluate``."""

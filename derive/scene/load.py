@@ -6,8 +6,8 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from derive.formula import ZERO, Formula
 from derive.scene.declaration import SceneError, Triple
+from derive.scene.formula import ZERO, Formula
 from derive.scene.machine import (
     INERTIAL,
     Force,
@@ -23,7 +23,7 @@ from derive.scene.names import identifier, label
 from derive.scene.numbers import check_unit
 from derive.scene.scalars import Scalars
 from derive.scene.table import Scope, Table, formula, keys, several, shown, table, triple, word
-from derive.unit import ACCELERATION, FORCE, LENGTH, MOMENT, NONE, Dimension, dimension
+from derive.scene.unit import ACCELERATION, FORCE, LENGTH, MOMENT, NONE, Dimension, dimension
 
 MARK = re.compile(r"\?([A-Za-z][A-Za-z0-9_]*)")
 STIFFNESS, DAMPING, RATE_SQUARED = dimension("N/m"), dimension("N s/m"), dimension("1/s^2")

@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from derive.formula import Formula
 from derive.scene.declaration import Axis, Given, Input, Parameter, Triple
+from derive.scene.formula import Formula
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -6,8 +6,8 @@ import re
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from derive.formula import ZERO, Formula
 from derive.scene.declaration import Input, SceneError
+from derive.scene.formula import ZERO, Formula
 from derive.scene.frames import read_frames
 from derive.scene.load import read_loads
 from derive.scene.machine import INERTIAL, Frame, Machine, Member, Place, Result, Steady, Unknown
@@ -25,8 +25,8 @@ from derive.scene.results import (
 from derive.scene.scalars import PER_SECOND, Scalars, read_scalars
 from derive.scene.table import Scope, Table, formula, keys, several, table, text, triple, word
 from derive.scene.times import read_time
+from derive.scene.unit import BESIDE_SI, LENGTH, dimension, misnamed, spelled
 from derive.scene.wanted import read_emission, read_form
-from derive.unit import BESIDE_SI, LENGTH, dimension, misnamed, spelled
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -9,16 +9,16 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, cast
 
-from derive.formula import ZERO, Formula, number
 from derive.scene.body import AXES, KINDS, lengths, read_body
 from derive.scene.declaration import Axis, SceneError, Sextuple, Triple
+from derive.scene.formula import ZERO, Formula, number
 from derive.scene.machine import Entries, Frame, Member, Turning
 from derive.scene.numbers import check_member, positive
 from derive.scene.scalars import Scalars, turnings
 from derive.scene.shape import CONE_CENTRE, SHAPES, about_axis, box, diagonal, moved
 from derive.scene.symbols import Symbols, constants
 from derive.scene.table import Table, formula, keys, shown, triple, word
-from derive.unit import ANGULAR_VELOCITY, INERTIA, LENGTH, MASS, Dimension
+from derive.scene.unit import ANGULAR_VELOCITY, INERTIA, LENGTH, MASS, Dimension
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

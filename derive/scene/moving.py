@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from derive.formula import ZERO, symbols
 from derive.scene.declaration import SceneError
+from derive.scene.formula import ZERO, symbols
 from derive.scene.wanted import (
     ROTATIONAL,
     SPLITTINGS,

@@ -11,9 +11,9 @@ from fractions import Fraction
 from itertools import islice, product
 from typing import TYPE_CHECKING
 
-from derive.escape import at_place, brief
-from derive.formula import FLOATS, ONE, ZERO, Formula, evaluate, symbols
 from derive.scene.declaration import SceneError
+from derive.scene.escape import at_place, brief
+from derive.scene.formula import FLOATS, ONE, ZERO, Formula, evaluate, symbols
 from derive.scene.shape import moved
 
 if TYPE_CHECKING:

@@ -4,25 +4,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from derive.escape import brief
-from derive.formula import substitute
-from derive.grammar import parse
 from derive.scene.declaration import SceneError
+from derive.scene.escape import brief
+from derive.scene.formula import substitute
+from derive.scene.grammar import parse
 from derive.scene.load import MARK, unknown_units
 from derive.scene.machine import Result
 from derive.scene.names import functions, identifier
 from derive.scene.scalars import unknown_rates
 from derive.scene.table import Scope, Table, formula, keys, shown, text
+from derive.scene.unit import BESIDE_SI, NONE, UnitError, dimension, dimension_of, spelled
 from derive.scene.wanted import JACOBIAN, OF_MACHINES, resembling
-from derive.unit import BESIDE_SI, NONE, UnitError, dimension, dimension_of, spelled
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from derive.formula import Formula
+    from derive.scene.formula import Formula
     from derive.scene.machine import Unknown
     from derive.scene.scalars import Scalars
-    from derive.unit import Dimension
+    from derive.scene.unit import Dimension
 
 ENERGIES = ("kinetic_energy", "potential_energy", "energy")
 FUNCTIONS = (

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from derive.formula import ZERO, symbols
 from derive.scene.declaration import SceneError
 from derive.scene.doubtful import in_degrees
+from derive.scene.formula import ZERO, symbols
 from derive.scene.moving import check_moving
 from derive.scene.numbers import (
     carrier_doubts,
@@ -27,8 +27,8 @@ from derive.scene.wanted import moves
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from derive.formula import Formula
     from derive.scene.declaration import Scene, Turn
+    from derive.scene.formula import Formula
 
 FORWARD = ("acceleration", "state_rate")
 ROTATIONAL = ("angular_velocity", "angular_acceleration")

@@ -10,14 +10,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import fields, is_dataclass
+from functools import reduce
 from itertools import islice, product
+from operator import add
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from derive.added import added
-from derive.escape import at_place, brief
-from derive.formula import FLOATS, Formula, apply, evaluate, symbols
 from derive.scene.declaration import SceneError
+from derive.scene.escape import at_place, brief
+from derive.scene.formula import FLOATS, Formula, apply, evaluate, symbols
 from derive.scene.interval import INTERVALS, Interval
 
 if TYPE_CHECKING:
@@ -158,7 +159,7 @@ def _sized(part: Formula, values: Point) -> tuple[float, float]:
 
 def _size(part: Formula, values: Point) -> float:
     if part.operator in ("add", "sub"):
-        return added(_size(p, values) for p in part.operands)
+        return reduce(add, (_size(p, values) for p in part.operands), 0.0)
     return max(abs(float(evaluate(part, values, FLOATS))), 0.0)
 
 

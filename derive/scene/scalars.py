@@ -6,15 +6,23 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
-from derive.formula import ZERO, Formula
 from derive.scene.declaration import Axis, Input, Parameter, SceneError
+from derive.scene.formula import ZERO, Formula
 from derive.scene.machine import Moving, Turning
 from derive.scene.names import identifier
 from derive.scene.numbers import middle
 from derive.scene.symbols import read_symbols
 from derive.scene.table import Scope, Table, formula, interval, keys, shown, table, text, word
 from derive.scene.table import unit as unit_of
-from derive.unit import ANGULAR_VELOCITY, LENGTH, NONE, VELOCITY, Dimension, dimension, spelled
+from derive.scene.unit import (
+    ANGULAR_VELOCITY,
+    LENGTH,
+    NONE,
+    VELOCITY,
+    Dimension,
+    dimension,
+    spelled,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

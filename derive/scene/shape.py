@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from derive.formula import ZERO, Formula, number
+from derive.scene.formula import ZERO, Formula, number
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

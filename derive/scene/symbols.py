@@ -30,7 +30,7 @@ from derive.scene.table import (
     unit,
     word,
 )
-from derive.unit import ANGULAR_VELOCITY, NONE, Dimension, dimension, spelled
+from derive.scene.unit import ANGULAR_VELOCITY, NONE, Dimension, dimension, spelled
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

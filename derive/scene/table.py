@@ -11,11 +11,11 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from derive.escape import brief
-from derive.formula import Formula, FormulaError, number, symbols
-from derive.grammar import LARGEST_DECIMAL_EXPONENT, parse
 from derive.scene.declaration import SceneError, Triple
-from derive.unit import Dimension, UnitError, dimension, dimension_of, spelled
+from derive.scene.escape import brief
+from derive.scene.formula import Formula, FormulaError, number, symbols
+from derive.scene.grammar import LARGEST_DECIMAL_EXPONENT, parse
+from derive.scene.unit import Dimension, UnitError, dimension, dimension_of, spelled
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -1,4 +1,4 @@
-"""Numbers from a scene: answers, roots of a steady motion, frequencies, limits of stability.
+"""A scene and values in, numbers out: answers, roots of a steady motion, frequencies, limits.
 
 >>> from derive.solve import opened
 >>> runner = opened("edge_runner_flat")

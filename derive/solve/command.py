@@ -10,14 +10,14 @@ from pathlib import Path
 
 from numpy.linalg import LinAlgError
 
-from derive.files import require_writable, write
+from derive.emit.files import require_writable, write
 from derive.scene import CATALOGUE, Machine, SceneError
 from derive.scene.machine import LEFT_OVER
 from derive.scene.table import MANY, nearest, shown
+from derive.scene.unit import ANGULAR_VELOCITY, NONE, dimension
 from derive.solve.instrument import Instrument, opened
 from derive.solve.motions import frequencies, growth, limits, roots
 from derive.solve.simulation import plot, simulated
-from derive.unit import ANGULAR_VELOCITY, NONE, dimension
 
 Row = tuple[str, str, str, str]
 FACTORS = {"": 1.0, "deg": pi / 180, "rpm": 2 * pi / 60}

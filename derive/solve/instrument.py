@@ -10,14 +10,14 @@ from typing import Any
 
 import casadi
 
-from derive.casadi_module import imported
-from derive.casadi_text import casadi_file
-from derive.library import Library, library
-from derive.machine.mechanism import Mechanism, depends_on, doubts_at
-from derive.program import Program, Quantity
+from derive.emit.casadi_module import imported
+from derive.emit.casadi_text import casadi_file
+from derive.library.library import Library, library
+from derive.mechanics.mechanism import Mechanism, depends_on, doubts_at
+from derive.program.program import Program, Quantity
+from derive.program.status import refusal
 from derive.scene import Machine, SceneError, load
 from derive.scene.numbers import doubts, member_doubts
-from derive.status import refusal
 
 Values = Mapping[str, Any]
 

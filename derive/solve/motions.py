@@ -8,7 +8,7 @@ import casadi
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.largest import largest
+from derive.program.largest import largest
 from derive.scene import Machine, SceneError
 from derive.solve.instrument import Instrument
 

@@ -9,10 +9,10 @@ from typing import Any
 import casadi
 import numpy as np
 
-from derive.program import Quantity
+from derive.program.program import Quantity
 from derive.scene import SceneError
+from derive.scene.unit import behind
 from derive.solve.instrument import Instrument
-from derive.unit import behind
 
 STEP = "step_rk4"
 WIDTH, HEIGHT, LEFT, GAP = 640, 110, 90, 14

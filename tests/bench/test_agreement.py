@@ -9,15 +9,15 @@ from dataclasses import replace
 
 import pytest
 
-from derive.bench import handwritten
-from derive.bench.accuracy import accuracy
-from derive.bench.build import O2, answers, build
-from derive.bench.candidate import Candidate, Source
-from derive.bench.contest import Author, authors, entry
-from derive.bench.peers import casadi, kane, symforce
-from derive.bench.problem import FREE_BODY, HEAVY_TOP, PROBLEMS, RIGID_JACOBIAN
-from derive.bench.sample import SETS, samples
-from derive.bench.truth import truth
+from bench import handwritten
+from bench.accuracy import accuracy
+from bench.build import O2, answers, build
+from bench.candidate import Candidate, Source
+from bench.contest import Author, authors, entry
+from bench.peers import casadi, kane, symforce
+from bench.problem import FREE_BODY, HEAVY_TOP, PROBLEMS, RIGID_JACOBIAN
+from bench.sample import SETS, samples
+from bench.truth import truth
 from tests.made import thinned
 
 # Ordinary bodies: condition numbers below 100, so 1000 units tell rounding from a wrong equation.

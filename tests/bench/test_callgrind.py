@@ -4,11 +4,11 @@ import shutil
 
 import pytest
 
-from derive.bench.build import O2, BuildError, build
-from derive.bench.callgrind import instructions, total
-from derive.bench.candidate import SAMPLES, Argument, Candidate, Source, pointer_glue
-from derive.bench.problem import FREE_BODY
-from derive.bench.sample import SETS, samples
+from bench.build import O2, BuildError, build
+from bench.callgrind import instructions, total
+from bench.candidate import SAMPLES, Argument, Candidate, Source, pointer_glue
+from bench.problem import FREE_BODY
+from bench.sample import SETS, samples
 
 FILE = """\
 # callgrind format

@@ -2,10 +2,10 @@
 
 import pytest
 
-from derive.bench.contest import operations
-from derive.bench.flops import Flops, count
-from derive.bench.handwritten import candidate
-from derive.bench.problem import PROBLEMS
+from bench.contest import operations
+from bench.flops import Flops, count
+from bench.handwritten import candidate
+from bench.problem import PROBLEMS
 
 SNIPPETS = {
     "signs are free": ("y[0] = -x[0]; y[1] = -(-x[1]); y[2] = (-x[0]) * -x[1];", Flops(mul=1)),

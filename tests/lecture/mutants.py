@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from derive.step import Step
-from derive.tree import summed
-from derive.vectors import IDENTITY, Expression, number, unit
+from derive.lecture.step import Step
+from derive.lecture.tree import summed
+from derive.lecture.vectors import IDENTITY, Expression, number, unit
 
 Claim = tuple[Expression, Expression]
 _SOMETHING = {(): number(1), (3,): unit("x"), (3, 3): IDENTITY}

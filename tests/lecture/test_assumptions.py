@@ -2,7 +2,7 @@
 
 import pytest
 
-from derive.lecture import LECTURE
+from derive.lecture.chapters import LECTURE
 
 PARTICLES = {"newton", "third_law", "strong_third_law", "constant_mass"}
 RIGID = {"rigid", "body_triad", "body_triad_is_orthonormal"}

@@ -5,15 +5,15 @@ from dataclasses import replace
 import pytest
 from sympy import Symbol, symbols
 
-from derive.facts import CircularError, Facts
-from derive.lecture import LECTURE
-from derive.lecture.letters import F_i, I, M, Omega, P_ij, dm, l, omega, r, rho
-from derive.particles import linear_map, others, reading, varies
-from derive.rate import rate, seen_from_axes, seen_from_N
-from derive.relations import ContradictionError, remainders
-from derive.step import Derivation, Step, StepError, first_fall, require, verify
-from derive.tree import collected
-from derive.vectors import cross, dot, number, scalar, tensor, total, vector, zero
+from derive.lecture.chapters import LECTURE
+from derive.lecture.chapters.letters import F_i, I, M, Omega, P_ij, dm, l, omega, r, rho
+from derive.lecture.facts import CircularError, Facts
+from derive.lecture.rate import rate, seen_from_axes, seen_from_N
+from derive.lecture.relations import ContradictionError, remainders
+from derive.lecture.step import Derivation, Step, StepError, first_fall, require, verify
+from derive.lecture.sums import linear_map, others, reading, varies
+from derive.lecture.tree import collected
+from derive.lecture.vectors import cross, dot, number, scalar, tensor, total, vector, zero
 from tests.made import thinned
 
 

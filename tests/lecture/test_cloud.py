@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 from sympy import Matrix, Rational
 
-from derive.lecture import LECTURE
-from derive.lecture.letters import I, Omega, omega
-from derive.tree import renamed
-from derive.vectors import Expression, components, cross
+from derive.lecture.chapters import LECTURE
+from derive.lecture.chapters.letters import I, Omega, omega
+from derive.lecture.tree import renamed
+from derive.lecture.vectors import Expression, components, cross
 from tests.lecture.cloud import (
     Particle,
     Place,

@@ -2,9 +2,9 @@
 
 import pytest
 
-from derive.lecture import CHAPTERS, LECTURE
-from derive.relations import ContradictionError
-from derive.step import Step, verify
+from derive.lecture.chapters import CHAPTERS, LECTURE
+from derive.lecture.relations import ContradictionError
+from derive.lecture.step import Step, verify
 from tests.lecture.mutants import Mutant, with_fewer_reasons, with_wrong_sides
 from tests.made import thinned
 

@@ -1,0 +1,142 @@
+"""From scenes to their texts: read, arranged, proved, measured and printed, several at a time."""
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from math import isfinite
+
+from derive.emit.files import scene_files
+from derive.emit.gallery.card import Card, card, gallery
+from derive.emit.page.lecture import lecture_page
+from derive.library.library import Library, library
+from derive.library.saving import Saving, savings
+from derive.mechanics.mechanism import Mechanism, doubts, pole
+from derive.program.program import Measurement
+from derive.scene import Machine, Scene, SceneError, load
+from derive.scene.rules import singular_attitude
+from derive.verify.kept import Measuring, figures_of
+from derive.verify.prove import prove
+from derive.verify.reference import NoValueError
+
+LECTURE_PAGE = "lecture.html"
+GALLERY_PAGE = "index.html"
+LARGEST_FLOAT = (2 - 2.0**-23) * 2.0**127
+
+
+@dataclass(frozen=True)
+class CostRow:
+    """What one function costs and how wrong it is: operations, then median and largest errors."""
+
+    scene: str
+    function: str
+    flops: int
+    divisions: int
+    errors: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Made:
+    """The texts of a scene's files, what its reader should be told, and its costs."""
+
+    texts: dict[str, str]
+    warnings: tuple[str, ...]
+    costs: tuple[CostRow, ...]
+    savings: tuple[Saving, ...] = ()
+    card: Card | None = None
+
+
+def made(source: str, measuring: Measuring) -> Made:
+    """Return everything that a scene becomes; its programs are proved before they are printed."""
+    scene = load(source)
+    programs = library(scene)
+    _ranges_of_floats(programs)
+    try:
+        prove(programs)
+        measured = figures_of(programs, measuring)
+    except NoValueError as error:
+        rule = "formulas must have a value on all of the declared ranges"
+        why = _poles(programs) or _attitude(scene) or str(error)
+        raise SceneError(f"scene '{scene.name}': {rule}, but {why}") from None
+    _finite(programs, measured.each)
+    warnings = tuple(f"scene '{scene.name}': {warning}" for warning in doubts(programs.known))
+    costs, spared = cost_rows(programs, measured.each), tuple(savings(programs))
+    texts = scene_files(programs, measured.each, measured.digest)
+    return Made(texts, warnings, costs, spared, card(programs))
+
+
+def _ranges_of_floats(programs: Library) -> None:
+    """Refuse a range whose ends are beyond the smaller of the float types."""
+    words = programs.known.words
+    for q in (*words.parameters, *words.states, *words.inputs):
+        end = max(abs(float(q.low or 0)), abs(float(q.high or 0)))
+        if end > LARGEST_FLOAT:
+            raise SceneError(
+                f"scene '{programs.known.scene.name}': the range of '{q.name}' must fit a float, "
+                f"up to 3.4e38, not {end:.3g}"
+            )
+
+
+def _poles(programs: Library) -> str:
+    """Return what a machine divides by that vanishes in its ranges, and where; "" if nothing."""
+    known = programs.known
+    each = [pole(known, base) for base in programs.truths] if isinstance(known, Mechanism) else []
+    return next(filter(None, each), "")
+
+
+def _attitude(scene: Scene | Machine) -> str:
+    """Return where a body's three angles cannot be told apart; "" if nowhere."""
+    return "" if isinstance(scene, Machine) else singular_attitude(scene)
+
+
+def _finite(programs: Library, measured: Sequence[Measurement]) -> None:
+    """Refuse a scene whose declared ranges hold a pole or overflow one of the float types."""
+    scene = programs.known.scene.name
+    for m in measured:
+        if not isfinite(m.worst):
+            raise SceneError(
+                f"scene '{scene}': ranges must keep '{m.function}' within {m.precision}, "
+                f"but {_poles(programs) or f'the error of {m.output} is {m.worst}'}"
+            )
+
+
+def lecture_made() -> Made:
+    """Return the lecture's page."""
+    return Made({LECTURE_PAGE: lecture_page()}, (), ())
+
+
+def gallery_of(results: Sequence[Made]) -> dict[str, str]:
+    """Return the gallery of all scenes that were made."""
+    return {GALLERY_PAGE: gallery([r.card for r in results if r.card is not None])}
+
+
+def cost_rows(programs: Library, measured: Sequence[Measurement]) -> tuple[CostRow, ...]:
+    """Return one row a function."""
+    name = programs.known.scene.name
+    return tuple(
+        CostRow(name, p.name, p.flops(), p.count().get("div", 0), _errors(p.name, measured))
+        for p in programs.printed()
+    )
+
+
+def _errors(function: str, measured: Sequence[Measurement]) -> tuple[str, ...]:
+    found: list[str] = []
+    for precision in ("f32", "f64"):
+        own = [m for m in measured if (m.function, m.precision) == (function, precision)]
+        found += [f"{max(m.median for m in own):.2g}", f"{max(m.worst for m in own):.2g}"]
+    return tuple(found)
+
+
+def all_made(
+    sources: Sequence[str], also: Sequence[Callable[[], Made]], measuring: Measuring
+) -> Iterator[tuple[int, Made]]:
+    """Yield place and result of every source, then of what is made ``also``, as they are done."""
+    if len(sources) + len(also) == 1:
+        yield 0, made(sources[0], measuring) if sources else also[0]()
+        return
+    with ProcessPoolExecutor() as pool:
+        # What is made also takes longest, so it starts first.
+        last = {pool.submit(task): len(sources) + k for k, task in enumerate(also)}
+        scenes = {pool.submit(made, source, measuring): k for k, source in enumerate(sources)}
+        waiting = last | scenes
+        for future in as_completed(waiting):
+            yield waiting[future], future.result()

@@ -1,0 +1,1 @@
+"""A library and its figures in, out texts: C99, CasADi, JSON, HTML."""

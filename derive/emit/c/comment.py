@@ -1,0 +1,139 @@
+"""The comment block of a C function: given, returned, postcondition, error, cost, reasons."""
+
+from collections.abc import Sequence
+from textwrap import wrap
+
+from derive.emit.notation import equation_text
+from derive.lecture.chapters import LECTURE
+from derive.motion.runge_kutta.system import FLOW, NEXT
+from derive.program.program import Measurement, Program, Quantity, Singular
+from derive.program.status import possible
+from derive.scene.escape import in_comment
+
+WITHIN = ("ordinary", "found")
+"""The kinds of samples that lie in the declared ranges; the others are hard ones."""
+SETUP_ERROR = (
+    "each constant is worked out in twice the working precision and rounded once: at most 1 ulp, "
+    "unless the sum that it is cancels to less than 16 u of its largest product"
+)
+
+WIDTH = 96
+
+
+def comment(program: Program, figures: Sequence[Measurement]) -> str:
+    """Return the comment block of ``program`` as C text."""
+    if program.name == "setup":
+        lines = _setup(program)
+    else:
+        lines = [program.says, *_arguments(program), *_postconditions(program)]
+        lines += _labelled("Error:", _error(program, figures))
+        pairs = " (on pairs of floats)" if program.arithmetic == "pairs" else ""
+        lines += [line for s in program.singular for line in _labelled("Singular:", f"{told(s)}.")]
+        lines += _labelled("Cost:", cost(program) + pairs + ".")
+        if program.assumptions:
+            lines += _labelled("Rests on:", ", ".join(program.assumptions) + ".")
+    text = "\n".join(f" * {in_comment(line)}".rstrip() for line in lines)
+    return f"/*{text[2:]}\n */" if text.startswith(" *") else text
+
+
+def _labelled(label: str, text: str) -> list[str]:
+    return wrap(f"{label} {text}", WIDTH, subsequent_indent=" " * 11, break_long_words=False)
+
+
+def _setup(program: Program) -> list[str]:
+    lines = [program.says, *_arguments(program)]
+    says = "; ".join(f"{number} {words}" for number, words in possible(program).items())
+    lines += _labelled("Returns:", f"{says}.")
+    lines += _labelled("Error:", f"{SETUP_ERROR}.")
+    return [*lines, *_labelled("Cost:", f"once; {program.flops()} operations on pairs.")]
+
+
+def _arguments(program: Program) -> list[str]:
+    given = [_line(q, _range(q)) for q in program.inputs]
+    returned = [_line(q, "") for q in program.outputs]
+    pad = " " * 11
+    lines = [("Given:".ljust(11) if i == 0 else pad) + text for i, text in enumerate(given)]
+    return lines + [
+        ("Returned:".ljust(11) if i == 0 else pad) + text for i, text in enumerate(returned)
+    ]
+
+
+def _line(q: Quantity, bounds: str) -> str:
+    size = f"[{len(q.components)}]" if q.shape and q.name != "constants" else ""
+    frame = f"along {q.frame}" if q.frame in ("B", "xyz", "N") else q.frame
+    return "  ".join(part for part in (f"{q.name}{size}", q.unit, frame, bounds, q.meaning) if part)
+
+
+def _range(q: Quantity) -> str:
+    if q.low is None or q.high is None or q.name == "attitude":
+        return ""
+    return f"{float(q.low):g} .. {float(q.high):g}"
+
+
+def _postconditions(program: Program) -> list[str]:
+    lines: list[str] = []
+    for name in program.steps:
+        lines += _labelled(
+            "Postcondition:", f"{equation_text(LECTURE[name])}   [lecture step {name}]"
+        )
+    return lines
+
+
+def told(singular: Singular) -> str:
+    """Return where a function has no value and what comes back, as a clause."""
+    at = singular.where if singular.where.startswith("where ") else f"at {singular.where}"
+    return f"{at}, {', '.join(singular.outputs)} infinite, no number or beyond all measure"
+
+
+def _error(program: Program, figures: Sequence[Measurement]) -> str:
+    own = [m for m in figures if m.function == program.name]
+    if not own:
+        return "not measured."
+    worst = max(own, key=lambda m: m.worst)
+    median = max(m.median for m in own)
+    return (
+        f"median {median:.2g}, largest {worst.worst:.2g} u {of_what(program)} "
+        f"(of {worst.output}{at_what(worst)}; {looked_at(worst)})."
+    )
+
+
+def at_what(m: Measurement) -> str:
+    """Return at what hard sample a figure stands, if it is one."""
+    return "" if m.kind in WITHIN else f" at a hard sample, {m.kind}"
+
+
+def looked_at(m: Measurement) -> str:
+    """Return at how many samples a figure was looked for."""
+    return (
+        f"{m.samples} samples of the ranges, {m.searched} searched from the worst, "
+        f"{m.hard} hard ones"
+    )
+
+
+def of_what(program: Program) -> str:
+    """Return what errors are a part of: of the largest product, or of the largest component.
+
+    Functions without a step of the lecture (motion, attitudes) are measured for rounding alone.
+    """
+    if program.name == FLOW:
+        return (
+            "of kappa times the largest component, by rounding alone (kappa: what changes of the "
+            "inputs make of the result, relative to both, added up)"
+        )
+    if any(q.name.endswith(NEXT) for q in program.outputs):
+        return (
+            "of the largest component, before or after, or of the largest product of what the "
+            "step adds, by rounding alone"
+        )
+    if program.steps:
+        return "of the largest product or sum in the equation"
+    return "of the largest component, by rounding alone"
+
+
+def cost(program: Program) -> str:
+    """Return the operations of a program in words."""
+    counts = program.count()
+    order = ("add", "sub", "mul", "div", "neg", "sqrt", "sin", "cos")
+    kinds = (*order, *(kind for kind in counts if kind not in order))
+    listed = [f"{counts[kind]} {kind}" for kind in kinds if kind in counts]
+    return ", ".join(listed) or "no operations"

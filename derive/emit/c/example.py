@@ -1,0 +1,50 @@
+"""A few lines of C that use a scene's first function, for the head of its header."""
+
+from fractions import Fraction
+
+from derive.emit.c.signature import Names
+from derive.emit.c.text import literal
+from derive.library.library import Library
+from derive.program.precision import Precision
+from derive.program.program import Quantity
+
+
+def example(library: Library, names: Names, precision: Precision) -> list[str]:
+    """Return a few lines of C that use the first function."""
+    program = library.printed()[0]
+    lines = []
+    if any(q.name == "constants" for q in program.inputs):
+        given = ", ".join(literal(_middle(q), precision) for q in library.setup.inputs)
+        call = f"{names.symbol('setup', precision)}({given}, &constants)"
+        lines.append(f"{names.scene}_constants_{precision.name} constants;")
+        lines.append(f"if ({call} != 0) {{ return 1; }}")
+    arrays = [q for q in program.inputs if q.shape and q.name != "constants"]
+    if arrays:
+        lines.append(
+            " ".join(
+                f"{precision.scalar} {q.name}[{len(q.components)}] = {_values(q, precision)};"
+                for q in arrays
+            )
+        )
+    outputs = [f"{q.name}[{len(q.components)}]" if q.shape else q.name for q in program.outputs]
+    lines.append(f"{precision.scalar} {', '.join(outputs)};")
+    passed = [_passed(q, precision) for q in program.inputs]
+    passed += [q.name if q.shape else f"&{q.name}" for q in program.outputs]
+    lines.append(f"{names.symbol(program.name, precision)}({', '.join(passed)});")
+    return lines
+
+
+def _middle(q: Quantity) -> Fraction:
+    return ((q.low or Fraction(0)) + (q.high or Fraction(0))) / 2
+
+
+def _values(q: Quantity, precision: Precision) -> str:
+    first = literal(Fraction(1), precision)
+    rest = [literal(Fraction(0), precision)] * (len(q.components) - 1)
+    return "{" + ", ".join([first, *rest]) + "}"
+
+
+def _passed(q: Quantity, precision: Precision) -> str:
+    if q.name == "constants":
+        return "&constants"
+    return q.name if q.shape else literal(_middle(q), precision)

@@ -1,0 +1,102 @@
+"""What a scene's C functions are called and given: symbols, prototypes, files."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from derive.program.precision import Precision
+from derive.program.program import Program, Quantity
+
+WIDTH = 100
+
+
+@dataclass(frozen=True)
+class Names:
+    """What a scene's files and symbols are called."""
+
+    scene: str
+
+    def symbol(self, function: str, precision: Precision) -> str:
+        """Return the C symbol of a function."""
+        return f"{self.scene}_{function}_{precision.name}"
+
+    def file(self, precision: Precision, ending: str) -> str:
+        """Return the name of a C file."""
+        return f"{self.scene}_{precision.name}.{ending}"
+
+
+def parameters(program: Program, scene: str, precision: Precision) -> list[str]:
+    """Return the declared parameters of a function, inputs first, in call order."""
+    if program.name == "setup":
+        inputs = [f"{precision.scalar} {q.name}" for q in program.inputs]
+        outputs = [f"{scene}_constants_{precision.name} *constants" for _ in program.outputs]
+        return inputs + outputs
+    return [_given(q, scene, precision) for q in program.inputs] + [
+        f"{precision.scalar} {q.name}[{len(q.components)}]"
+        if q.shape
+        else f"{precision.scalar} *{q.name}"
+        for q in program.outputs
+    ]
+
+
+def _given(q: Quantity, scene: str, precision: Precision) -> str:
+    if q.name == "constants":
+        return f"const {scene}_constants_{precision.name} *constants"
+    return (
+        f"const {precision.scalar} {q.name}[{len(q.components)}]"
+        if q.shape
+        else f"{precision.scalar} {q.name}"
+    )
+
+
+def prototype(program: Program, names: Names, precision: Precision) -> str:
+    """Return the declaration of a function without its semicolon."""
+    result = "int" if program.name == "setup" else "void"
+    arguments = parameters(program, names.scene, precision) or ["void"]
+    return declaration(f"{result} {names.symbol(program.name, precision)}", arguments)
+
+
+def declaration(name: str, arguments: Sequence[str]) -> str:
+    """Return ``name(arguments)``, broken after commas where the line would be too long."""
+    lines = [f"{name}({arguments[0]}"]
+    for argument in arguments[1:]:
+        if len(lines[-1]) + len(argument) + 3 > WIDTH:
+            lines[-1] += ","
+            lines.append(f"    {argument}")
+        else:
+            lines[-1] += f", {argument}"
+    return "\n".join(lines) + ")"
+
+
+def dense_size(program: Program) -> int:
+    """Return the number of entries of a function's whole Jacobian."""
+    pattern = next(iter((program.sparsity or {}).values()))
+    return len(pattern.rows) * len(pattern.columns)
+
+
+def dense(program: Program) -> Program:
+    """Return the description of the dense convenience: the same, with the whole matrix last."""
+    whole = Quantity(
+        "jacobian",
+        (),
+        (dense_size(program),),
+        "",
+        "",
+        None,
+        None,
+        "the whole Jacobian, column by column",
+    )
+    return Program(
+        f"{program.name}_dense",
+        program.says,
+        program.inputs,
+        (*program.outputs[:-1], whole),
+        (),
+        (),
+    )
+
+
+def dense_prototype(program: Program, names: Names, precision: Precision) -> str:
+    """Return the declaration of the dense convenience without its semicolon."""
+    arguments = parameters(program, names.scene, precision)
+    arguments[-1] = f"{precision.scalar} jacobian[{dense_size(program)}]"
+    return declaration(f"void {names.symbol(f'{program.name}_dense', precision)}", arguments)

@@ -1,0 +1,229 @@
+"""A program as C99 text: one line an operation, everything computed before anything is stored."""
+
+from collections.abc import Callable, Iterable, Sequence
+from fractions import Fraction
+
+from derive.program.arithmetic import TRUTHS, pair_of, rounded
+from derive.program.pair_sine import PI
+from derive.program.pairs import splitter
+from derive.program.precision import F64, Precision
+from derive.program.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
+
+UNSIGNED_CHAR = 255
+
+
+INFIX = {
+    "add": "+",
+    "sub": "-",
+    "mul": "*",
+    "div": "/",
+    "less": "<",
+    "at_most": "<=",
+    "both": "&",
+    "either": "|",
+}
+
+
+def literal(q: Fraction, precision: Precision) -> str:
+    """Return a constant that reads back as the float nearest to ``q``.
+
+    >>> from derive.program.precision import F32
+    >>> literal(Fraction(1, 3), F32), literal(Fraction(-2), F64)
+    ('0.333333343F', '(-2.0)')
+    """
+    text = f"{float(rounded(q, precision.dtype)):.{precision.digits}g}"
+    if precision is F64:
+        text = repr(float(rounded(q, precision.dtype)))
+    if not any(mark in text for mark in ".en"):
+        text += ".0"
+    return f"({text}{precision.suffix})" if q < 0 else text + precision.suffix
+
+
+def places(quantities: tuple[Quantity, ...]) -> dict[str, str]:
+    """Return where in C each component of ``quantities`` is found."""
+    found: dict[str, str] = {}
+    for q in quantities:
+        for i, name in enumerate(q.components):
+            if q.name == "constants":
+                found[name] = f"constants->{name}"
+            else:
+                found[name] = f"{q.name}[{i}]" if q.shape else q.name
+    return found
+
+
+def body(program: Program, precision: Precision) -> list[str]:
+    """Return the lines between the braces of a hot function."""
+    place = places(program.inputs)
+
+    def text(operand: Operand) -> str:
+        if isinstance(operand, Fraction):
+            return literal(operand, precision)
+        return place.get(operand, operand)
+
+    def one(op: Op) -> str:
+        kind = "int" if op.operator in TRUTHS else precision.scalar
+        return f"const {kind} {op.result} = {_operation(op, text, precision)};"
+
+    return [*written(program.ops, one, text, precision.scalar), *_stores(program, text, precision)]
+
+
+def written(
+    lines: Sequence[Line], one: Callable[[Op], str], text: Callable[[Operand], str], kind: str
+) -> list[str]:
+    """Return the C lines of operations and loops; ``one`` writes an operation."""
+    found: list[str] = []
+    for line in lines:
+        found += _loop(line, one, text, kind) if isinstance(line, Repeat) else [one(line)]
+    return found
+
+
+def _loop(
+    loop: Repeat, one: Callable[[Op], str], text: Callable[[Operand], str], kind: str
+) -> list[str]:
+    begin = [f"{kind} {c} = {text(s)};" for c, s in zip(loop.carried, loop.start, strict=True)]
+    kept = {c: f"{c}_then" for c in loop.carried if c in loop.then}
+    after = [f"const {kind} {name} = {c};" for c, name in kept.items()]
+    after += [
+        f"{c} = {kept.get(t, text(t)) if isinstance(t, str) else text(t)};"
+        for c, t in zip(loop.carried, loop.then, strict=True)
+        if c != t
+    ]
+    end = [] if loop.done is None else [f"if ({text(loop.done)}) {{", "    break;", "}"]
+    inner = [*map(one, loop.ops), *after, *end]
+    name = f"pass_{loop.carried[0]}"
+    head = f"for (int {name} = 0; {name} < {loop.passes}; ++{name}) {{"
+    return [*begin, head, *(f"    {line}" for line in inner), "}"]
+
+
+def _operation(op: Op, text: Callable[[Operand], str], precision: Precision) -> str:
+    operands = [text(operand) for operand in op.operands]
+    if op.operator in INFIX:
+        return f"{operands[0]} {INFIX[op.operator]} {operands[1]}"
+    if op.operator == "neg":
+        return f"-{operands[0]}"
+    if op.operator == "select":
+        return f"{operands[0]} ? {operands[1]} : {operands[2]}"
+    if not op.operands:
+        return literal(machine_number(op.operator, precision), precision)
+    if op.operator == "power_of_two":
+        return _power_of_two(operands[0], precision)
+    return f"{precision.functions[op.operator]}({', '.join(operands)})"
+
+
+def machine_number(operator: str, precision: Precision) -> Fraction:
+    """Return a number that depends on the precision alone: pi, u, or what splits a float."""
+    numbers = {
+        "pi": PI,
+        "unit_roundoff": Fraction(1, 2**precision.bits),
+        "splitter": Fraction(splitter(precision.bits)),
+    }
+    return numbers[operator]
+
+
+def _power_of_two(x: str, precision: Precision) -> str:
+    """Return the expression of a power of two near x, by float operations only (Rump).
+
+    Every product is one with a power of two, so that fused operations give the same.
+    """
+    top = literal(Fraction(2 ** (precision.bits - 1)), precision)
+    u = literal(Fraction(1, 2**precision.bits), precision)
+    q = f"({top} * {x} + {x})"
+    return f"{q} - ({q} - {u} * {q})"
+
+
+def table(name: str, values: Sequence[int]) -> list[str]:
+    """Return the lines of a constant table, in the smallest type that holds its numbers."""
+    kind = "unsigned char" if max(values) <= UNSIGNED_CHAR else "unsigned short"
+    lines, line = [f"static const {kind} {name}[{len(values)}] = {{"], ""
+    for value in values:
+        if len(line) > 80:
+            lines.append(f"    {line.rstrip()}")
+            line = ""
+        line += f"{value}, "
+    return [*lines, f"    {line.rstrip(', ')}", "};"]
+
+
+def _stores(program: Program, text: Callable[[Operand], str], precision: Precision) -> list[str]:
+    """Return the stores; an input that is also a result is read first: outputs may lie over it."""
+    slots = [slot for q in program.outputs for slot in _slots(q)]
+    arrays = {c for q in program.inputs if q.shape and q.name != "constants" for c in q.components}
+    read = [r for r in dict.fromkeys(program.results) if r in arrays]
+    loads = [f"const {precision.scalar} {name}_in = {text(name)};" for name in read]
+    held = [f"{r}_in" if r in arrays else text(r) for r in program.results]
+    return [*loads, *(f"{slot} = {value};" for slot, value in zip(slots, held, strict=True))]
+
+
+def _slots(q: Quantity) -> list[str]:
+    if q.name == "constants":
+        return [f"constants->{name}" for name in q.components]
+    return [f"{q.name}[{i}]" for i in range(len(q.components))] if q.shape else [f"*{q.name}"]
+
+
+def pair_body(program: Program, scene: str, precision: Precision) -> list[str]:
+    """Return the lines of a program in pairs of floats: rounded once, at the end."""
+    place = places(program.inputs) if program.name != "setup" else _by_value(program)
+    pair = f"{scene}_pair_{precision.name}"
+
+    def text(operand: Operand) -> str:
+        if isinstance(operand, Fraction):
+            return _pair_literal(operand, pair, precision)
+        if operand in place:
+            return f"({pair}){{{place[operand]}, {literal(Fraction(0), precision)}}}"
+        return operand
+
+    def one(op: Op) -> str:
+        kind = "int" if op.operator in TRUTHS else pair
+        operands = [text(operand) for operand in op.operands]
+        if op.operator == "select":
+            return f"const {kind} {op.result} = {operands[0]} ? {operands[1]} : {operands[2]};"
+        if op.operator in ("both", "either"):
+            return f"const {kind} {op.result} = {operands[0]} {INFIX[op.operator]} {operands[1]};"
+        symbol = f"{scene}_{op.operator}_{precision.name}"
+        return f"const {kind} {op.result} = {symbol}({', '.join(operands)});"
+
+    lines = written(program.ops, one, text, pair)
+
+    def stored(operand: Operand) -> str:
+        if isinstance(operand, str) and operand not in place:
+            return f"{operand}.high"
+        return literal(operand, precision) if isinstance(operand, Fraction) else place[operand]
+
+    return lines + _stores(program, stored, precision)
+
+
+def _by_value(program: Program) -> dict[str, str]:
+    return {c: c for q in program.inputs for c in q.components}
+
+
+def _pair_literal(q: Fraction, pair: str, precision: Precision) -> str:
+    high, low = pair_of(q, precision.dtype)
+    return f"({pair}){{{literal(high, precision)}, {literal(low, precision)}}}"
+
+
+RESTS_ON: dict[str, tuple[str, ...]] = {
+    "neg": (),
+    "low": (),
+    "add": (),
+    "sub": ("neg", "add"),
+    "two_product": (),
+    "mul": ("two_product",),
+    "div": ("neg", "add", "two_product", "mul"),
+    "sqrt": ("neg", "add", "two_product"),
+    "sine": ("neg", "add", "two_product", "mul"),
+    "sin": ("neg", "add", "two_product", "mul", "sine"),
+    "cos": ("neg", "add", "two_product", "mul", "sine"),
+    "power_of_two": (),
+    "pi": (),
+    "unit_roundoff": (),
+    "splitter": (),
+    "abs": ("neg",),
+    "less": (),
+    "at_most": (),
+}
+
+
+def pair_functions(programs: Iterable[Program]) -> list[str]:
+    """Return the pair operations that programs in pairs need, each after those it rests on."""
+    used = {op.operator for program in programs for op, _ in every_op(program.ops)}
+    wanted = used | {name for kind in used for name in RESTS_ON.get(kind, ())}
+    return [name for name in RESTS_ON if name in wanted]

@@ -1,0 +1,243 @@
+"""The scene's functions as CasADi: Python that builds them, operation by operation as the C."""
+
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+
+import numpy as np
+
+from derive.emit.c.comment import told
+from derive.emit.c.scope import declared_in_python, require_free
+from derive.emit.c.series import series_casadi
+from derive.emit.c.source import first_line, works_in_pairs
+from derive.emit.c.text import machine_number, pair_functions
+from derive.emit.templates import TEMPLATES
+from derive.library.library import Library
+from derive.motion.runge_kutta.compact import Compact
+from derive.motion.taylor.series import Series
+from derive.program.arithmetic import pair_of, rounded
+from derive.program.pair_sine import quarter_turn, series
+from derive.program.precision import F64
+from derive.program.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
+from derive.program.status import CONSTANT, PARAMETER, computed, possible
+
+Text = Callable[[Operand], str]
+_INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/", "less": "<", "at_most": "<="}
+KEPT = "_kept("
+_CALLS = {"select": "if_else", "both": "logic_and", "either": "logic_or"}
+
+
+def casadi_file(library: Library) -> str:
+    """Return the text of ``<scene>_casadi.py``."""
+    name = library.known.scene.name
+    has_setup = bool(library.constants)
+    in_pairs = [p for p in library.printed() if works_in_pairs(p)] + [library.setup] * has_setup
+    functions = [_function(p, name) for p in library.printed()]
+    return TEMPLATES.get_template("casadi.py.jinja").render(
+        first_line=first_line(library),
+        title=library.known.scene.title,
+        scene=name,
+        setup=_setup(library.setup, name) if has_setup else None,
+        pairs=bool(in_pairs),
+        kept=bool(in_pairs) or any(KEPT in str(f["lines"]) for f in functions),
+        turns=any(name in ("sin", "cos") for name in pair_functions(in_pairs)),
+        odd=[tuple(map(float, pair_of(c, F64.dtype))) for c in series(F64.bits, 1)],
+        even=[tuple(map(float, pair_of(c, F64.dtype))) for c in series(F64.bits, 0)],
+        quarter=[float(part) for part in quarter_turn(lambda q: rounded(q, F64.dtype))],
+        functions=functions,
+        sloped=any(p.free or p.slopes for p in library.printed()),
+        free=any(p.free for p in library.printed()),
+    )
+
+
+def _pairs(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
+    """Return the lines of a program in pairs, and how to read a result rounded."""
+
+    def text(operand: Operand) -> str:
+        if isinstance(operand, Fraction):
+            return repr(tuple(map(float, pair_of(operand, F64.dtype))))
+        return f"({place[operand]}, 0.0)" if operand in place else operand
+
+    def stored(operand: Operand) -> str:
+        if isinstance(operand, Fraction):
+            return repr(float(rounded(operand, F64.dtype)))
+        return place.get(operand, f"{operand}[0]")
+
+    def one(op: Op) -> str:
+        operands = ", ".join(text(operand) for operand in op.operands)
+        if op.operator in ("both", "either"):
+            return f"{op.result} = ca.{_CALLS[op.operator]}({operands})"
+        return f"{op.result} = _{op.operator}({operands})"
+
+    return _written(program.ops, one, text, "_select"), stored
+
+
+def _written(lines: Sequence[Line], one: Callable[[Op], str], text: Text, select: str) -> list[str]:
+    """Return the Python lines of operations and loops; a loop is unrolled where it is built."""
+    found: list[str] = []
+    for line in lines:
+        found += _loop(line, one, text, select) if isinstance(line, Repeat) else [one(line)]
+    return found
+
+
+def _loop(loop: Repeat, one: Callable[[Op], str], text: Text, select: str) -> list[str]:
+    carried = ", ".join(loop.carried)
+    done = f"done_{loop.carried[0]}"
+    begin = [f"{carried} = {', '.join(map(text, loop.start))}"]
+    then = ", ".join(map(text, loop.then))
+    if loop.done is not None:
+        begin.append(f"{done} = ca.SX(0)")
+        then = ", ".join(
+            f"{select}({done}, {c}, {text(t)})"
+            for c, t in zip(loop.carried, loop.then, strict=True)
+        )
+    end = [f"{carried} = {then}"]
+    if loop.done is not None:
+        end.append(f"{done} = ca.logic_or({done}, {text(loop.done)})")
+    inner = [*map(one, loop.ops), *end]
+    return [*begin, f"for _ in range({loop.passes}):", *(f"    {line}" for line in inner)]
+
+
+def _setup(program: Program, scene: str) -> dict[str, object]:
+    names = {c: f"parameters[{i}]" for i, c in enumerate(_components(program.inputs))}
+    lines, stored = _pairs(program, names)
+    return {
+        "name": f"{scene}_setup",
+        "parameters": _components(program.inputs),
+        "constants": _components(program.outputs),
+        "lines": lines,
+        "results": [stored(r) for r in program.results],
+        "says": possible(program),
+        "status": list(_status(program, stored)),
+        "largest": repr(float(np.finfo(F64.dtype).max)),
+    }
+
+
+def _status(program: Program, stored: Text) -> Iterator[str]:
+    """Yield the lines that find the status; the rule that counts most is tried last."""
+    rules, names = program.rules, _components(program.inputs)
+    made = dict.fromkeys((*(rule.value for rule in rules), *computed(program)))
+    yield from _refused(CONSTANT, [f"_endless({stored(r)})" for r in made if r not in names])
+    for number in sorted({rule.status for rule in rules}, reverse=True):
+        own = [rule for rule in rules if rule.status == number]
+        signs = ["<=" if rule.relation == "positive" else "<" for rule in own]
+        tests = [f"{stored(rule.value)} {sign} 0.0" for rule, sign in zip(own, signs, strict=True)]
+        yield from _refused(number, tests)
+    yield from _refused(PARAMETER, [f"_endless({stored(name)})" for name in names])
+
+
+def _refused(number: int, tests: Sequence[str]) -> Iterator[str]:
+    if tests:
+        yield f"status = _refused(status, {number}, {', '.join(tests)})"
+
+
+def _components(quantities: tuple[Quantity, ...]) -> list[str]:
+    return [c for q in quantities for c in q.components]
+
+
+def plain_lines(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
+    """Return the lines of a program in the working precision, and how to read a result."""
+
+    text, kept = _read(place), _to_keep(program.ops)
+
+    def one(op: Op) -> str:
+        value = _operation(op, text)
+        return f"{op.result} = {KEPT}{value})" if op.result in kept else f"{op.result} = {value}"
+
+    return _written(program.ops, one, text, "ca.if_else"), text
+
+
+def _to_keep(lines: Sequence[Line]) -> frozenset[str]:
+    """Return the sums whose rounding is worked out: CasADi would make b of (a + b) - a."""
+    made = {op.result: op for op, _ in every_op(lines) if op.operator in ("add", "sub")}
+    return frozenset(
+        operand
+        for op in made.values()
+        for operand, other in (op.operands, op.operands[::-1])
+        if isinstance(operand, str) and operand in made and other in made[operand].operands
+    )
+
+
+def _read(place: dict[str, str]) -> Text:
+    def text(operand: Operand) -> str:
+        if isinstance(operand, Fraction):
+            return repr(float(rounded(operand, F64.dtype)))
+        return place.get(operand, operand)
+
+    return text
+
+
+def _function(program: Program, scene: str) -> dict[str, object]:
+    if isinstance(program.loops, Compact):
+        program = program.loops.unrolled  # CasADi has no loops to save memory with
+    place = {c: f"{q.name}[{i}]" for q in program.inputs for i, c in enumerate(q.components)}
+    if isinstance(program.loops, Series):
+        lines, text = series_casadi(program.loops, _operation), _read(place)
+    else:
+        lines, text = (_pairs if program.arithmetic == "pairs" else plain_lines)(program, place)
+    lines, ends = _ends(program, lines, text, place)
+    given = [q.name for q in program.inputs]
+    require_free(scene, program.name, given, declared_in_python(lines))
+    return {
+        "builder": program.name,
+        "name": f"{scene}_{program.name}",
+        "says": program.says,
+        "singular": [told(s) for s in program.singular],
+        "inputs": [{"name": q.name, "size": len(q.components)} for q in program.inputs],
+        "needs_constants": any(q.name == "constants" for q in program.inputs),
+        "lines": lines,
+        "outputs": _outputs(program, ends),
+    }
+
+
+def _ends(
+    program: Program, lines: list[str], text: Text, place: dict[str, str]
+) -> tuple[list[str], list[str]]:
+    """Return the lines with those that mend slopes, and how to read the results."""
+    ends = [text(x) for x in program.results]
+    if program.free:
+        return [*lines, *_with_slope(program, text)], [f"ends[{k}]" for k in range(len(ends))]
+    if program.slopes is not None:
+        more, own = plain_lines(program.slopes, place)
+        ends_too = ", ".join(own(x) for x in program.slopes.results)
+        given = ", ".join(q.name for q in program.inputs if q.name != "constants")
+        made = f"ends = _sloped(ca.vertcat({', '.join(ends)}), ca.vertcat({ends_too}), {given})"
+        return [*lines, *more, made], [f"ends[{k}]" for k in range(len(ends))]
+    return lines, ends
+
+
+def _with_slope(program: Program, text: Text) -> Iterator[str]:
+    free, results = (", ".join(map(text, operands)) for operands in (program.free, program.results))
+    yield f"free = [{free}]"
+    given = ", ".join(q.name for q in program.inputs if q.name != "constants")
+    yield f"ends = _with_slope(ca.vertcat({results}), free, {given})"
+
+
+def _operation(op: Op, text: Text) -> str:
+    operands = [text(operand) for operand in op.operands]
+    if op.operator in _INFIX:
+        return f"{operands[0]} {_INFIX[op.operator]} {operands[1]}"
+    if op.operator == "neg":
+        return f"-{operands[0]}"
+    if not op.operands:
+        return repr(float(rounded(machine_number(op.operator, F64), F64.dtype)))
+    if op.operator == "abs":  # fabs has the derivative 0 at 0, and |x|^2 then no second one
+        return f"ca.if_else({operands[0]} < 0.0, -1.0, 1.0) * {operands[0]}"
+    if op.operator == "power_of_two":
+        top = f"4503599627370497.0 * {operands[0]}"
+        return f"{top} - 0.9999999999999999 * ({top})"
+    return f"ca.{_CALLS.get(op.operator, op.operator)}({', '.join(operands)})"
+
+
+def _outputs(program: Program, ends: Sequence[str]) -> list[dict[str, object]]:
+    outputs: list[dict[str, object]] = []
+    place = 0
+    for q in program.outputs:
+        values = ends[place : place + len(q.components)]
+        pattern = (program.sparsity or {}).get(q.name)
+        shape = None
+        if pattern is not None:
+            size = f"{len(pattern.rows)}, {len(pattern.columns)}"
+            shape = f"{size}, {list(pattern.colind)}, {list(pattern.row)}"
+        outputs.append({"name": q.name, "values": values, "sparsity": shape})
+        place += len(q.components)
+    return outputs

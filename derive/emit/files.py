@@ -1,0 +1,226 @@
+"""The generated files of scenes: made in memory, written whole, or compared with what is there.
+
+A run may be killed at any moment. What it wrote until then is told by a list of the files that it
+was about to replace, and by temporary files whose process is gone: the next run mends both.
+"""
+
+import os
+import stat
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import unified_diff
+from pathlib import Path
+
+from derive.emit.c.source import c_files
+from derive.emit.casadi_text import casadi_file
+from derive.emit.manifest import manifest
+from derive.emit.page.scene import scene_page
+from derive.library.library import Library
+from derive.program.program import Measurement
+
+UNFINISHED = ".derive-unfinished"
+"""Lists the files that a run is about to replace; it lies there until all of them are."""
+
+
+class OutputError(OSError):
+    """A folder or file that cannot be written; the sentence names it and the reason."""
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One file that is not what would be generated, and how it differs.
+
+    left_over : no scene makes the file, so that only deleting it mends the difference
+    """
+
+    name: str
+    diff: str
+    left_over: bool
+
+
+def scene_files(
+    library: Library, figures: Sequence[Measurement], digest: str = ""
+) -> dict[str, str]:
+    """Return the path below the output folder and the text of every file of a scene."""
+    name = library.known.scene.name
+    texts = c_files(library, figures) | {
+        f"{name}_casadi.py": casadi_file(library),
+        f"{name}.json": manifest(library, figures, digest),
+        f"{name}.html": scene_page(library, figures),
+    }
+    return {f"{name}/{file}": text for file, text in texts.items()}
+
+
+def write(folder: Path, texts: Mapping[str, str]) -> None:
+    """Write all ``texts`` below ``folder``, each file replaced as a whole or not at all.
+
+    Raises OutputError, with no file half-written, if a folder or file cannot be written. However
+    it ends, nothing temporary is left.
+    """
+    staged: list[tuple[Path, Path]] = []
+    try:
+        for temporary in abandoned(folder, texts):
+            temporary.unlink(missing_ok=True)
+        for name, text in texts.items():
+            target = folder / name
+            _require_own(folder, target.parent)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            staged.append((_temporary(target, text), target))
+        before = unfinished(folder)
+        _mark(folder, [*before, *texts])
+        for temporary, target in staged:
+            os.replace(temporary, target)
+        _mark(folder, [name for name in before if name not in texts])
+    except OSError as error:
+        raise OutputError(
+            f"output folder '{folder}' must be writable, but: {error.strerror or error}"
+        ) from error
+    finally:
+        for temporary, _ in staged:
+            temporary.unlink(missing_ok=True)
+
+
+def unfinished(folder: Path) -> tuple[str, ...]:
+    """Return the files below ``folder`` that a run was replacing when it was stopped."""
+    file = folder / UNFINISHED
+    if not file.is_file():
+        return ()
+    return tuple(dict.fromkeys(_read(file).splitlines())) or (UNFINISHED,)
+
+
+def abandoned(folder: Path, texts: Mapping[str, str]) -> list[Path]:
+    """Return the temporary files of runs that are gone, beside any of ``texts``."""
+    places = sorted({folder, *((folder / name).parent for name in texts)})
+    found = [path for place in places for path in sorted(place.glob(".*.derive-*"))]
+    return [path for path in found if not path.is_dir() and _is_gone(path)]
+
+
+def _is_gone(temporary: Path) -> bool:
+    process = temporary.name.rpartition(".derive-")[2].partition("-")[0]
+    if not process.isdecimal() or os.name != "posix":
+        return False
+    try:
+        os.kill(int(process), 0)
+    except (ProcessLookupError, OverflowError):
+        return True
+    except PermissionError:
+        return False
+    return False
+
+
+def _mark(folder: Path, names: Sequence[str]) -> None:
+    file = folder / UNFINISHED
+    if names:
+        temporary = _temporary(file, "".join(f"{name}\n" for name in names))
+        try:
+            os.replace(temporary, file)
+        finally:
+            temporary.unlink(missing_ok=True)
+    else:
+        file.unlink(missing_ok=True)
+
+
+def _require_own(folder: Path, place: Path) -> None:
+    """Refuse a folder of a scene that is a link: its files would be written somewhere else."""
+    if place != folder and place.is_symlink():
+        raise OSError(0, f"'{place.name}' is a link to another place")
+
+
+def _read(file: Path) -> str:
+    try:
+        return file.read_bytes().decode(errors="replace")
+    except OSError as error:
+        raise OutputError(
+            f"output file '{file}' must be readable, but: {error.strerror or error}"
+        ) from error
+
+
+def require_folder(folder: Path) -> None:
+    """Raise OutputError if what lies at ``folder`` is no folder, or nothing can lie there."""
+    try:
+        if not stat.S_ISDIR(os.stat(folder).st_mode):
+            raise NotADirectoryError(0, "it is no folder")
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        raise OutputError(
+            f"output folder '{folder}' must be writable, but: {error.strerror or error}"
+        ) from error
+
+
+def require_writable(file: Path) -> None:
+    """Raise OutputError unless ``file`` can be written; leave it as it is."""
+    try:
+        _temporary(file, "").unlink()
+    except OSError as error:
+        raise OutputError(
+            f"output file '{file}' must be writable, but: {error.strerror or error}"
+        ) from error
+
+
+def _temporary(target: Path, text: str) -> Path:
+    if target.is_dir():
+        raise IsADirectoryError(0, f"'{target.name}' is a folder")
+    if os.path.lexists(target) and not target.is_file():
+        raise OSError(0, f"'{target.name}' is no regular file")
+    prefix = f".{target.name}.derive-{os.getpid()}-"
+    descriptor, path = tempfile.mkstemp(dir=target.parent, prefix=prefix)
+    try:
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(text.encode())
+        os.chmod(path, 0o644)
+    except BaseException:
+        Path(path).unlink(missing_ok=True)
+        raise
+    return Path(path)
+
+
+def differences(folder: Path, texts: Mapping[str, str]) -> Iterator[Difference]:
+    """Yield every file below ``folder`` that differs from ``texts``, is missing or left over.
+
+    So does what a run that was stopped has left: ``derive generate`` mends that too.
+    """
+    if stopped := unfinished(folder):
+        says = f"a run was stopped while it replaced {len(stopped)} files: old and new ones may lie"
+        yield Difference(UNFINISHED, f"{UNFINISHED}: {says} together\n", left_over=False)
+    gone = abandoned(folder, texts)
+    for path in gone:
+        file = path.relative_to(folder).as_posix()
+        yield Difference(file, f"{file}: left by a run that was stopped\n", left_over=False)
+    for name, text in texts.items():
+        path = folder / name
+        found = _read(path) if path.is_file() else ""
+        if not path.is_file():
+            yield Difference(name, f"{name}: missing\n", left_over=False)
+        elif found != text:
+            lines = unified_diff(
+                found.splitlines(keepends=True),
+                text.splitlines(keepends=True),
+                f"{name} (found)",
+                f"{name} (generated)",
+                n=1,
+            )
+            yield Difference(name, "".join(lines), left_over=False)
+    for folder_name in sorted({name.split("/")[0] for name in texts if "/" in name}):
+        for each in _left_over(folder, folder_name, texts):
+            if folder / each.name not in gone:
+                yield each
+
+
+def folders_left_over(folder: Path, texts: Mapping[str, str]) -> Iterator[Difference]:
+    """Yield the files of folders below ``folder`` that none of ``texts``, a whole catalogue, is in.
+
+    A folder counts that holds a JSON of its own name, as every scene's does; others are no scenes.
+    """
+    made = {name.split("/")[0] for name in texts}
+    for path in sorted(folder.glob("*/")):
+        if path.name not in made and (path / f"{path.name}.json").is_file():
+            yield from _left_over(folder, path.name, texts)
+
+
+def _left_over(folder: Path, name: str, texts: Mapping[str, str]) -> Iterator[Difference]:
+    for path in sorted((folder / name).glob("*")):
+        file = f"{name}/{path.name}"
+        if file not in texts and path.is_file():
+            yield Difference(file, f"{file}: no scene makes this file; delete it\n", left_over=True)

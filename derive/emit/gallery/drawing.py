@@ -1,0 +1,155 @@
+"""A drawing of a scene: its frames as triads, its bodies as the ellipsoids of their inertia.
+
+The ellipsoid of a body has its mass and its second moments, so that a disc is flat, a rod is a
+line, and a body that is turned is seen to be turned. Everything is placed by the scene's own
+angles and lengths: a machine at seven tenths of their ranges, a single body in the middle.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from mpmath import mp, mpf
+
+from derive.scene import Input, Machine, Scene
+from derive.scene.formula import FLOATS, ZERO, evaluate
+from derive.scene.machine import INERTIAL, Force
+from derive.scene.wanted import attitudes_only
+from derive.verify.cloud.balance import values
+from derive.verify.cloud.history import History
+from derive.verify.cloud.series import DIGITS
+
+WIDTH, HEIGHT, MARGIN = 260, 180, 18
+STEPS = 36  # of an ellipse
+SIGHT = ((0.82, -0.57, 0.0), (0.26, 0.37, 0.89))  # what is right and what is up, seen from x, y, z
+
+Point = tuple[Any, Any, Any]
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line through points in space, and what it stands for."""
+
+    kind: str
+    points: tuple[Point, ...]
+    label: str = ""
+
+
+def drawing(scene: Scene | Machine) -> str:
+    """Return the SVG of a scene."""
+    with mp.workdps(DIGITS):
+        lines = list(_of_machine(scene) if isinstance(scene, Machine) else _of_body(scene))
+        return _svg(lines, f"drawing of {scene.name}")
+
+
+def well_inside(machine: Machine) -> dict[str, Any]:
+    """Return every argument of a machine at seven tenths of its range, accelerations at zero."""
+    ends = {p.name: (3 * p.low + 7 * p.high) / 10 for p in machine.parameters}
+    for m in machine.moving:
+        ends[m.name] = (3 * m.low + 7 * m.high) / 10
+        each = (i for i in (m.rate, m.acceleration) if isinstance(i, Input))
+        ends |= {i.name: (3 * i.low + 7 * i.high) / 10 for i in each}
+    found = {name: mpf(x.numerator) / x.denominator for name, x in ends.items()}
+    found |= {m.unknown: mpf(0) for m in machine.moving if m.free}
+    found |= {u.name: mpf(0) for u in machine.unknowns}
+    for frame in machine.frames:
+        if frame.quaternion:
+            found |= {f"attitude_{frame.name}_{p}": mpf(p == "w") for p in "wxyz"}
+    return found
+
+
+def _of_machine(machine: Machine) -> Iterator[Line]:
+    history = History(machine, well_inside(machine))
+    bodies = [line for b in machine.bodies for line in _ellipses(history, b.name)]
+    size = _reach([p for line in bodies for p in line.points])
+    yield from bodies
+    for frame in machine.frames:
+        origin, R = values(history.origins[frame.name]), values(history.rotations[frame.name])
+        kind = "ground" if frame.name == INERTIAL else "frame"
+        for k in range(3):
+            end = origin + size / 2 * R[:, k]
+            yield Line(kind, (tuple(origin), tuple(end)), "xyz"[k] if kind == "frame" else "")
+    for load in machine.loads:
+        if isinstance(load, Force):
+            yield from _forces(history, load, size)
+
+
+def _forces(history: History, load: Force, size: Any) -> Iterator[Line]:
+    place, R = values(history.place(load.frame, load.at)), values(history.rotations[load.along])
+    for k, f in enumerate(load.force):
+        if f != ZERO:
+            start = place - size / 3 * R[:, k]
+            yield Line("force", (tuple(start), tuple(place)))
+
+
+def _ellipses(history: History, name: str) -> Iterator[Line]:
+    """Return the three principal ellipses of a body."""
+    centre = values(history.centre(name))
+    reached = [values(place) - centre for _, place in history.particles(name)[:-1:2]]
+    semi = [arm * mp.sqrt(mpf(5) / 3) for arm in reached]
+    yield from _around(centre, semi, name)
+
+
+def _around(centre: Any, semi: Sequence[Any], name: str) -> Iterator[Line]:
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        turn = [2 * mp.pi * n / STEPS for n in range(STEPS + 1)]
+        points = tuple(tuple(centre + mp.cos(t) * semi[a] + mp.sin(t) * semi[b]) for t in turn)
+        yield Line("body", points, name if a == 0 else "")
+
+
+def _of_body(scene: Scene) -> Iterator[Line]:
+    """Return the principal ellipses of a single body about its axes, from its moments.
+
+    Where formulas of attitudes alone are wanted there is no body, and its axes are all.
+    """
+    import numpy as np
+
+    known = {p.name: float((p.low + p.high) / 2) for p in scene.parameters}
+    xx, yy, zz = (mpf(evaluate(f, known, FLOATS)) for f in scene.body.inertia[:3])
+    half = (xx + yy + zz) / 2
+    axes = [np.array([mpf(i == k) for i in range(3)], dtype=object) for k in range(3)]
+    semi = [mp.sqrt(max(half - m, mpf(0))) * e for m, e in zip((xx, yy, zz), axes, strict=True)]
+    lines = [] if attitudes_only(list(scene.wanted)) else list(_around(0 * axes[0], semi, ""))
+    size = _reach([p for line in lines for p in line.points])
+    yield from lines
+    for k, e in enumerate(axes):
+        yield Line("frame", (tuple(0 * e), tuple(size * mpf("0.75") * e)), "xyz"[k])
+
+
+def _reach(points: Iterable[Point]) -> Any:
+    """Return the size of what is drawn."""
+    each = list(points)
+    if not each:
+        return mpf(1)
+    spans = [max(p[k] for p in each) - min(p[k] for p in each) for k in range(3)]
+    return max(spans) or mpf(1)
+
+
+def _seen(point: Point) -> tuple[Any, Any]:
+    right, up = (sum((s * x for s, x in zip(way, point, strict=True)), mpf(0)) for way in SIGHT)
+    return right, -up
+
+
+def _svg(lines: Sequence[Line], says: str) -> str:
+    flat = [[_seen(p) for p in line.points] for line in lines]
+    xs, ys = zip(*(p for line in flat for p in line), strict=True)
+    wide, high = max(xs) - min(xs) or mpf(1), max(ys) - min(ys) or mpf(1)
+    scale = min((WIDTH - 2 * MARGIN) / wide, (HEIGHT - 2 * MARGIN) / high)
+    left = (WIDTH - scale * wide) / 2 - scale * min(xs)
+    top = (HEIGHT - scale * high) / 2 - scale * min(ys)
+    placed = [[(left + scale * x, top + scale * y) for x, y in line] for line in flat]
+    parts = [_drawn(line, own) for line, own in zip(lines, placed, strict=True)]
+    head = f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{says}">'
+    return "\n".join([head, *parts, "</svg>"])
+
+
+def _drawn(line: Line, points: Sequence[tuple[Any, Any]]) -> str:
+    text = " ".join(f"{float(x):.1f},{float(y):.1f}" for x, y in points)
+    shown = f'<polyline class="{line.kind}" points="{text}"/>'
+    if line.kind == "frame" and line.label:
+        x, y = points[-1]
+        shown += f'<text x="{float(x):.1f}" y="{float(y):.1f}">{line.label}</text>'
+    if line.kind == "force":
+        x, y = points[-1]
+        shown += f'<circle class="force" cx="{float(x):.1f}" cy="{float(y):.1f}" r="2"/>'
+    return shown

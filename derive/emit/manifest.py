@@ -1,0 +1,192 @@
+"""The scene's JSON: all that a program needs to call any of its functions without reading C."""
+
+import hashlib
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from derive import __version__
+from derive.emit.c.comment import SETUP_ERROR, of_what
+from derive.emit.c.signature import Names, dense
+from derive.emit.c.source import JACOBIAN_DENSE
+from derive.emit.c.text import pair_functions
+from derive.emit.notation import equation_text
+from derive.lecture.chapters import LECTURE
+from derive.library.library import Library
+from derive.mechanics.mechanism import Mechanism, depends_on, doubts, dropped
+from derive.program.precision import F32, F64, PRECISIONS
+from derive.program.program import Measurement, Program, Quantity, Sparsity
+from derive.program.status import possible
+from derive.scene import argument
+from derive.scene.wanted import JACOBIAN
+
+
+def manifest(library: Library, figures: Sequence[Measurement], digest: str = "") -> str:
+    """Return the text of ``<scene>.json``; ``digest`` is of all that the figures depend on."""
+    scene = library.known.scene
+    whole = {
+        "scene": scene.name,
+        "title": scene.title,
+        "generator": f"derive {__version__}",
+        "command": f"derive generate {argument(scene)}",
+        "source": {
+            "file": f"{scene.name}.toml",
+            "sha256": hashlib.sha256(scene.text.encode()).hexdigest(),
+        },
+        "files": _files(scene.name),
+        "conventions": {
+            "quaternion": "scalar first, Hamilton, body to inertial",
+            "products_of_inertia": "I_xy = +sum x y dm",
+            "jacobian": "nonzeros in compressed-column order; dense is column-major",
+            "aliasing": "outputs may lie over inputs",
+            "units": "SI, angles in rad",
+        },
+        "parameters": [_quantity(q) for q in library.known.words.parameters],
+        "constants": [{"name": c.name, "formula": c.formula} for c in library.constants],
+        "functions": _functions(library, figures),
+        "warnings": list(doubts(library.known)),
+        "measured": {"digest": digest},
+    }
+    return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
+
+
+def _files(name: str) -> dict[str, Any]:
+    names = Names(name)
+    c = {p.name: {"header": names.file(p, "h"), "source": names.file(p, "c")} for p in PRECISIONS}
+    return c | {"casadi": f"{name}_casadi.py", "page": f"{name}.html"}
+
+
+def _quantity(q: Quantity) -> dict[str, Any]:
+    bounds = None if q.low is None or q.high is None else [float(q.low), float(q.high)]
+    return {
+        "name": q.name,
+        "shape": list(q.shape),
+        "components": list(q.components),
+        "unit": q.unit,
+        "frame": q.frame,
+        "range": bounds,
+        "meaning": q.meaning,
+    }
+
+
+def _functions(library: Library, figures: Sequence[Measurement]) -> list[dict[str, Any]]:
+    found = [_setup(library)] if library.constants else []
+    for program in library.printed():
+        found.append(_function(library, program, figures))
+        if program.sparsity:
+            found.append(_dense(library, program))
+    return found
+
+
+def _symbols(library: Library, function: str, casadi: str | None) -> dict[str, Any]:
+    names = Names(library.known.scene.name)
+    symbols: dict[str, Any] = {p.name: names.symbol(function, p) for p in (F32, F64)}
+    return symbols | {"casadi": casadi}
+
+
+def _argument(q: Quantity, direction: str, kind: str) -> dict[str, Any]:
+    return {"name": q.name, "direction": direction, "type": kind} | _quantity(q)
+
+
+def _arguments(program: Program) -> list[dict[str, Any]]:
+    given = [_argument(q, "in", _kind(q)) for q in program.inputs]
+    returned = [_argument(q, "out", "array" if q.shape else "pointer") for q in program.outputs]
+    return given + returned
+
+
+def _kind(q: Quantity) -> str:
+    if q.name == "constants":
+        return "struct"
+    return "array" if q.shape else "scalar"
+
+
+def _setup(library: Library) -> dict[str, Any]:
+    program = library.setup
+    given = [_argument(q, "in", "scalar") for q in program.inputs]
+    returned = [_argument(q, "out", "struct") for q in program.outputs]
+    cost = {"flops_on_pairs": program.flops(), "pair_operations": pair_functions([program])}
+    return {
+        "name": "setup",
+        "says": program.says,
+        "symbols": _symbols(library, "setup", "setup") | {"casadi_status": "setup_status"},
+        "returns": "int: 0, or the first rule that the parameters break; see status",
+        "status": {str(number): says for number, says in possible(program).items()},
+        "arguments": given + returned,
+        "cost": cost | program.count(),
+        "error": SETUP_ERROR,
+    }
+
+
+def _function(library: Library, program: Program, figures: Sequence[Measurement]) -> dict[str, Any]:
+    return {
+        "name": program.name,
+        "says": program.says,
+        "symbols": _symbols(library, program.name, program.name),
+        "returns": "void",
+        "arguments": _arguments(program),
+        "sparsity": {name: _sparsity(s) for name, s in (program.sparsity or {}).items()},
+        "arithmetic": program.arithmetic,
+        "cost": {"flops": program.flops()} | program.count(),
+        "error": _error(program, figures),
+        "singular": [{"where": s.where, "outputs": list(s.outputs)} for s in program.singular],
+        "postconditions": [
+            {"step": s, "equation": equation_text(LECTURE[s])} for s in program.steps
+        ],
+        "assumptions": list(program.assumptions),
+    } | _choice(library, program)
+
+
+def _choice(library: Library, program: Program) -> dict[str, Any]:
+    """Return what a function of a machine depends on, and what it was found not to need."""
+    if not isinstance(library.known, Mechanism):
+        return {}
+    base = program.name.removesuffix(JACOBIAN)
+    if base not in library.truths:
+        return {}
+    found = dropped(library.known, base)
+    return {
+        "depends_on": list(depends_on(library.known, base)),
+        "balances": [str(b) for b in library.known.question(base).balances],
+        "not_needed": {why: list(names) for why, names in found.items()},
+    }
+
+
+def _dense(library: Library, program: Program) -> dict[str, Any]:
+    whole = dense(program)
+    return {
+        "name": whole.name,
+        "says": f"{program.says} {JACOBIAN_DENSE}",
+        "symbols": _symbols(library, whole.name, None),
+        "returns": "void",
+        "arguments": _arguments(whole),
+        "same_as": program.name,
+    }
+
+
+def _sparsity(s: Sparsity) -> dict[str, Any]:
+    return {
+        "shape": [len(s.rows), len(s.columns)],
+        "rows": list(s.rows),
+        "columns": list(s.columns),
+        "colind": list(s.colind),
+        "row": list(s.row),
+    }
+
+
+def _error(program: Program, figures: Sequence[Measurement]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for m in figures:
+        if m.function == program.name:
+            found.setdefault(m.precision, {})[m.output] = {
+                "median_ulp": m.median,
+                "largest_ulp": m.worst,
+                "worst_sample": m.sample,
+                "worst_kind": m.kind,
+                "samples": m.samples,
+                "searched": m.searched,
+                "hard_samples": m.hard,
+            }
+    return found | {
+        "measure": f"ulps {of_what(program)}",
+        "kind": "sampled",
+    }

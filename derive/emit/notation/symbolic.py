@@ -1,0 +1,96 @@
+"""From a SymPy expression to its layout, in an order that depends on nothing but the symbols."""
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from sympy import Add, Expr, Mul, Pow, Rational, S, Symbol, cos, sin, tan
+
+from derive.emit.notation.layout import Layout, added, multiplied, name, negative, number, operand
+from derive.emit.notation.text import plain
+from derive.emit.notation.tree import NotationError
+
+_FUNCTIONS = {sin: "sin", cos: "cos", tan: "tan"}
+Names = Mapping[Symbol, str]
+
+
+def symbolic_layout(expression: Expr, names: Names) -> Layout:
+    """Return how ``expression`` is written; a symbol without a name keeps its own."""
+    if isinstance(expression, Symbol):
+        return name(names.get(expression, expression.name), "scalar")
+    if isinstance(expression, Rational):
+        return number(Fraction(expression.p, expression.q))
+    if expression is S.Pi:
+        return name("pi", "scalar")
+    if isinstance(expression, Add):
+        return _sum(expression, names)
+    if isinstance(expression, Mul | Pow):
+        return _product(expression, names)
+    if expression.func in _FUNCTIONS:
+        inside = symbolic_layout(expression.args[0], names)
+        return Layout("call", (inside,), _FUNCTIONS[expression.func])
+    raise NotationError(
+        f"the notation reads sums, products, powers, sin, cos and tan; not '{expression}'"
+    )
+
+
+def _sum(expression: Add, names: Names) -> Layout:
+    """Return the terms, short ones first, beginning with one that has no minus."""
+    terms = sorted(expression.args, key=lambda term: _term_key(term, names))
+    parts = [symbolic_layout(term, names) for term in terms]
+    first = next((i for i, part in enumerate(parts) if part.kind != "negative"), 0)
+    return added([parts[first], *parts[:first], *parts[first + 1 :]])
+
+
+def _term_key(term: Expr, names: Names) -> tuple[int, list[str], str]:
+    factors = [f for f in Mul.make_args(term) if not isinstance(f, Rational)]
+    text = plain(symbolic_layout(term, names))
+    return sum(map(_degree, factors)), sorted(map(_first, factors)), text
+
+
+def _degree(factor: Expr) -> int:
+    """Return how many symbols and functions a factor multiplies; of a sum, the most of any term."""
+    if isinstance(factor, Add):
+        return max(sum(map(_degree, Mul.make_args(term))) for term in factor.args)
+    if isinstance(factor, Pow) and factor.exp.is_Integer:
+        return _degree(factor.base) * abs(int(factor.exp))
+    return 0 if isinstance(factor, Rational) else 1
+
+
+def _first(factor: Expr) -> str:
+    return min((symbol.name for symbol in factor.free_symbols), default="")
+
+
+def _product(expression: Expr, names: Names) -> Layout:
+    """Return numbers, then symbols, then functions; what has a negative exponent stands below."""
+    coefficient, rest = expression.as_coeff_Mul()
+    above: list[Layout] = []
+    below: list[Layout] = []
+    for factor in sorted(Mul.make_args(rest), key=lambda f: _factor_key(f, names)):
+        base, exponent = factor.as_base_exp()
+        under = exponent.is_Rational and exponent < 0
+        power = _power(base, -exponent if under else exponent, names)
+        (below if under else above).append(power)
+    value = Fraction(coefficient.p, coefficient.q)
+    if not below:
+        return multiplied([number(value), *above])
+    top = multiplied([number(Fraction(abs(value.numerator))), *above])
+    bottom = multiplied([number(Fraction(value.denominator)), *below])
+    whole = Layout("fraction", (top, bottom))
+    return negative(whole) if value < 0 else whole
+
+
+def _factor_key(factor: Expr, names: Names) -> tuple[bool, str, str]:
+    base, exponent = factor.as_base_exp()
+    size = abs(exponent) if exponent.is_Rational else exponent
+    return base.func in _FUNCTIONS, _first(factor), plain(_power(base, size, names))
+
+
+def _power(base: Expr, exponent: Expr, names: Names) -> Layout:
+    inside = symbolic_layout(base, names)
+    if exponent == 1:
+        return inside
+    if exponent == S.Half:
+        return Layout("call", (inside,), "sqrt")
+    if not exponent.is_Rational:
+        raise NotationError(f"the notation reads powers of a number, not '{base}**{exponent}'")
+    return Layout("power", (operand(inside), symbolic_layout(exponent, names)))

@@ -1,0 +1,1 @@
+"""A lecture or a library in, HTML for people out."""

@@ -1,1 +1,0 @@
-"""Motion in time: formulas that move a state from one instant to another."""

@@ -1,0 +1,1 @@
+"""A scene in, a library out: all programs of the scene, those of motion among them, one set-up."""

@@ -1,0 +1,175 @@
+"""A function that the lecture states, from its truth to its program, with or without a Jacobian."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from sympy import Symbol
+
+from derive.lecture.chapters import LECTURE
+from derive.lower.arrange import plan
+from derive.lower.arrange.arrange import arrange
+from derive.lower.arrange.draft import Arrangement
+from derive.lower.forms import Block, best_values, best_with_jacobian, cost
+from derive.lower.graph import Graph, Value
+from derive.lower.lower import lower
+from derive.lower.stage import Constants, compressed, hot, used_inputs
+from derive.mechanics.mechanism import Known, Mechanism, truth_of
+from derive.mechanics.truth import Truth
+from derive.program.program import Program, Quantity, Sparsity
+from derive.scene import SceneError
+from derive.scene.wanted import JACOBIAN, SENSITIVITY, base_of
+
+
+@dataclass(frozen=True)
+class Graphed:
+    """A scene in a graph: its components' values, and the constants its functions asked for."""
+
+    known: Known
+    graph: Graph
+    leaves: Mapping[str, Value]
+    constants: Constants
+
+    def taken(self) -> frozenset[str]:
+        """Return the names that no operation may have: those of all quantities and components."""
+        words = self.known.words
+        return frozenset(n for q in words.every() for n in (q.name, *q.components))
+
+    def by_symbol(self) -> dict[Symbol, Value]:
+        """Return the value of every component by its symbol."""
+        return {self.known.words.symbols[c]: value for c, value in self.leaves.items()}
+
+
+@dataclass(frozen=True)
+class Arranged:
+    """A wanted function in the graph: its truth, and its output components by quantity."""
+
+    fact: Truth
+    outputs: tuple[tuple[Value, ...], ...]
+
+
+def graphed(known: Known) -> Graphed:
+    """Return a scene in a graph that holds its parameters, states and inputs, and nothing else."""
+    graph, words = Graph(), known.words
+    leaves = {c: graph.parameter(c) for q in words.parameters for c in q.components}
+    varying = [c for q in (*words.states, *words.inputs) for c in q.components]
+    leaves |= {c: graph.variable(c) for c in varying}
+    return Graphed(known, graph, leaves, Constants(graph))
+
+
+def arranged(scene: Graphed, base: str) -> Arranged:
+    """Return what the lecture says of a function, in the cheapest way to compute it."""
+    fact = truth_of(scene.known, base)
+    ways = [_lowered(scene, fact, way) for way in _ways(scene.known, fact)]
+    if len(ways) == 1:
+        return ways[0]
+    return min(ways, key=lambda way: cost(scene.graph, _best(scene.graph, way)))
+
+
+def function(scene: Graphed, wanted: Arranged, name: str) -> Program:
+    """Return the program of a wanted function by its name, which says if a Jacobian is with it."""
+    if name == base_of(name):
+        return _program(scene, wanted.fact, _best(scene.graph, wanted))
+    return _with_jacobian(scene, wanted, name)
+
+
+def _ways(known: Known, fact: Truth) -> tuple[Arrangement, ...]:
+    return plan.arrange(known, fact) if isinstance(known, Mechanism) else arrange(known, fact)
+
+
+def _lowered(scene: Graphed, fact: Truth, way: Arrangement) -> Arranged:
+    values = lower(scene.graph, way, scene.by_symbol())
+    outputs, place = [], 0
+    for quantity in fact.outputs:
+        outputs.append(tuple(values[place : place + len(quantity.components)]))
+        place += len(quantity.components)
+    return Arranged(fact, tuple(outputs))
+
+
+def _best(graph: Graph, wanted: Arranged) -> list[Value]:
+    return best_values(graph, [Block(output, ()) for output in wanted.outputs])
+
+
+def _with_jacobian(scene: Graphed, wanted: Arranged, name: str) -> Program:
+    fact, columns = wanted.fact, _columns(scene, wanted, name)
+    values, rows = _differentiated(scene, wanted, columns)
+    row_names = [c for q in fact.outputs for c in q.components]
+    column_names = [c for q in columns for c in q.components]
+    pattern, nonzeros = compressed(rows, row_names, column_names)
+    if not nonzeros:
+        raise SceneError(
+            f"scene '{scene.known.scene.name}': wanted '{fact.name}{JACOBIAN}' must have entries, "
+            "but nothing that varies changes it"
+        )
+    program = _program(scene, fact, [*values, *nonzeros])
+    return replace(
+        program,
+        name=name,
+        says=fact.says.rstrip(".") + ", with its Jacobian.",
+        outputs=(*program.outputs, _jacobian_quantity(pattern)),
+        sparsity={"jacobian": pattern},
+    )
+
+
+def _differentiated(
+    scene: Graphed, wanted: Arranged, columns: Sequence[Quantity]
+) -> tuple[list[Value], list[list[Value]]]:
+    """Return the outputs' values and the rows of their Jacobian, sharing all that they can."""
+    inputs = tuple(tuple(scene.leaves[c] for c in q.components) for q in columns)
+    values: list[Value] = []
+    rows: list[list[Value]] = []
+    for output in wanted.outputs:
+        shared = values + [entry for row in rows for entry in row]
+        own, derivatives = best_with_jacobian(scene.graph, Block(output, inputs), shared)
+        values += own
+        rows += derivatives
+    return values, rows
+
+
+def _jacobian_quantity(pattern: Sparsity) -> Quantity:
+    parts = tuple(f"d({pattern.rows[i]})/d({pattern.columns[k]})" for i, k in pattern.places())
+    says = "nonzeros of the Jacobian, in compressed-column order"
+    return Quantity("jacobian", parts, (len(parts),), "", "", None, None, says)
+
+
+def _columns(scene: Graphed, wanted: Arranged, name: str) -> tuple[Quantity, ...]:
+    """Return what the Jacobian is taken by: every state of a state rate, and all that is used."""
+    words = scene.known.words
+    if name.endswith(SENSITIVITY):
+        return (*words.states, *words.parameters)
+    used = _inputs_below(scene.graph, [v for output in wanted.outputs for v in output])
+    every = (*words.states, *words.inputs)
+    whole = words.states if wanted.fact.name == "state_rate" else ()
+    return tuple(q for q in every if q in whole or used & set(q.components))
+
+
+def _inputs_below(graph: Graph, values: Iterable[Value]) -> set[str]:
+    """Return the names of all inputs that ``values`` are made of."""
+    names: set[str] = set()
+    seen: set[int] = set()
+    waiting = [node for _, node in values]
+    while waiting:
+        node = waiting.pop()
+        if node in seen:
+            continue
+        seen.add(node)
+        if graph.nodes[node][0] == "input":
+            names.add(graph.nodes[node][1])
+        waiting += graph.below(node)
+    return names
+
+
+def _program(scene: Graphed, fact: Truth, values: Sequence[Value]) -> Program:
+    words = scene.known.words
+    ops, results = hot(scene.graph, scene.constants, values, scene.taken())
+    inputs = used_inputs((*words.states, *words.inputs), ops, results)
+    assumptions = sorted({a for step in fact.steps for a in LECTURE.assumptions(step)})
+    return Program(
+        fact.name,
+        fact.says,
+        inputs,
+        fact.outputs,
+        ops,
+        results,
+        steps=fact.steps,
+        assumptions=tuple(assumptions),
+    )

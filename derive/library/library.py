@@ -1,0 +1,169 @@
+"""All programs of a scene: one set-up, and for every wanted function its hot part."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from derive.library.admission import tried
+from derive.library.function import Graphed, arranged, function, graphed
+from derive.library.setting import Setting, applied_moment, traced, with_names
+from derive.library.singular import with_singular
+from derive.library.steps import motions, needs
+from derive.lower.graph import Graph, Value
+from derive.lower.stage import Constant, Traced, Tried, in_pairs, setup, with_low_parts
+from derive.lower.wording import formula
+from derive.mechanics.mechanism import Known, in_terms
+from derive.mechanics.truth import Truth
+from derive.motion.runge_kutta.compact import Compact
+from derive.motion.taylor.series import Series
+from derive.program.program import Program, Quantity, read_by
+from derive.program.tape import Tape, free_prefix
+from derive.scene import Machine, Scene, SceneError
+from derive.scene.wanted import EQUATIONS, IN_PAIRS, base_of, moves
+
+INVERSE = re.compile("J_[xyz][xyz]")
+
+
+@dataclass(frozen=True)
+class Library:
+    """What a scene's files are printed from.
+
+    functions : what the lecture states; each satisfies one of the ``truths``
+    rates     : further such functions that ``motions`` rest on and nobody wanted for themselves
+    motions   : what moves the state in time, and formulas for attitudes
+    """
+
+    known: Known
+    setup: Program
+    functions: tuple[Program, ...]
+    constants: tuple[Constant, ...]
+    truths: Mapping[str, Truth]
+    rates: tuple[Program, ...] = ()
+    motions: tuple[Program, ...] = ()
+
+    def __getitem__(self, name: str) -> Program:
+        return next(p for p in (self.setup, *self.printed(), *self.rates) if p.name == name)
+
+    def printed(self) -> tuple[Program, ...]:
+        """Return the functions that are emitted: the lecture's, then those that move the state."""
+        return self.functions + self.motions
+
+
+@dataclass(frozen=True)
+class Moved:
+    """What moves a scene's state: its programs, their part of set-up, and what its names mean."""
+
+    programs: tuple[Program, ...]
+    traced: Traced
+    meanings: Mapping[str, str]
+
+
+def library(scene: Scene | Machine) -> Library:
+    """Return the programs that ``scene`` asks for.
+
+    Raises SceneError, with one sentence that names the scene, if there can be none.
+    """
+    try:
+        return _library(scene)
+    except SceneError as error:
+        if str(error).startswith("scene '"):
+            raise
+        raise SceneError(f"scene '{scene.name}': {error}") from None
+
+
+def _library(scene: Scene | Machine) -> Library:
+    terms = graphed(in_terms(scene))
+    asked, hidden = _asked(scene)
+    bases = dict.fromkeys(map(base_of, (*asked, *hidden)))
+    wanted = {base: arranged(terms, base) for base in bases}
+    every = {n: function(terms, wanted[base_of(n)], n) for n in (*asked, *hidden)}
+    moved = _moved(terms, every)
+    made = _set_up(terms, moved.traced)
+    if scene.form == "accurate" and made.outputs:
+        made = with_low_parts(made)
+    functions = _in_parameters(made, tuple(every.values()))
+    moving = _in_parameters(made, moved.programs)
+    if scene.form == "accurate":
+        names = {*terms.constants.names.values(), *moved.traced.names.values()}
+        functions = tuple(in_pairs(f, names) for f in functions)
+        moving = tuple(in_pairs(f, names) if f.name in IN_PAIRS else f for f in moving)
+    functions = with_singular(functions, made)
+    moving = with_singular(moving, made)
+    return Library(
+        terms.known,
+        made,
+        functions[: len(asked)],
+        _constants(made, {**_meanings(terms), **moved.meanings}),
+        {base: one.fact for base, one in wanted.items()},
+        rates=functions[len(asked) :],
+        motions=moving,
+    )
+
+
+def _asked(scene: Scene | Machine) -> tuple[list[str], list[str]]:
+    """Return the functions that satisfy equations, and those that only motions rest on."""
+    if isinstance(scene, Machine):
+        asked = [name for name in scene.wanted if not moves(name)]
+    else:
+        asked = [name for name in scene.wanted if base_of(name) in EQUATIONS]
+    return asked, [name for name in needs(scene) if name not in asked]
+
+
+def _moved(scene: Graphed, rates: Mapping[str, Program]) -> Moved:
+    """Return what moves the state, its constants beside those that the rates asked for."""
+    tape = Tape(free_prefix("p", set(scene.taken())))
+    setting = Setting(scene, rates, applied_moment(scene), tape)
+    programs = motions(setting)
+    part, renaming = traced(setting)
+    programs = tuple(with_names(program, renaming) for program in programs)
+    read = {name for program in programs for name in read_by(program)}
+    names = {operand: name for operand, name in part.names.items() if name in read}
+    says = {operand: said for operand, (_, said) in setting.tape.names.items()}
+    meanings = {name: says[operand] for operand, name in names.items()}
+    return Moved(programs, replace(part, names=names), meanings)
+
+
+def _set_up(scene: Graphed, part: Traced) -> Program:
+    """Return the program of set-up, which also tries whether its parameters are admissible."""
+    parameters = scene.known.words.parameters
+    bare = setup(scene.graph, scene.constants, parameters, part, Tried())
+    used = {c for q in bare.inputs for c in q.components}
+    return setup(scene.graph, scene.constants, parameters, part, tried(scene, used))
+
+
+def _constants(made: Program, meanings: Mapping[str, str]) -> tuple[Constant, ...]:
+    """Return what set-up gives, each with its meaning; a low part is what rounding left."""
+    lows = {f"{name}_low": f"what rounding {name} left" for name in meanings}
+    every = lows | dict(meanings)
+    return tuple(Constant(c, every[c]) for q in made.outputs for c in q.components)
+
+
+def _meanings(scene: Graphed) -> dict[str, str]:
+    """Return the formula of every constant that the lecture's functions asked for."""
+    return {name: _meaning(scene.graph, value) for value, name in scene.constants.names.items()}
+
+
+def _meaning(graph: Graph, value: Value) -> str:
+    text = formula(graph, value)
+    return f"{text[2:]} of the inverse inertia tensor" if INVERSE.fullmatch(text) else text
+
+
+def _in_parameters(made: Program, functions: Sequence[Program]) -> tuple[Program, ...]:
+    """Return the functions, each with the constants as its first input if it uses any."""
+    names = {c for q in made.outputs for c in q.components}
+    return tuple(_with_inputs(f, made.outputs) if _reads(f, names) else f for f in functions)
+
+
+def _with_inputs(program: Program, more: tuple[Quantity, ...]) -> Program:
+    """Return a program that is given ``more`` before its other inputs."""
+    inputs, loops = (*more, *program.inputs), program.loops
+    if isinstance(loops, Series):
+        loops = replace(loops, inputs=inputs)
+    elif isinstance(loops, Compact):
+        rate, unrolled = (_with_inputs(p, more) for p in (loops.rate, loops.unrolled))
+        loops = replace(loops, rate=rate, unrolled=unrolled)
+    return replace(program, inputs=inputs, loops=loops)
+
+
+def _reads(program: Program, names: set[str]) -> bool:
+    return bool(read_by(program) & names)

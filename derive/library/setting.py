@@ -1,0 +1,112 @@
+"""What the formulas of motion are given, and what they leave behind for set-up."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from derive.library.function import Graphed
+from derive.lower.graph import Graph, Value
+from derive.lower.lower import value_of
+from derive.lower.stage import Traced, exact_number, hot, used_inputs
+from derive.mechanics.mechanism import Known, Mechanism, single
+from derive.motion.exact.inertia import Inertia, as_symmetric
+from derive.program.program import Program, renamed
+from derive.program.tape import Number, Tape, free_prefix, number
+from derive.scene.wanted import SPLITTINGS, step_of
+
+
+@dataclass
+class Setting:
+    """What the formulas of motion are given: the scene, its rates, its body, the tape of set-up.
+
+    moment : the program of the moment along the axes, None if there is none
+    given  : the graph's values that set-up works on, by the names that the tape has for them
+    """
+
+    scene: Graphed
+    rates: Mapping[str, Program]
+    moment: Program | None
+    tape: Tape
+    given: dict[str, Value] = field(default_factory=dict)
+
+    @property
+    def known(self) -> Known:
+        """Return the scene in the lecture's terms."""
+        return self.scene.known
+
+    def parameter(self, value: Value) -> Number:
+        """Return a parameter-only value of the graph as a number of set-up."""
+        exact = exact_number(self.scene.graph, value)
+        if exact is not None:
+            return number(exact)
+        known = {**self.scene.leaves, **self.given}
+        name = next((name for name, same in known.items() if same == value), None)
+        if name is None:
+            name = f"given{len(self.given)}"
+            self.given[name] = value
+        return self.tape.input(name)
+
+    def inertia(self) -> Inertia:
+        """Return the body's tensor along its axes, about the scene's point.
+
+        Moments that are the same formula are equal, whatever kind of body the scene says it is.
+        """
+        tensor, by_symbol = single(self.known).bindings["I"], self.scene.by_symbol()
+        places = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+        values = [value_of(self.scene.graph, tensor[p], by_symbol) for p in places]
+        xx, yy, zz, xy, xz, yz = (self.parameter(value) for value in values)
+        return as_symmetric((xx, yy, zz, xy, xz, yz))
+
+    def function(self) -> Tape:
+        """Return a tape for a function."""
+        return Tape(free_prefix("t", set(self.scene.taken())), below=self.tape)
+
+
+def applied_moment(scene: Graphed) -> Program | None:
+    """Return the program of the moment along the axes, for steps that kick; None if it is zero."""
+    known = scene.known
+    if isinstance(known, Mechanism):
+        return None
+    if not any(step_of(name) in SPLITTINGS for name in known.scene.wanted):
+        return None
+    by_symbol = scene.by_symbol()
+    values = [value_of(scene.graph, e, by_symbol) for e in known.bindings["M"]]
+    if not any(coefficient for coefficient, _ in values):
+        return None
+    ops, results = hot(scene.graph, scene.constants, values, scene.taken())
+    inputs = used_inputs((*known.words.states, *known.words.inputs), ops, results)
+    output = known.words["moment"]
+    return Program("applied_moment", "", inputs, (output,), ops, results)
+
+
+def traced(setting: Setting) -> tuple[Traced, Mapping[str, str]]:
+    """Return set-up's part of the motions, and how its constants are renamed.
+
+    A parameter that is a constant of the graph already keeps the name that it has there.
+    """
+    taken = setting.scene.constants.names
+    shared = {_parameter(setting.scene.graph, value): name for value, name in taken.items()}
+    shared.pop("", None)
+    names: dict[str, str] = {}
+    for operand, (name, _) in setting.tape.names.items():
+        used = {*taken.values(), *names.values()}
+        several = (name, *(f"{name}{k}" for k in range(2, len(used) + 3)))
+        names[operand] = shared.get(operand) or next(n for n in several if n not in used)
+    new = {name: names[operand] for operand, (name, _) in setting.tape.names.items()}
+    own = {operand: name for operand, name in names.items() if operand not in shared}
+    return Traced(tuple(setting.tape.ops), dict(setting.given), own), new
+
+
+def _parameter(graph: Graph, value: Value) -> str:
+    """Return the parameter that a constant is, "" if it is made of several."""
+    coefficient, node = value
+    kind, *rest = graph.nodes[node]
+    return str(rest[0]) if kind == "input" and coefficient == 1 else ""
+
+
+def with_names(program: Program, names: Mapping[str, str]) -> Program:
+    """Return a program whose constants are called by their new names."""
+    results = tuple(names.get(r, r) if isinstance(r, str) else r for r in program.results)
+    free = tuple(names.get(r, r) if isinstance(r, str) else r for r in program.free)
+    slopes = None if program.slopes is None else with_names(program.slopes, names)
+    ops = renamed(program.ops, names)
+    return replace(program, ops=ops, results=results, free=free, slopes=slopes)

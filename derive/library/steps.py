@@ -1,0 +1,271 @@
+"""The programs that move a scene in time, and its formulas for attitudes, by their wanted names.
+
+Formulas stand in ``flows`` and ``rotations``; here they are given the scene's body, state and
+rates, and become programs. What rests on parameters only is on the tape of set-up.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from derive.lecture.chapters import LECTURE
+from derive.library.setting import Setting
+from derive.lower.stage import used_inputs
+from derive.mechanics.mechanism import single
+from derive.mechanics.vocabulary import Vocabulary
+from derive.motion.attitude.functions import attitude_program
+from derive.motion.exact.exact import flow_exact, principal, turned
+from derive.motion.moser_veselov.moser_veselov import plan_dmv, plan_slopes, step_dmv
+from derive.motion.runge_kutta import steps
+from derive.motion.runge_kutta.carried import remainder
+from derive.motion.runge_kutta.compact import compact
+from derive.motion.runge_kutta.system import System, next_of
+from derive.motion.splitting.splitting import step_split, step_split_compensated
+from derive.motion.taylor.taylor import taylor_step
+from derive.program.program import Operand, Program, Quantity
+from derive.program.recorded import called, needed
+from derive.program.tape import Number, Tape, number, seen_from
+from derive.scene import Machine, Scene, SceneError
+from derive.scene.declaration import Given
+from derive.scene.wanted import ATTITUDES, SPLITTINGS, STEP_DERIVATIVES, TAYLOR, moves, step_of
+
+LOOPED = ("step_rk4", "step_rk4_jacobian", "step_rk4_sensitivity")
+"""Steps that may be printed as loops over their stages."""
+COMPENSATION = "_compensated"
+FREE_ROTATION = tuple(
+    sorted(
+        {
+            assumption
+            for step in ("general_form", "quaternion_rate_scalar", "quaternion_rate_vector")
+            for assumption in LECTURE.assumptions(step)
+        }
+    )
+)
+"""What the closed forms and splittings of a free rotation rest on."""
+RATES = ("step_rk4", "step_lie", *TAYLOR)
+"""Steps that are made from the rate of the state."""
+SLOPES = {
+    "jacobian": "state_rate_jacobian",
+    "tangent": "state_rate_jacobian",
+    "sensitivity": "state_rate_sensitivity",
+}
+"""What the derivatives of a step rest on, by kind."""
+
+
+def needs(scene: Scene | Machine) -> tuple[str, ...]:
+    """Return the equations that the wanted steps rest on, whether they are wanted themselves."""
+    steps = [name for name in scene.wanted if step_of(name) in RATES]
+    slopes = [SLOPES[name.rpartition("_")[2]] for name in steps if name in STEP_DERIVATIVES]
+    return tuple(dict.fromkeys(["state_rate"] * bool(steps) + slopes))
+
+
+def motions(setting: Setting) -> tuple[Program, ...]:
+    """Return the programs of all wanted motions and attitude formulas, in the scene's order."""
+    found: dict[str, Program] = {}
+    for name in setting.known.scene.wanted:
+        if name in ATTITUDES:
+            found[name] = attitude_program(name)
+        elif moves(name):
+            found |= {program.name: program for program in _motion(setting, name)}
+    return tuple(found.values())
+
+
+def _motion(setting: Setting, name: str) -> tuple[Program, ...]:
+    step = step_of(name)
+    if name == "flow_exact":
+        return (_flow_exact(setting),)
+    if name == "step_dmv":
+        return _dmv(setting)
+    if step in TAYLOR:
+        return (_taylor(setting, TAYLOR[step]),)
+    if step in SPLITTINGS:
+        return (_split(setting, name),)
+    return (_runge_kutta(setting, name),)
+
+
+def _taylor(setting: Setting, order: int) -> Program:
+    words, rate = setting.known.words, setting.rates["state_rate"]
+    step = _time_step(setting)
+    series = taylor_step(rate, words.states, words.inputs, order, step)
+    return replace(series.signature, loops=series, assumptions=rate.assumptions)
+
+
+_STEP_PROGRAMS: Mapping[str, Callable[[System], Program]] = {
+    "step_rk4": steps.step_rk4,
+    "step_rk4_compensated": steps.step_rk4_compensated,
+    "step_rk4_jacobian": steps.step_rk4_jacobian,
+    "step_rk4_tangent": steps.step_rk4_tangent,
+    "step_rk4_sensitivity": steps.step_rk4_sensitivity,
+    "step_lie": steps.step_lie,
+    "step_lie_compensated": steps.step_lie_compensated,
+    "step_lie_jacobian": steps.step_lie_jacobian,
+    "step_lie_tangent": steps.step_lie_tangent,
+}
+
+
+def _runge_kutta(setting: Setting, name: str) -> Program:
+    rates, step = setting.rates, _time_step(setting)
+    slopes = rates[SLOPES[name.rpartition("_")[2]]] if name in STEP_DERIVATIVES else None
+    states, taken = setting.known.words.states, setting.scene.taken()
+    system = System(states, rates["state_rate"], slopes, step, taken)
+    _check_quaternions(setting, name, len(system.quaternions))
+    program = _STEP_PROGRAMS[name](system)
+    if program.sparsity and not any(pattern.row for pattern in program.sparsity.values()):
+        raise SceneError(
+            f"scene '{setting.known.scene.name}': wanted '{name}' must have entries, "
+            "but nothing that it is a derivative by changes the step"
+        )
+    program = replace(
+        program,
+        inputs=used_inputs(program.inputs, program.ops, program.results),
+        assumptions=rates["state_rate"].assumptions,
+    )
+    return compact(system, program) if _looped(setting, name) else program
+
+
+def _looped(setting: Setting, name: str) -> bool:
+    return setting.known.scene.emission == "compact" and name in LOOPED
+
+
+def _check_quaternions(setting: Setting, name: str, count: int) -> None:
+    """Refuse a machine's step that knows of another number of quaternions than the state has."""
+    scene = setting.known.scene
+    if name.endswith("_tangent") and count != 1:
+        rule = f"is over the errors of one quaternion, and the state has {count}"
+        raise SceneError(f"scene '{scene.name}': '{name}' {rule}")
+    if _looped(setting, name) and count > 1:
+        rule = f"emission = 'compact' is for one quaternion at most, and the state has {count}"
+        raise SceneError(f"scene '{scene.name}': '{name}': {rule}")
+
+
+def _time_step(setting: Setting) -> Quantity:
+    return _seconds("time_step", setting.known.scene.time_step, "length of the step")
+
+
+def _seconds(name: str, range_: Given, says: str) -> Quantity:
+    return Quantity(name, (name,), (), "s", "", range_.low, range_.high, says)
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A function as it was traced: what goes in, what comes out, and by which numbers."""
+
+    inputs: tuple[Quantity, ...]
+    outputs: tuple[Quantity, ...]
+    results: tuple[Number, ...]
+
+
+def _program(name: str, says: str, tape: Tape, made: Recorded) -> Program:
+    results: tuple[Operand, ...] = tuple(
+        tape.below.constant(n.operand)
+        if tape.below is not None and n.tape is tape.below and isinstance(n.operand, str)
+        else n.operand
+        for n in made.results
+    )
+    ops = needed(tape.ops, results)
+    inputs = used_inputs(made.inputs, ops, results)
+    return Program(name, says, inputs, made.outputs, ops, results, assumptions=FREE_ROTATION)
+
+
+def _inputs(tape: Tape, q: Quantity) -> list[Number]:
+    return [tape.input(c) for c in q.components]
+
+
+def _rotation(words: Vocabulary) -> tuple[Quantity, Quantity]:
+    return words["attitude"], words["omega"]
+
+
+def _flow_exact(setting: Setting) -> Program:
+    tape, words = setting.function(), setting.known.words
+    attitude, omega = _rotation(words)
+    given = single(setting.known).scene.time
+    time = _seconds("time", given, "time from the given to the new state")
+    (t,) = _inputs(tape, time)
+    body, rates = setting.inertia(), _inputs(tape, omega)
+    q, w = flow_exact(tape, body, _inputs(tape, attitude), rates, t)
+    outputs = (next_of(attitude), next_of(omega))
+    says = "Attitude and angular velocity after any time without torque (exact solution)."
+    made = Recorded((attitude, omega, time), outputs, (*map(number, q), *map(number, w)))
+    moments, axes = principal(body)
+    free = (*moments, *(x for axis in axes for x in axis), *turned(body, rates, t)[0])
+    program = _program("flow_exact", says, tape, made)
+    return replace(program, free=tuple(seen_from(tape, n) for n in free))
+
+
+def _dmv(setting: Setting) -> tuple[Program, ...]:
+    words, step = setting.known.words, _time_step(setting)
+    omega = words["omega"]
+    tape = setting.function()
+    (h,) = _inputs(tape, step)
+    entries = plan_dmv(tape, setting.inertia(), _inputs(tape, omega), h)
+    names = tuple(f"plan_{name}" for name, _, _ in entries)
+    plan = Quantity(
+        "plan", names, (len(names),), "", "", None, None,
+        "what a motion without torque and a length of step keep",
+    )  # fmt: skip
+    says = "Plan many steps of one length from an angular velocity; call it once."
+    made = Recorded((omega, step), (plan,), tuple(number(n) for _, n, _ in entries))
+    planned = _program("plan_dmv", says, tape, made)
+    values = plan_slopes(tape, setting.inertia(), _inputs(tape, omega), h)
+    slopes = _program("plan_dmv", says, tape, replace(made, results=tuple(map(number, values))))
+    planned = replace(planned, slopes=slopes)
+    return planned, _dmv_step(setting, plan, [name for name, _, _ in entries])
+
+
+def _dmv_step(setting: Setting, plan: Quantity, names: Sequence[str]) -> Program:
+    tape, (attitude, omega) = setting.function(), _rotation(setting.known.words)
+    rest = remainder((attitude, omega))
+    planned = dict(zip(names, _inputs(tape, plan), strict=True))
+    q, w, left = step_dmv(
+        tape,
+        setting.inertia(),
+        planned,
+        _inputs(tape, attitude),
+        _inputs(tape, omega),
+        _inputs(tape, rest),
+    )
+    outputs = (next_of(attitude), next_of(omega), next_of(rest))
+    says = "One step of a torque-free rotation, as plan_dmv laid it out (order 10)."
+    made = Recorded((plan, attitude, omega, rest), outputs, tuple(map(number, (*q, *w, *left))))
+    return _program("step_dmv", says, tape, made)
+
+
+def _split(setting: Setting, name: str) -> Program:
+    tape, step = setting.function(), _time_step(setting)
+    attitude, omega = _rotation(setting.known.words)
+    order, body, rest = SPLITTINGS[step_of(name)], setting.inertia(), remainder((attitude, omega))
+    (h,) = _inputs(tape, step)
+    given = _inputs(tape, attitude), _inputs(tape, omega), _moment(setting, tape), h
+    inputs = (attitude, omega, *_outside(setting), step)
+    outputs = [next_of(attitude), next_of(omega)]
+    says = "One step of the rotation by splitting it into turns about two axes"
+    if name.endswith(COMPENSATION):
+        moved: tuple[list[Number], ...] = step_split_compensated(
+            tape, body, order, *given, _inputs(tape, rest)
+        )
+        inputs, outputs = (*inputs, rest), [*outputs, next_of(rest)]
+        says += f" (order {order}), carrying what rounding leaves."
+    else:
+        moved = step_split(tape, body, order, *given)
+        says += f" (order {order})."
+    made = Recorded(inputs, tuple(outputs), tuple(number(n) for part in moved for n in part))
+    return _program(name, says, tape, made)
+
+
+def _outside(setting: Setting) -> tuple[Quantity, ...]:
+    """Return the inputs that the moment may use, held while the step lasts."""
+    states = setting.known.words.states
+    return tuple(q for q in setting.moment.inputs if q not in states) if setting.moment else ()
+
+
+def _moment(setting: Setting, tape: Tape) -> Callable[[Sequence[Number]], list[Number]] | None:
+    """Return the moment along the axes as a function of the attitude, None if there is none."""
+    program = setting.moment
+    if program is None:
+        return None
+    outside = {c: tape.input(c) for q in _outside(setting) for c in q.components}
+    parts = setting.known.words["attitude"].components
+
+    def at(attitude: Sequence[Number]) -> list[Number]:
+        return called(tape, program, outside | dict(zip(parts, attitude, strict=True)))
+
+    return at

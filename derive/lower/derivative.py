@@ -1,0 +1,71 @@
+"""Derivatives of graph values: one rule a row, zeros and constants known as they arise."""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+
+from derive.lower.graph import ONE, ZERO, Graph, Value
+
+Rule = Callable[[Graph, tuple[Value, ...]], tuple[Value, ...]]
+
+
+def _minus(value: Value) -> Value:
+    return -value[0], value[1]
+
+
+# The partial derivatives of a call by each of its operands.
+RULES: dict[str, Rule] = {
+    "sin": lambda g, v: (g.call("cos", *v),),
+    "cos": lambda g, v: (_minus(g.call("sin", *v)),),
+    "sqrt": lambda g, v: (g.mul([g.number(Fraction(1, 2)), g.power(g.call("sqrt", *v), -1)]),),
+    "power_of_two": lambda g, v: (ZERO,),  # noqa: ARG005 - it scales, and goes up in steps
+}
+
+
+def derivative(graph: Graph, value: Value, leaf: Value) -> Value:
+    """Return the partial derivative of ``value`` by an input, a variable or a parameter.
+
+    >>> g = Graph()
+    >>> x = g.variable("x")
+    >>> derivative(g, g.power(x, 3), x) == g.mul([g.number(3), g.power(x, 2)])
+    True
+    """
+    memory: dict[int, Value] = {leaf[1]: (Fraction(1), ONE)}
+    varies = not graph.fixed[leaf[1]]
+
+    def visit(node: int) -> Value:
+        if node not in memory:
+            constant = varies and graph.fixed[node]
+            memory[node] = ZERO if constant else _by_rule(graph, node, visit)
+        return memory[node]
+
+    return graph.mul([(value[0], ONE), visit(value[1])])
+
+
+def _by_rule(graph: Graph, node: int, visit: Callable[[int], Value]) -> Value:
+    kind, *rest = graph.nodes[node]
+    match kind:
+        case "sum":
+            return graph.add([graph.mul([(c, ONE), visit(n)]) for c, n in rest[0]])
+        case "product":
+            return graph.add(
+                [_one_factor(graph, rest[0], place, visit) for place in range(len(rest[0]))]
+            )
+        case "let" | "cut":
+            return graph.mul([(rest[0][0], ONE), visit(rest[0][1])])
+        case "call":
+            partial = RULES[rest[0]](graph, rest[1])
+            inner = [graph.mul([(c, ONE), visit(n)]) for c, n in rest[1]]
+            return graph.add([graph.mul(pair) for pair in zip(partial, inner, strict=True)])
+    return ZERO
+
+
+def _one_factor(
+    graph: Graph, factors: Sequence[tuple[int, int]], place: int, visit: Callable[[int], Value]
+) -> Value:
+    base, power = factors[place]
+    inner = visit(base)
+    if not inner[0]:
+        return ZERO
+    others = [graph.power((Fraction(1), n), p) for k, (n, p) in enumerate(factors) if k != place]
+    lowered = graph.power((Fraction(1), base), power - 1) if power != 1 else (Fraction(1), ONE)
+    return graph.mul([graph.number(power), lowered, *others, inner])

@@ -1,0 +1,178 @@
+"""The forms a function may take, and the choice among them by what they cost.
+
+A block of outputs can be computed as it was arranged, or multiplied out over the variables with
+coefficients made in set-up, with or without common factors taken outside. With its Jacobian at
+hand, a block that is homogeneous in its inputs follows from that by Euler's theorem,
+y = sum over blocks z of (dy/dz) z / degree. Fewest operations win; a tie goes to the first form.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations, product
+
+from derive.lower.derivative import derivative
+from derive.lower.expand import Family, Terms, collected, degree, factored, families, terms
+from derive.lower.graph import Graph, Value
+from derive.lower.schedule import draft
+from derive.program.program import FLOPS, Op
+
+MANY_TERMS = 60  # beyond this, multiplying out has never been the cheaper form
+MANY_CHOICES = 30
+FINALISTS = 4  # of values and of Jacobians, each judged alone, that are then judged together
+WAYS: tuple[Callable[[Graph, Terms], Value], ...] = (factored, collected)
+
+
+@dataclass(frozen=True)
+class Block:
+    """Outputs that belong together, and the inputs, by quantity, of their derivatives."""
+
+    values: tuple[Value, ...]
+    inputs: tuple[tuple[Value, ...], ...]
+
+
+def cost(graph: Graph, outputs: Sequence[Value]) -> tuple[int, int]:
+    """Return the number of + - * /, then of all operations and loads, that ``outputs`` take."""
+    ops = draft(graph, outputs, lambda node: graph.fixed[node])
+    return sum(op.operator in FLOPS for op in ops), len(ops) + _loads(ops)
+
+
+def _loads(ops: Sequence[Op]) -> int:
+    """Return how many operands must be loaded on their own.
+
+    An operation takes one operand from memory as it goes; what several operations read is loaded
+    once and stays.
+    """
+    made = {op.result for op in ops}
+    uses = Counter(o for op in ops for o in op.operands if o not in made)
+    alone = [sum(uses[o] == 1 for o in op.operands if o not in made) for op in ops]
+    return sum(n > 1 for n in uses.values()) + sum(n > 1 for n in alone)
+
+
+def value_forms(graph: Graph, block: Block) -> list[tuple[Value, ...]]:
+    """Return the ways to compute the values of ``block``, the arranged one first."""
+    forms = [block.values]
+    kept = dict.fromkeys(f for value in block.values for f in families(graph, value))
+    for stop in (frozenset[Family](), *(frozenset([name]) for name in kept)):
+        expanded = _expanded(graph, block, stop)
+        if expanded is not None:
+            forms += [tuple(way(graph, t) for t in expanded) for way in WAYS]
+    return list(dict.fromkeys(forms))
+
+
+def _expanded(graph: Graph, block: Block, kept: frozenset[Family]) -> list[Terms] | None:
+    expanded = [terms(graph, value, kept) for value in block.values]
+    return None if any(len(t) > MANY_TERMS for t in expanded) else expanded
+
+
+def best_values(graph: Graph, blocks: Sequence[Block]) -> list[Value]:
+    """Return the cheapest values of all blocks together."""
+    forms = [value_forms(graph, block) for block in blocks]
+    if len(list(_choices(forms))) > MANY_CHOICES:
+        forms = [[min(each, key=lambda form: cost(graph, form))] for each in forms]
+    best = min(_choices(forms), key=lambda values: cost(graph, values))
+    return list(best)
+
+
+def _choices(forms: Sequence[Sequence[tuple[Value, ...]]]) -> Iterable[list[Value]]:
+    return ([v for form in choice for v in form] for choice in product(*forms))
+
+
+def jacobian(graph: Graph, values: Iterable[Value], leaves: Sequence[Value]) -> list[list[Value]]:
+    """Return the rows of partial derivatives of ``values`` by ``leaves``."""
+    return [[derivative(graph, value, leaf) for leaf in leaves] for value in values]
+
+
+def best_with_jacobian(
+    graph: Graph, block: Block, shared: Sequence[Value]
+) -> tuple[list[Value], list[list[Value]]]:
+    """Return the cheapest values and Jacobian rows of ``block``.
+
+    Derivatives by parameters have no say in the choice: there are many, mostly made in set-up.
+
+    shared : values that are computed anyway, which both may use
+    """
+    leaves = [leaf for quantity in block.inputs for leaf in quantity]
+    varying = tuple(q for q in block.inputs if not all(graph.fixed[node] for _, node in q))
+    values, rows = _best_by_varying(graph, Block(block.values, varying), shared)
+    if len(varying) == len(block.inputs):
+        return values, rows
+    own = [leaf for quantity in varying for leaf in quantity]
+    fixed = [leaf for leaf in leaves if leaf not in own]
+    more = jacobian(graph, values, fixed)
+    by_leaf = [
+        dict(zip((*own, *fixed), (*a, *b), strict=True)) for a, b in zip(rows, more, strict=True)
+    ]
+    return values, [[row[leaf] for leaf in leaves] for row in by_leaf]
+
+
+def _best_by_varying(
+    graph: Graph, block: Block, shared: Sequence[Value]
+) -> tuple[list[Value], list[list[Value]]]:
+    leaves = [leaf for quantity in block.inputs for leaf in quantity]
+    forms = value_forms(graph, block)
+    jacobians = _cheapest(graph, [jacobian(graph, form, leaves) for form in forms])
+    forms = sorted(forms, key=lambda form: cost(graph, form))[:FINALISTS]
+    choices: list[tuple[tuple[int, int], tuple[Value, ...], list[list[Value]]]] = []
+    for rows in jacobians:
+        homogeneous = by_euler(graph, block, rows)
+        either = [*forms, *([homogeneous] if homogeneous else [])]
+        choices += [(cost(graph, [*shared, *form, *_flat(rows)]), form, rows) for form in either]
+    _, best, rows = min(choices, key=lambda choice: choice[0])
+    return list(best), rows
+
+
+def _cheapest(graph: Graph, jacobians: list[list[list[Value]]]) -> list[list[list[Value]]]:
+    return sorted(jacobians, key=lambda rows: cost(graph, _flat(rows)))[:FINALISTS]
+
+
+def _flat(rows: Sequence[Sequence[Value]]) -> list[Value]:
+    return [entry for row in rows for entry in row]
+
+
+def by_euler(
+    graph: Graph, block: Block, rows: Sequence[Sequence[Value]]
+) -> tuple[Value, ...] | None:
+    """Return the values of ``block`` from its Jacobian, None if Euler's theorem does not apply."""
+    expanded = _expanded(graph, block, frozenset())
+    degrees = None if expanded is None else _degrees(block, [m for t in expanded for m in t])
+    if degrees is None:
+        return None
+    starts, place = [], 0
+    for quantity in block.inputs:
+        starts.append(place)
+        place += len(quantity)
+    return tuple(_contracted(graph, block, row, starts, degrees) for row in rows)
+
+
+def _contracted(
+    graph: Graph, block: Block, row: Sequence[Value], starts: Sequence[int], degrees: dict[int, int]
+) -> Value:
+    parts = []
+    for q, k in degrees.items():
+        for i, leaf in enumerate(block.inputs[q]):
+            scaled = graph.cut("scaled", graph.mul([graph.number(Fraction(1, k)), leaf]))
+            entry = graph.let("entry", row[starts[q] + i])
+            parts.append(graph.mul([entry, scaled]))
+    return graph.add(parts)
+
+
+def _degrees(
+    block: Block, monomials: Sequence[tuple[tuple[int, int], ...]]
+) -> dict[int, int] | None:
+    """Return input quantities with degrees k such that every monomial has sum(degree / k) = 1."""
+    nodes = [frozenset(leaf[1] for leaf in quantity) for quantity in block.inputs]
+    found = [[degree(m, own) for own in nodes] for m in monomials]
+    for size in range(1, len(nodes) + 1):
+        for chosen in combinations(range(len(nodes)), size):
+            for powers in product((1, 2), repeat=size):
+                if all(_adds_up([row[q] for q in chosen], powers) for row in found):
+                    return dict(zip(chosen, powers, strict=True))
+    return None
+
+
+def _adds_up(degrees: Sequence[int | None], powers: Sequence[int]) -> bool:
+    if any(d is None for d in degrees):
+        return False
+    return sum(Fraction(d or 0, k) for d, k in zip(degrees, powers, strict=True)) == 1

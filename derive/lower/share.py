@@ -1,0 +1,153 @@
+"""What several products or several sums have in common is computed once.
+
+The pair that occurs in most of them is computed once and put in its place, until no pair occurs
+twice; then signs are turned so that few values must be negated. Ties go to what came first.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+from itertools import combinations
+
+from derive.lower.graph import UNIT
+from derive.lower.table import Signed, Table, product
+
+
+def halve(table: Table) -> None:
+    """Write 2 x as x + x where x is there anyway, so that sums can share it."""
+    for key, addends in table.addends.items():
+        table.addends[key] = [
+            term for sign, addend in addends for term in _halves(table, sign, addend)
+        ]
+
+
+def _halves(table: Table, sign: int, addend: int) -> list[Signed]:
+    factors = table.factors.get(addend, [])
+    constants = [f for f in factors if f in table.constants]
+    if len(constants) != 1:
+        return [(sign, addend)]
+    coefficient, node = table.constants[constants[0]]
+    rest = [f for f in factors if f not in table.constants]
+    half = (coefficient / 2, node)
+    if half == UNIT:
+        return [(sign, product(table, rest))] * 2
+    known = ("constant", half) in table.keys
+    wanted = ("product", *sorted([*rest, table.keys[("constant", half)]])) if known else None
+    if wanted is None or wanted not in table.keys:
+        return [(sign, addend)]
+    return [(sign, table.keys[wanted])] * 2
+
+
+def share_products(table: Table) -> None:
+    """Compute every pair of factors that several products have in common once."""
+    while True:
+        counts: Counter[tuple[int, int]] = Counter()
+        for factors in table.factors.values():
+            counts.update({(a, b) for a, b in combinations(factors, 2) if _may_pair(table, a, b)})
+        best = _most(counts)
+        if best is None:
+            return
+        key, _ = table.key("product", *best)
+        for whole, factors in table.factors.items():
+            while whole != key and not Counter(best) - Counter(factors):
+                for factor in best:
+                    factors.remove(factor)
+                factors.append(key)
+                factors.sort()
+        table.factors[key] = list(best)
+
+
+def _may_pair(table: Table, a: int, b: int) -> bool:
+    return not (a in table.inverse and b in table.inverse)
+
+
+def _most(counts: Counter) -> tuple | None:  # type: ignore[type-arg]
+    most = max(counts.values(), default=0)
+    return min(pair for pair, n in counts.items() if n == most) if most > 1 else None
+
+
+def share_sums(table: Table) -> None:
+    """Compute every signed pair of terms that several sums have in common once."""
+    while True:
+        counts: Counter[tuple[int, int, int]] = Counter()
+        for addends in table.addends.values():
+            counts.update({_pair(p, q) for p, q in combinations(addends, 2)})
+        best = _most(counts)
+        if best is None:
+            return
+        first, second, relative = best
+        key, _ = table.key("pair", *best)
+        for total, addends in table.addends.items():
+            if total != key:
+                _put_pair(addends, best, key)
+        table.addends[key] = [(1, first), (relative, second)]
+
+
+def _pair(p: Signed, q: Signed) -> tuple[int, int, int]:
+    first, second = sorted((p, q), key=lambda term: term[1])
+    return first[1], second[1], first[0] * second[0]
+
+
+def _put_pair(addends: list[Signed], pair: tuple[int, int, int], key: int) -> None:
+    first, second, relative = pair
+    for sign in (1, -1):
+        wanted = Counter([(sign, first), (sign * relative, second)])
+        while not wanted - Counter(addends):
+            for term in wanted.elements():
+                addends.remove(term)
+            addends.append((sign, key))
+
+
+def orient(table: Table, results: Sequence[Signed | None]) -> list[Signed | None]:
+    """Turn the signs of sums and constants so that few values must be negated.
+
+    Returns the results so changed: a sum or constant with the opposite sign costs nothing.
+    """
+    changed = list(results)
+    as_they_are = {key for _, terms in table.calls.values() for _, key in terms}
+    as_they_are |= set(table.inverse.values())
+    needed = _negations(table, changed)
+    for key in [*table.addends, *table.constants] * 2:
+        signed = _signed_by(table, key)
+        if not signed & as_they_are:
+            turned = _turned(table, changed, key, signed)
+            now = _negations(table, turned)
+            if now < needed:
+                changed, needed = turned, now
+            else:
+                _turned(table, turned, key, signed)
+    return changed
+
+
+def _signed_by(table: Table, key: int) -> set[int]:
+    """Return ``key`` and every product whose sign turns with it."""
+    signed = {key}
+    while True:
+        odd = {
+            product_key
+            for product_key, factors in table.factors.items()
+            if sum(factor in signed for factor in factors) % 2
+        }
+        if odd | {key} == signed:
+            return signed
+        signed = odd | {key}
+
+
+def _turned(
+    table: Table, results: Sequence[Signed | None], key: int, signed: set[int]
+) -> list[Signed | None]:
+    """Give ``key`` the opposite sign and turn every use of it; return the results so changed."""
+    if key in table.constants:
+        factor, node = table.constants[key]
+        table.constants[key] = (-factor, node)
+    else:
+        table.addends[key] = [(-sign, addend) for sign, addend in table.addends[key]]
+    for total, addends in table.addends.items():
+        if any(addend in signed for _, addend in addends):
+            table.addends[total] = [(-s, k) if k in signed else (s, k) for s, k in addends]
+    return [(-r[0], r[1]) if r is not None and r[1] in signed else r for r in results]
+
+
+def _negations(table: Table, results: Sequence[Signed | None]) -> int:
+    """Return how many values must be negated: sums without a plus, and negative results."""
+    sums = sum(all(sign < 0 for sign, _ in addends) for addends in table.addends.values())
+    return sums + len({r for r in results if r is not None and r[0] < 0})

@@ -1,0 +1,226 @@
+"""A scene's functions as programs: what depends on parameters only is computed once, in set-up.
+
+All functions of a scene share one graph, one set-up and one struct of named constants. Set-up runs
+in twice the working precision and rounds each constant once.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from math import prod
+
+from derive.lower.graph import ONE, Graph, Value
+from derive.lower.schedule import schedule
+from derive.lower.wording import spelling
+from derive.program.arithmetic import EXACT
+from derive.program.program import (
+    Line,
+    Op,
+    Operand,
+    Program,
+    Quantity,
+    Rule,
+    Sparsity,
+    every_op,
+    operands_of,
+    renamed,
+)
+from derive.program.recorded import needed
+from derive.program.tape import free_prefix
+
+
+@dataclass
+class Constants:
+    """The constants that a scene's hot functions need, in the order they were asked for."""
+
+    graph: Graph
+    names: dict[Value, str] = field(default_factory=dict)
+
+    def operand(self, value: Value) -> Operand:
+        """Return the number or the name that stands for a parameter-only value."""
+        number = exact_number(self.graph, value)
+        if number is not None:
+            return number
+        if value not in self.names:
+            self.names[value] = self._fresh(value)
+        return self.names[value]
+
+    def _fresh(self, value: Value) -> str:
+        coefficient, node = value
+        kind, *rest = self.graph.nodes[node]
+        taken = set(self.names.values())
+        own = rest[0] if kind == "input" else self.graph.names.get(node, "")
+        if coefficient == 1 and own.isidentifier() and own not in taken:
+            return own
+        taken |= self.graph.leaf_names()
+        spelled = spelling(self.graph, value)
+        if spelled and spelled not in taken:
+            return spelled
+        return next(name for n in range(1, len(taken) + 2) if (name := f"k{n}") not in taken)
+
+
+def exact_number(graph: Graph, value: Value) -> Fraction | None:
+    """Return what a value without parameters is, None if it has some or is irrational."""
+    coefficient, node = value
+    kind, *rest = graph.nodes[node]
+    if kind == "one":
+        return coefficient
+    parts = {n: exact_number(graph, (Fraction(1), n)) for n in graph.below(node)}
+    known = {n: part for n, part in parts.items() if part is not None}
+    if kind == "input" or len(known) < len(parts):
+        return None
+    made: Fraction | None = None
+    if kind in ("let", "cut"):
+        made = rest[0][0] * known[rest[0][1]]
+    elif kind == "sum":
+        made = sum((c * known[n] for c, n in rest[0]), Fraction(0))
+    elif kind == "product":
+        made = prod((known[n] ** p for n, p in rest[0]), start=Fraction(1))
+    elif rest[0] == "power_of_two":
+        made = EXACT["power_of_two"](rest[1][0][0] * known[rest[1][0][1]])
+    return None if made is None else coefficient * made
+
+
+@dataclass(frozen=True)
+class Traced:
+    """The part of set-up that the formulas of motion were traced to.
+
+    given : the graph's value of each input of the tape
+    names : the constants that functions read, by operand
+    """
+
+    ops: tuple[Line, ...]
+    given: Mapping[str, Value]
+    names: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Tried:
+    """The part of set-up that finds out whether its parameters are admissible.
+
+    given : the graph's value of each input of the tape
+    """
+
+    ops: tuple[Line, ...] = ()
+    given: Mapping[str, Value] = field(default_factory=dict)
+    rules: tuple[Rule, ...] = ()
+
+
+@dataclass(frozen=True)
+class Constant:
+    """One named constant and the formula it is made by."""
+
+    name: str
+    formula: str
+
+
+def hot(
+    graph: Graph, constants: Constants, values: Sequence[Value], taken: Iterable[str]
+) -> tuple[tuple[Op, ...], tuple[Operand, ...]]:
+    """Return the operations that every call runs, and the operands of the results.
+
+    taken : names of the scene, which no operation may have
+    """
+    prefix = free_prefix("t", graph.leaf_names() | set(constants.names.values()) | set(taken))
+    return schedule(graph, values, lambda node: graph.fixed[node], constants.operand, prefix)
+
+
+def in_pairs(program: Program, constants: set[str]) -> Program:
+    """Return ``program`` for pairs of floats: each constant comes with what its rounding left."""
+    used = operands_of(program.ops, program.results) & constants
+    ordered = [c for q in program.inputs for c in q.components if c in used]
+    every = {n for q in (*program.inputs, *program.outputs) for n in (q.name, *q.components)}
+    prefix = free_prefix("w", operands_of(program.ops, program.results) | every)
+    whole: dict[Operand, Operand] = {c: f"{prefix}{place}" for place, c in enumerate(ordered)}
+    joined = tuple(
+        Op(f"{prefix}{place}", "add", (c, f"{c}_low")) for place, c in enumerate(ordered)
+    )
+    ops = renamed(program.ops, {name: o for name, o in whole.items() if isinstance(name, str)})
+    results = tuple(whole.get(r, r) for r in program.results)
+    return replace(program, ops=joined + ops, results=results, arithmetic="pairs")
+
+
+def with_low_parts(made: Program) -> Program:
+    """Return set-up that also gives what rounding each constant left."""
+    (constants,) = made.outputs
+    computed = {op.result for op, _ in every_op(made.ops)}
+    rounded = [r for r in dict.fromkeys(made.results) if isinstance(r, str) and r in computed]
+    lows = tuple(Op(f"{r}low", "low", (r,)) for r in rounded)
+    low_of: dict[Operand, str] = {r: op.result for r, op in zip(rounded, lows, strict=True)}
+    names = tuple(n for c in constants.components for n in (c, f"{c}_low"))
+    zero = Fraction(0)
+    results = tuple(x for r in made.results for x in (r, low_of.get(r, zero)))
+    both = replace(constants, components=names, shape=(len(names),))
+    return replace(made, outputs=(both,), ops=made.ops + lows, results=results)
+
+
+def setup(
+    graph: Graph,
+    constants: Constants,
+    parameters: Sequence[Quantity],
+    traced: Traced,
+    tried: Tried,
+) -> Program:
+    """Return the program that makes the constants from the parameters.
+
+    traced : what the formulas of motion need, worked out after the graph's constants
+    tried  : what is found out about the parameters, last
+    """
+    ops, own, placed, asked = _scheduled(graph, constants, traced, tried)
+    made = (*own, *(placed.get(o, o) for o in traced.names))
+    rules = tuple(replace(r, value=asked.get(str(r.value), r.value)) for r in tried.rules)
+    whole = (*ops, *renamed(traced.ops, placed), *renamed(tried.ops, asked))
+    asking = (*placed.values(), *asked.values(), *(rule.value for rule in rules))
+    whole = needed(whole, (*made, *asking))  # a trace may hold what no constant rests on
+    names = (*constants.names.values(), *traced.names.values())
+    says = "constants made of parameters only, for the functions of this scene"
+    output = Quantity("constants", names, (len(names),), "", "", None, None, says)
+    return Program(
+        "setup",
+        "Make the constants of this scene from its parameters; call it once.",
+        used_inputs(parameters, whole, (*own, *placed.values(), *asked.values())),
+        (output,) if names else (),
+        whole,
+        made,
+        rules=rules,
+    )
+
+
+def _scheduled(
+    graph: Graph, constants: Constants, traced: Traced, tried: Tried
+) -> tuple[tuple[Op, ...], tuple[Operand, ...], dict[str, Operand], dict[str, Operand]]:
+    """Return operations, the graph's constants, and the operands given to ``traced``, ``tried``."""
+    values = [*constants.names, *traced.given.values(), *tried.given.values()]
+    ops, results = schedule(
+        graph,
+        values,
+        lambda node: node == ONE,
+        lambda value: value[0],
+        free_prefix("s", graph.leaf_names()),
+    )
+    own, given = len(constants.names), len(traced.given)
+    placed = dict(zip(traced.given, results[own : own + given], strict=True))
+    asked = dict(zip(tried.given, results[own + given :], strict=True))
+    return ops, results[:own], placed, asked
+
+
+def used_inputs(
+    quantities: Sequence[Quantity], ops: Sequence[Line], results: Sequence[Operand]
+) -> tuple[Quantity, ...]:
+    """Return the quantities of which some component is used: inputs follow from use."""
+    used = operands_of(ops, results)
+    return tuple(q for q in quantities if used & set(q.components))
+
+
+def compressed(
+    rows: Sequence[Sequence[Value]], row_names: Sequence[str], column_names: Sequence[str]
+) -> tuple[Sparsity, list[Value]]:
+    """Return the pattern and the nonzeros of a matrix in compressed-column order."""
+    colind, row, nonzeros = [0], list[int](), list[Value]()
+    for column in range(len(column_names)):
+        for place, entries in enumerate(rows):
+            if entries[column][0]:
+                row.append(place)
+                nonzeros.append(entries[column])
+        colind.append(len(row))
+    return Sparsity(tuple(row_names), tuple(column_names), tuple(colind), tuple(row)), nonzeros

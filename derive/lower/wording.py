@@ -1,0 +1,92 @@
+"""Parameter-only values in words: a name for a struct's field, a formula for its comment."""
+
+from fractions import Fraction
+
+from derive.lower.graph import ONE, Graph, Value
+
+_COEFFICIENTS = {
+    Fraction(1): "",
+    Fraction(2): "twice_",
+    Fraction(1, 2): "half_",
+    Fraction(-1): "minus_",
+}
+SPELLED_FACTORS = 4
+
+
+def spelling(graph: Graph, value: Value) -> str:
+    """Return a name that spells a short product, quotient or difference of names, or nothing.
+
+    >>> g = Graph()
+    >>> half = g.number(Fraction(1, 2))
+    >>> spelling(g, g.mul([half, g.parameter("C"), g.power(g.parameter("A"), -1)]))
+    'half_C_over_A'
+    """
+    coefficient, node = value
+    if coefficient not in _COEFFICIENTS:
+        return ""
+    kind, *rest = graph.nodes[node]
+    name = ""
+    if kind == "product" and sum(abs(p) for _, p in rest[0]) <= SPELLED_FACTORS:
+        top = [_named(graph, n) for n, p in rest[0] for _ in range(p)]
+        bottom = [_named(graph, n) for n, p in rest[0] for _ in range(-p)]
+        if all((*top, *bottom)):
+            name = "_".join(top or ["one"]) + ("_over_" + "_".join(bottom) if bottom else "")
+    elif kind == "sum" and len(rest[0]) == 2 and all(abs(c) == 1 for c, _ in rest[0]):
+        (first, a), (second, b) = rest[0]
+        if _named(graph, a) and _named(graph, b):
+            joint = "_plus_" if first * second > 0 else "_minus_"
+            name = _named(graph, a) + joint + _named(graph, b)
+    else:
+        name = _named(graph, node)
+    spelled = _COEFFICIENTS[coefficient] + name if name else ""
+    return spelled.replace("twice_one_over", "two_over").replace("half_one_over", "half_over")
+
+
+def _named(graph: Graph, node: int) -> str:
+    kind, *rest = graph.nodes[node]
+    own = str(rest[0]) if kind == "input" else graph.names.get(node, "")
+    return own if own.isidentifier() else ""
+
+
+def formula(graph: Graph, value: Value) -> str:
+    """Return ``value`` as text in parameters and named values.
+
+    >>> g = Graph()
+    >>> formula(g, g.mul([g.number(2), g.parameter("m"), g.power(g.parameter("r"), 2)]))
+    '2*m*r^2'
+    """
+    coefficient, node = value
+    sign = "-" if coefficient < 0 else ""
+    factor = "" if abs(coefficient) == 1 else str(abs(coefficient))
+    if node == ONE:
+        return str(coefficient)
+    body = _node_text(graph, node)
+    if factor and graph.nodes[node][0] == "sum":
+        body = f"({body})"
+    return sign + (f"{factor}*{body}" if factor else body)
+
+
+def _node_text(graph: Graph, node: int) -> str:
+    if node in graph.names:
+        return graph.names[node]
+    kind, *rest = graph.nodes[node]
+    if kind == "input":
+        return str(rest[0])
+    if kind == "call":
+        return f"{rest[0]}({', '.join(formula(graph, v) for v in rest[1])})"
+    if kind == "sum":
+        text = " + ".join(formula(graph, v) for v in rest[0])
+        return text.replace("+ -", "- ")
+    top = [_power_text(graph, n, p) for n, p in rest[0] if p > 0]
+    bottom = [_power_text(graph, n, -p) for n, p in rest[0] if p < 0]
+    above = "*".join(top) or "1"
+    if not bottom:
+        return above
+    return f"{above}/{bottom[0]}" if len(bottom) == 1 else f"{above}/({'*'.join(bottom)})"
+
+
+def _power_text(graph: Graph, node: int, power: int) -> str:
+    body = _node_text(graph, node)
+    if graph.nodes[node][0] in ("sum", "product") and node not in graph.names:
+        body = f"({body})"
+    return body if power == 1 else f"{body}^{power}"

@@ -1,0 +1,98 @@
+"""Operations in the order in which the outputs need them."""
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from derive.lower.graph import Value
+from derive.lower.table import Signed, Table
+from derive.program.program import Op, Operand
+
+
+@dataclass
+class Writer:
+    """Writes operations in the order in which the outputs need them."""
+
+    table: Table
+    constant: Callable[[Value], Operand]
+    prefix: str
+    ops: list[Op] = field(default_factory=list)
+    done: dict[int, Operand] = field(default_factory=dict)
+
+    written: dict[tuple[object, ...], str] = field(default_factory=dict)
+
+    def emit(self, operator: str, *operands: Operand) -> str:
+        """Return the name of an operation's result; no operation is written twice."""
+        same = sorted(operands, key=str) if operator in ("add", "mul") else operands
+        key = (operator, *same)
+        if key not in self.written:
+            self.written[key] = f"{self.prefix}{len(self.ops)}"
+            self.ops.append(Op(self.written[key], operator, operands))
+        return self.written[key]
+
+    def operand(self, key: int) -> Operand:
+        """Return the operand that holds ``key``, written if need be."""
+        if key not in self.done:
+            self.done[key] = self._write(key)
+        return self.done[key]
+
+    def signed(self, term: Signed) -> Operand:
+        """Return the operand that holds a signed key."""
+        sign, key = term
+        operand = self.operand(key)
+        if sign > 0:
+            return operand
+        return -operand if isinstance(operand, Fraction) else self.emit("neg", operand)
+
+    def _write(self, key: int) -> Operand:
+        table = self.table
+        if key in table.leaves:
+            return table.leaves[key]
+        if key in table.constants:
+            return self.constant(table.constants[key])
+        if key in table.calls:
+            function, terms = table.calls[key]
+            return self.emit(function, *(self.signed(term) for term in terms))
+        if key in table.inverse:
+            return self.emit("div", Fraction(1), self.operand(table.inverse[key]))
+        if key in table.addends:
+            return self._sum(table.addends[key])
+        return self._multiplied(table.factors[key])
+
+    def _sum(self, addends: list[Signed]) -> Operand:
+        plus = [key for sign, key in addends if sign > 0]
+        minus = [key for sign, key in addends if sign < 0]
+        first, *rest = plus or minus
+        total = self.operand(first)
+        for key in rest:
+            total = self.emit("add", total, self.operand(key))
+        if not plus:
+            return self.emit("neg", total)
+        for key in minus:
+            total = self.emit("sub", total, self.operand(key))
+        return total
+
+    def _multiplied(self, factors: list[int]) -> Operand:
+        shared = {f for f in factors if f in self.done}
+        top = [f for f in factors if f not in self.table.inverse or f in shared]
+        top.sort(key=lambda f: f in self.table.constants)  # constants last: they come from memory
+        bottom = [
+            self.table.inverse[f] for f in factors if f in self.table.inverse and f not in shared
+        ]
+        total: Operand = self.operand(top[0]) if top else Fraction(1)
+        for key in top[1:]:
+            total = self.emit("mul", total, self.operand(key))
+        if not bottom:
+            return total
+        divisor = self.operand(bottom[0])
+        for key in bottom[1:]:
+            divisor = self.emit("mul", divisor, self.operand(key))
+        return self.emit("div", total, divisor)
+
+
+def shared_reciprocals(table: Table, writer: Writer) -> None:
+    uses = Counter(f for factors in table.factors.values() for f in set(factors))
+    for inverse in table.inverse:
+        if uses[inverse] > 1:
+            writer.operand(inverse)

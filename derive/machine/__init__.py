@@ -1,1 +1,0 @@
-"""Machines: from declared frames, bodies and loads to the equations that the answers need."""

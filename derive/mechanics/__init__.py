@@ -1,0 +1,1 @@
+"""A scene in, problems out: which equations its answers need, of which unknowns."""

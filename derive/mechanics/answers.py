@@ -1,0 +1,292 @@
+"""What each wanted answer is made of: unknowns, energies, momenta, results, small motion."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from sympy import Expr, Integer, Matrix, Symbol
+
+from derive.mechanics.balances import Balance, Balances, Row
+from derive.mechanics.bodies import centre, centre_velocity, kinetic_energy, mass, momentum
+from derive.mechanics.choice import (
+    chosen,
+    clearly_told,
+    contradiction,
+    require_no_ring,
+    unbalanced,
+)
+from derive.mechanics.frames import ZERO, Frames
+from derive.mechanics.linearised import linearised
+from derive.mechanics.loads import potential_energy
+from derive.mechanics.matter import without_factors
+from derive.mechanics.pivots import where
+from derive.mechanics.probe import NOTHING, POINTS, Probe, independent
+from derive.mechanics.question import Question, substituted
+from derive.mechanics.specialise import stated
+from derive.mechanics.sweep import Weakest, probe_at, ranges, regular, weakest
+from derive.mechanics.words import MATRICES
+from derive.program.program import Quantity
+from derive.scene import Input, Machine, SceneError
+from derive.scene.formula import Formula
+from derive.scene.results import written_out
+from derive.scene.wanted import JACOBIAN
+
+TRIES = 6  # places at which balances must be independent, found one after another
+FRAME_STEPS = ("angular_velocities_add", "acceleration_seen_from_axes")
+
+
+def balance_steps(balances: Iterable[Balance]) -> tuple[str, ...]:
+    """Return the lecture steps that balances are written by."""
+    kinds = {balance.kind for balance in balances}
+    force = ("mass_centre_motion",) if "force" in kinds else ()
+    moment = ("general_form", "moving_point_form", "any_point_form")
+    return force + (moment if "moment" in kinds else ())
+
+
+@dataclass
+class Answers:
+    """The answers of a machine, each as an expression in unknowns and named quantities."""
+
+    machine: Machine
+    frames: Frames
+    balances: Balances
+
+    def question(self, base: str) -> Question:
+        """Return a wanted function as a question."""
+        asked = self.machine.asked
+        names = asked.get(base) or asked.get(base + JACOBIAN) or (base,)
+        if names == ("steady",):
+            return self._steady(base)
+        parts = {q: e for name in names for q, e in self._answer(name).items()}
+        quantities = tuple(parts)
+        answers = {
+            s: e for q, own in parts.items() for s, e in zip(self._symbols(q), own, strict=True)
+        }
+        steps = tuple(s for name in names for s in _STEPS.get(name, ()))
+        return self._asked(base, quantities, answers, steps)
+
+    def _symbols(self, q: Quantity) -> list[Symbol]:
+        return [self.frames.sheet.symbols[c] for c in q.components]
+
+    def _quantity(self, name: str) -> Quantity:
+        return self.frames.words.vocabulary[name]
+
+    def _asked(
+        self,
+        base: str,
+        outputs: tuple[Quantity, ...],
+        answers: Mapping[Symbol, Expr],
+        steps: tuple[str, ...],
+    ) -> Question:
+        sheet = self.frames.sheet
+        used = {s for e in (*answers.values(), *sheet.needed(answers.values()).values())
+                for s in e.free_symbols}  # fmt: skip
+        wanted = used & sheet.unknowns
+        rows, unknowns = self._regular(wanted)
+        written = tuple(self.balances.written(row) for row in rows)
+        definitions = sheet.needed([*written, *answers.values()])
+        held = tuple(row.balance for row in rows)
+        motion = FRAME_STEPS if definitions else ()
+        says = f"{_listed([q.meaning for q in outputs])}."
+        return Question(base, says[:1].upper() + says[1:], outputs, answers, definitions, written,
+                        unknowns, held, (*balance_steps(held), *steps, *motion))  # fmt: skip
+
+    def _regular(self, wanted: set[Symbol]) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
+        """Return balances that determine the unknowns wherever the machine itself does.
+
+        Where those chosen are found to depend on each other, others are, for that place too.
+        """
+        hard: list[Probe] = []
+        first = rows, unknowns = self._chosen(wanted, hard)
+        for _ in range(TRIES):
+            worst = self._weakest(rows, unknowns)
+            if not worst.vanishes:
+                return rows, unknowns
+            hard.append(probe_at(self.frames.words, worst.place, self.frames.sheet.definitions))
+            try:
+                rows, unknowns = self._chosen(wanted, hard)
+            except SceneError:
+                break
+        worst = self._weakest(*first)
+        if rows and self._told(first[1], worst):
+            names = ", ".join(f"'{self.frames.sheet.label(u)}'" for u in first[1])
+            rule = f"vanishes {where(worst.place)}, where the machine itself is regular"
+            raise SceneError(f"the divisor of {names} {rule}, and no other balances were found")
+        return first
+
+    def _weakest(self, rows: tuple[Row, ...], unknowns: tuple[Symbol, ...]) -> Weakest:
+        """Return where the balances are nearest to depending on each other."""
+        if not rows:
+            return Weakest(1.0, {})
+        sheet = self.frames.sheet
+        slopes = [sheet.split(self.balances.written(row))[1] for row in rows]
+        entries = [[own.get(u, Integer(0)) for u in unknowns] for own in slopes]
+        below = sheet.needed([e for row in entries for e in row])
+        return weakest(ranges(self.frames.words), below, lambda at: regular(at, entries))
+
+    def _told(self, unknowns: tuple[Symbol, ...], worst: Weakest) -> bool:
+        """Tell whether the machine itself determines the unknowns where some balances do not."""
+        every = self.balances.unknowns
+        place = probe_at(self.frames.words, worst.place, self.frames.sheet.definitions)
+        return clearly_told(self.balances, frozenset(map(every.index, unknowns)), place)
+
+    def _chosen(
+        self, wanted: set[Symbol], hard: Sequence[Probe]
+    ) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
+        every = self.balances.unknowns
+        missing = [s for s in wanted if s not in every]
+        if missing:
+            name = self.frames.sheet.label(missing[0])
+            raise SceneError(f"no balance holds '{name}', so it cannot be found")
+        if not wanted:
+            return (), ()
+        require_no_ring(self.balances, frozenset(every.index(s) for s in wanted))
+        if self.machine.steady is None and (sentence := contradiction(self.balances)):
+            raise SceneError(sentence)
+        rows, unknowns = chosen(self.balances, frozenset(every.index(s) for s in wanted), hard)
+        return rows, tuple(every[k] for k in sorted(unknowns))
+
+    def _answer(self, name: str) -> dict[Quantity, list[Expr]]:
+        if name == "state_rate" and not self._states:
+            raise SceneError("'state_rate' needs something free, and nothing is")
+        if name == "accelerations":
+            free = [m.unknown for m in (*self.machine.coordinates, *self.machine.speeds) if m.free]
+            if not free:
+                raise SceneError("'accelerations' needs a free coordinate or speed")
+            return {self._quantity(n): self._symbols(self._quantity(n)) for n in free}
+        if name == "state_rate":
+            return {self._quantity(f"{q.name}_rate"): self._rates(q) for q in self._states}
+        if name == "linearised":
+            return {self._quantity(n): self.matrices[n] for n in MATRICES}
+        q = self._quantity(name)
+        if name == "angular_momentum":
+            return {q: list(self.angular_momentum)}
+        if name in ("kinetic_energy", "potential_energy", "energy"):
+            return {q: [self.energy(name)]}
+        result = next((r for r in self.machine.results if r.name == name), None)
+        if result is not None:
+            return {q: [self.expression(result.formula)]}
+        return {q: list(self._symbols(q))}
+
+    @property
+    def _states(self) -> tuple[Quantity, ...]:
+        return self.frames.words.vocabulary.states
+
+    def _rates(self, q: Quantity) -> list[Expr]:
+        """Return the rates of a state: of a quaternion by the lecture, of others by their names."""
+        sheet = self.frames.sheet
+        if not q.is_quaternion:
+            return [sheet.rate(s) for s in self._symbols(q)]
+        frame = self.machine.frame(q.name.removeprefix("attitude_"))
+        assert frame.angular_velocity is not None  # noqa: S101
+        w, *v = self._symbols(q)
+        omega = self.frames.words.column(frame.angular_velocity)
+        known = {"q_w": w, "q_v": Matrix(v), "omega": omega}
+        return [stated("quaternion_rate_scalar", known), *stated("quaternion_rate_vector", known)]
+
+    def expression(self, formula: Formula) -> Expr:
+        """Return a formula of answers, with every result in it written out."""
+        whole = self.frames.words.expression(written_out(formula, self.machine.results))
+        symbols = self.frames.sheet.symbols
+        swaps: dict[Symbol, Expr] = {}
+        for name in ("kinetic_energy", "potential_energy", "energy"):
+            if symbols[name] in whole.free_symbols:
+                swaps[symbols[name]] = self.energy(name)
+        for k, axis in enumerate("xyz"):
+            own = symbols[f"angular_momentum_{axis}"]
+            if own in whole.free_symbols:
+                swaps[own] = self.frames.sheet.named(f"l.{axis}", self.angular_momentum[k])
+        for name in MATRICES:
+            own_ = self._symbols(self._quantity(name))
+            if whole.free_symbols & set(own_):
+                swaps |= dict(zip(own_, self.matrices[name], strict=True))
+        return whole.xreplace(swaps)
+
+    @cached_property
+    def matrices(self) -> Mapping[str, list[Expr]]:
+        """Return the entries of the matrices of small motion, column by column."""
+        made = linearised(self.machine, self.balances)
+        return {name: list(made[name].T) for name in MATRICES}
+
+    def energy(self, name: str) -> Expr:
+        """Return an energy of all bodies; what is not asked for may not exist."""
+        bodies = self.machine.bodies if name != "potential_energy" else ()
+        total = sum((kinetic_energy(self.frames, body.name) for body in bodies), Integer(0))
+        return total if name == "kinetic_energy" else total + potential_energy(self.frames)
+
+    @cached_property
+    def angular_momentum(self) -> Matrix:
+        """Return the angular momentum of bodies about the point that the scene names."""
+        frames, place = self.frames, self.machine.momentum
+        at = (place.frame, frames.words.column(place.at))
+        total = ZERO
+        for body in place.of:
+            own = frames.own(body)
+            spin = frames.carried(momentum(frames, body), own, place.frame)
+            v = frames.carried(centre_velocity(frames, body), own, place.frame)
+            if v != ZERO:
+                arm = frames.apart(at, centre(frames, body), place.frame)
+                known = {"M_G": ZERO, "rho_G": arm, "F": mass(frames, body) * v}
+                spin = spin + stated("moment_about_any_point", known)
+            total = total + spin
+        return total
+
+    def _steady(self, base: str) -> Question:
+        """Return what vanishes in a steady motion: a formula, or balances without an unknown."""
+        steady = self.machine.steady
+        assert steady is not None  # noqa: S101
+        q = self._quantity("steady")
+        if steady.vanishes is not None:
+            values: list[Expr] = [self.expression(steady.vanishes)]
+            return self._asked(base, (q,), dict(zip(self._symbols(q), values, strict=True)), ())
+        rows = self._at_rest(len(steady.unknown))
+        split = self.frames.sheet.split
+        written = [split(self.balances.written(row))[0] for row in rows]
+        answers = dict(zip(self._symbols(q), written, strict=True))
+        held = tuple(row.balance for row in rows)
+        found = self._asked(base, (q,), answers, balance_steps(held))
+        found = replace(found, balances=held)
+        still = substituted(found, dict.fromkeys(self._velocities, Integer(0)))
+        sought = {self.frames.sheet.symbols[name] for name in steady.unknown}
+        return without_factors(still, self.frames.words, sought)
+
+    @property
+    def _velocities(self) -> list[Symbol]:
+        """Return the rates of free coordinates, which are zero while motion is steady."""
+        rates = [c.rate for c in self.machine.coordinates if c.free]
+        return [self.frames.sheet.symbols[r.name] for r in rates if isinstance(r, Input)]
+
+    def _at_rest(self, count: int) -> list[Row]:
+        """Return so many independent balances that no reaction enters and that do not vanish."""
+        free = [m.unknown for m in (*self.machine.coordinates, *self.machine.speeds) if m.free]
+        every, symbols = self.balances.unknowns, self.frames.sheet.symbols
+        still = frozenset(every.index(symbols[n]) for n in free if symbols[n] in every)
+        found = unbalanced(self.balances, still)
+        rows = [row for row in found if _lasts(row)] or list(found)
+        kept = independent(({p: row.values[p][0] for p in range(POINTS)} for row in rows), count)
+        if len(kept) < count:
+            raise SceneError(
+                f"'steady' needs {count} balances that no reaction enters and that do not vanish "
+                f"by themselves, found {len(kept)}; say what vanishes instead, "
+                "as steady.vanishes = 'theta_ddot'"
+            )
+        return [rows[k] for k in kept]
+
+
+def _lasts(row: Row) -> bool:
+    """Tell whether a balance still says something where nothing but the steady motion is left."""
+    rest = row.values[-1]
+    return bool(abs(rest[0]) > NOTHING * max(map(abs, rest)))
+
+
+_STEPS = {
+    "kinetic_energy": ("koenig",),
+    "energy": ("koenig",),
+    "angular_momentum": ("angular_momentum",),
+    "linearised": ("general_form", "moving_point_form", "any_point_form"),
+}
+
+
+def _listed(parts: list[str]) -> str:
+    *first, last = [part or "result" for part in parts]
+    return f"{', '.join(first)} and {last}" if first else last

@@ -1,0 +1,265 @@
+"""Every balance that a machine offers: forces on any bodies, moments about any point, any axis.
+
+Whole vectors are valued at trial points in common axes, so that thousands of balances can be
+looked at; only those that are chosen are written out.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from typing import Literal
+
+from mpmath import mp
+from sympy import Expr, Integer, Matrix, Symbol
+
+from derive.mechanics.bodies import Effort, carries, moment_about
+from derive.mechanics.frames import ZERO, Frames, Point
+from derive.mechanics.loads import Wrench
+from derive.mechanics.probe import DIGITS, NOTHING, POINTS
+from derive.mechanics.specialise import stated
+from derive.mechanics.turning import unit_vector
+from derive.mechanics.valued import Array, Sides, Valued
+from derive.scene.machine import Force, Spring
+
+MOST_TOGETHER = 6
+FEW = 2  # bodies that are cut free together though no load joins them
+
+
+@dataclass(frozen=True)
+class Balance:
+    """One equation: bodies cut free, force or moment about a point, along an axis of a frame."""
+
+    bodies: tuple[str, ...]
+    kind: Literal["force", "moment"]
+    point: Point | None
+    spot: str
+    frame: str
+    axis: str
+    central: bool = False  # about the mass centre of its one body, whatever the spot is called
+
+    def __str__(self) -> str:
+        about = f" about {self.spot}" if self.kind == "moment" else ""
+        return f"{self.kind} on {' + '.join(self.bodies)}{about} along {self.axis} of {self.frame}"
+
+
+@dataclass(frozen=True)
+class Row:
+    """A balance with its coefficients at each trial point: the rest first, then the unknowns.
+
+    The last point is at rest, where what is independent elsewhere may not be.
+    """
+
+    balance: Balance
+    values: tuple[Array, ...]
+
+    @cached_property
+    def holds(self) -> frozenset[int]:
+        """Return which unknowns enter."""
+        found = set()
+        for row in self.values[:POINTS]:
+            size = max(abs(x) for x in row)
+            found |= {k - 1 for k, x in enumerate(row) if k and abs(x) > NOTHING * size}
+        return frozenset(found)
+
+    @cached_property
+    def empty(self) -> bool:
+        """Tell whether nothing is left: the balance holds by itself."""
+        return all(max(abs(x) for x in row) <= NOTHING for row in self.values[:POINTS])
+
+
+@dataclass
+class Balances:
+    """The efforts and loads of a machine, and the balances made of them."""
+
+    frames: Frames
+
+    @cached_property
+    def sides(self) -> Sides:
+        """Return what the motion of the bodies needs and what acts on them."""
+        return Sides(self.frames)
+
+    @cached_property
+    def efforts(self) -> Mapping[str, Effort]:
+        """Return what each body's motion needs."""
+        return self.sides.efforts
+
+    @cached_property
+    def wrenches(self) -> tuple[Wrench, ...]:
+        """Return all loads."""
+        return self.sides.wrenches
+
+    @cached_property
+    def unknowns(self) -> tuple[Symbol, ...]:
+        """Return the unknowns in order of their names' places."""
+        return self.sides.unknowns
+
+    @cached_property
+    def rows(self) -> tuple[Row, ...]:
+        """Return every balance that holds anything, plainest first."""
+        with mp.workdps(DIGITS):
+            most = min(len(self.efforts), MOST_TOGETHER)
+            return tuple(row for row in self._every(most) if not row.empty)
+
+    @cached_property
+    def alone(self) -> tuple[Row, ...]:
+        """Return the balances of single bodies."""
+        with mp.workdps(DIGITS):
+            return tuple(row for row in self._every(1) if not row.empty)
+
+    def _every(self, most: int) -> Iterator[Row]:
+        valued = [Valued(self.sides, probe) for probe in self.sides.probes]
+        names = list(self.efforts)
+        for size in range(1, most + 1):
+            for bodies in filter(self._joined, combinations(names, size)):
+                if all(self.frames.linked(self.efforts[bodies[0]].frame, self.efforts[b].frame)
+                       for b in bodies):  # fmt: skip
+                    yield from self._on(bodies, valued)
+
+    def _joined(self, bodies: tuple[str, ...]) -> bool:
+        """Tell whether bodies hang together by loads between them, or are few or all."""
+        if len(bodies) <= FEW or len(bodies) == len(self.efforts):
+            return True
+        pairs = [load for load in self.frames.machine.loads if isinstance(load, Force | Spring)]
+        reached = {bodies[0]}
+        for _ in bodies:
+            for load in pairs:
+                ends = {load.on, load.against}
+                if ends & reached and ends <= set(bodies):
+                    reached |= ends
+        return reached == set(bodies)
+
+    def _on(self, bodies: tuple[str, ...], valued: Sequence[Valued]) -> Iterator[Row]:
+        axes = self._axes(bodies, valued[0])
+        forces = [v.force(bodies) for v in valued]
+        for frame, axis in axes:
+            yield self._row(Balance(bodies, "force", None, "", frame, axis), valued, forces)
+        for spot, place in self._points(bodies, valued[0]):
+            moments = [v.moment(bodies, place) for v in valued]
+            central = self._central(bodies, place, valued[0])
+            for frame, axis in axes:
+                balance = Balance(bodies, "moment", place, spot, frame, axis, central)
+                yield self._row(balance, valued, moments)
+
+    def _row(
+        self,
+        balance: Balance,
+        valued: Sequence[Valued],
+        vectors: Sequence[Array],
+    ) -> Row:
+        k = "xyz".index(balance.axis)
+        values = tuple(
+            v.rotation(balance.frame)[:, k] @ vector
+            for v, vector in zip(valued, vectors, strict=True)
+        )
+        return Row(balance, values)
+
+    def _central(self, bodies: tuple[str, ...], place: Point, valued: Valued) -> bool:
+        """Tell whether a point is the mass centre of the one body, whatever it is called."""
+        centre = self.efforts[bodies[0]].centre
+        if len(bodies) > 1 or not self._reachable(centre[0], bodies):
+            return False
+        return bool(max(abs(valued.place(centre) - valued.place(place))) < NOTHING)
+
+    def _frames_of(self, bodies: tuple[str, ...]) -> list[str]:
+        """Return the frames whose axes and origins are near at hand for these bodies."""
+        own = [self.efforts[b].frame for b in bodies]
+        found = dict.fromkeys([*own, *(name for b in bodies for name in self.efforts[b].force)])
+        found |= dict.fromkeys(w.along for w in self.wrenches if w.body in bodies)
+        found |= dict.fromkeys(w.point[0] for w in self.wrenches if w.body in bodies)
+        for name in [*found]:
+            found |= dict.fromkeys(self.frames.chain(name))
+        return [name for name in found if self.frames.linked(own[0], name)]
+
+    def _axes(self, bodies: tuple[str, ...], valued: Valued) -> list[tuple[str, str]]:
+        found: list[tuple[str, str]] = []
+        seen: list[Array] = []
+        for frame in self._frames_of(bodies):
+            for k, axis in enumerate("xyz"):
+                e = valued.rotation(frame)[:, k]
+                if not any(abs(abs(e @ other) - 1) < NOTHING for other in seen):
+                    found.append((frame, axis))
+                    seen.append(e)
+        return found
+
+    def _points(self, bodies: tuple[str, ...], valued: Valued) -> list[tuple[str, Point]]:
+        """Return the points that moments of these bodies may be taken about."""
+        acting = [w for w in self.wrenches if w.body in bodies and w.force != ZERO]
+        inner = {w.load for w in acting if sum(v.load == w.load for v in acting) > 1}
+        alone = bodies if len(bodies) == 1 else ()
+        near: list[tuple[str, Point]] = [
+            *((f"the origin of {frame}", (frame, ZERO)) for frame in self._frames_of(bodies)),
+            *((f"the mass centre of {b}", self.efforts[b].centre) for b in alone),
+            *((f"the point of {w.load}", w.point) for w in acting if w.load not in inner),
+        ]
+        found: list[tuple[str, Point]] = []
+        seen: list[Array] = []
+        for spot, place in near:
+            if not self._reachable(place[0], bodies):
+                continue
+            at = valued.place(place)
+            if not any(max(abs(at - other)) < NOTHING for other in seen):
+                found.append((spot, place))
+                seen.append(at)
+        return found
+
+    def _reachable(self, frame: str, bodies: tuple[str, ...]) -> bool:
+        """Tell whether all that acts on bodies has a known place from a frame's origin."""
+        ends = [self.efforts[b].centre[0] for b in bodies]
+        ends += [w.point[0] for w in self.wrenches if w.body in bodies and w.force != ZERO]
+        return all(self.frames.placed(frame, e) and self.frames.linked(frame, e) for e in ends)
+
+    def written(self, row: Row) -> Expr:
+        """Return a balance as an expression that is zero, without unknowns that drop out of it."""
+        frames, sheet, balance = self.frames, self.frames.sheet, row.balance
+        e = unit_vector(balance.axis)
+        total: Expr = Integer(0)
+        for body in balance.bodies:
+            own = self.efforts[body]
+            if balance.point is not None and carries(frames, body, balance.point):
+                moment = moment_about(frames, body, balance.point[1])
+                total += (e.T * frames.carried(moment, own.frame, balance.frame))[0]
+                continue
+            force = sum((frames.carried(part, name, balance.frame)
+                         for name, part in own.force.items()), ZERO)  # fmt: skip
+            vector = force
+            if balance.kind == "moment":
+                vector = frames.carried(own.moment, own.frame, balance.frame)
+                vector = vector + self._shift(balance, own.centre, force)
+            total += (e.T * vector)[0]
+        for w in self.wrenches:
+            if w.body in balance.bodies:
+                total -= (e.T * self._load(balance, w))[0]
+        rest, slopes = sheet.split(total)
+        kept = {u: c for u, c in slopes.items() if self.unknowns.index(u) in row.holds}
+        return sheet.linear("balance", rest + sum((c * u for u, c in kept.items()), Integer(0)))
+
+    def at(self, row: Row, valued: Valued) -> Array:
+        """Return the coefficients of a balance at another place: the rest, then the unknowns."""
+        b = row.balance
+        vector = valued.force(b.bodies) if b.point is None else valued.moment(b.bodies, b.point)
+        found: Array = valued.rotation(b.frame)[:, "xyz".index(b.axis)] @ vector
+        return found
+
+    def carried_vectors(self, balance: Balance) -> int:
+        """Return how many vectors must be carried to other axes to write a balance."""
+        own = [f for b in balance.bodies for f in (self.efforts[b].frame, *self.efforts[b].force)]
+        own += [w.along for w in self.wrenches if w.body in balance.bodies]
+        return sum(frame != balance.frame for frame in own)
+
+    def _shift(self, balance: Balance, place: Point, force: Matrix) -> Matrix:
+        """Return the moment of a force at a place about the point of a balance."""
+        assert balance.point is not None  # noqa: S101
+        if force == ZERO:
+            return ZERO
+        arm = self.frames.apart(balance.point, place, balance.frame)
+        known = {"M_G": ZERO, "rho_G": self.frames.sheet.column("arm", arm), "F": force}
+        return stated("moment_about_any_point", known)
+
+    def _load(self, balance: Balance, w: Wrench) -> Matrix:
+        force = self.frames.carried(w.force, w.along, balance.frame)
+        if balance.kind == "force":
+            return force
+        return self.frames.carried(w.couple, w.along, balance.frame) + self._shift(
+            balance, w.point, force
+        )

@@ -1,0 +1,289 @@
+"""Which balances to use: the fewest unknowns beside those wanted, then the plainest equations."""
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from typing import Any
+
+import networkx as nx
+import numpy as np
+from mpmath import mp, mpf
+from numpy.typing import NDArray
+
+from derive.mechanics.balances import Balances, Row
+from derive.mechanics.probe import (
+    DIGITS,
+    NOTHING,
+    POINTS,
+    Probe,
+    independent,
+    independent_at_all,
+)
+from derive.mechanics.valued import Valued
+from derive.scene import Machine, SceneError
+from derive.scene.machine import Force
+
+GROUND = "the ground"
+FLOORS = (0.1, 0.02, 0.004)  # of a row of size one: what must be left of it beside the others
+MOST_EXTRA = 5  # unknowns that are solved along without being asked for, before all are
+MOST_SETS = 20_000
+MOST_TOLD = 2  # balances that a sentence names
+CLEAR = mpf(10) ** -25  # of a row of size one: what elimination leaves of 60 digits is far below
+
+Array = NDArray[Any]
+Chosen = tuple[tuple[Row, ...], frozenset[int]]
+
+
+def chosen(balances: Balances, wanted: frozenset[int], hard: Sequence[Probe] = ()) -> Chosen:
+    """Return balances for the ``wanted`` unknowns, and all unknowns that these balances hold.
+
+    hard : places at which the balances must be independent too, and clearly so
+    Raises SceneError, naming unknowns and balances, if the wanted ones cannot be told.
+    """
+    if not wanted:
+        return (), frozenset()
+    rows = sorted(
+        (row for row in balances.rows if row.holds),
+        key=lambda row: (
+            len(row.holds),
+            len(row.balance.bodies),
+            balances.carried_vectors(row.balance),
+        ),
+    )
+    if _cannot_be_told(balances, rows, wanted):
+        raise SceneError(undetermined(balances, wanted))
+    for unknowns in _sets(rows, wanted):
+        within = [row for row in rows if row.holds <= unknowns]
+        covered = frozenset(k for row in within for k in row.holds)
+        if len(within) < len(unknowns) or covered != unknowns:
+            continue
+        if hard:
+            kept = _clear(balances, within, unknowns, hard)
+            if kept:
+                return tuple(within[k] for k in kept), unknowns
+            continue
+        for tables in ((0, -1), (0,)):
+            each = [[_coefficients(row, point) for row in within] for point in tables]
+            kept = independent_at_all(each, len(unknowns))
+            if len(kept) == len(unknowns):
+                return tuple(within[k] for k in kept), unknowns
+    raise SceneError(undetermined(balances, wanted))
+
+
+def _clear(
+    balances: Balances, within: Sequence[Row], unknowns: frozenset[int], hard: Sequence[Probe]
+) -> list[int]:
+    """Return the first rows that are independent at hard places, by as much as can be had."""
+    tables = _tables(balances, within, unknowns, hard)
+    for floor in FLOORS:
+        kept: list[int] = []
+        bases: list[list[Array]] = [[] for _ in tables]
+        for n in range(len(within)):
+            left = [_off(table[n], basis) for table, basis in zip(tables, bases, strict=True)]
+            if all(np.linalg.norm(own) > floor for own in left):
+                for basis, own in zip(bases, left, strict=True):
+                    basis.append(own / np.linalg.norm(own))
+                kept.append(n)
+            if len(kept) == len(unknowns):
+                return kept
+    return []
+
+
+def _tables(
+    balances: Balances, rows: Sequence[Row], unknowns: frozenset[int], hard: Sequence[Probe]
+) -> list[Array]:
+    """Return the coefficients of rows at a trial point and at hard places, scaled to size 1."""
+    places = [1 + k for k in sorted(unknowns)]
+    with mp.workdps(DIGITS):
+        each = [[row.values[0] for row in rows]]
+        for probe in hard:
+            valued = Valued(balances.sides, probe)
+            each.append([balances.at(row, valued) for row in rows])
+    found = []
+    for own in each:
+        table = np.array([[float(values[k]) for k in places] for values in own])
+        for axis in (1, 0, 1):
+            size = np.linalg.norm(table, axis=axis, keepdims=True)
+            table = table / np.where(size > 0, size, 1)
+        found.append(table)
+    return found
+
+
+def _off(row: Array, basis: Sequence[Array]) -> Array:
+    """Return what is left of a row beside the directions of others."""
+    for direction in (*basis, *basis):
+        row = row - (row @ direction) * direction
+    return row
+
+
+def clearly_told(balances: Balances, unknowns: frozenset[int], place: Probe) -> bool:
+    """Tell whether all balances that hold only these unknowns tell them apart at a place."""
+    within = [row for row in balances.rows if row.holds and row.holds <= unknowns]
+    table = _tables(balances, within, unknowns, [place])[1]
+    size = np.linalg.svd(table, compute_uv=False)
+    return len(size) == len(unknowns) and bool(size[-1] > FLOORS[-1] * size[0])
+
+
+def require_no_ring(balances: Balances, wanted: frozenset[int]) -> None:
+    """Refuse a closed loop of bodies, by balances of single bodies, of which all others are sums.
+
+    So the thousands of balances of several bodies need not be valued to be found wanting.
+    """
+    label = balances.frames.sheet.label
+    names = {label(balances.unknowns[k]) for k in wanted}
+    loop = closed_loop(balances.frames.machine, names)
+    if loop and _cannot_be_told(balances, [r for r in balances.alone if r.holds], wanted):
+        raise SceneError(loop)
+
+
+def _cannot_be_told(balances: Balances, rows: Sequence[Row], wanted: frozenset[int]) -> bool:
+    """Tell whether even all balances together leave some wanted unknown open."""
+    count = len(balances.unknowns)
+    table = [_coefficients(row) for row in rows]
+    others = [{k: v for k, v in row.items() if k not in wanted} for row in table]
+    return len(independent(table, count)) - len(independent(others, count)) < len(wanted)
+
+
+def _sets(rows: Sequence[Row], wanted: frozenset[int]) -> Iterator[frozenset[int]]:
+    """Yield sets of unknowns that hold the wanted ones, small ones first."""
+    others = sorted(frozenset(k for row in rows for k in row.holds) - wanted)
+    tried = 0
+    for extra in range(min(MOST_EXTRA, len(others)) + 1):
+        for more in combinations(others, extra):
+            tried += 1
+            if tried > MOST_SETS:
+                break
+            yield wanted | frozenset(more)
+    yield wanted | frozenset(others)
+
+
+def _coefficients(row: Row, point: int = 0) -> dict[int, Any]:
+    return {k: row.values[point][1 + k] for k in sorted(row.holds)}
+
+
+def undetermined(balances: Balances, wanted: frozenset[int]) -> str:
+    """Return a sentence on unknowns that the balances cannot tell apart."""
+    label = balances.frames.sheet.label
+    names = [label(u) for u in balances.unknowns]
+    holding = [row for row in balances.rows if row.holds]
+    for k in sorted(wanted):
+        here = [row for row in holding if k in row.holds]
+        if not here:
+            return f"no balance holds '{names[k]}', so it cannot be found"
+    loop = closed_loop(balances.frames.machine, {names[k] for k in wanted})
+    if loop:
+        return loop
+    for k in sorted(wanted):
+        joint = _joint(balances, k)
+        if joint:
+            also = " and ".join(f"'{names[n]}'" for n in (k, *joint))
+            told = [str(row.balance) for row in holding if k in row.holds][:MOST_TOLD]
+            return (
+                f"unknowns {also} cannot be told apart: every balance that holds '{names[k]}' "
+                f"holds the others too, in one combination ({'; '.join(told)})"
+            )
+    found = ", ".join(f"'{names[k]}'" for k in sorted(wanted))
+    return f"the balances do not determine {found}"
+
+
+def closed_loop(machine: Machine, unknowns: set[str]) -> str:
+    """Return a sentence on bodies that loads with unknowns join in a ring, "" if there is none.
+
+    unknowns : those that cannot be found; one of them is an acceleration or a load's of the ring
+    """
+    of_loads = {u.name: u.load for u in machine.unknowns}
+    graph = nx.Graph()
+    for load in machine.loads:
+        if isinstance(load, Force) and load.name in of_loads.values():
+            graph.add_edge(load.on, load.against or GROUND, load=load.name)
+    for ring in nx.cycle_basis(graph, GROUND if GROUND in graph else None):
+        pairs = zip(ring, (*ring[1:], ring[0]), strict=True)
+        loads = [graph.edges[pair]["load"] for pair in pairs]
+        if all(of_loads.get(name, loads[0]) in loads for name in unknowns):
+            return (
+                f"bodies form a closed loop ({', '.join(ring)}), joined by the loads "
+                f"{', '.join(loads)}: a machine must be a tree, whose coordinates are free of each "
+                "other; open the loop, or prescribe what follows from the rest"
+            )
+    return ""
+
+
+def _joint(balances: Balances, k: int) -> list[int]:
+    """Return the unknowns without which ``k`` would be determined."""
+    with mp.workdps(DIGITS):
+        table = [_coefficients(row) for row in balances.rows if row.holds]
+        count = len(balances.unknowns)
+        for size in (1, 2, 3):
+            for left in combinations([n for n in range(count) if n != k], size):
+                fewer = [{n: v for n, v in row.items() if n not in left} for row in table]
+                rest = [{n: v for n, v in row.items() if n != k} for row in fewer]
+                if len(independent(fewer, count)) > len(independent(rest, count)):
+                    return list(left)
+    return []
+
+
+def unbalanced(balances: Balances, still: frozenset[int] = frozenset()) -> tuple[Row, ...]:
+    """Return the balances that hold no unknown but ``still`` ones and yet do not vanish."""
+    found = [row for row in balances.rows if row.holds <= still and _leaves_something(row)]
+    return tuple(
+        sorted(
+            found,
+            key=lambda row: (
+                len(row.balance.bodies),
+                len(row.holds),
+                balances.carried_vectors(row.balance),
+            ),
+        )
+    )
+
+
+def _leaves_something(row: Row) -> bool:
+    return all(abs(values[0]) > NOTHING * max(map(abs, values)) for values in row.values[:POINTS])
+
+
+def contradiction(balances: Balances) -> str:
+    """Return a sentence on balances that nothing can satisfy, or nothing if there are none."""
+    rows = unbalanced(balances)
+    if rows:
+        return (f"the {rows[0].balance} does not vanish and holds no unknown: "
+                "declare a load with an unknown there, or leave a motion free")  # fmt: skip
+    against = [_contradicted(balances.rows, point) for point in range(POINTS)]
+    if not all(against):
+        return ""
+    together = _least(against[0], 0)
+    told = " and ".join(f"the {row.balance}" for row in together[:MOST_TOLD])
+    more = f" and {len(together) - MOST_TOLD} more" if len(together) > MOST_TOLD else ""
+    return (f"{told}{more} contradict each other, whatever their unknowns are: "
+            "declare a load with an unknown more, or leave a motion free")  # fmt: skip
+
+
+def _least(rows: Sequence[Row], point: int) -> Sequence[Row]:
+    """Return those of contradictory balances without any of which the others can be satisfied."""
+    for row in rows:
+        fewer = [other for other in rows if other is not row]
+        if _contradicted(fewer, point):
+            rows = fewer
+    return rows
+
+
+def _contradicted(rows: Sequence[Row], point: int) -> list[Row]:
+    """Return the first balance that those before it leave no solution for, and those, at a point.
+
+    Nothing comes back if all balances can be satisfied.
+    """
+    kept: list[tuple[int, list[Any]]] = []
+    before: list[Row] = []
+    with mp.workdps(DIGITS):
+        for row in rows:
+            values = list(row.values[point])
+            size = max(map(abs, values))
+            left = [v / size for v in values]
+            for pivot, other in kept:
+                factor = left[pivot]
+                left = [v - factor * w for v, w in zip(left, other, strict=True)]
+            free = max(range(1, len(left)), key=lambda k: abs(left[k]), default=0)
+            if free and abs(left[free]) > CLEAR:
+                kept.append((free, [v / left[free] for v in left]))
+                before.append(row)
+            elif abs(left[0]) > CLEAR:
+                return [*before, row]
+    return []

@@ -1,0 +1,170 @@
+"""What acts on the bodies of a machine: every load as a force and a couple at a point."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from sympy import Expr, Integer, Matrix, Rational, sqrt
+
+from derive.mechanics.bodies import centre, mass, tensor
+from derive.mechanics.frames import ZERO, Frames, Point
+from derive.mechanics.probe import NOTHING, POINTS, at_rest, point
+from derive.mechanics.specialise import stated
+from derive.scene import SceneError
+from derive.scene.machine import INERTIAL, Force, Gradient, Load, Spring, Weight
+
+
+@dataclass(frozen=True)
+class Wrench:
+    """A force at a point of a body and a couple on it, both along the axes of a frame."""
+
+    load: str
+    body: str
+    point: Point
+    along: str
+    force: Matrix
+    couple: Matrix
+
+
+def wrenches(frames: Frames) -> tuple[Wrench, ...]:
+    """Return all that acts on the bodies."""
+    return tuple(w for load in frames.machine.loads for w in _of(frames, load))
+
+
+def _of(frames: Frames, load: Load) -> Iterator[Wrench]:
+    match load:
+        case Force():
+            yield from _force(frames, load)
+        case Weight():
+            yield from _weight(frames, load)
+        case Gradient():
+            yield from _gradient(frames, load)
+        case Spring():
+            yield from _spring(frames, load)
+
+
+def _force(frames: Frames, load: Force) -> Iterator[Wrench]:
+    point = (load.frame, frames.words.column(load.at))
+    force, couple = frames.words.column(load.force), frames.words.column(load.couple)
+    yield Wrench(load.name, load.on, point, load.along, force, couple)
+    if load.against:
+        yield Wrench(load.name, load.against, point, load.along, -force, -couple)
+
+
+def _weight(frames: Frames, load: Weight) -> Iterator[Wrench]:
+    g = frames.words.column(load.gravity)
+    for body in load.on:
+        force = mass(frames, body) * g
+        yield Wrench(load.name, body, centre(frames, body), load.along, force, ZERO)
+
+
+def _gradient(frames: Frames, load: Gradient) -> Iterator[Wrench]:
+    strength = frames.words.expression(load.strength)
+    for body in load.on:
+        own = frames.own(body)
+        c = frames.carried(frames.words.column(load.towards), load.along, own)
+        c = frames.sheet.column(f"{body}.towards", c)
+        known = {"k": strength * Rational(1, 3), "c": c, "I_G": tensor(frames, body)}
+        couple = stated("gravity_gradient", known)
+        yield Wrench(load.name, body, centre(frames, body), own, ZERO, couple)
+
+
+def stretched(frames: Frames, load: Spring) -> tuple[Matrix, str]:
+    """Return the vector from the spring's point on ``on`` to its other end, and its axes."""
+    start = (load.frame, frames.words.column(load.at))
+    end = (load.to_frame, frames.words.column(load.to))
+    top = frames.common(load.frame, load.to_frame)
+    if not frames.placed(load.frame, load.to_frame):
+        raise SceneError(f"load '{load.name}': the place of '{load.frame}' is not known in "
+                         f"'{load.to_frame}', so the spring has no length")  # fmt: skip
+    return frames.sheet.column(f"{load.name}.d", frames.apart(start, end, top)), top
+
+
+def _spring(frames: Frames, load: Spring) -> Iterator[Wrench]:
+    words, sheet = frames.words, frames.sheet
+    d, top = stretched(frames, load)
+    k, c, rest = (words.expression(f) for f in (load.stiffness, load.damping, load.length))
+    force: Matrix = k * d
+    if rest != 0 or c != 0:
+        _require_length(frames, load, (d.T * d)[0])
+        size = sheet.named(f"{load.name}.length", sqrt((d.T * d)[0]))
+        force = force - (k * rest / size) * d
+        opening = sum((x * v for x, v in zip(d, sheet.rate_of_column(d), strict=True)), Integer(0))
+        force = force + (c * opening / size**2) * d
+    force = sheet.column(f"{load.name}.force", force)
+    yield Wrench(load.name, load.on, (load.frame, words.column(load.at)), top, force, ZERO)
+    if load.against:
+        yield Wrench(load.name, load.against, (load.to_frame, words.column(load.to)), top,
+                     -force, ZERO)  # fmt: skip
+
+
+def _require_length(frames: Frames, load: Spring, square: Expr) -> None:
+    """Refuse a spring or damper whose ends coincide: its force would have no direction."""
+    words, sheet = frames.words, frames.sheet
+    for probe, where in ((point(words, 0), ""), (at_rest(words), " where all that varies is 0")):
+        probe.define(sheet.needed([square]))
+        if abs(probe.value(square)) <= NOTHING:
+            raise SceneError(
+                f"load '{load.name}': its two ends coincide{where}, so its force has no direction; "
+                "move an end, or leave out length and damper"
+            )
+
+
+def potential_energy(frames: Frames) -> Expr:
+    """Return the energy of weights and springs; a weight's is zero at the inertial origin.
+
+    A frame whose origin has no known place may carry a body that keeps its height: then the
+    energy is zero at that origin. Raises SceneError if a height or a force has no energy.
+    """
+    total: Expr = Integer(0)
+    for load in frames.machine.loads:
+        if isinstance(load, Weight):
+            for body in load.on:
+                g = frames.carried(frames.words.column(load.gravity), load.along, INERTIAL)
+                _keeps(frames, load.name, "gravity", list(g))
+                start = _level(frames, load.name, g, centre(frames, body)[0])
+                at = frames.apart((start, ZERO), centre(frames, body), INERTIAL)
+                total -= mass(frames, body) * (g.T * at)[0]
+        elif isinstance(load, Spring):
+            d, _ = stretched(frames, load)
+            k, rest = (frames.words.expression(f) for f in (load.stiffness, load.length))
+            _keeps(frames, load.name, "stiffness and length", [k, rest])
+            square = (d.T * d)[0]
+            size = sqrt(square) if rest != 0 else Integer(0)
+            total += Rational(1, 2) * k * (square - 2 * rest * size + rest**2)
+    return total
+
+
+def _keeps(frames: Frames, load: str, what: str, values: list[Expr]) -> None:
+    """Refuse the energy of a load that changes in the inertial frame by itself."""
+    if not all(_vanishes(frames, frames.sheet.rate(_held(frames, v))) for v in values):
+        rule = f"has no potential energy, for its {what} change with the motion"
+        raise SceneError(f"load '{load}' {rule}; ask for kinetic_energy and add it in results")
+
+
+def _held(frames: Frames, value: Expr) -> Expr:
+    """Return a value with inputs held, whose rates are not known."""
+    return value.xreplace(dict.fromkeys(frames.sheet.rateless, Integer(1)))
+
+
+def _level(frames: Frames, load: str, g: Matrix, name: str) -> str:
+    """Return the frame from whose origin heights count: inertial, or one that keeps its height."""
+    start = frames.anchor(name)
+    if start != INERTIAL:
+        climbs = frames.carried(frames.velocity(start), start, INERTIAL)
+        if not _vanishes(frames, (g.T * climbs)[0]):
+            raise SceneError(
+                f"load '{load}': the height of frame '{start}' is not known, for only the motion "
+                "of its origin is given; say where it is by origin, with a coordinate if need be, "
+                "or ask for kinetic_energy and add the weight's energy in results"
+            )
+    return start
+
+
+def _vanishes(frames: Frames, value: Expr) -> bool:
+    """Tell whether a value is zero whatever the machine does."""
+    for number in range(POINTS):
+        probe = point(frames.words, number)
+        probe.define(frames.sheet.needed([value]))
+        if abs(probe.value(value)) > NOTHING:
+            return False
+    return True

@@ -1,0 +1,117 @@
+"""What an answer does not depend on, found at trial points, and taken out of the equations.
+
+A quantity that is changed without any answer changing does not matter: a number takes its place.
+The programs that follow are proved against the equations in which it still stands.
+"""
+
+from collections.abc import Mapping, Sequence
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+from typing import Any
+
+from mpmath import mp, mpf
+from sympy import Expr, Integer, Symbol
+
+from derive.mechanics.probe import DIGITS, NOTHING, POINTS, another, point
+from derive.mechanics.question import Question, answered, substituted
+from derive.mechanics.words import Words
+from derive.scene import SceneError
+
+STAND_INS = (0, 1, 2, 3)
+
+
+@dataclass(frozen=True)
+class Lean:
+    """A question without what does not matter, and the symbols that were taken out."""
+
+    question: Question
+    cancelled: tuple[Symbol, ...]
+
+
+def lean(question: Question, words: Words) -> Lean:
+    """Return ``question`` without the arguments that its answers do not depend on.
+
+    Raises SceneError if an answer depends on data that the user left out.
+    """
+    own = _everywhere(question, words, [{}] * POINTS)
+    if own is None:
+        raise SceneError(f"'{question.name}' has no answer at a trial point: "
+                         "its balances are singular there")  # fmt: skip
+
+    def stay(changed: Sequence[Mapping[Symbol, Any]]) -> bool:
+        return _same(own, _everywhere(question, words, changed))
+
+    arguments = sorted(question.arguments(), key=str)
+    idle = [s for s in arguments if stay([{s: another(words, s, n)} for n in range(POINTS)])]
+    for symbol, what in words.hidden.items():
+        if symbol in arguments and symbol not in idle:
+            raise SceneError(f"'{question.name}' depends on {what}, which is not given")
+    taken: dict[Symbol, Expr] = {}
+    for symbol in idle:
+        for number in STAND_INS:
+            held = {s: mpf(int(x)) for s, x in (taken | {symbol: Integer(number)}).items()}
+            if stay([held] * POINTS):
+                taken[symbol] = Integer(number)
+                break
+    current = substituted(question, taken)
+    return Lean(current, tuple(s for s in idle if s in taken and s not in words.hidden))
+
+
+def _everywhere(
+    question: Question, words: Words, changed: Sequence[Mapping[Symbol, Any]]
+) -> list[Any] | None:
+    """Return the answers at all trial points in one list, each with values of its own changed."""
+    found: list[Any] = []
+    for number, values in enumerate(changed):
+        here = _answers(question, words, number, values)
+        if here is None:
+            return None
+        found += here
+    return found
+
+
+def _answers(
+    question: Question, words: Words, number: int, changed: Mapping[Symbol, Any]
+) -> list[Any] | None:
+    with mp.workdps(DIGITS):
+        try:
+            probe = point(words, number)
+            probe.values |= changed
+            probe.define(question.definitions)
+            return answered(question, words.sheet, probe)
+        except ZeroDivisionError:
+            return None
+
+
+def _same(first: list[Any] | None, second: list[Any] | None) -> bool:
+    if first is None or second is None:
+        return False
+    return all(
+        abs(a - b) <= NOTHING * max(abs(a), abs(b)) for a, b in zip(first, second, strict=True)
+    )
+
+
+def without_factors(question: Question, words: Words, sought: AbstractSet[Symbol]) -> Question:
+    """Return a question of what vanishes without the parameters that only multiply it.
+
+    sought : what it vanishes at, which is kept; so is a state: sines of angles have roots too
+
+    A factor moves no root: with it and without it the answers at two points are in one ratio.
+    """
+    taken: dict[Symbol, Expr] = {}
+    fixed = {words.sheet.symbols[c] for q in words.vocabulary.parameters for c in q.components}
+    for symbol in sorted((question.arguments() & fixed) - sought, key=str):
+        if _is_factor(question, words, symbol):
+            taken[symbol] = Integer(1)
+    return substituted(question, taken)
+
+
+def _is_factor(question: Question, words: Words, symbol: Symbol) -> bool:
+    here, there = (_answers(question, words, n, {symbol: mpf(2)}) for n in range(POINTS))
+    once, twice = (_answers(question, words, n, {symbol: mpf(3)}) for n in range(POINTS))
+    if here is None or there is None or once is None or twice is None:
+        return False
+    with mp.workdps(DIGITS):
+        left = [a * d for a, d in zip(here, twice, strict=True)]
+        right = [b * c for b, c in zip(there, once, strict=True)]
+    return _same(left, right)

@@ -1,0 +1,86 @@
+"""Pivots of an elimination that vanish nowhere in the declared ranges."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from sympy import Expr, Matrix, Symbol
+
+from derive.mechanics.sweep import Array, Field, Ranges, block, field_at, weakest
+from derive.scene import SceneError
+from derive.scene.escape import at_place
+
+Place = tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Pivots:
+    """The ranges, the named quantities below, and what the unknowns are called."""
+
+    ranges: Ranges
+    definitions: Mapping[Symbol, Expr]
+    label: Callable[[Symbol], str]
+
+    def vanish(self, matrix: Matrix, rows: Sequence[int]) -> bool:
+        """Tell whether some pivot vanishes, taken from rows in an order, columns as they stand."""
+        places = [(r, c) for c, r in enumerate(rows)]
+        return weakest(self.ranges, self.definitions, self._measure(matrix, places)).vanishes
+
+    def chosen(self, matrix: Matrix, unknowns: Sequence[Symbol], left: int) -> list[Place]:
+        """Return (row, column) of the pivots to take until so many rows are ``left``.
+
+        Raises SceneError where none is found, naming the divisor and where it vanishes.
+        """
+        found = field_at(self.ranges, self.ranges.points(), self.definitions)
+        A, taken = block(found, matrix.tolist()), list[Place]()
+        rows, columns = list(range(matrix.rows)), list(range(matrix.rows))
+        while len(rows) > left:
+            sizes = {(r, c): float(abs(A[:, r, c]).min()) for r in rows for c in columns}
+            r, c = max(sizes, key=lambda place: (round(sizes[place], 6), -place[0], -place[1]))
+            taken.append((r, c))
+            rows.remove(r)
+            columns.remove(c)
+            A = _eliminated(A, r, c)
+        worst = weakest(self.ranges, self.definitions, self._measure(matrix, taken))
+        if worst.vanishes:
+            names = ", ".join(f"'{self.label(u)}'" for u in unknowns)
+            raise SceneError(f"a divisor of {names} vanishes {where(worst.place)}")
+        return taken
+
+    def _measure(self, matrix: Matrix, places: Sequence[Place]) -> Callable[[Field], Any]:
+        """Return the smallest pivot, and singular value of what is left, of scaled matrices."""
+
+        def smallest(found: Field) -> Array:
+            A = block(found, matrix.tolist())
+            each: list[Array] = []
+            for r, c in places:
+                each.append(abs(A[:, r, c]))
+                A = _eliminated(A, r, c)
+            rows, columns = (
+                [n for n in range(matrix.rows) if n not in {p[k] for p in places}] for k in (0, 1)
+            )
+            if rows:
+                left = np.nan_to_num(A[:, rows][:, :, columns])
+                each.append(np.linalg.svd(left, compute_uv=False)[:, -1])
+            least: Array = np.min(each, axis=0)
+            return least
+
+        return smallest
+
+
+def _eliminated(A: Array, r: int, c: int) -> Array:
+    """Return matrices with a row taken off all others, so that their entries in a column vanish."""
+    with np.errstate(all="ignore"):
+        factor = A[:, :, c] / A[:, r, c][:, None]
+        factor[:, r] = 0
+        return A - factor[:, :, None] * A[:, r, :][:, None, :]
+
+
+def where(place: Mapping[str, float]) -> str:
+    """Return words for a place: the values of a few quantities.
+
+    >>> where({"a": 0.0, "b": 1.25})
+    'at a = 0, b = 1.25'
+    """
+    return at_place({name: float(f"{x:.4g}") for name, x in place.items()}).strip()

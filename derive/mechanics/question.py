@@ -1,0 +1,83 @@
+"""A wanted function as a question: answers, the balances they need, the named quantities below."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from mpmath import mp, mpf
+from sympy import Expr, Symbol
+
+from derive.mechanics.balances import Balance
+from derive.mechanics.probe import DIGITS, Probe
+from derive.mechanics.sheet import Sheet
+from derive.program.program import Quantity
+
+
+@dataclass(frozen=True)
+class Question:
+    """Outputs with their values in named quantities and unknowns, and rows that are zero."""
+
+    name: str
+    says: str
+    outputs: tuple[Quantity, ...]
+    answers: Mapping[Symbol, Expr]
+    definitions: Mapping[Symbol, Expr]
+    rows: tuple[Expr, ...]
+    unknowns: tuple[Symbol, ...]
+    balances: tuple[Balance, ...]
+    steps: tuple[str, ...]
+
+    def expressions(self) -> tuple[Expr, ...]:
+        """Return all that the answers are made of, definitions apart."""
+        return (*self.rows, *self.answers.values())
+
+    def arguments(self) -> frozenset[Symbol]:
+        """Return every symbol that is given: not named, not unknown, no output."""
+        used = {
+            s for e in (*self.expressions(), *self.definitions.values()) for s in e.free_symbols
+        }
+        return frozenset(used - set(self.definitions) - set(self.unknowns) - set(self.answers))
+
+
+def answered(question: Question, sheet: Sheet, probe: Probe) -> list[Any]:
+    """Return the answers at a trial point.
+
+    Raises ZeroDivisionError where the balances are singular.
+    """
+    with mp.workdps(DIGITS):
+        found = dict(probe.values)
+        if question.rows:
+            parts = [sheet.split(row) for row in question.rows]
+            matrix = mp.matrix([[probe.value(slopes[u]) if u in slopes else mpf(0)
+                                 for u in question.unknowns] for _, slopes in parts])  # fmt: skip
+            right = mp.matrix([-probe.value(rest) for rest, _ in parts])
+            found |= dict(zip(question.unknowns, mp.lu_solve(matrix, right), strict=True))
+        there = Probe(found)
+        return [there.value(e) for e in question.answers.values()]
+
+
+def substituted(question: Question, values: Mapping[Symbol, Expr]) -> Question:
+    """Return the question with symbols replaced, and named quantities that became plain put in."""
+    known, definitions = dict(values), dict[Symbol, Expr]()
+    for symbol, value in question.definitions.items():
+        made = value.xreplace(known)
+        if made.is_Symbol or made.is_Number or (-made).is_Symbol:
+            known[symbol] = made
+        else:
+            definitions[symbol] = made
+    rows = tuple(row.xreplace(known) for row in question.rows)
+    answers = {s: e.xreplace(known) for s, e in question.answers.items()}
+    used = _used(definitions, [*rows, *answers.values()])
+    kept = {s: e for s, e in definitions.items() if s in used}
+    return replace(question, definitions=kept, rows=rows, answers=answers)
+
+
+def _used(definitions: Mapping[Symbol, Expr], ends: Iterable[Expr]) -> set[Symbol]:
+    used: set[Symbol] = set()
+    waiting = [s for e in ends for s in e.free_symbols]
+    while waiting:
+        symbol = waiting.pop()
+        if symbol in definitions and symbol not in used:
+            used.add(symbol)
+            waiting += definitions[symbol].free_symbols
+    return used

@@ -1,0 +1,236 @@
+"""Divisors looked at over all of the declared ranges: random points, corners, zeros, a search.
+
+A quotient is right at a trial point and wrong where its divisor vanishes. So every divisor is
+valued at many points at once, beside the size of its terms, and followed to where it is smallest.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from random import Random
+from typing import Any
+
+import numpy as np
+from mpmath import mp, mpf
+from numpy.typing import NDArray
+from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, pi, sin, tan
+
+from derive.mechanics.probe import DIGITS, Probe, point
+from derive.mechanics.words import Words
+from derive.program.program import Quantity
+
+Array = NDArray[Any]
+Sized = tuple[Array, Array]  # values at all points, and the sizes of the terms they are made of
+RANDOM, CORNERS, NEAR = 96, 24, 2
+SPECIAL = (0.0, np.pi / 4, np.pi / 2, np.pi, 3 * np.pi / 2)
+STARTS, ROUNDS = 3, 40  # a round halves the steps at least every second time
+LOW = 0.1  # what is nowhere smaller than this at the points is not searched for
+LEAST = 1e-4  # of the size of its terms: a divisor that loses more digits than that is a pole
+SEED = "derive: sweep"
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """The range of every component that an expression may hold, and which of them are angles."""
+
+    symbols: tuple[Symbol, ...]
+    names: tuple[str, ...]
+    low: Array
+    high: Array
+    turns: tuple[bool, ...]
+    fixed: frozenset[Symbol]
+    quaternions: tuple[slice, ...]
+
+    def points(self) -> Array:
+        """Return points of the ranges, (points, components)."""
+        dice, size = Random(SEED), len(self.symbols)  # noqa: S311 - trial points, no secret
+        rows = [[dice.random() for _ in range(size)] for _ in range(RANDOM)]
+        rows += [[float(dice.randrange(2)) for _ in range(size)] for _ in range(CORNERS)]
+        found = self.low + (self.high - self.low) * np.array(rows).reshape(len(rows), size)
+        whole = [found]
+        for k, turns in enumerate(self.turns):
+            for x in self._special(k, turns):
+                near = found[:NEAR].copy()
+                near[:, k] = x
+                whole.append(near)
+        zero = found[:NEAR].copy()
+        zero[:, (self.low <= 0) & (self.high >= 0)] = 0
+        return np.vstack([*whole, zero])
+
+    def _special(self, k: int, turns: bool) -> list[float]:  # noqa: FBT001
+        each = [s * x for x in SPECIAL for s in (1, -1)] if turns else [0.0]
+        return [x for x in dict.fromkeys(each) if self.low[k] <= x <= self.high[k]]
+
+
+def ranges(words: Words) -> Ranges:
+    """Return the ranges of all that is given, and of data left out by the user."""
+    book = words.vocabulary
+    each: list[tuple[Symbol, str, Quantity]] = [
+        (book.symbols[c], c, q)
+        for q in (*book.parameters, *book.states, *book.inputs)
+        for c in q.components
+    ]
+    ends = [tuple(map(float, q.ends)) for _, _, q in each] + [(1.0, 2.0)] * len(words.hidden)
+    return Ranges(
+        (*(s for s, _, _ in each), *words.hidden),
+        (*(c for _, c, _ in each), *words.hidden.values()),
+        np.array([low for low, _ in ends]),
+        np.array([high for _, high in ends]),
+        (*(q.unit == "rad" for _, _, q in each), *(False for _ in words.hidden)),
+        frozenset((*(s for s, _, q in each if q in book.parameters), *words.hidden)),
+        tuple(slice(k, k + 4) for k, (_, c, q) in enumerate(each)
+              if q.is_quaternion and c == q.components[0]),
+    )  # fmt: skip
+
+
+@dataclass
+class Field:
+    """Values of symbols at many points, and of expressions as they are asked for."""
+
+    values: dict[Symbol, Sized]
+    memory: dict[Expr, Sized] = field(default_factory=dict)
+
+    def of(self, e: Expr) -> Sized:
+        """Return the values of an expression and the sizes of its terms."""
+        if e in self.values:
+            return self.values[e]
+        if e not in self.memory:
+            self.memory[e] = self._valued(e)
+        return self.memory[e]
+
+    def _valued(self, e: Expr) -> Sized:
+        one = np.ones(())
+        if e is pi:
+            return np.pi * one, np.pi * one
+        match e:
+            case Rational():
+                x = one * (int(e.p) / int(e.q))
+                return x, abs(x)
+            case Add():
+                parts = [self.of(a) for a in e.args]
+                return sum((v for v, _ in parts), 0 * one), sum((m for _, m in parts), 0 * one)
+            case Mul():
+                value, size = one, one
+                for v, m in map(self.of, e.args):
+                    value, size = value * v, size * m
+                return value, size
+            case Pow():
+                return self._power(e)
+        (x, _), kind = self.of(e.args[0]), e.func
+        if kind is tan:
+            return np.tan(x), abs(np.tan(x))
+        return {sin: np.sin, cos: np.cos}[kind](x), np.ones_like(x)
+
+    def _power(self, e: Expr) -> Sized:
+        (base, size), exponent = self.of(e.base), float(e.exp)
+        value = base**exponent
+        return value, size**exponent if exponent > 0 else abs(value)
+
+
+def _attitudes(rows: Array) -> Array:
+    """Return quaternions of length 1 along rows; none is turned where all four are zero."""
+    rows = np.where(np.any(rows != 0, axis=1, keepdims=True), rows, np.eye(4)[0])
+    return np.asarray(rows / np.linalg.norm(rows, axis=1, keepdims=True))
+
+
+def field_at(of: Ranges, points: Array, definitions: Mapping[Symbol, Expr]) -> Field:
+    """Return all values at points; what moves has the size of its range, or nothing is at rest."""
+    reach, points = np.maximum(abs(of.low), abs(of.high)), points.copy()
+    for own in of.quaternions:
+        points[:, own] = _attitudes(points[:, own])
+    found = Field({
+        s: (points[:, k], abs(points[:, k]) if s in of.fixed else np.full(len(points), reach[k]))
+        for k, s in enumerate(of.symbols)
+    })  # fmt: skip
+    with np.errstate(all="ignore"):
+        for symbol, value in definitions.items():
+            found.values[symbol] = found.of(value)
+    return found
+
+
+def probe_at(words: Words, place: Mapping[str, float], definitions: Mapping[Symbol, Expr]) -> Probe:
+    """Return a place as a trial point, every named quantity valued."""
+    of, probe = ranges(words), point(words, 0)
+    probe.values |= {s: mpf(place[n]) for s, n in zip(of.symbols, of.names, strict=True)}
+    with mp.workdps(DIGITS):
+        for own in of.quaternions:
+            q = of.symbols[own]
+            size = mp.sqrt(mp.fsum(probe.values[s] ** 2 for s in q))
+            if size == 0:
+                probe.values[q[0]] = size = mpf(1)  # no attitude has length 0: none is turned
+            probe.values |= {s: probe.values[s] / size for s in q}
+        probe.define(definitions)
+    return probe
+
+
+@dataclass(frozen=True)
+class Weakest:
+    """The smallest that a divisor becomes beside its terms, and where."""
+
+    least: float
+    place: Mapping[str, float]
+
+    @property
+    def vanishes(self) -> bool:
+        """Tell whether it is a pole."""
+        return not self.least > LEAST
+
+
+def weakest(
+    of: Ranges, definitions: Mapping[Symbol, Expr], measure: Callable[[Field], Any]
+) -> Weakest:
+    """Return the smallest value of a measure on the ranges that points and a search find."""
+
+    def at(points: Array) -> Array:
+        with np.errstate(all="ignore"):
+            found = np.broadcast_to(measure(field_at(of, points, definitions)), len(points))
+        sizes: Array = np.nan_to_num(found, nan=0.0)
+        return sizes
+
+    points = of.points()
+    sizes = at(points)
+    order = np.argsort(sizes, kind="stable")[:STARTS]
+    best = (float(sizes[order[0]]), points[order[0]])
+    if best[0] < LOW:
+        best = min((_followed(of, at, points[n], float(sizes[n])) for n in order),
+                   key=lambda found: found[0])  # fmt: skip
+    return Weakest(best[0], dict(zip(of.names, map(float, best[1]), strict=True)))
+
+
+def _followed(
+    of: Ranges, at: Callable[[Array], Array], here: Array, size: float
+) -> tuple[float, Array]:
+    """Return the smallest value near a point, by steps along every component, ever shorter."""
+    step, width = 0.25, of.high - of.low
+    sides = np.vstack([np.diag(width), -np.diag(width)])
+    for turn in range(ROUNDS):
+        around = np.clip(here + step * sides, of.low, of.high)
+        sizes = at(around)
+        n = int(np.argmin(sizes))
+        nearer = sizes[n] < size
+        if nearer:
+            here, size = around[n], float(sizes[n])
+        if turn % 2 or not nearer:
+            step /= 2
+    return size, here
+
+
+def block(found: Field, entries: list[list[Expr]]) -> Array:
+    """Return matrices of entries at all points, rows and columns scaled by the sizes of terms."""
+    pairs = [[found.of(e) for e in row] for row in entries]
+    shape = np.broadcast_shapes(*(v.shape for row in pairs for v, _ in row), (1,))
+    values, sizes = (
+        np.moveaxis(np.array([[np.broadcast_to(p[k], shape) for p in row] for row in pairs]), -1, 0)
+        for k in (0, 1)
+    )
+    for axis in (2, 1, 2, 1):
+        scale = sizes.max(axis=axis, keepdims=True)
+        scale = np.where(scale > 0, scale, 1)
+        values, sizes = values / scale, sizes / scale
+    scaled: Array = np.nan_to_num(values)
+    return scaled
+
+
+def regular(found: Field, entries: list[list[Expr]]) -> Array:
+    """Return the smallest singular value of scaled matrices at all points."""
+    sizes: Array = np.linalg.svd(block(found, entries), compute_uv=False)
+    return sizes[:, -1]

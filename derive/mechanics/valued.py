@@ -1,0 +1,163 @@
+"""Vectors of a machine at a trial point: what motion needs and what acts, in common axes."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from mpmath import mp
+from numpy.typing import NDArray
+from sympy import Matrix, Symbol
+
+from derive.mechanics.bodies import Effort, effort
+from derive.mechanics.frames import ZERO, Frames, Parts, Point
+from derive.mechanics.loads import Wrench, wrenches
+from derive.mechanics.probe import POINTS, Probe, at_rest, point
+from derive.scene.machine import INERTIAL
+
+Array = NDArray[Any]
+
+
+@dataclass
+class Sides:
+    """Both sides of every balance: the efforts of the bodies and the loads on them."""
+
+    frames: Frames
+
+    @cached_property
+    def efforts(self) -> Mapping[str, Effort]:
+        """Return what each body's motion needs."""
+        return {b.name: effort(self.frames, b.name) for b in self.frames.machine.bodies}
+
+    @cached_property
+    def wrenches(self) -> tuple[Wrench, ...]:
+        """Return all loads."""
+        return wrenches(self.frames)
+
+    @cached_property
+    def unknowns(self) -> tuple[Symbol, ...]:
+        """Return the unknowns in order of their names' places."""
+        used: set[Symbol] = set()
+        for e in self.efforts.values():
+            used |= e.moment.free_symbols
+            used |= {s for part in e.force.values() for s in part.free_symbols}
+        for w in self.wrenches:
+            used |= w.force.free_symbols | w.couple.free_symbols
+        return tuple(sorted(used & self.frames.sheet.unknowns, key=str))
+
+    @cached_property
+    def probes(self) -> tuple[Probe, ...]:
+        """Return the trial points, every named quantity valued."""
+        self.efforts, self.wrenches  # noqa: B018 - they name quantities on the sheet
+        words = self.frames.words
+        found = (*(point(words, n) for n in range(POINTS)), at_rest(words))
+        for probe in found:
+            probe.define(self.frames.sheet.definitions)
+        return found
+
+
+@dataclass
+class Valued:
+    """Vectors of a machine at one trial point, along the axes of the topmost linked frame."""
+
+    sides: Sides
+    probe: Probe
+
+    def __post_init__(self) -> None:
+        """Begin with nothing remembered."""
+        self._turned: dict[str, Array] = {}
+        self._wrenches: dict[int, tuple[Array, Array]] = {}
+
+    def rotation(self, name: str) -> Array:
+        """Return R from a frame to the topmost one that it is linked with."""
+        frames = self.sides.frames
+        if name not in self._turned:
+            R = frames.rotations[name] if name != INERTIAL else None
+            if R is None:
+                self._turned[name] = np.array([[mp.mpf(i == k) for k in range(3)]
+                                               for i in range(3)])  # fmt: skip
+            else:
+                own = self.array(R)
+                self._turned[name] = self.rotation(frames.each[name].parent) @ own
+        return self._turned[name]
+
+    def array(self, matrix: Matrix) -> Array:
+        """Return the values of a matrix."""
+        rows, columns = matrix.shape
+        return np.array([[self.probe.value(matrix[i, k]) for k in range(columns)]
+                         for i in range(rows)])  # fmt: skip
+
+    def linear(self, vector: Matrix, frame: str) -> Array:
+        """Return a vector's rest and its coefficients of each unknown, (3, 1 + unknowns)."""
+        table = np.array([[mp.mpf(0)] * (1 + len(self.sides.unknowns)) for _ in range(3)])
+        for i in range(3):
+            rest, slopes = self.sides.frames.sheet.split(vector[i])
+            table[i, 0] = self.probe.value(rest)
+            for u, slope in slopes.items():
+                table[i, 1 + self.sides.unknowns.index(u)] = self.probe.value(slope)
+        turned: Array = self.rotation(frame) @ table
+        return turned
+
+    def parts(self, vector: Parts) -> Array:
+        """Return a vector that is a sum of parts along several frames."""
+        total = self.linear(ZERO, INERTIAL)
+        for name, part in vector.items():
+            total = total + self.linear(part, name)
+        return total
+
+    def place(self, place: Point) -> Array:
+        """Return where a point is from the origin of the topmost frame that it is placed in."""
+        frames = self.sides.frames
+        name, at = place[0], self.rotation(place[0]) @ self.array(place[1])[:, 0]
+        while name != INERTIAL:
+            parent = frames.each[name].parent
+            if not (frames.placed(name, parent) and frames.linked(name, parent)):
+                break
+            own = self.array(frames.words.column(frames.each[name].origin))[:, 0]
+            at = at + self.rotation(parent) @ own
+            name = parent
+        return at
+
+    def force(self, bodies: tuple[str, ...]) -> Array:
+        """Return mass times acceleration less the forces."""
+        b = self.sides
+        total = self.linear(ZERO, INERTIAL)
+        for n in bodies:
+            total = total + self.parts(b.efforts[n].force)
+        for k in self._on(bodies):
+            total = total - self._acting(k)[0]
+        return total
+
+    def moment(self, bodies: tuple[str, ...], place: Point) -> Array:
+        """Return the rate of angular momentum less the moments, about a point."""
+        b, here = self.sides, self.place(place)
+        total = 0 * self.linear(ZERO, INERTIAL)
+        for n in bodies:
+            own = b.efforts[n]
+            arm = self.place(own.centre) - here
+            total = total + self.linear(own.moment, own.frame)
+            total = total + _crossed(arm, self.parts(own.force))
+        for k in self._on(bodies):
+            force, couple = self._acting(k)
+            total = total - couple - self._crossed_at(k, here, force)
+        return total
+
+    def _crossed_at(self, k: int, here: Array, force: Array) -> Array:
+        w = self.sides.wrenches[k]
+        return 0 * force if w.force == ZERO else _crossed(self.place(w.point) - here, force)
+
+    def _on(self, bodies: tuple[str, ...]) -> list[int]:
+        return [k for k, w in enumerate(self.sides.wrenches) if w.body in bodies]
+
+    def _acting(self, k: int) -> tuple[Array, Array]:
+        if k not in self._wrenches:
+            w = self.sides.wrenches[k]
+            self._wrenches[k] = (self.linear(w.force, w.along), self.linear(w.couple, w.along))
+        return self._wrenches[k]
+
+
+def _crossed(arm: Array, table: Array) -> Array:
+    x, y, z = arm
+    return np.array([y * table[2] - z * table[1], z * table[0] - x * table[2],
+                     x * table[1] - y * table[0]])  # fmt: skip

@@ -1,0 +1,1 @@
+"""The motion of a free body in closed form."""

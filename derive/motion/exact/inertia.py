@@ -1,0 +1,38 @@
+"""What the formulas of a free rotation are told about the body."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from derive.program.tape import Number
+
+Tensor = tuple[Number, Number, Number, Number, Number, Number]
+
+
+@dataclass(frozen=True)
+class Inertia:
+    """The tensor about the scene's point along body axes, on the tape of set-up.
+
+    tensor : (xx, yy, zz, xy, xz, yz), tensor entries (I_xy = -sum x y dm), kg m^2
+    kind   : what is known of it beforehand: "principal" has no products, "axisymmetric" is
+             principal with two equal moments across ``axis``, "spherical" has three equal ones
+    """
+
+    tensor: Tensor
+    kind: Literal["general", "principal", "axisymmetric", "spherical"]
+    axis: Literal["x", "y", "z"] | None
+
+
+def as_symmetric(tensor: Tensor) -> Inertia:
+    """Return the most special body that has this tensor: equal moments are the same number."""
+    xx, yy, zz, *products = tensor
+    if any(n.exact != 0 for n in products):
+        return Inertia(tensor, "general", None)
+    if xx == yy == zz:
+        return Inertia(tensor, "spherical", None)
+    if yy == zz:
+        return Inertia(tensor, "axisymmetric", "x")
+    if zz == xx:
+        return Inertia(tensor, "axisymmetric", "y")
+    if xx == yy:
+        return Inertia(tensor, "axisymmetric", "z")
+    return Inertia(tensor, "principal", None)

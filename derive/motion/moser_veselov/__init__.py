@@ -1,0 +1,1 @@
+"""Steps of the discrete rigid body, exact in what is conserved."""

@@ -1,0 +1,1 @@
+"""Steps by stages: the classic one, on the Lie group, adaptive, and their derivatives."""

@@ -1,0 +1,139 @@
+"""A commutator-free Lie-group step: the attitude turns by exponentials and never leaves the sphere.
+
+Celledoni, Marthinsen and Owren, Future Generation Computer Systems 19 (2003) 341, the method of
+order four with five exponentials, one of them used twice; what is not attitude goes by the classic
+Runge-Kutta step, which is the same method on a vector space. Angular velocities are along body
+axes, so exponentials multiply from the right and come in the opposite order to the paper's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from derive.motion.attitude.quaternion import conjugate
+from derive.motion.attitude.quaternion import product as hamilton
+from derive.motion.runge_kutta.attitude_stages import between, tangent_matrix
+from derive.motion.runge_kutta.dependence import attitude_turns
+from derive.motion.runge_kutta.matrices import Matrix, beside, identity, plus, product, times, zeros
+from derive.motion.runge_kutta.runge_kutta import THIRD
+from derive.motion.runge_kutta.system import System, rates_at, slopes_at
+from derive.motion.runge_kutta.varying import (
+    Row,
+    Varying,
+    added,
+    finished,
+    turned,
+    weighed,
+    whole_turn,
+)
+from derive.program.tape import Number, Tape
+
+FIRST = (Fraction(1, 4), Fraction(1, 6), Fraction(1, 6), Fraction(-1, 12))
+"""Weights of the stages in the first of the two last exponentials; the second has them reversed."""
+
+
+@dataclass(frozen=True)
+class Gain:
+    """What a step adds to the state but for the attitude, which it turns by two ``vectors``."""
+
+    state: Varying
+    vectors: list[Varying]
+
+
+def lie_step(tape: Tape, system: System) -> Varying:
+    """Return the state after a step of order four, with slopes if the system has them.
+
+    Raises ValueError if the state has no quaternion that follows an angular velocity in it.
+    """
+    attitude, _ = _places(system)
+    start = _start(tape, system)
+    gain = _gain(tape, system, start)
+    after = finished(start[attitude], whole_turn(tape, gain.vectors))
+    return added(start, gain.state).replaced(attitude, after)
+
+
+def lie_errors(tape: Tape, system: System) -> tuple[Row, Matrix]:
+    """Return the state after a step and its slopes with three errors of attitude for its parts.
+
+    An error delta stands for the attitude q exp(delta / 2), before the step and after it.
+    """
+    attitude, _ = _places(system)
+    begin = _start(tape, system)
+    lift = times(Fraction(1, 2), tangent_matrix(begin.values[attitude]))
+    start = Varying(
+        begin.values,
+        [
+            [*row[: attitude.start], *product([row[attitude]], lift)[0], *row[attitude.stop :]]
+            for row in begin.slopes
+        ],
+    )
+    gain = _gain(tape, system, start)
+    turn = whole_turn(tape, gain.vectors)
+    after = added(start, gain.state).replaced(attitude, finished(start[attitude], turn))
+    errors = [list(row) for row in turn.slopes]
+    for row, entries in zip(errors, between(conjugate(turn.values), turn.values), strict=True):
+        for k, entry in enumerate(entries, attitude.start):
+            row[k] = row[k] + entry
+    rows = [*after.slopes[: attitude.start], *errors, *after.slopes[attitude.stop :]]
+    return after.values, rows
+
+
+def lie_increments(tape: Tape, system: System) -> tuple[Row, Row]:
+    """Return the state at the start of a step, and what it adds, an attitude not yet normalised."""
+    attitude, _ = _places(system)
+    start = _start(tape, replace(system, slopes=None))
+    gain = _gain(tape, replace(system, slopes=None), start)
+    w, *vector = whole_turn(tape, gain.vectors).values
+    found = gain.state.values
+    found[attitude] = hamilton(start.values[attitude], [w - 1, *vector])
+    return start.values, found
+
+
+def _places(system: System) -> tuple[slice, slice]:
+    attitude, omega = system.place("attitude"), system.place("omega")
+    if attitude is None or omega is None or not attitude_turns(system):
+        raise ValueError("a Lie-group step needs an attitude quaternion with its angular velocity")
+    return attitude, omega
+
+
+def _gain(tape: Tape, system: System, start: Varying) -> Gain:
+    attitude, omega = _places(system)
+    (h,) = (tape.input(c) for c in system.step.components)
+    half = h * Fraction(1, 2)
+    states, rates = [start], [_rates(tape, system, start, half)]
+    for part in (1, 1, 2):
+        state = added(start, weighed([part], [rates[-1]]))
+        turns = [weighed([half], [one[omega]]) for one in states]
+        states.append(state.replaced(attitude, _stage(tape, start[attitude], turns)))
+        rates.append(_rates(tape, system, states[-1], half))
+    turns = [weighed([h], [state[omega]]) for state in states]
+    vectors = [weighed(weights, turns) for weights in (FIRST, FIRST[::-1])]
+    return Gain(weighed([THIRD, 2 * THIRD, 2 * THIRD, THIRD], rates), vectors)
+
+
+def _start(tape: Tape, system: System) -> Varying:
+    """Return the state that the tape is given, its slopes by the columns of the Jacobian."""
+    values, n = [tape.input(c) for c in system.names], len(system.names)
+    if system.slopes is None:
+        return Varying(values, zeros(n, 0))
+    return Varying(values, beside(identity(n), zeros(n, len(system.columns) - n)))
+
+
+def _rates(tape: Tape, system: System, state: Varying, factor: Number) -> Varying:
+    """Return ``factor`` times the rates at a state."""
+    if system.slopes is None:
+        return Varying(rates_at(tape, system, state.values, factor), state.slopes)
+    n = len(state.values)
+    rates, slopes = slopes_at(tape, system, state.values, factor)
+    rest = [row[n:] for row in slopes]
+    direct = beside(zeros(n, len(state.slopes[0]) - len(rest[0])), rest)
+    return Varying(rates, plus(direct, product([row[:n] for row in slopes], state.slopes)))
+
+
+def _stage(tape: Tape, q: Varying, turns: list[Varying]) -> Varying:
+    """Return the attitude of the stage that follows as many ``turns``, each h/2 times a rate."""
+    if len(turns) < 3:
+        return turned(tape, q, turns[-1])
+    first, _, third = turns
+    return turned(tape, turned(tape, q, first), weighed([2, -1], [third, first]))

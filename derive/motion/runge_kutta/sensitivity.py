@@ -1,0 +1,183 @@
+"""Derivatives of a Runge-Kutta step, carried back through its stages.
+
+The rates times h/2 are g_i, their Jacobians A_i by the state and B_i by the rest. A row of
+derivatives that rests on the stages' states with C_i and on their g_i with w_i is carried back,
+
+    m_i = w_i + (1, 1, 2, 0)_i n_(i+1),    n_i = C_i + m_i A_i,
+
+to sum n_i by the state and sum m_i B_i by the rest: whether these are inputs or parameters, they
+cost little beside the states.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from derive.motion.attitude.quaternion import conjugate
+from derive.motion.runge_kutta.attitude_stages import (
+    Turning,
+    between,
+    norm_squared,
+    one_and,
+    right_matrix,
+    tangent_matrix,
+    turn_slopes,
+)
+from derive.motion.runge_kutta.matrices import (
+    Matrix,
+    identity,
+    minus,
+    plus,
+    product,
+    times,
+    transposed,
+    zeros,
+)
+from derive.motion.runge_kutta.runge_kutta import THIRD, Row, Stages, Step
+from derive.motion.runge_kutta.system import System
+from derive.program.operations import sqrt
+from derive.program.program import Operand
+from derive.program.tape import Number, number
+
+
+@dataclass(frozen=True)
+class Back:
+    """Derivatives carried back to the start of a step: by its state, and by what else there is."""
+
+    state: Matrix
+    rest: Matrix
+
+
+def carried_back(stages: Stages, on_states: Sequence[Matrix], on_rates: Sequence[Matrix]) -> Back:
+    """Return derivatives by what a step starts from and by what it is given.
+
+    on_states, on_rates : (4, r, n) by the states and by the (scaled) rates of the stages
+    """
+    nu = zeros(len(on_rates[3]), len(stages.start))
+    state, weights = nu, list[Matrix]()
+    for stage, part in ((3, 0), (2, 2), (1, 1), (0, 1)):
+        mu = plus(on_rates[stage], times(part, nu))
+        nu = plus(on_states[stage], product(mu, stages.slopes[stage]))
+        state = plus(state, nu)
+        weights.insert(0, mu)
+    return Back(state, _collected(weights, stages.by))
+
+
+def _collected(weights: Sequence[Matrix], by: Sequence[Matrix]) -> Matrix:
+    """Return the sum of the products, weights of equal factors summed first."""
+    columns = len(by[0][0]) if by[0] else 0
+    return [
+        [_sum_of_products(rows, [[b[k] for b in each] for each in by]) for k in range(columns)]
+        for rows in zip(*weights, strict=True)
+    ]
+
+
+def _sum_of_products(rows: Sequence[Row], columns: Sequence[Row]) -> Number:
+    pairs = [
+        pair
+        for row, column in zip(rows, columns, strict=True)
+        for pair in zip(row, column, strict=True)
+    ]
+    by_factor = _grouped([(f, w) for w, f in pairs])
+    by_weight = _grouped([(w, f) for f, w in by_factor])
+    total = number(0)
+    for weight, factor in by_weight:
+        total = total + weight * factor
+    return total
+
+
+def _grouped(pairs: Sequence[tuple[Number, Number]]) -> list[tuple[Number, Number]]:
+    """Return products a b with those of equal ``a`` made one: a, and the sum of the b."""
+    found: dict[Operand, tuple[Number, Number]] = {}
+    for a, b in pairs:
+        if a.exact != 0 and b.exact != 0:
+            _, before = found.get(a.operand, (a, number(0)))
+            found[a.operand] = (a, before + b)
+    return list(found.values())
+
+
+def step_slopes(system: System, stages: Stages, step: Step) -> Back:
+    """Return the derivatives (n, n) and (n, m) of the state after a step."""
+    made = _unconstrained(stages)
+    scales = [1 / sqrt(squared) for squared in step.lengths_squared]
+    if stages.turn is None:
+        for place, scale in zip(system.quaternions, scales, strict=True):
+            for part in (made.state, made.rest):
+                part[place] = _on_the_sphere(step.after[place], times(scale, part[place]))
+        return made
+    (attitude,), (scale,) = system.quaternions, scales
+    q = step.after[attitude]
+    turned = _turned(system, stages, stages.turn)
+    made.rest[attitude] = product(tangent_matrix(q), turned.rest)
+    made.state[attitude] = product(tangent_matrix(q), turned.state)
+    own = _attitude_by_itself(one_and(stages.turn.increment), scale, stages.start[attitude], q)
+    _put(made.state[attitude], attitude, own)
+    return made
+
+
+def by_errors(system: System, stages: Stages, step: Step) -> Back:
+    """Return the derivatives with three errors of attitude, before and after, for its four parts.
+
+    An error delta stands for the attitude q exp(delta / 2): it is in rad, along body axes.
+    """
+    made, attitude = _unconstrained(stages), system.quaternion
+    if attitude is None:
+        raise ValueError("a tangent space needs one attitude quaternion among the states")
+    if stages.turn is None:
+        twice = 2 / sqrt(step.lengths_squared[0])
+        drop = times(twice, transposed(tangent_matrix(step.after[attitude])))
+        rows = Back(product(drop, made.state[attitude]), product(drop, made.rest[attitude]))
+    else:
+        turned = _turned(system, stages, stages.turn)
+        rows = Back(times(2, turned.state), times(2, turned.rest))
+    made.state[attitude] = rows.state
+    made.rest[attitude] = rows.rest
+    lift = times(Fraction(1, 2), tangent_matrix(stages.start[attitude]))
+    state = [
+        [*row[: attitude.start], *product([row[attitude]], lift)[0], *row[attitude.stop :]]
+        for row in made.state
+    ]
+    if stages.turn is not None:
+        whole = one_and(stages.turn.increment)
+        inverse = [x / norm_squared(whole) for x in conjugate(whole)]
+        errors = slice(attitude.start, attitude.start + 3)
+        _put(state[errors], errors, between(inverse, whole))
+    return Back(state, made.rest)
+
+
+def _unconstrained(stages: Stages) -> Back:
+    """Return the derivatives of start + (k1 + 2 k2 + 2 k3 + k4) h / 6."""
+    unit = identity(len(stages.start))
+    rest = zeros(*(len(unit),) * 2)
+    back = carried_back(stages, [rest] * 4, [times(part * THIRD, unit) for part in (1, 2, 2, 1)])
+    return Back(plus(unit, back.state), back.rest)
+
+
+def _on_the_sphere(q: Row, rows: Matrix) -> Matrix:
+    """Return derivatives of four components without the part that changes their length."""
+    return minus(rows, product([[x] for x in q], product([q], rows)))
+
+
+def _turned(system: System, stages: Stages, turn: Turning) -> Back:
+    """Return the derivatives (3, n) and (3, m) of v, if the attitude q changes by q (0, v)."""
+    n, omega = len(stages.start), system.place("omega") or slice(0)
+    scale = stages.time_step * Fraction(1, 12) / norm_squared(one_and(turn.increment))
+    on_states = [zeros(3, n) for _ in turn.quarters]
+    for rows, part in zip(on_states, turn_slopes(turn, scale), strict=True):
+        _put(rows, omega, part)
+    return carried_back(stages, on_states, [zeros(3, n)] * 4)
+
+
+def _attitude_by_itself(whole: Row, scale: Number, start: Row, after: Row) -> Matrix:
+    """Return the derivative (4, 4) of q0 P / |q0 P| by q0."""
+    turned = right_matrix([x * scale for x in whole])
+    inverse = scale * scale * norm_squared(whole)  # 1 / |q0|^2
+    radial = [x * inverse for x in start]
+    return minus(turned, product([[x] for x in after], [radial]))
+
+
+def _put(rows: Matrix, place: slice, parts: Matrix) -> None:
+    for row, entries in zip(rows, parts, strict=True):
+        row[place] = entries

@@ -1,0 +1,1 @@
+"""Steps made of turns about axes that are exact each."""

@@ -1,0 +1,122 @@
+"""The axes a, b, c along which a body's tensor is diagonal, b with the intermediate moment."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from derive.motion.exact.inertia import Inertia
+from derive.motion.exact.principal_axes import principal_axes
+from derive.program.operations import at_most, both, either, select
+from derive.program.tape import Number, Tape, named, number
+
+Vector = Sequence[Number]
+Change = Callable[[Vector], list[Number]]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Moments about a, b, c, and how a vector goes from the axes x, y, z to these and back.
+
+    unit : kg m^2, what the moments are measured in
+    rows : the axes a, b, c along x, y, z where they are turned; none where they are x, y, z
+    """
+
+    moments: list[Number]
+    unit: Number
+    along: Change
+    back: Change
+    rows: tuple[Vector, ...] = ()
+
+
+def frame(tape: Tape, body: Inertia) -> Frame:
+    """Return the axes of a body; ``tape`` is that of the function in which vectors change."""
+    match body.kind:
+        case "general":
+            return principal_frame(body)
+        case "spherical":
+            return _counted_from(0, body)
+        case "axisymmetric":
+            return _counted_from(("xyz".index(body.axis or "z") + 1) % 3, body)
+    exact = [m.exact for m in body.tensor[:3] if m.exact is not None]
+    if len(exact) == 3:
+        return _counted_from((exact.index(sorted(exact)[1]) - 1) % 3, body)
+    return _chosen(tape, body)
+
+
+def own_frame(body: Inertia) -> Frame:
+    """Return the axes x, y, z as they are."""
+    return _counted_from(0, body)
+
+
+def _counted_from(first: int, body: Inertia) -> Frame:
+    """Return the axes x, y, z counted round from the one that is a; c is then a body's own."""
+
+    def along(v: Vector) -> list[Number]:
+        return [v[(first + i) % 3] for i in range(3)]
+
+    def back(v: Vector) -> list[Number]:
+        return [v[(i - first) % 3] for i in range(3)]
+
+    return Frame(along(body.tensor[:3]), number(1), along, back)
+
+
+def _chosen(tape: Tape, body: Inertia) -> Frame:
+    """Return the axes where parameters decide which is which: two flags of set-up."""
+    x, y, z = body.tensor[:3]
+    tests = []
+    for axis, order in (("x", (x, y, z)), ("y", (y, z, x))):
+        says = f"1 where the axis after {axis} has the intermediate moment, else 0"
+        tests.append(_flag(tape, f"from_{axis}", _between(*order), says))
+    (at_x, hot_x), (at_y, hot_y) = tests
+
+    def choice(is_x: Number, is_y: Number, v: Vector, step: int) -> list[Number]:
+        cases = [[v[(i + step * first) % 3] for i in range(3)] for first in range(3)]
+        return [select(is_x, p, select(is_y, q, r)) for p, q, r in zip(*cases, strict=True)]
+
+    return Frame(
+        choice(at_x, at_y, body.tensor[:3], 1),
+        number(1),
+        lambda v: choice(hot_x, hot_y, v, 1),
+        lambda v: choice(hot_x, hot_y, v, -1),
+    )
+
+
+def _flag(tape: Tape, name: str, truth: Number, says: str) -> tuple[Number, Number]:
+    """Return a truth of set-up, and the same for a function: set-up hands on numbers only."""
+    flag = named(name, select(truth, 1, 0), says)
+    if flag.tape is None or not isinstance(flag.operand, str):
+        raise TypeError(f"'{name}' is decided by numbers")
+    operands = (Fraction(0), flag.tape.constant(flag.operand))
+    return truth, Number(tape, tape.record("less", operands))
+
+
+def _between(p: Number, q: Number, r: Number) -> Number:
+    """Return the truth of q being between p and r."""
+    return either(both(at_most(p, q), at_most(q, r)), both(at_most(r, q), at_most(q, p)))
+
+
+def principal_frame(body: Inertia) -> Frame:
+    """Return the principal axes of any tensor, the smallest moment first."""
+    found = principal_axes(body)
+    rows = [
+        [
+            named(f"axis_{a}_{x}", entry, f"component along {x} of the principal axis {a}")
+            for x, entry in zip("xyz", row, strict=True)
+        ]
+        for a, row in zip("abc", found.axes, strict=True)
+    ]
+    xx, yy, zz = body.tensor[:3]
+    unit = (xx + yy + zz) / (found.moments[0] + found.moments[1] + found.moments[2])
+    columns = [[row[i] for row in rows] for i in range(3)]
+    return Frame(
+        list(found.moments),
+        unit,
+        lambda v: times(rows, v),
+        lambda v: times(columns, v),
+        tuple(rows),
+    )
+
+
+def times(rows: Sequence[Vector], v: Vector) -> list[Number]:
+    """Return the product of a matrix and a vector."""
+    return [row[0] * v[0] + row[1] * v[1] + row[2] * v[2] for row in rows]

@@ -1,0 +1,114 @@
+"""The recurrence of each operation: its term of order k from the terms of its operands.
+
+Griewank and Walther, Evaluating Derivatives (2008), table 13.2.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from derive.motion.taylor.series import INVERSE, ORDER, Convolution
+from derive.motion.taylor.terms import Draft, Sum
+from derive.program.program import Op, Operand
+
+TWIN = {"sin": "cos", "cos": "sin"}
+
+
+def record(draft: Draft, op: Op, ops: Sequence[object]) -> None:
+    """Record an operation at order 0 and, if it changes along the step, at order k."""
+    if op not in draft.start:
+        draft.start.append(op)
+    if not any(map(draft.moves, op.operands)):
+        return
+    draft.moving.add(op.result)
+    if op.operator in ("add", "sub", "neg"):
+        _linear(draft, op)
+    elif op.operator == "mul":
+        _product(draft, op)
+    elif op.operator == "div":
+        _quotient(draft, op)
+    elif op.operator == "sqrt":
+        _root(draft, op)
+    elif op.operator in TWIN:
+        _sine_and_cosine(draft, op, ops)
+    else:
+        raise ValueError(f"'{op.operator}' has no Taylor recurrence")
+
+
+def _linear(draft: Draft, op: Op) -> None:
+    signs = (-1,) if op.operator == "neg" else (1, -1 if op.operator == "sub" else 1)
+    parts = [(s, o) for s, o in zip(signs, op.operands, strict=True) if draft.moves(o)]
+    if any(o in draft.sums and o in draft.joins for _, o in parts):
+        total = Sum()
+        for sign, operand in parts:
+            total = total.plus(sign, draft.summed(operand))
+        draft.sums[op.result] = total
+    elif len(parts) == 2:
+        draft.at_k(f"{op.result}_k", op.operator, *(draft.term(o) for _, o in parts))
+    elif parts[0][0] > 0:
+        draft.same[op.result] = draft.term(parts[0][1]).removesuffix("_k")
+    else:
+        draft.at_k(f"{op.result}_k", "neg", draft.term(parts[0][1]))
+
+
+def _product(draft: Draft, op: Op) -> None:
+    a, b = op.operands
+    if not (draft.moves(a) and draft.moves(b)):
+        terms = (draft.term(o) if draft.moves(o) else o for o in op.operands)
+        draft.at_k(f"{op.result}_k", "mul", *terms)
+        return
+    ends: tuple[tuple[int, Operand, str], ...] = ((1, a, draft.term(b)), (1, b, draft.term(a)))
+    if a == b:
+        ends = ((1, draft.once(f"{a}_twice", "add", a, a), draft.term(a)),)
+    draft.sums[op.result] = Sum(((1, draft.series(a), draft.series(b)),), ends)
+
+
+def _quotient(draft: Draft, op: Op) -> None:
+    """c = a / b: b_0 c_k = a_k - sum b_j c_(k-j), j = 1 .. k."""
+    a, b = op.operands
+    name = f"{b}_inverse" if isinstance(b, str) else f"{op.result}_divisor_inverse"
+    inverse = draft.once(name, "div", Fraction(1), b)
+    if not draft.moves(b):
+        draft.at_k(f"{op.result}_k", "mul", draft.term(a), inverse)
+        return
+    total = draft.summed(a) if draft.moves(a) else Sum()
+    draft.kept[op.result] = None
+    unknown = Sum(((1, draft.series(b), op.result),), ((1, op.result, draft.term(b)),))
+    if not draft.moves(a):
+        taken = draft.write(f"{op.result}_taken", unknown)
+        numerator = draft.at_k(f"{op.result}_numerator", "neg", taken)
+    else:
+        numerator = draft.write(f"{op.result}_numerator", total.plus(-1, unknown))
+    draft.at_k(f"{op.result}_k", "mul", numerator, inverse)
+
+
+def _root(draft: Draft, op: Op) -> None:
+    """r = sqrt(a): 2 r_0 r_k = a_k - sum r_j r_(k-j), 0 < j < k."""
+    r = op.result
+    half = draft.once(f"{r}_half_inverse", "div", Fraction(1, 2), r)
+    a = draft.term(op.operands[0])
+    draft.kept[r] = None
+    draft.squares.append(Convolution(f"{r}_squares", ((r, r),), ()))
+    rest = draft.at_k(f"{r}_numerator", "sub", a, f"{r}_squares")
+    draft.at_k(f"{r}_k", "mul", rest, half)
+
+
+def _sine_and_cosine(draft: Draft, op: Op, ops: Sequence[object]) -> None:
+    """k s_k = sum j u_j c_(k-j), k c_k = -sum j u_j s_(k-j), j = 1 .. k."""
+    if op.result in draft.kept:
+        return
+    (u,) = op.operands
+    twins = [
+        o.result for o in ops if isinstance(o, Op) and o == Op(o.result, TWIN[op.operator], (u,))
+    ]
+    twin = draft.once(twins[0] if twins else f"{op.result}_twin", TWIN[op.operator], u)
+    sine, cosine = (op.result, twin) if op.operator == "sin" else (twin, op.result)
+    draft.moving |= {sine, cosine}
+    slope = f"{u}_slope"
+    draft.at_k(f"{slope}_k", "mul", ORDER, draft.term(u))
+    draft.kept |= dict.fromkeys((slope, sine, cosine))
+    for value, other, negative in ((sine, cosine, False), (cosine, sine, True)):
+        total = Sum(((1, slope, other),), ((1, other, f"{slope}_k"),))
+        whole = draft.write(f"{value}_whole", total)
+        if negative:
+            whole = draft.at_k(f"{value}_negative", "neg", whole)
+        draft.at_k(f"{value}_k", "mul", whole, INVERSE)

@@ -1,0 +1,99 @@
+"""What is recorded whole: a loop, another program; and what of it the results rest on."""
+
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+
+from derive.program.program import Line, Op, Operand, Program, Repeat
+from derive.program.tape import Number, Tape, number, operation, seen_from
+
+Body = Callable[[list[Number]], tuple[Sequence[Number], Number | None]]
+FOLDED: Mapping[str, Callable[..., Number]] = {
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "div": operator.truediv,
+    "neg": operator.neg,
+}
+"""What may come to no operation of the program, as x + 0 or a sum of exact numbers."""
+
+
+def repeat(tape: Tape, passes: int, start: Sequence[Number], body: Body) -> list[Number]:
+    """Record a loop: ``body`` takes what is carried, and returns it anew and the truth of done.
+
+    A loop that is there already, whatever its values are called, is not recorded twice.
+    """
+    names = [tape.fresh() for _ in start]
+    with tape.within() as ops:
+        then, done = body([Number(tape, name) for name in names])
+        after = tuple(seen_from(tape, number(n)) for n in then)
+        until = None if done is None else seen_from(tape, done)
+    inner = tuple(op for op in ops if isinstance(op, Op))
+    if len(inner) < len(ops):
+        raise ValueError("a loop within a loop is not there")
+    begin = tuple(seen_from(tape, number(n)) for n in start)
+    loop = Repeat(tuple(names), begin, inner, after, until, passes)
+    key = _without_names(loop)
+    if key not in tape.numbered:
+        tape.numbered[key] = " ".join(names)
+        tape.ops.append(loop)
+    return [Number(tape, name) for name in tape.numbered[key].split()]
+
+
+def _without_names(loop: Repeat) -> tuple[object, ...]:
+    """Return what a loop does, its own values called by their places."""
+    own = (*loop.carried, *(op.result for op in loop.ops))
+    places = {name: ("place", i) for i, name in enumerate(own)}
+
+    def placed(operand: Operand | None) -> object:
+        return places.get(operand, operand) if isinstance(operand, str) else operand
+
+    steps = ((op.operator, *map(placed, op.operands)) for op in loop.ops)
+    ends = (*map(placed, loop.then), placed(loop.done))
+    return ("repeat", loop.passes, *loop.start, *steps, *ends)
+
+
+def needed(ops: Sequence[Line], results: Sequence[Operand]) -> tuple[Line, ...]:
+    """Return the operations without those that no result rests on."""
+    wanted = {r for r in results if isinstance(r, str)}
+    kept: list[Line] = []
+    for line in reversed(ops):
+        if isinstance(line, Op):
+            if line.result in wanted:
+                kept.append(line)
+                wanted |= {o for o in line.operands if isinstance(o, str)}
+        elif wanted & set(line.carried):
+            loop = _needed_loop(line)
+            kept.append(loop)
+            every = [*loop.start, *loop.then, *(o for op in loop.ops for o in op.operands)]
+            every += [] if loop.done is None else [loop.done]
+            wanted |= {o for o in every if isinstance(o, str)}
+    return tuple(reversed(kept))
+
+
+def _needed_loop(loop: Repeat) -> Repeat:
+    ends = loop.then if loop.done is None else (*loop.then, loop.done)
+    inner = tuple(op for op in needed(loop.ops, ends) if isinstance(op, Op))
+    return Repeat(loop.carried, loop.start, inner, loop.then, loop.done, loop.passes)
+
+
+def called(tape: Tape, program: Program, values: Mapping[str, Number]) -> list[Number]:
+    """Return the results of a program on ``values`` by component, its operations recorded here.
+
+    The program's constants are read as they are; equal operations are recorded once.
+    """
+    inputs = [c for q in program.inputs if q.name != "constants" for c in q.components]
+    known = {name: number(values[name]) for name in inputs}
+
+    def value(operand: Operand) -> Number:
+        if isinstance(operand, str):
+            return known.get(operand) or Number(tape, operand)  # what is left are constants
+        return number(operand)
+
+    for op in program.ops:
+        if not isinstance(op, Op):
+            raise TypeError(f"'{program.name}' has a loop, and a loop cannot be called yet")
+        known[op.result] = FOLDED.get(op.operator, partial(operation, op.operator))(
+            *map(value, op.operands)
+        )
+    return [value(result) for result in program.results]

@@ -1,0 +1,84 @@
+"""What set-up returns: 0, or which rule the parameters break, the same number in every language."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.program.arithmetic import extended, paired
+from derive.program.program import Operand, Program, run
+from derive.scene.escape import at_place
+
+RIGHT, PARAMETER, MASS, LENGTH, INERTIA, CONSTANT = range(6)
+SAYS = {
+    RIGHT: "all is right",
+    PARAMETER: "a parameter is not finite",
+    MASS: "a mass is not positive",
+    LENGTH: "a length of a body is not positive",
+    INERTIA: "an inertia is none that a body can have",
+    CONSTANT: "a constant is not finite",
+}
+"""Each status in words. The first rule that is broken counts, in this order."""
+OF_KIND = {"mass": MASS, "length": LENGTH, "inertia": INERTIA}
+
+
+def possible(program: Program) -> dict[int, str]:
+    """Return every status that ``program``, a set-up, can return, with its words."""
+    found = {RIGHT, PARAMETER, CONSTANT} if program.inputs else {RIGHT}
+    found |= {rule.status for rule in program.rules}
+    if computed(program) or program.rules:
+        found |= {CONSTANT}
+    else:
+        found -= {CONSTANT}  # parameters alone, and those are finite
+    return {number: SAYS[number] for number in sorted(found)}
+
+
+def computed(program: Program) -> tuple[Operand, ...]:
+    """Return the results that set-up works out: neither numbers nor parameters as they are."""
+    given = {c for q in program.inputs for c in q.components}
+    own = dict.fromkeys(r for r in program.results if isinstance(r, str) and r not in given)
+    return tuple(own)
+
+
+def statuses(program: Program, given: Sequence[NDArray[Any]], dtype: type) -> NDArray[Any]:
+    """Return what set-up says of columns of parameters: its status, row by row, as C gives it.
+
+    given : a column of each component of the program's inputs, in order
+    """
+    asked = (*(rule.value for rule in program.rules), *computed(program))
+    columns = np.array([np.asarray(column, dtype) for column in given])
+    with np.errstate(all="ignore"):
+        found = run(replace(program, results=asked), extended(dtype), paired(columns))
+        count = columns.shape[1] if len(columns) else 1
+        every = [np.broadcast_to(pair[0], count) for pair in found]
+        broken = [(PARAMETER, ~_finite(columns, count))]
+        for rule, value in zip(program.rules, every, strict=False):
+            broken.append((rule.status, value <= 0 if rule.relation == "positive" else value < 0))
+        broken.append((CONSTANT, ~_finite(every, count)))
+    status = np.zeros(count, int)
+    for number, where in reversed(broken):
+        status = np.where(where, number, status)
+    return status
+
+
+def _finite(columns: Sequence[NDArray[Any]] | NDArray[Any], count: int) -> NDArray[Any]:
+    every = [np.isfinite(column) for column in columns] or [np.ones(count, bool)]
+    found: NDArray[Any] = np.logical_and.reduce(every)
+    return found
+
+
+def refusal(program: Program, given: Sequence[float]) -> str:
+    """Return why set-up in double refuses these parameters, a clause; "" if it does not."""
+    columns = [np.array([x]) for x in given]
+    names = [c for q in program.inputs for c in q.components]
+    at = at_place(dict(zip(names, given, strict=True)))
+    status = int(statuses(program, columns, np.float64)[0])
+    if status == RIGHT:
+        return ""
+    for rule in program.rules:
+        alone = replace(program, rules=(rule,), results=())
+        if rule.status == status == statuses(alone, columns, np.float64)[0]:
+            return f"{rule.says}, and is not so{at} (status {status})"
+    return f"{SAYS[status]}{at} (status {status})"

@@ -1,0 +1,109 @@
+"""Six equations a body: forces and moments about its mass centre, summed over its particles."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from mpmath import mp, mpf
+
+from derive.scene.formula import ZERO
+from derive.scene.machine import Force, Gradient, Load, Spring, Weight
+from derive.verify.cloud.history import History
+from derive.verify.cloud.series import Array, crossed, each
+
+Acting = tuple[str, Array, Array, Array]  # a body, the place, the force and the couple along N
+
+
+def left_over(history: History) -> list[Any]:
+    """Return mass times acceleration less loads, and its moment, of every body in turn."""
+    rows: list[Any] = []
+    loads = [one for load in history.machine.loads for one in acting(history, load)]
+    for body in history.machine.bodies:
+        centre = values(history.centre(body.name))
+        force = np.array([mpf(0)] * 3, dtype=object)
+        moment = np.array([mpf(0)] * 3, dtype=object)
+        for m, place in history.particles(body.name):
+            f = m * each(lambda x: x.acceleration, place)
+            force, moment = force + f, moment + crossed(values(place) - centre, f)
+        for on, place, f, couple in loads:
+            if on == body.name:
+                force, moment = force - f, moment - couple - crossed(place - centre, f)
+        rows += [*force, *moment]
+    return rows
+
+
+def values(array: Array) -> Array:
+    """Return what is there at time zero."""
+    return each(lambda x: x.value, array)
+
+
+def acting(history: History, load: Load) -> Iterator[Acting]:
+    """Yield what a load does to each body that it acts on."""
+    match load:
+        case Force():
+            yield from _force(history, load)
+        case Weight():
+            g = along(history, load.along, load.gravity)
+            for body in load.on:
+                yield body, values(history.centre(body)), history.mass(body) * g, 0 * g
+        case Gradient():
+            for body in load.on:
+                yield _gradient(history, load, body)
+        case Spring():
+            yield from _spring(history, load)
+
+
+def along(history: History, frame: str, formulas: tuple[Any, ...]) -> Array:
+    """Return a vector given along the axes of a frame, along N."""
+    if all(f == ZERO for f in formulas):
+        return np.array([mpf(0)] * 3, dtype=object)
+    return values(history.rotations[frame] @ history.column(formulas))
+
+
+def _force(history: History, load: Force) -> Iterator[Acting]:
+    place = values(history.place(load.frame, load.at))
+    force, couple = (along(history, load.along, f) for f in (load.force, load.couple))
+    yield load.on, place, force, couple
+    if load.against:
+        yield load.against, place, -force, -couple
+
+
+def _gradient(history: History, load: Gradient, body: str) -> Acting:
+    """Return the moment of the field on the particles themselves."""
+    c, third = along(history, load.along, load.towards), history.value(load.strength).value / 3
+    centre = values(history.centre(body))
+    couple = 0 * c
+    for m, place in history.particles(body):
+        arm = values(place) - centre
+        couple = couple + crossed(arm, m * third * (3 * (c @ arm) * c - arm))
+    return body, centre, 0 * c, couple
+
+
+def _spring(history: History, load: Spring) -> Iterator[Acting]:
+    start, end = (history.place(f, at) for f, at in
+                  ((load.frame, load.at), (load.to_frame, load.to)))  # fmt: skip
+    d, v = values(end - start), each(lambda x: x.velocity, end - start)
+    k, c, rest = (history.value(f).value for f in (load.stiffness, load.damping, load.length))
+    size = mp.sqrt(d @ d)
+    force = k * d if rest == 0 else k * (1 - rest / size) * d
+    force = force + c * (d @ v) / size**2 * d if c != 0 else force
+    yield load.on, values(start), force, 0 * d
+    if load.against:
+        yield load.against, values(end), -force, 0 * d
+
+
+def potential_energy(history: History) -> Any:
+    """Return the energy of particles in their weights, and that of springs."""
+    total = mpf(0)
+    for load in history.machine.loads:
+        if isinstance(load, Weight):
+            g = along(history, load.along, load.gravity)
+            for body in load.on:
+                particles = history.particles(body)
+                total -= mp.fsum(m * (g @ values(place)) for m, place in particles)
+        elif isinstance(load, Spring):
+            ends = ((load.frame, load.at), (load.to_frame, load.to))
+            start, end = (values(history.place(f, at)) for f, at in ends)
+            k, rest = (history.value(f).value for f in (load.stiffness, load.length))
+            total += k * (mp.sqrt((end - start) @ (end - start)) - rest) ** 2 / 2
+    return total

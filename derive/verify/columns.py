@@ -1,0 +1,257 @@
+"""Programs on columns of numbers: thousands of samples in one operation, in floats and in pairs.
+
+What is no longer needed is let go, so that columns stay in the cache. Sine, cosine and atan2 are
+rounded correctly: by a value of more digits, or by a ball where even that leaves a doubt.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.program.arithmetic import LIBM, extended, rounded, working
+from derive.program.pair_sine import pair_sine
+from derive.program.pairs import (
+    MANTISSA,
+    Pair,
+    fast_two_sum,
+    pair_add,
+    pair_div,
+    pair_minus,
+    pair_mul,
+    splitter,
+)
+from derive.program.program import Line, Program, component_names, operands_of, run_lines, values_of
+
+Table = dict[str, Callable[..., Any]]
+Column = NDArray[Any]
+FACTOR = np.float64(splitter(MANTISSA[np.float64]))
+SMALL, LARGE = 2.0**-27, 2.0**20
+"""Sines are taken in pairs between these; below, x is the float next to sin x, and 1 to cos x."""
+FAR = 2.0**200
+"""Components of an angle's direction are taken in pairs up to this, and down to its inverse."""
+SURE = {np.float32: 2.0**-46, np.float64: 2.0**-94}
+"""Relative errors that the values of more digits keep: a libm's in double, and a pair's."""
+NUMPY = {"sin": np.sin, "cos": np.cos, "atan2": np.arctan2}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A program, and after each of its lines the values that nothing needs any more."""
+
+    program: Program
+    spent: tuple[tuple[str, ...], ...]
+
+
+def planned(program: Program) -> Plan:
+    """Return a program with the places at which its values can go."""
+    last: dict[str, int] = {}
+    for place, line in enumerate(program.ops):
+        last |= dict.fromkeys(_names(line), place)
+    kept = operands_of((), program.results)
+    spent: list[list[str]] = [[] for _ in program.ops]
+    for name, place in last.items():
+        if name not in kept:
+            spent[place].append(name)
+    return Plan(program, tuple(map(tuple, spent)))
+
+
+def _names(line: Line) -> set[str]:
+    own = operands_of((line,))
+    own |= {line.result} if hasattr(line, "result") else {*line.carried}
+    return own
+
+
+def in_columns(plan: Plan, table: Table, known: Mapping[str, Any]) -> list[Any]:
+    """Return the results of a program by component, from the columns of its inputs by name."""
+    program = plan.program
+    own = {c: known[c] for q in program.inputs for c in q.components}
+    if program.loops is not None:
+        return program.loops.run(table, own)
+    for line, spent in zip(program.ops, plan.spent, strict=True):
+        run_lines((line,), table, own)
+        for name in spent:
+            own.pop(name, None)
+    return values_of(program.results, table, own)
+
+
+@dataclass(frozen=True)
+class Arithmetics:
+    """What a program of floats is run in, and what it is held against.
+
+    made, true_made : set-up in pairs of the precision; and of doubles, of which nothing is rounded
+    own, paired     : floats of the precision, and pairs of them rounded once
+    true            : double for float, pairs of doubles for double
+    """
+
+    dtype: type
+    made: Table
+    own: Table
+    paired: Table
+    true_made: Table
+    true: Table
+
+    def number(self, pair: Pair) -> Any:
+        """Return a constant of ``true_made`` as ``true`` has it."""
+        return pair[0] if self.dtype is np.float32 else pair
+
+    def given(self, column: Column) -> Any:
+        """Return a column of floats as ``true`` has it."""
+        wide = column.astype(np.float64)
+        return wide if self.dtype is np.float32 else (wide, wide * 0)
+
+    def off(self, found: Column, true: Any) -> Column:
+        """Return found - true, in double."""
+        if self.dtype is np.float32:
+            return np.asarray(found.astype(np.float64) - true)
+        return np.asarray((found - true[0]) - true[1])
+
+
+@cache
+def arithmetics(dtype: type) -> Arithmetics:
+    """Return the arithmetics of a precision: of float or of double."""
+    made = _with_numbers(extended(dtype))
+    own = _with_numbers(working(dtype) | {n: _correctly(n, dtype) for n in LIBM})
+    true_made = _with_numbers(_unrounded())
+    true = true_made if dtype is np.float64 else doubles()
+    return Arithmetics(dtype, made, own, made, true_made, true)
+
+
+@cache
+def doubles() -> Table:
+    """Return double with the libm of the machine: for what needs a few digits only."""
+    return _with_numbers(working(np.float64) | NUMPY | {"low": lambda a: a * 0})
+
+
+def _with_numbers(table: Table) -> Table:
+    """Return a table that works each constant out once."""
+    return table | {"number": cache(table["number"])}
+
+
+def _unrounded() -> Table:
+    """Return pairs of doubles as if they were numbers of all digits: nothing is left below."""
+    table = extended(np.float64)
+    return table | {
+        "low": lambda a: (a[0] * 0, a[0] * 0),
+        "splitter": lambda: table["number"](1),
+        "unit_roundoff": lambda: (np.float64(2.0**-53), np.float64(0.0)),
+        "atan2": _pair_atan2,
+        "floor": _pair_floor,
+    }
+
+
+def _pair_floor(a: Pair) -> Pair:
+    whole = np.floor(a[0])
+    return np.where(whole == a[0], whole + np.floor(a[1]), whole), whole * 0
+
+
+def _pair_atan2(y: Pair, x: Pair) -> Pair:
+    """Return the angle of (x, y): a libm's, turned on by the sine of what it leaves."""
+    start = np.arctan2(y[0], x[0])
+    sine = _pair_sines()
+    s, c = sine((start, start * 0), 0), sine((start, start * 0), 1)
+    across = pair_add(pair_mul(y, c, FACTOR), pair_minus(pair_mul(x, s, FACTOR)))
+    along = pair_add(pair_mul(x, c, FACTOR), pair_mul(y, s, FACTOR))
+    rest = pair_div(across, along, FACTOR)
+    high, low = fast_two_sum(start, rest[0])
+    there = along[0] > 0
+    return np.where(there, high, start), np.where(there, low + rest[1], start * 0)
+
+
+@cache
+def _pair_sines() -> Callable[[Pair, int], Pair]:
+    return pair_sine(np.float64, lambda q: rounded(q, np.float64))
+
+
+def _correctly(name: str, dtype: type) -> Callable[..., Any]:
+    """Return a function of libm correctly rounded, the same on every machine, for columns."""
+    with_balls = working(dtype)[name]
+    value = _single if dtype is np.float32 else _double
+
+    def each(*given: Any) -> Any:
+        several = [np.atleast_1d(x) for x in np.broadcast_arrays(*given)]
+        found, sure = value(name, several)
+        flat = (several[0] == 0) & (several[-1] > 0 if name == "atan2" else True)
+        found = np.where(flat, 1.0 if name == "cos" else several[0], found).astype(dtype)
+        doubt = ~(sure | flat)
+        if np.any(doubt):
+            found[doubt] = with_balls(*(x[doubt] for x in several))
+        return found.reshape(np.broadcast_shapes(*(np.shape(x) for x in given)))
+
+    return each
+
+
+def _single(name: str, given: Sequence[Column]) -> tuple[Column, NDArray[np.bool_]]:
+    wide = [x.astype(np.float64) for x in given]
+    value = NUMPY[name](*wide)
+    found = value.astype(np.float32)
+    ends = [(value * (1 + side * SURE[np.float32])).astype(np.float32) for side in (-1, 1)]
+    within = np.all([np.abs(x) < (LARGE if len(wide) == 1 else FAR) for x in wide], axis=0)
+    return found, (ends[0] == found) & (ends[1] == found) & (found != 0) & within
+
+
+def _double(name: str, given: Sequence[Column]) -> tuple[Column, NDArray[np.bool_]]:
+    if name == "atan2":
+        high, low = _pair_atan2(*((x, x * 0) for x in given))
+        sizes = np.abs(given)
+        sure = np.all((sizes < FAR) & (sizes > 1 / FAR), axis=0)
+    else:
+        (x,) = given
+        high, low = _pair_sines()((x, x * 0), ("sin", "cos").index(name))
+        tiny = (np.abs(x) < SMALL) & (x != 0)
+        high = np.where(tiny, x if name == "sin" else 1.0, high)
+        low = np.where(tiny, 0.0, low)
+        sure = (np.abs(x) < LARGE) & (x != 0)
+    wrong = np.abs(high) * SURE[np.float64]
+    same = (high + (low + wrong) == high) & (high + (low - wrong) == high)
+    return high, same & sure & (high != 0)
+
+
+@dataclass(frozen=True)
+class Known:
+    """Inputs and constants of a set of samples, as the program has them and as they truly are."""
+
+    own: Mapping[str, Column]
+    true: Mapping[str, Any]
+    wide: Mapping[str, Column]  # the true ones in double
+
+
+def known(setup: Plan, values: Mapping[str, Column], by: Arithmetics) -> Known:
+    """Return samples with the constants that set-up makes of them."""
+    names = component_names(setup.program)
+    count = len(next(iter(values.values())))
+    own, true = dict(values), {name: by.given(x) for name, x in values.items()}
+    wide = {name: x.astype(np.float64) for name, x in values.items()}
+    made = in_columns(setup, by.made, {n: (x, x * 0) for n, x in values.items()})
+    whole = in_columns(setup, by.true_made, {n: (x, x * 0) for n, x in wide.items()})
+    for name, rounded_once, pair in zip(names, made, whole, strict=True):
+        own[name] = _filled(rounded_once[0], count).astype(by.dtype)
+        both = (_filled(pair[0], count), _filled(pair[1], count))
+        true[name], wide[name] = by.number(both), both[0]
+    return Known(own, true, wide)
+
+
+def _filled(x: Any, count: int) -> Column:
+    return np.broadcast_to(np.asarray(x), (count,))
+
+
+def found_and_true(plan: Plan, at: Known, by: Arithmetics) -> list[tuple[Column, Any]]:
+    """Return what a program gives and what it should give, by component, at all samples."""
+    count = len(next(iter(at.own.values())))
+    if plan.program.arithmetic == "pairs":
+        given = {name: (x, x * 0) for name, x in at.own.items()}
+        found = [x[0] for x in in_columns(plan, by.paired, given)]
+    else:
+        found = in_columns(plan, by.own, at.own)
+    single = by.dtype is np.float32
+    true = in_columns(plan, by.true, at.true)
+    return [
+        (
+            _filled(f, count),
+            _filled(t, count) if single else (_filled(t[0], count), _filled(t[1], count)),
+        )
+        for f, t in zip(found, true, strict=True)
+    ]

@@ -1,0 +1,223 @@
+"""The order of convergence of every step, against the motion that the lecture's equations give.
+
+The true motion is found from the equations of the state's rate alone, solved in balls as they
+stand: Gragg's midpoint rule with extrapolation (Bulirsch and Stoer 1966). It shares nothing with
+the steps, their structure or their exact solutions. Errors at two lengths of step give the order.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from flint import arb, ctx
+
+from derive.library.library import Library
+from derive.mechanics.mechanism import single
+from derive.mechanics.truth import truth
+from derive.program.largest import largest
+from derive.program.program import Program, component_names, run
+from derive.scene.wanted import SPLITTINGS, TAYLOR, step_of
+from derive.verify.equations import Equations, equations
+from derive.verify.motion_error import LONG_FLOATS
+from derive.verify.reference import BALLS
+from derive.verify.solution import solution
+
+BITS = 500
+LEVELS = 18
+CLAIMED = {"step_rk4": 4, "step_lie": 4, "step_dmv": 10} | SPLITTINGS | TAYLOR
+TURN = {"step_rk4": 0.02, "step_lie": 0.02, "step_dmv": 0.3, "step_split2": 0.02}
+USUAL_TURN = 0.2
+"""Turn in rad in the longer of two steps: small for a low order, large where a loop ends at u.
+
+Order 20 has errors near 1e-40 there, far above the digits of the true motion."""
+
+BELOW, ABOVE = 0.3, 0.7
+"""So far from the order may be what two errors give, as the error's next term has a part in them:
+less than a whole order either way, and more above, where that term may be the larger."""
+
+EXACT = 1e-40
+"""A relative error that only a motion in closed form has; the catalogue's largest is 4e-56."""
+
+ROUNDED = 1e-17
+"""A relative error that rounding covers: a closed form may end there, with its series."""
+
+State = list[Any]
+Rate = Callable[[State], State]
+
+
+@dataclass(frozen=True)
+class Order:
+    """The errors of one step at a length and at half of it, and the order that follows.
+
+    closed : the step is the motion in closed form, so that it has no order, only rounding
+    """
+
+    claimed: int
+    errors: tuple[float, float]
+    closed: bool
+
+    @property
+    def measured(self) -> float:
+        """Return the order: how often half the step halves the error of a step, less one."""
+        longer, shorter = self.errors
+        return math.log2(longer / shorter) - 1 if longer and shorter else math.inf
+
+    @property
+    def holds(self) -> bool:
+        """Tell whether the order is what is claimed, or a closed form is the motion."""
+        if self.closed:
+            return largest(self.errors) < ROUNDED
+        return self.claimed - BELOW <= self.measured <= self.claimed + ABOVE
+
+    def __str__(self) -> str:
+        return f"{largest(self.errors):.1g}" if self.closed else f"{self.measured:.2f}"
+
+
+def rate_of(library: Library, values: Mapping[str, Any]) -> Rate:
+    """Return the rate of the state as the lecture's equations give it, other inputs held."""
+    fact = library.truths.get("state_rate") or truth(single(library.known), "state_rate")
+    asked: Equations = equations(library.known, fact)
+    states = _states(library)
+    rates = [c for q in fact.outputs for c in q.components]
+
+    def rate(state: State) -> State:
+        given = {**values, **dict(zip(states, state, strict=True))}
+        found = solution(asked, given, (), BALLS)
+        return [found[name].value.mid() for name in rates]
+
+    return rate
+
+
+def moved(rate: Rate, state: State, time: Any, levels: int) -> State:
+    """Return the state after ``time`` by extrapolation from 2, 4, ... 2 ``levels`` substeps."""
+    rows: list[State] = []
+    for level in range(1, levels + 1):
+        row = [_midpoint(rate, state, time, 2 * level)]
+        for k, before in enumerate(rows[-1] if rows else []):
+            factor = arb(level) ** 2 / arb(level - k - 1) ** 2 - 1
+            latest = row[-1]
+            row.append([a + (a - b) / factor for a, b in zip(latest, before, strict=True)])
+        rows.append(row)
+    return [x.mid() for x in rows[-1][-1]]
+
+
+def _midpoint(rate: Rate, state: State, time: Any, steps: int) -> State:
+    """Return Gragg's midpoint rule with so many substeps, an even number."""
+    h = time / steps
+    before, here = state, [(x + h * v).mid() for x, v in zip(state, rate(state), strict=True)]
+    for _ in range(steps - 1):
+        slope = rate(here)
+        after = [(x + 2 * h * v).mid() for x, v in zip(before, slope, strict=True)]
+        before, here = here, after
+    ends = zip(before, here, rate(here), strict=True)
+    return [((a + b + h * v) / 2).mid() for a, b, v in ends]
+
+
+@dataclass(frozen=True)
+class Course:
+    """The true motion from one state: what is given, two lengths of step, and where they end."""
+
+    given: Mapping[str, Any]
+    lengths: tuple[Any, Any]
+    ends: tuple[State, State]
+
+
+def course(library: Library, name: str, values: Mapping[str, float]) -> Course:
+    """Return the true motion over a step that suits ``name`` and over half of it."""
+    with ctx.workprec(BITS):
+        given = unit_attitude(library, {c: arb(x) for c, x in values.items()})
+        rate = rate_of(library, given)
+        start = [given[c] for c in _states(library)]
+        h = arb(TURN.get(step_of(name), USUAL_TURN) / _turning(library, rate(start), start))
+        ends = moved(rate, start, h, LEVELS), moved(rate, start, h / 2, LEVELS)
+        return Course(given, (h, h / 2), ends)
+
+
+def order(library: Library, name: str, true: Course) -> Order:
+    """Return the order of a step, from its errors over the two lengths of a course."""
+    with ctx.workprec(BITS):
+        errors = []
+        for h, should in zip(true.lengths, true.ends, strict=True):
+            found = stepped(library, name, true.given, h)
+            errors.append(_distance([found[f"{c}_next"] for c in _states(library)], should))
+    return Order(CLAIMED[step_of(name)], (errors[0], errors[1]), closed(library, name))
+
+
+def closed(library: Library, name: str) -> bool:
+    """Tell whether a step is the motion itself: without torque, of a body with equal moments.
+
+    Two equal moments do for splittings and ``step_dmv``; a sphere keeps omega, so that
+    ``step_lie`` turns it by the exponential of a constant.
+    """
+    base = step_of(name)
+    if base not in (*SPLITTINGS, "step_dmv", "step_lie"):
+        return False
+    known = single(library.known)
+    tensor, moment = known.bindings["I"], known.bindings["M"]
+    if any(moment) or not tensor.is_diagonal():
+        return False
+    distinct = len({tensor[k, k].expand() for k in range(3)})
+    return distinct < (2 if base == "step_lie" else 3)
+
+
+def _states(library: Library) -> list[str]:
+    return [c for q in library.known.words.states for c in q.components]
+
+
+def exactness(library: Library, values: Mapping[str, float]) -> float:
+    """Return the relative error of the exact flow over half a turn of the state or so."""
+    with ctx.workprec(BITS):
+        given = unit_attitude(library, {c: arb(x) for c, x in values.items()})
+        states = _states(library)
+        rate = rate_of(library, given)
+        start = [given[c] for c in states]
+        here, pieces = start, 8
+        time = arb(3.0 / _turning(library, rate(start), start))
+        for _ in range(pieces):
+            here = moved(rate, here, time / pieces, LEVELS)
+        found = stepped(library, "flow_exact", given, time)
+        return _distance([found[f"{c}_next"] for c in states], here)
+
+
+def unit_attitude(library: Library, values: dict[str, Any]) -> dict[str, Any]:
+    """Return the values with every quaternion of the state brought to length one."""
+    for q in library.known.words.states:
+        if q.is_quaternion:
+            size = sum((values[c] ** 2 for c in q.components), arb(0)).sqrt()
+            values = values | {c: (values[c] / size).mid() for c in q.components}
+    return values
+
+
+def _turning(library: Library, rates: State, state: State) -> float:
+    """Return the fastest relative rate, 1/s, among the quantities of the state."""
+    fastest, place = 1e-30, 0
+    for q in library.known.words.states:
+        own = slice(place, place + len(q.components))
+        place = own.stop
+        fast, size = (max(abs(float(x)) for x in each[own]) for each in (rates, state))
+        fastest = max(fastest, fast / size if size else 0.0)
+    return fastest
+
+
+def stepped(library: Library, name: str, values: Mapping[str, Any], h: Any) -> dict[str, Any]:
+    """Return what a step gives at a length ``h``, in balls, from the scene's parameters on."""
+    known = dict(values) | {"time_step": h, "time": h}
+    known |= _results(library.setup, known)
+    for program in library.motions:
+        if program.name in (f"plan_{name.removeprefix('step_')}", name):
+            carried = [q for q in program.inputs if q.name == "remainder"]
+            known |= {c: arb(0) for q in carried for c in q.components}
+            known |= _results(program, known)
+    return known
+
+
+def _results(program: Program, known: Mapping[str, Any]) -> dict[str, Any]:
+    given = [known[c] for q in program.inputs for c in q.components]
+    return dict(zip(component_names(program), run(program, LONG_FLOATS, given), strict=True))
+
+
+def _distance(found: Sequence[Any], should: Sequence[Any]) -> float:
+    size = largest(map(abs, should))
+    gaps = [(a - b).mid() for a, b in zip(found, should, strict=True)]
+    return largest(map(abs, gaps)) / size if math.isfinite(size) else math.inf

@@ -1,0 +1,111 @@
+"""A truth as linear equations, multiplied out, in an order in which they can be solved.
+
+Rows that need each other's unknowns form a block; all other terms of a row are made of inputs and
+of unknowns solved before, so that the size of each term can be told.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from derive.mechanics.mechanism import Known
+from derive.mechanics.truth import Truth
+from derive.verify.blocks import in_order
+from derive.verify.valuation import Atom, Atoms, Monomial, Polynomial, terms
+
+Coefficient = tuple[tuple[Monomial, Fraction], ...]
+
+
+@dataclass(frozen=True)
+class Part:
+    """A term whose coefficient is kept by its place."""
+
+    coefficient: int
+    factors: Monomial
+
+
+Sum = tuple[Part, ...]
+
+
+@dataclass(frozen=True)
+class Block:
+    """Linear equations, matrix @ unknowns = right, in inputs and in unknowns of earlier blocks."""
+
+    unknowns: tuple[int, ...]
+    matrix: tuple[tuple[Sum, ...], ...]
+    right: tuple[Sum, ...]
+
+
+@dataclass(frozen=True)
+class Equations:
+    """A truth ready to be solved: atoms, coefficients made of parameters, blocks in order."""
+
+    atoms: tuple[Atom, ...]
+    names: Mapping[int, str]  # the component that an atom is
+    fixed: frozenset[int]  # atoms made of parameters only
+    coefficients: tuple[Coefficient, ...]
+    blocks: tuple[Block, ...]
+
+
+@dataclass
+class _Splitter:
+    """Collects the coefficients of terms as equations are taken apart."""
+
+    atoms: Atoms
+    fixed: frozenset[int]
+    places: dict[Coefficient, int]
+
+    def sum(self, polynomial: Polynomial) -> Sum:
+        found = []
+        for term in terms(polynomial, lambda atom: atom not in self.fixed):
+            place = self.places.setdefault(term.coefficient, len(self.places))
+            found.append(Part(place, term.factors))
+        return tuple(found)
+
+    def block(self, rows: Sequence[Polynomial], unknowns: Sequence[int], later: set[int]) -> Block:
+        matrix, right = [], []
+        for row in rows:
+            rest = {m: -c for m, c in row.items() if not later & self.atoms.within(m)}
+            matrix.append(tuple(self.sum(_coefficient_of(row, u)) for u in unknowns))
+            right.append(self.sum(rest))
+        return Block(tuple(unknowns), tuple(matrix), tuple(right))
+
+
+def _coefficient_of(row: Polynomial, unknown: int) -> Polynomial:
+    return {
+        tuple((a, p) for a, p in m if a != unknown): c for m, c in row.items() if (unknown, 1) in m
+    }
+
+
+def equations(known: Known, fact: Truth) -> Equations:
+    """Return the equations of ``fact``, multiplied out and in an order to solve them in."""
+    words, atoms = known.words, Atoms()
+    rows = [atoms.polynomial(residual) for residual in fact.residuals]
+    unknowns = [atoms.symbol(symbol) for symbol in fact.unknowns]
+    parameters = {words.symbols[c] for q in words.parameters for c in q.components}
+    splitter = _Splitter(atoms, _fixed(atoms, parameters), {})
+    blocks, later = [], set(unknowns)
+    for places, solved in in_order([_uses(atoms, row, unknowns) for row in rows]):
+        own = [unknowns[u] for u in solved]
+        blocks.append(splitter.block([rows[r] for r in places], own, later))
+        later -= set(own)
+    component = {symbol: name for name, symbol in words.symbols.items()}
+    names = {n: component[a.symbol] for n, a in enumerate(atoms.each) if a.symbol is not None}
+    return Equations(
+        tuple(atoms.each), names, splitter.fixed, tuple(splitter.places), tuple(blocks)
+    )
+
+
+def _uses(atoms: Atoms, row: Polynomial, unknowns: Sequence[int]) -> set[int]:
+    present = {atom for monomial in row for atom in atoms.within(monomial)}
+    return {place for place, atom in enumerate(unknowns) if atom in present}
+
+
+def _fixed(atoms: Atoms, parameters: set[Any]) -> frozenset[int]:
+    fixed: set[int] = set()
+    for place, atom in enumerate(atoms.each):
+        inner = {a for monomial, _ in atom.inner for a, _ in monomial}
+        if atom.symbol in parameters if atom.kind == "symbol" else inner <= fixed:
+            fixed.add(place)
+    return frozenset(fixed)

@@ -1,0 +1,244 @@
+"""Proof that programs satisfy the lecture's equations, by exact values at random points.
+
+Two rational functions that agree at random points of a wide grid are equal but for odds below one
+in a million a point; sine and cosine enter as a pair of rationals with unit norm. Where a scene
+holds a root or half an angle, balls of 4000 bits stand in for fractions.
+"""
+
+import operator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from random import Random
+from typing import Any
+
+from flint import arb, ctx, fmpq, fmpq_mat
+
+from derive.library.library import Library
+from derive.program.program import Op, Program, component_names, read_by, run
+from derive.program.recorded import needed
+from derive.scene.wanted import JACOBIAN
+from derive.verify.equations import Equations, equations
+from derive.verify.reference import BALLS, NoValueError
+from derive.verify.solution import Known, solution
+
+POINTS = 2
+TRIES = 50
+SEED = "derive: proof by exact values"
+BITS = 4000
+SPAN = 9973  # numerators up to this, denominators up to its hundredth
+
+Table = dict[str, Callable[..., Any]]
+
+
+class ProofError(ArithmeticError):
+    """A program that does not satisfy its equations; the sentence says where and by how much."""
+
+
+class IrrationalError(ArithmeticError):
+    """A root that no fraction is, or an angle beside its half."""
+
+
+def _root(x: Any) -> Any:
+    top, bottom = fmpq(x).p, fmpq(x).q
+    if x < 0 or top.isqrt() ** 2 != top or bottom.isqrt() ** 2 != bottom:
+        raise IrrationalError
+    return fmpq(top.isqrt(), bottom.isqrt())
+
+
+def _inverse(rows: list[list[Any]]) -> list[list[Any]]:
+    return [list(row) for row in fmpq_mat(rows).inv().tolist()]
+
+
+def _power_of_two(x: Any) -> Any:
+    return fmpq(2) ** (int(abs(x.p)).bit_length() - int(x.q).bit_length())
+
+
+_INFIX: Table = {
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "div": operator.truediv,
+    "neg": operator.neg,
+    "low": lambda x: x * 0,
+}
+
+FRACTIONS: Table = _INFIX | {
+    "number": lambda q: fmpq(q.numerator, q.denominator),
+    "sin": lambda x: 2 * x / (1 + x * x),
+    "cos": lambda x: (1 - x * x) / (1 + x * x),
+    "sqrt": _root,
+    "pi": lambda: fmpq(355, 113),  # any value will do: pi enters nowhere but as a name
+    "power_of_two": _power_of_two,
+    "inverse": _inverse,
+    "size": lambda _: 1.0,
+    "coefficient": lambda _: 1.0,
+    "most": max,
+    "unless_zero": lambda size, other: size or other,
+}
+
+WIDE_BALLS: Table = (
+    _INFIX
+    | dict(BALLS)
+    | {
+        "power_of_two": lambda x: x * 0 + 1,
+        "size": lambda _: 1.0,
+        "coefficient": lambda _: 1.0,
+    }
+)
+
+
+@dataclass(frozen=True)
+class Point:
+    """Exact values of parameters and inputs, the constants made of them, and their arithmetic."""
+
+    arithmetic: Table
+    values: Mapping[str, Any]
+
+
+def prove(library: Library) -> None:
+    """Raise ProofError unless every program satisfies its truth at exact random points.
+
+    Raises NoValueError if no such point is found at which the scene's formulas have values.
+    """
+    asked = {name: equations(library.known, fact) for name, fact in library.truths.items()}
+    for number in range(POINTS):
+        try:
+            if any(map(_halves_angles, (library.setup, *library.functions, *library.rates))):
+                raise IrrationalError
+            _prove_at(library, asked, point(library, number))
+        except IrrationalError:
+            with ctx.workprec(BITS):
+                _prove_in_balls(library, asked, number)
+
+
+def _halves_angles(program: Program) -> bool:
+    """Tell whether a program takes the sine of half an angle, which no pair of rationals knows."""
+    ops = [op for op in program.ops if isinstance(op, Op)]
+    halves = {op.result for op in ops if op.operator == "mul" and Fraction(1, 2) in op.operands}
+    return any(op.operator == "sin" and op.operands[0] in halves for op in ops)
+
+
+def _prove_in_balls(library: Library, asked: Mapping[str, Equations], number: int) -> None:
+    """Prove at the first point at which every root exists."""
+    for tries in range(TRIES):
+        at = ball_point(library, number + POINTS * tries)
+        if all(_exists(question, at) for question in asked.values()):
+            _prove_at(library, asked, at)
+            return
+    raise NoValueError("no random point was found at which all roots exist")
+
+
+def _exists(question: Equations, at: Point) -> bool:
+    true = solution(question, at.values, (), at.arithmetic)
+    return all(known.value.is_finite() for known in true.values())
+
+
+def point(library: Library, number: int) -> Point:
+    """Return random fractions for all parameters and inputs of a library."""
+    return Point(FRACTIONS, dict(_dice(library, number)))
+
+
+def ball_point(library: Library, number: int) -> Point:
+    """Return the same fractions as narrow balls, all above zero."""
+    values = {name: arb(abs(x)) for name, x in _dice(library, number)}
+    return Point(WIDE_BALLS, values)
+
+
+def _dice(library: Library, number: int) -> Iterator[tuple[str, Any]]:
+    words = library.known.words
+    dice = Random(f"{SEED} {number}")  # noqa: S311 - points of a proof, no secret
+    for quantity in (*words.parameters, *words.states, *words.inputs):
+        for name in quantity.components:
+            top = dice.randint(1, SPAN) * dice.choice((-1, 1))
+            yield name, fmpq(top, dice.randint(1, SPAN // 100))
+
+
+def _prove_at(library: Library, asked: Mapping[str, Equations], at: Point) -> None:
+    constants = constants_at(lectured(library), at)
+    for name, question in asked.items():
+        functions = [
+            f for f in (*library.functions, *library.rates) if f.name.removesuffix(JACOBIAN) == name
+        ]
+        columns = {c for f in functions for s in (f.sparsity or {}).values() for c in s.columns}
+        true = solution(question, at.values, columns, at.arithmetic)
+        for program in functions:
+            fault = first_fault(program, true, constants, at)
+            if fault:
+                raise ProofError(_sentence(library, program, fault))
+
+
+def lectured(library: Library) -> Program:
+    """Return the part of set-up that the functions which are proved read."""
+    setup = library.setup
+    every = (*library.functions, *library.rates)
+    proved = [f for f in every if f.name.removesuffix(JACOBIAN) in library.truths]
+    used = {name for f in proved for name in read_by(f)}
+    names = component_names(setup)
+    kept = [(c, r) for c, r in zip(names, setup.results, strict=True) if c in used]
+    outputs = tuple(replace(q, components=tuple(c for c, _ in kept)) for q in setup.outputs)
+    results = tuple(r for _, r in kept)
+    return replace(setup, outputs=outputs, ops=needed(setup.ops, results), results=results)
+
+
+def constants_at(setup: Program, at: Point) -> dict[str, Any]:
+    """Return the constants that set-up makes at a point."""
+    names = [c for q in setup.outputs for c in q.components]
+    return dict(zip(names, _run(setup, at, {}), strict=True))
+
+
+def _run(program: Program, at: Point, constants: Mapping[str, Any]) -> list[Any]:
+    known = {**at.values, **constants} if program.name != "setup" else at.values
+    given = [  # constants of motion alone are not made here, and not read either
+        known.get(c) if q.name == "constants" else known[c]
+        for q in program.inputs
+        for c in q.components
+    ]
+    return run(program, at.arithmetic, given)
+
+
+def first_fault(
+    program: Program, true: Mapping[str, Known], constants: Mapping[str, Any], at: Point
+) -> tuple[str, Any] | None:
+    """Return the first output component that is not what the equations say, and by how much."""
+    names = [c for q in program.outputs for c in q.components]
+    results = dict(zip(names, _run(program, at, constants), strict=True))
+    for name, should in _expected(program, true).items():
+        gap = results.get(name, 0) - should
+        if not _vanishes(gap):
+            return name, gap
+    return None
+
+
+def _expected(program: Program, true: Mapping[str, Known]) -> dict[str, Any]:
+    """Return what each output should be, and each entry of a Jacobian, in the pattern or not."""
+    patterns = program.sparsity or {}
+    expected = {
+        c: true[c].value for q in program.outputs if q.name not in patterns for c in q.components
+    }
+    for pattern in patterns.values():
+        within = {(pattern.rows[i], pattern.columns[k]) for i, k in pattern.places()}
+        for row in pattern.rows:
+            slopes = true[row].slopes
+            for column in pattern.columns:
+                if column in slopes or (row, column) in within:
+                    slope, _ = slopes.get(column, (0, 0.0))
+                    expected[f"d({row})/d({column})"] = slope
+    return expected
+
+
+def _vanishes(gap: Any) -> bool:
+    if isinstance(gap, arb):
+        return bool(gap.contains(0)) and bool(gap.rad() < arb(2) ** (-BITS // 2))
+    return bool(gap == 0)
+
+
+def _sentence(library: Library, program: Program, fault: tuple[str, Any]) -> str:
+    name, gap = fault
+    size = float(arb(gap) if isinstance(gap, fmpq) else gap)
+    base = program.name.removesuffix(JACOBIAN)
+    steps = ", ".join(f"'{step}'" for step in library.truths[base].steps)
+    return (
+        f"scene '{library.known.scene.name}': function '{program.name}' must satisfy lecture step "
+        f"{steps} exactly, but '{name}' is off by {size:.3g} at a random exact point"
+    )

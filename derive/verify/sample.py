@@ -1,0 +1,216 @@
+"""Parameters and inputs to check a scene's functions at: ordinary ones and hard corners.
+
+Every number is a float of the precision that it is for, with all its bits in use: products of
+short numbers would be exact in double and flatter it. The same numbers on any machine:
+``random.Random`` seeded by text, and basic float operations only.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import sqrt
+from random import Random
+
+from derive.mechanics.mechanism import Known, Mechanism, single
+from derive.program.added import added
+from derive.program.arithmetic import rounded
+from derive.program.precision import Precision
+from derive.program.program import Quantity
+from derive.scene import SceneError
+from derive.verify.hard_bodies import BODIES, Hard, admissible, bodies_taken, hard_body, solvable
+
+Values = dict[str, float]
+LARGE_SPIN = 1e4
+DENORMAL = {"f32": 2.0**-140, "f64": 2.0**-1060}
+TRIES = 200
+PATIENCE = 20  # tries after which a tensor will do that breaks the triangle inequality
+HALF_TURNS = ((0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1), (0, 0.6, 0, 0.8), (0, 2 / 3, 2 / 3, 1 / 3))
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One set of values by component, and what is hard about it."""
+
+    number: int
+    kind: str
+    values: Values
+
+
+@dataclass(frozen=True)
+class Samples:
+    """The samples of a scene for one precision, and the corners that the scene cannot take."""
+
+    each: tuple[Sample, ...]
+    skipped: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where samples come from: a scene, a precision, and dice for one kind of sample."""
+
+    known: Known
+    precision: Precision
+    dice: Random
+
+    def held(self, x: float) -> float:
+        """Return the float of the precision next to ``x``, as a Python float."""
+        return float(rounded(Fraction(x), self.precision.dtype))
+
+
+def source(known: Known, precision: Precision, kind: str) -> Source:
+    """Return the source of one kind of sample."""
+    seed = f"derive: {known.scene.name} {precision.name} {kind}"
+    return Source(known, precision, Random(seed))  # noqa: S311 - samples, no secret
+
+
+def samples(known: Known, precision: Precision, ordinary: int, corners: int) -> Samples:
+    """Return ``ordinary`` samples on the declared ranges, and ``corners`` of each hard kind."""
+    plain = source(known, precision, "ordinary")
+    found = [("ordinary", _ordinary(plain)) for _ in range(ordinary)]
+    skipped = []
+    for kind, corner in CORNERS.items():
+        own = source(known, precision, kind)
+        made = [corner(own, n) for n in range(corners)]
+        found += [(kind, values) for values in made if values is not None]
+        skipped += [kind] if all(values is None for values in made) else []
+    taken = bodies_taken(known)
+    for hard in BODIES:
+        own = source(known, precision, hard.kind)
+        if hard in taken:
+            found += [(hard.kind, _with_hard_body(own, hard)) for _ in range(corners)]
+        else:
+            skipped.append(hard.kind)
+    each = tuple(Sample(n, kind, values) for n, (kind, values) in enumerate(found))
+    return Samples(each, tuple(skipped))
+
+
+def _with_hard_body(of: Source, hard: Hard) -> Values:
+    return _ordinary(of) | hard_body(single(of.known), hard, of.dice, of.precision)
+
+
+def _ordinary(of: Source) -> Values:
+    words = of.known.words
+    for tries in range(TRIES):
+        values = {
+            name: of.held(uniform(of.dice, q)) for q in words.parameters for name in q.components
+        }
+        if admissible(of.known, values):
+            return values | _motion(of)
+        if tries > PATIENCE and solvable(single(of.known), values):
+            return values | _motion(of)
+    raise SceneError(
+        f"scene '{of.known.scene.name}': the ranges of its parameters must hold a body, "
+        f"but none was found in {TRIES} tries"
+    )
+
+
+def _motion(of: Source) -> Values:
+    values: Values = {}
+    for q in varying(of.known):
+        own = [uniform(of.dice, q) for _ in q.components]
+        own = _unit(own) if _is_attitude(q) else own
+        values |= {name: of.held(x) for name, x in zip(q.components, own, strict=True)}
+    return values
+
+
+def varying(known: Known) -> tuple[Quantity, ...]:
+    """Return all quantities that vary with time and enter from outside."""
+    return (*known.words.states, *known.words.inputs)
+
+
+def uniform(dice: Random, q: Quantity) -> float:
+    """Return a number on the range of a quantity."""
+    low, high = map(float, q.ends)
+    return low + (high - low) * dice.random()
+
+
+def _unit(values: Sequence[float]) -> list[float]:
+    """Return a direction of unit length, by operations that every machine rounds alike."""
+    size = sqrt(added(x * x for x in values))
+    return [x / size for x in values]
+
+
+def _changed(of: Source, change: Callable[[Quantity, float], float]) -> Values:
+    """Return an ordinary sample with every varying value changed by a rule."""
+    values = _ordinary(of)
+    for q in varying(of.known):
+        values |= {name: of.held(change(q, values[name])) for name in q.components}
+    return values
+
+
+def _large_spin(of: Source, _: int) -> Values | None:
+    moves = any(wanted.startswith("step_") for wanted in of.known.scene.wanted)
+    if isinstance(of.known, Mechanism) and moves:
+        return None  # a step would turn angles by many radians, and their sines magnify rounding
+    fast = [q for q in varying(of.known) if q.unit == "rad/s"]
+
+    def change(q: Quantity, x: float) -> float:
+        reach = max(abs(float(end)) for end in q.ends)
+        return x / reach * LARGE_SPIN if q in fast else x
+
+    return _changed(of, change) if fast else None
+
+
+def _at_rest(of: Source, _: int) -> Values | None:
+    return _changed(of, lambda q, x: 0.0 if _may_vanish(q) else x)
+
+
+def _denormal(of: Source, _: int) -> Values | None:
+    if isinstance(of.known, Mechanism):
+        return None  # chains of products fall below the smallest float one after another
+    tiny = DENORMAL[of.precision.name]
+    return _changed(of, lambda q, x: x * tiny if _may_vanish(q) else x)
+
+
+def _is_attitude(q: Quantity) -> bool:
+    return q.is_quaternion
+
+
+def _may_vanish(q: Quantity) -> bool:
+    low, high = q.ends
+    within = low <= 0 <= high
+    return not _is_attitude(q) and within
+
+
+def _half_turn(of: Source, number: int) -> Values | None:
+    if "attitude" not in of.known.words:
+        return None
+    parts = of.known.words["attitude"].components
+    turn = HALF_TURNS[number % len(HALF_TURNS)]
+    return _ordinary(of) | {name: of.held(x) for name, x in zip(parts, turn, strict=True)}
+
+
+def _range_ends(of: Source, number: int) -> Values | None:
+    """Return a sample with every coordinate at an end of its range: closest to a gimbal lock."""
+    names = [c.name for c in of.known.scene.coordinates]
+
+    def change(q: Quantity, x: float) -> float:
+        return _end(of, q, number >> names.index(q.name) & 1) if q.name in names else x
+
+    return _changed(of, change) if names else None
+
+
+def _extremes(of: Source, _: int) -> Values | None:
+    """Return a sample with every varying value at an end of its range."""
+
+    def change(q: Quantity, x: float) -> float:
+        return x if _is_attitude(q) else _end(of, q, of.dice.randrange(2))
+
+    return _changed(of, change)
+
+
+def _end(of: Source, q: Quantity, which: int) -> float:
+    """Return the low (0) or high (1) end of a quantity's range, as a float inside it."""
+    x = float(q.ends[which])
+    inside = x * (1 - 4 * of.precision.unit_roundoff)
+    return of.held(x) if abs(of.held(x)) <= abs(x) else of.held(inside)
+
+
+CORNERS: dict[str, Callable[[Source, int], Values | None]] = {
+    "large spin": _large_spin,
+    "at rest": _at_rest,
+    "denormal": _denormal,
+    "half turn": _half_turn,
+    "gimbal": _range_ends,
+    "extremes": _extremes,
+}

@@ -1,0 +1,212 @@
+"""What errors are counted in: how large the terms of every output are, sample by sample.
+
+A function of the lecture: the largest product in the equation that the output solves, multiplied
+out, by the lecture's own equations, or the output itself where it is larger. A step: the largest
+component, before and after, or the largest product of what the step adds. A flow: kappa times its
+largest component. No scale knows how a program is arranged.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from typing import Any
+
+import numpy as np
+
+from derive.library.library import Library
+from derive.motion.runge_kutta.system import FLOW, NEXT
+from derive.program.pair_sine import PI
+from derive.program.program import Program, Quantity, component_names
+from derive.scene.wanted import JACOBIAN
+from derive.verify.columns import Column, Plan, doubles, in_columns, planned
+from derive.verify.equations import Equations, equations
+from derive.verify.solution import Known as Solved
+from derive.verify.solution import solution
+
+PLAN = "plan"
+ANGLES = "angles"
+STATE_RATE = "state_rate"
+UNMEASURED = ("remainder_next", "step_proposed")
+"""What rounding left, and a length that is proposed: neither has a true value."""
+CHANGED = 2.0**-26
+"""Relative change of an input that tells how much of it an output magnifies."""
+NOTHING = 1e-60
+"""A part this much smaller than the rest of a plan is what rounding left, and has no true value."""
+
+Wide = Mapping[str, Column]
+Outputs = Sequence[tuple[Quantity, Sequence[Column]]]
+
+
+def _inverse(rows: Sequence[Sequence[Any]]) -> list[list[Any]]:
+    """Return the inverses of matrices, entry by entry: Gauss and Jordan, pivots by sample."""
+    n = len(rows)
+    count = np.broadcast_shapes(*(np.shape(x) for row in rows for x in row))
+    m = np.zeros((n, 2 * n, *count))
+    for i, row in enumerate(rows):
+        m[i, n + i] = 1.0
+        for k, x in enumerate(row):
+            m[i, k] = x
+    for i in range(n):
+        _pivoted(m, i)
+        m[i] = m[i] / m[i, i]
+        for k in range(n):
+            if k != i:
+                m[k] = m[k] - m[k, i] * m[i]
+    return [list(row) for row in m[:, n:]]
+
+
+def _pivoted(m: Column, i: int) -> None:
+    """Bring the largest entry of column ``i``, from row ``i`` on, to row ``i``."""
+    best = np.argmax(np.abs(m[i:, i]), axis=0)
+    for k in range(1, m.shape[0] - i):
+        here = best == k
+        upper, lower = m[i].copy(), m[i + k]
+        m[i] = np.where(here, lower, upper)
+        m[i + k] = np.where(here, upper, lower)
+
+
+DOUBLES: dict[str, Callable[..., Any]] = {
+    "number": lambda q: q.numerator / q.denominator,
+    "sin": np.sin,
+    "cos": np.cos,
+    "sqrt": np.sqrt,
+    "pi": lambda: float(PI),
+    "inverse": _inverse,
+    "size": np.abs,
+    "coefficient": lambda products: reduce(np.maximum, map(np.abs, products)),
+    "most": np.maximum,
+    "unless_zero": lambda size, other: np.where(size == 0, other, size),
+}
+"""Doubles in columns, for what needs two digits: how large terms are."""
+
+
+@dataclass(frozen=True)
+class Sizing:
+    """The equations of a scene that tell how large its terms are, and its smallest float."""
+
+    library: Library
+    setup: Plan
+    asked: Mapping[str, Equations]
+    smallest: float
+
+
+def sizing(library: Library, smallest: float) -> Sizing:
+    """Return what the terms of a scene's functions are sized by."""
+    asked = {base: equations(library.known, fact) for base, fact in library.truths.items()}
+    return Sizing(library, planned(library.setup), asked, smallest)
+
+
+def measured_outputs(program: Program) -> list[tuple[Quantity, slice]]:
+    """Return the outputs that have a true value, and where their components stand."""
+    found, place = [], 0
+    for q in program.outputs:
+        span = slice(place, place + len(q.components))
+        place = span.stop
+        if q.name not in UNMEASURED:
+            found.append((q, span))
+    return found
+
+
+def around(program: Program) -> list[bool]:
+    """Tell of each component whether it is the same a turn later: -pi and pi are one angle."""
+    return [q.name == ANGLES for q in program.outputs for _ in q.components]
+
+
+def base_of(program: Program) -> str:
+    """Return the function of the lecture that a program is, or is the Jacobian of."""
+    return program.name.removesuffix(JACOBIAN)
+
+
+def columns_of(program: Program) -> tuple[str, ...]:
+    """Return the columns of a program's Jacobian."""
+    return tuple(c for pattern in (program.sparsity or {}).values() for c in pattern.columns)
+
+
+def lecture_scales(by: Sizing, program: Program, wide: Wide) -> list[Column]:
+    """Return the largest product in the equation of each component of a function of the lecture."""
+    found = solution(by.asked[base_of(program)], wide, columns_of(program), DOUBLES)
+    scales: list[Column] = []
+    for q in program.outputs:
+        pattern = (program.sparsity or {}).get(q.name)
+        if pattern is None:
+            scales += [_floored(by, found[c], found[c].scale) for c in q.components]
+            continue
+        for i, k in pattern.places():
+            row = found[pattern.rows[i]]
+            _, scale = row.slopes.get(pattern.columns[k], (None, 0.0))
+            scales.append(_floored(by, row, scale))
+    return scales
+
+
+def _floored(by: Sizing, row: Solved, scale: Any) -> Any:
+    return np.maximum(scale, by.smallest * row.gain)
+
+
+def motion_scales(by: Sizing, plan: Plan, wide: Wide, true: Sequence[Column]) -> list[Column]:
+    """Return the scale of each component of a function of motion, from its true values."""
+    program, sizes = plan.program, [np.abs(x) for x in true]
+    place = 0
+    grouped: list[tuple[Quantity, Sequence[Column]]] = []
+    for q in program.outputs:
+        grouped.append((q, sizes[place : place + len(q.components)]))
+        place += len(q.components)
+    if program.name == FLOW:
+        return _magnified(by, plan, wide, grouped)
+    added = _added(by, wide) if any(q.name.endswith(NEXT) for q in program.outputs) else {}
+    scales: list[Column] = []
+    for q, own in grouped:
+        before = [added[c] for c in _states_of(q) if c in added]
+        most = reduce(np.maximum, (*own, *before), np.asarray(by.smallest))
+        if q.name == PLAN:
+            scales += [np.where(x > most * NOTHING, np.maximum(x, by.smallest), most) for x in own]
+        else:
+            scales += [most] * len(own)
+    return scales
+
+
+def _states_of(q: Quantity) -> list[str]:
+    """Return the components of the state that an output is after the step."""
+    return [c.replace(NEXT, "") for c in q.components] if q.name.endswith(NEXT) else []
+
+
+def _added(by: Sizing, wide: Wide) -> dict[str, Column]:
+    """Return the largest term of each state in a step: it, and what the step adds to it.
+
+    What is added is sized twice: a rate may be made of states that themselves begin at zero.
+    """
+    names = [c for q in by.library.known.words.states for c in q.components]
+    largest = {c: np.abs(wide[c]) for c in names if c in wide}
+    if STATE_RATE not in by.asked or "time_step" not in wide:
+        return largest
+    rates = [c for q in by.library.truths[STATE_RATE].outputs for c in q.components]
+    step = np.abs(wide["time_step"])
+    for _ in range(2):
+        found = solution(by.asked[STATE_RATE], wide, (), DOUBLES, largest)
+        grown = {c: step * found[rate].scale for c, rate in zip(names, rates, strict=True)}
+        largest = {c: np.maximum(np.abs(wide[c]), grown[c]) for c in largest}
+    return largest
+
+
+def _magnified(by: Sizing, plan: Plan, wide: Wide, grouped: Outputs) -> list[Column]:
+    """Return kappa times the largest component of each output: what its inputs' changes make."""
+    inputs = (*by.setup.program.inputs, *plan.program.inputs)
+    names = {c: None for q in inputs for c in q.components if q.name != "constants"}
+    start = _values(by, plan, wide)
+    total = [np.asarray(by.smallest) for _ in grouped]
+    for c in names:
+        moved = _values(by, plan, dict(wide) | {c: wide[c] * (1 + CHANGED)})
+        change = [np.abs(a - b) / CHANGED for a, b in zip(moved, start, strict=True)]
+        place = 0
+        for n, (q, _) in enumerate(grouped):
+            total[n] = total[n] + reduce(np.maximum, change[place : place + len(q.components)])
+            place += len(q.components)
+    scales: list[Column] = []
+    for (_, own), grown in zip(grouped, total, strict=True):
+        scales += [np.maximum(grown, reduce(np.maximum, own))] * len(own)
+    return scales
+
+
+def _values(by: Sizing, plan: Plan, wide: Wide) -> list[Any]:
+    made = in_columns(by.setup, doubles(), wide)
+    known = dict(wide) | dict(zip(component_names(by.setup.program), made, strict=True))
+    return in_columns(plan, doubles(), known)

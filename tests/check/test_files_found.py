@@ -1,0 +1,54 @@
+"""Checks run what a scene makes: what else lies there is compared with it, and never run."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.check import as_made
+from derive.check.emitted import Files, files
+from derive.emit.files import scene_files, write
+from derive.verify.search import Sampling
+from tests.made import library_of
+
+NAME = "free_body_principal"
+FEW = Sampling(samples=64, rounds=1, batch=16, balls=1, motion_balls=1)
+
+
+@pytest.fixture(scope="module")
+def found() -> Files:
+    """Return the files of a scene, made in memory."""
+    return files(library_of(NAME), Path("nowhere"), FEW)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, found: Files) -> Path:
+    page = scene_files(library_of(NAME), ())[f"{NAME}/{NAME}.html"]
+    write(tmp_path, {f"{NAME}/{file}": text for file, text in found.texts.items()})
+    write(tmp_path, {f"{NAME}/{NAME}.html": page})
+    return tmp_path
+
+
+def test_what_an_import_or_an_editor_left_is_not_read(folder: Path, found: Files) -> None:
+    (folder / NAME / "__pycache__").mkdir()
+    (folder / NAME / f".{NAME}_f64.c.swp").write_bytes(b"\xff\xfe")
+    assert files(library_of(NAME), folder, FEW).texts == found.texts
+
+
+@pytest.mark.parametrize("ending", ["_casadi.py", "_f64.c", ".json"])
+def test_what_lies_there_is_compared_and_never_run(folder: Path, found: Files, ending: str) -> None:
+    (folder / NAME / f"{NAME}{ending}").write_text("raise SystemExit('it was run')")
+    again = files(library_of(NAME), folder, FEW)
+    assert again.texts == found.texts
+    assert f"{NAME}/{NAME}{ending}" in again.differ
+    verdict = as_made(library_of(NAME), again)
+    assert verdict.outcome == "FAILS"
+    assert f"{NAME}{ending}" in verdict.says
+
+
+def test_a_missing_file_is_named(folder: Path) -> None:
+    (folder / NAME / f"{NAME}_f32.h").unlink()
+    assert f"{NAME}/{NAME}_f32.h" in files(library_of(NAME), folder, FEW).differ
+
+
+def test_a_scene_of_which_nothing_lies_there_is_skipped(found: Files) -> None:
+    assert as_made(library_of(NAME), found).outcome == "skipped"

@@ -1,0 +1,49 @@
+"""A row that holds has compared something; one that could not says why."""
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from derive.check import check_library
+from derive.check.compiler import find_compiler
+from derive.check.emitted import Files
+from derive.check.verdict import Verdict
+from tests.check.mutants import printed
+from tests.made import library_of, thinned
+
+FEW = 4
+
+
+@pytest.fixture(scope="module")
+def workshop(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("rows")
+
+
+@cache
+def rows(scene: str, workshop: Path) -> tuple[Verdict, ...]:
+    made = library_of(scene)
+    texts = Files(printed(made), "made in memory")
+    return tuple(check_library(made, texts, workshop, find_compiler(), FEW))
+
+
+@pytest.mark.parametrize("scene", thinned(["eulers_disk", "attitude", "heavy_top"], 3))
+def test_a_row_that_holds_has_compared_something(scene: str, workshop: Path) -> None:
+    held = [v for v in rows(scene, workshop) if v.outcome == "holds"]
+    assert [v for v in held if v.says.startswith("0 ")] == []
+
+
+def test_a_row_with_nothing_to_compare_says_why(workshop: Path) -> None:
+    skipped = {(v.function, v.check): v.says for v in rows("attitude", workshop)
+               if v.outcome == "skipped"}  # fmt: skip
+    assert skipped["all", "satisfies the lecture"].startswith("nothing is wanted that the lecture")
+    assert skipped["setup", "refuses what is no body"] == "there is no set-up to refuse anything"
+    assert {check for _, check in {(v.function, v.check) for v in rows("heavy_top", workshop)}} >= {
+        "outputs over inputs", "refuses what is no body", "satisfies the lecture"
+    }  # fmt: skip
+
+
+def test_a_figure_that_no_header_states_is_not_said_to_be_stated(workshop: Path) -> None:
+    says = [v.says for v in rows("attitude", workshop) if v.check == "rounding"]
+    assert says
+    assert all(s.endswith("the header says nothing") for s in says)

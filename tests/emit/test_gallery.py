@@ -1,0 +1,61 @@
+"""The gallery has a card for every scene, with a drawing made from the scene and nothing else."""
+
+import re
+
+import pytest
+
+from derive.emit.gallery import card, gallery
+from derive.emit.gallery.drawing import HEIGHT, WIDTH, drawing
+from derive.library.library import library
+from derive.scene import Machine, catalogue, load, parse_scene
+from derive.scene.machine import LEFT_OVER
+from tests.made import library_of, scene_of, thinned
+
+
+@pytest.mark.parametrize("name", thinned(catalogue(), 4))
+def test_a_scene_has_a_card_with_all_its_parts(name: str) -> None:
+    found = card(library_of(name))
+    assert found.title
+    points = re.findall(r"(-?[0-9.]+),(-?[0-9.]+)", found.drawing)
+    assert points
+    assert all(0 <= float(x) <= WIDTH and 0 <= float(y) <= HEIGHT for x, y in points)
+    assert f'href="{name}/{name}.html"' in gallery([found])
+
+
+def test_a_closed_form_is_shown_where_it_is_short() -> None:
+    found = card(library_of("edge_runner_flat"))
+    assert "<mfrac>" in found.equation
+    assert found.answer.startswith("N = ")
+
+
+@pytest.mark.parametrize("formula", ['"2*pi"', '{ formula = "W", unit = "rpm" }', '"sin(w)"'])
+def test_an_answer_whose_constants_need_no_parameter_is_shown(formula: str) -> None:
+    text = load("edge_runner_flat").text
+    text = f'wanted = ["turn"]\n{text[text.index("[parameters]") :]}\nturn = {formula}'
+    text = text.replace("[parameters]", '[parameters]\nw = { unit = "1", value = 0.3 }')
+    assert card(library(parse_scene(text, "edge"))).answer.startswith("turn = ")
+
+
+def test_formulas_of_attitudes_have_axes_and_no_body() -> None:
+    found = card(library_of("attitude"))
+    assert 'class="frame"' in found.drawing
+    assert 'class="body"' not in found.drawing
+    assert 'class="body"' in card(library_of("heavy_top")).drawing
+
+
+def test_attitudes_are_turned_by_quaternions_of_length_one() -> None:
+    parts = re.findall(r"= (-?[0-9.]+)", card(library_of("attitude")).answer)
+    w, x, y = map(float, parts)
+    assert w * w + x * x + 2 * y * y == pytest.approx(1, abs=2e-3)  # all parts alike but w
+
+
+@pytest.mark.parametrize("name", [n for n in catalogue() if scene_of(n).wanted[0] == "steady"])
+def test_what_is_left_of_a_balance_is_not_shown_as_an_answer(name: str) -> None:
+    assert card(library_of(name)).answer.endswith(LEFT_OVER)
+
+
+def test_a_drawing_moves_with_the_scene() -> None:
+    scene = load("rod_wire_vertical_shaft")
+    assert isinstance(scene, Machine)
+    steeper = parse_scene(scene.text.replace("[0.8, 1.2]", "[0.2, 0.3]"), scene.name)
+    assert drawing(scene) != drawing(steeper)

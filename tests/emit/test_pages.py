@@ -1,0 +1,151 @@
+"""The pages: well formed, without scripts, every link at home."""
+
+import re
+import xml.etree.ElementTree as ET
+from functools import cache
+
+import pytest
+
+from derive.emit.page.code import listing
+from derive.emit.page.equation import passages
+from derive.emit.page.lecture import ENDS, IN_COMPONENTS, lecture_page
+from derive.emit.page.prose import prose
+from derive.emit.page.scene import scene_page
+from derive.lecture.chapters import LECTURE
+from derive.library.library import Library, library
+from derive.program.program import Measurement
+from derive.scene import catalogue, load, parse_scene
+from tests.made import library_of, thinned
+
+XHTML = "{http://www.w3.org/1999/xhtml}"
+TAKEN = """
+wanted = ["angular_momentum", "kinetic_energy"]
+[parameters]
+l = { unit = "kg m^2", range = [1, 2], meaning = "moment" }
+T = { unit = "kg m^2", range = [1, 2], meaning = "another" }
+[body]
+kind = "principal"
+moments = ["l", "l", "T"]
+"""
+
+
+def figures(of: Library) -> tuple[Measurement, ...]:
+    """Return figures for every output, as if they had been measured."""
+    return tuple(
+        Measurement(p.name, precision, q.name, 0.5, 3.25, 7, "found", 48, 0, 0)
+        for p in of.printed()
+        for precision in ("f32", "f64")
+        for q in p.outputs
+    )
+
+
+@cache
+def page(name: str) -> str:
+    """Return the text of a scene's page, or of the lecture's."""
+    return (
+        lecture_page()
+        if name == "lecture"
+        else scene_page(library_of(name), figures(library_of(name)))
+    )
+
+
+def parsed(text: str) -> ET.Element:
+    """Return the root of a page; anything but well-formed XML is an error."""
+    return ET.fromstring(text)  # noqa: S314 (made here)
+
+
+def places(text: str) -> list[str]:
+    """Return every id on a page."""
+    return [e.attrib["id"] for e in parsed(text).iter() if "id" in e.attrib]
+
+
+NAMES = ("lecture", *catalogue())
+
+
+@pytest.mark.parametrize("name", thinned(NAMES, 4))
+def test_a_page_is_complete_well_formed_and_without_scripts(name: str) -> None:
+    root = parsed(page(name))
+    tags = {element.tag.split("}")[1] for element in root.iter()}
+    assert tags & {"script", "link", "img", "iframe", "object", "form"} == set()
+    assert {"math", "table", "style"} <= tags
+    assert not [e for e in root.iter() for key in e.attrib if key.startswith("on")]
+    assert "http" not in re.sub(r'xmlns="[^"]*"', "", page(name))
+
+
+@pytest.mark.parametrize("name", thinned(NAMES, 4))
+def test_every_link_leads_to_a_place_that_is_there(name: str) -> None:
+    own, lecture = places(page(name)), places(page("lecture"))
+    assert len(own) == len(set(own))
+    scene = load(name).name if name != "lecture" else ""
+    files = {f"{scene}_{p}.{e}" for p in ("f32", "f64") for e in "ch"}
+    files |= {f"{scene}_casadi.py", f"{scene}.json", "../lecture.html"}
+    for link in parsed(page(name)).iter(f"{XHTML}a"):
+        file, _, place = link.attrib["href"].partition("#")
+        assert file in ("", *files)
+        if place:
+            assert place in (lecture if file else own)
+
+
+@pytest.mark.parametrize("name", thinned(catalogue(), 4))
+def test_every_stored_result_leads_to_the_equation_that_it_satisfies(name: str) -> None:
+    for program in library_of(name).functions:
+        fact = library_of(name).truths[program.name.removesuffix("_jacobian")]
+        lines = [line for passage in passages(library_of(name), fact) for line in passage.lines]
+        links = {line.unknown: line.place for line in lines}
+        text = str(listing(program, name, links))
+        assert text.count("<a href=") == len(program.results)
+        assert {p.name for g in passages(library_of(name), fact) for p in g.steps} == set(
+            fact.steps
+        )
+
+
+@pytest.mark.parametrize("name", thinned(catalogue(), 4))
+def test_a_scene_page_says_all_that_a_reader_needs(name: str) -> None:
+    text, scene = page(name), load(name)
+    assert scene.title in text.replace("&#39;", "'")
+    for program in library_of(name).printed():
+        assert f'id="{program.name}"' in text
+        assert f"{program.flops()} operations" in text
+        for q in program.inputs:
+            assert q.name == "constants" or q.meaning in text.replace("&#39;", "'")
+    assert "3.2" in text
+    assert all(
+        f"lecture.html#{a}" in text for p in library_of(name).printed() for a in p.assumptions
+    )
+
+
+def test_a_function_that_was_not_measured_says_so() -> None:
+    assert "has not been measured" in scene_page(library_of("heavy_top"), ())
+    assert "has not been measured" not in page("heavy_top")
+
+
+def test_letters_that_the_user_took_are_left_to_the_user() -> None:
+    of = library(parse_scene(TAKEN, "taken"))
+    text = scene_page(of, ())
+    parsed(text)
+    assert "<mi>L</mi>" in text
+    assert "<mi>E</mi>" in text
+
+
+def test_the_lecture_page_shows_every_step_its_reasons_and_its_mark() -> None:
+    text = page("lecture")
+    own = places(text)
+    for step in LECTURE.steps:
+        assert step.name in own
+    assert text.count('class="step deduce"') == sum(s.kind == "deduce" for s in LECTURE.steps)
+    assert {*ENDS, *IN_COMPONENTS} <= set(own)
+    reasons = sum(len(step.using) for step in LECTURE.steps)
+    assert text.count("<a href=") > reasons
+
+
+def test_prose_writes_symbols_as_symbols_and_lets_nothing_through() -> None:
+    assert "<mi>ω</mi>" in prose("about omega x rho")
+    assert " × " in prose("about omega x rho")
+    assert prose("sums of x y dm along the x axis") == "sums of x y dm along the x axis"
+    assert "<script" not in prose("<script>alert(1)</script>")
+
+
+def test_a_title_cannot_break_the_page() -> None:
+    text = TAKEN.replace("wanted", 'title = "a < b & <script>"\nwanted', 1)
+    shown = scene_page(library(parse_scene(text, "taken")), ())
+    assert parsed(shown).find(f".//{XHTML}h1").text == "a < b & <script>"  # type: ignore[union-attr]

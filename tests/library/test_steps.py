@@ -1,0 +1,144 @@
+"""Machines move in time as single bodies do, by steps that need only the rate of a state."""
+
+from functools import cache
+from math import fsum
+from pathlib import Path
+
+import pytest
+
+from derive.check.motion import orders, step_slopes
+from derive.cli import main
+from derive.library.library import Library, library
+from derive.program.arithmetic import working
+from derive.program.precision import F32, F64, Precision
+from derive.program.program import component_names
+from derive.scene import CATALOGUE, SceneError, parse_scene
+from derive.scene.wanted import OF_MACHINES
+from derive.verify.measure import replayed
+from derive.verify.motion_error import with_motion
+from derive.verify.sample import Sample, samples
+
+TWO_HUBS = """
+title  = "Two satellites on a tether that damps"
+wanted = [{wanted}]
+emission = "{emission}"
+
+[parameters]
+J = {{ unit = "kg m^2", range = [1, 2], meaning = "moment across" }}
+C = {{ unit = "kg m^2", range = [1.5, 1.9], meaning = "moment along z" }}
+k = {{ unit = "N m s", range = [2, 4], meaning = "how the tether damps the spin about x" }}
+
+[speeds]
+a_x = {{ unit = "rad/s", range = [-1, 1] }}
+a_y = {{ unit = "rad/s", range = [-1, 1] }}
+a_z = {{ unit = "rad/s", range = [-1, 1] }}
+b_x = {{ unit = "rad/s", range = [-1, 1] }}
+b_y = {{ unit = "rad/s", range = [-1, 1] }}
+b_z = {{ unit = "rad/s", range = [-1, 1] }}
+
+[frames.hub]
+angular_velocity = ["a_x", "a_y", "a_z"]
+attitude = "quaternion"
+
+[frames.pod]
+angular_velocity = ["b_x", "b_y", "b_z"]
+attitude = "quaternion"
+
+[bodies.hub]
+frame = "hub"
+kind  = "axisymmetric"
+axis  = "z"
+axial = "C"
+transverse = "J"
+
+[bodies.pod]
+frame = "pod"
+kind  = "principal"
+moments = ["J", "C", "J"]
+
+[loads]
+tether = {{ on = "hub", against = "pod", couple = ["-k*(a_x - b_x)", "0", "0"], along = "hub" }}
+"""
+FEW = ("--samples", "256")
+STEPS = [name for name in OF_MACHINES if "tangent" not in name and name != "step_taylor"]
+ON_SPHERE = 4.0
+"""Length of a quaternion after a step, in u from 1: one normalisation and its roundings."""
+
+
+def two_hubs(*wanted: str, emission: str = "fast") -> Library:
+    names = ", ".join(f'"{name}"' for name in wanted)
+    text = TWO_HUBS.format(wanted=names, emission=emission)
+    return library(parse_scene(text, "two_hubs"))
+
+
+@cache
+def top() -> Library:
+    text = (CATALOGUE / "sleeping_top.toml").read_text(encoding="utf-8")
+    old = '["linearised", "accelerations", "step_rk4", "energy"]'
+    assert old in text
+    names = ", ".join(f'"{name}"' for name in STEPS)
+    return library(parse_scene(text.replace(old, f"[{names}]"), "sleeping_top"))
+
+
+def drawn(made: Library, precision: Precision, count: int) -> tuple[Sample, ...]:
+    return with_motion(made, samples(made.known, precision, count, 0).each, precision)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("of", ["top", "two hubs"])
+def test_steps_of_machines_have_their_orders_and_their_slopes(of: str) -> None:
+    hubs = ("step_rk4", "step_rk4_jacobian", "step_taylor12")
+    made = top() if of == "top" else two_hubs(*hubs)
+    verdicts = [check for one in (orders, step_slopes) for check in one(made, drawn(made, F64, 1))]
+    assert {v.function for v in verdicts} >= {"step_rk4", "step_rk4_jacobian", "step_taylor12"}
+    assert [v for v in verdicts if v.outcome != "holds"] == []
+
+
+@pytest.mark.parametrize("precision", [F32, F64])
+@pytest.mark.parametrize("name", ["step_rk4", "step_rk4_compensated"])
+def test_a_step_brings_every_quaternion_back_to_length_one(name: str, precision: Precision) -> None:
+    made = two_hubs(name)
+    each = drawn(made, precision, 8)
+    columns = replayed(made, each, precision, working(precision.dtype))[name]
+    found = dict(zip(component_names(made[name]), columns, strict=True))
+    u = 2.0**-24 if precision is F32 else 2.0**-53
+    for frame in ("hub", "pod"):
+        for n in range(len(each)):
+            parts = [float(found[f"attitude_{frame}_{part}_next"][n]) for part in "wxyz"]
+            assert abs(fsum(x * x for x in parts) - 1) <= 2 * ON_SPHERE * u
+
+
+@pytest.mark.parametrize(
+    ("wanted", "emission", "says"),
+    [
+        pytest.param(
+            "step_rk4_tangent",
+            "fast",
+            "is over the errors of one quaternion, and the state has 2",
+            marks=pytest.mark.long,
+        ),
+        ("step_rk4", "compact", "is for one quaternion at most, and the state has 2"),
+    ],
+)
+def test_a_step_of_one_quaternion_is_refused_to_two(wanted: str, emission: str, says: str) -> None:
+    with pytest.raises(SceneError, match=says):
+        two_hubs(wanted, emission=emission)
+
+
+def test_a_machine_is_not_moved_by_what_needs_a_single_free_body() -> None:
+    with pytest.raises(SceneError, match="wanted has 'flow_exact', which is no answer"):
+        two_hubs("flow_exact")
+
+
+def test_a_step_is_no_answer_beside_others() -> None:
+    with pytest.raises(SceneError, match="wanted has 'step_rk4' within 'both', but a step stands"):
+        two_hubs("both: accelerations, step_rk4")
+
+
+@pytest.mark.long
+def test_a_machine_may_want_steps_and_nothing_else(tmp_path: Path) -> None:
+    names = TWO_HUBS.format(wanted='"step_rk4"', emission="fast")
+    scene = tmp_path / "two_hubs.toml"
+    scene.write_text(names, encoding="utf-8")
+    assert main(["generate", *FEW, str(scene), "--out", str(tmp_path / "out")]) == 0
+    assert (tmp_path / "out" / "two_hubs" / "two_hubs_f64.c").is_file()

@@ -1,0 +1,55 @@
+"""The order of operations lets values be read soon, and changes nothing else."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from derive.lower.order import with_values_read_soon
+from derive.lower.signs import with_signs_moved
+from derive.motion.runge_kutta.steps import step_rk4_jacobian
+from derive.program.arithmetic import working
+from derive.program.program import Op, Program, Repeat, run
+from tests.motion.systems import start, system
+
+JACOBIAN = step_rk4_jacobian(system("principal"))
+# names of operations tell in which order they were recorded
+RECORDED = replace(JACOBIAN, ops=tuple(sorted(JACOBIAN.ops, key=lambda op: int(op.result[1:]))))
+
+
+def soon(program: Program) -> float:
+    """Return the share of readings that come within eight operations of the making."""
+    place = {op.result: k for k, op in enumerate(program.ops)}
+    gaps = [k - place[o] for k, op in enumerate(program.ops) for o in op.operands if o in place]
+    return sum(gap <= 8 for gap in gaps) / len(gaps)
+
+
+def test_more_values_are_read_soon() -> None:
+    assert soon(JACOBIAN) > 1.25 * soon(RECORDED)  # 48 % against 36 %
+
+
+def test_the_results_are_the_same_bits() -> None:
+    assert set(JACOBIAN.ops) == set(RECORDED.ops)
+    values = {c: np.float32(float(v)) for c, v in start("principal").items()}
+    given = [values[c] for q in JACOBIAN.inputs for c in q.components]
+    ends = [run(program, working(np.float32), given) for program in (JACOBIAN, RECORDED)]
+    assert ends[0] == ends[1]
+
+
+def test_every_value_is_made_before_it_is_read() -> None:
+    made: set[str] = {c for q in JACOBIAN.inputs for c in q.components}
+    for op in JACOBIAN.ops:
+        assert {o for o in op.operands if isinstance(o, str)} <= made
+        made.add(op.result)
+
+
+def test_the_order_of_an_order_is_the_same() -> None:
+    assert with_values_read_soon(JACOBIAN).ops == with_values_read_soon(JACOBIAN).ops
+
+
+@pytest.mark.parametrize("change", [with_values_read_soon, lambda p: with_signs_moved(p, "t")])
+def test_a_program_with_a_loop_is_refused(change) -> None:
+    body = (Op("a", "add", ("x", "x")),)
+    loop = Repeat(("x",), ("attitude_w",), body, ("a",), None, 3)
+    with pytest.raises(TypeError, match="'step_rk4_jacobian' has a loop"):
+        change(replace(JACOBIAN, ops=(loop,)))

@@ -1,0 +1,109 @@
+"""A machine's energy grows by the power of the loads that are not in it, and by nothing else."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from derive.check.energy import energy_balance
+from derive.library.library import Library, library
+from derive.mechanics import loads
+from derive.program.precision import F64
+from derive.scene import Machine, SceneError, load, parse_scene
+from derive.verify.sample import Sample, samples
+from tests.made import thinned
+
+SCENES = Path(__file__).parent / "scenes"
+TRIALS = Path(__file__).parents[1] / "data" / "trials"
+ROLLING = (TRIALS / "rolling_disc_energy.toml").read_text(encoding="utf-8")
+WITH_ENERGY = ("rolling_coin", "hoop_pole", "top_on_lift", "spring_pendulums", "rolling_ball")
+
+
+def one(made: Library) -> tuple[Sample, ...]:
+    """Return one sample of a scene."""
+    return samples(made.known, F64, 1, 0).each
+
+
+def outcomes(made: Library) -> set[str]:
+    """Return how the energies of a machine came out beside the power of its loads."""
+    found = list(energy_balance(made, one(made)))
+    assert found
+    return {v.outcome for v in found}
+
+
+@pytest.mark.parametrize("name", thinned(WITH_ENERGY, 7))
+def test_an_energy_changes_by_the_power_of_the_loads_that_are_not_in_it(name: str) -> None:
+    assert outcomes(library(load(SCENES / f"{name}.toml"))) == {"holds"}
+
+
+# Programs of one machine beside the loads of another: what is told apart, a machine, its edit.
+SPOILT = (
+    ("a weight upwards", "hoop_pole", 'gravity = ["0", "0", "-g"]', 'gravity = ["0", "0", "g"]'),
+    ("a dropped weight", "hoop_pole", 'gravity = ["0", "0", "-g"]', 'gravity = ["0", "0", "0*g"]'),
+    ("a dropped rest length", "spring_pendulums", 'length = "l0"', "length = 0"),
+    ("a stiffer spring", "spring_pendulums", 'spring = "k"', 'spring = "2*k"'),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("row", thinned(SPOILT, 4), ids=[row[0] for row in SPOILT])
+def test_an_energy_of_other_loads_is_noticed(row: tuple[str, str, str, str]) -> None:
+    _, name, old, new = row
+    right = load(SCENES / f"{name}.toml")
+    assert isinstance(right, Machine)
+    assert old in right.text
+    made = library(parse_scene(right.text.replace(old, new), name))
+    assert outcomes(replace(made, known=replace(made.known, scene=right))) == {"FAILS"}
+
+
+def test_the_energy_of_a_disc_whose_height_is_not_known_is_refused() -> None:
+    with pytest.raises(SceneError, match="the height of frame 'disc' is not known"):
+        library(parse_scene(ROLLING, "disc"))
+
+
+def test_an_energy_without_the_height_of_a_rolling_disc_is_noticed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(loads, "_vanishes", lambda *_: True)
+    found = energy_balance(made := library(parse_scene(ROLLING, "disc")), one(made))
+    assert {v.function: v.outcome for v in found} == {
+        "potential_energy": "FAILS", "kinetic_energy": "holds", "energy": "FAILS"
+    }  # fmt: skip
+
+
+def test_the_height_may_be_added_where_the_kinetic_energy_stands() -> None:
+    text = ROLLING.replace('"potential_energy", "kinetic_energy", "energy"', '"total"')
+    results = '[results]\ntotal = "kinetic_energy + m*g*r*cos(lean)"\n'
+    made = library(parse_scene(text + results, "disc"))
+    assert "total" in made.truths
+
+
+def test_a_disc_that_rolls_upright_keeps_its_height_and_has_an_energy() -> None:
+    text = ROLLING.replace('"z yaw", "x lean"', '"z yaw"')
+    text = "\n".join(line for line in text.splitlines() if not line.startswith("lean"))
+    text += '\nhold = { on = "disc", couple = ["?hold", "0", "0"] }\n'
+    assert outcomes(library(parse_scene(text, "disc"))) == {"holds"}
+
+
+# Energies of what has none, or of what is nowhere: an edit of the rolling disc and its sentence.
+NOWHERE = (
+    ('rolls  = { body = "disc", at = ["0", "0", "-r"] }', 'velocity = ["0", "w*r", "0"]',
+     "the height of frame 'disc' is not known"),
+    ('gravity = ["0", "0", "-g"]', 'gravity = ["0", "0", "-g"], along = "disc"',
+     "for its gravity change with the motion"),
+    ('gravity = ["0", "0", "-g"]', 'gravity = ["0", "0", "-g*cos(lean)"]',
+     "for its gravity change with the motion"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "says"), NOWHERE)
+def test_what_has_no_energy_is_refused(old: str, new: str, says: str) -> None:
+    assert old in ROLLING
+    with pytest.raises(SceneError, match=says):
+        library(parse_scene(ROLLING.replace(old, new), "disc"))
+
+
+def test_a_momentum_about_a_point_that_is_nowhere_is_refused() -> None:
+    text = ROLLING.replace('"potential_energy", "kinetic_energy", "energy"', '"angular_momentum"')
+    text += '[angular_momentum]\nframe = "inertial"\n'
+    with pytest.raises(SceneError, match="the origin of frame 'disc' is needed as a place"):
+        library(parse_scene(text, "disc"))

@@ -1,0 +1,34 @@
+"""No stated error is absurd: a true value of zero is measured by the terms that went into it."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.scene import SceneError, catalogue
+from derive.verify.search import Sampling
+from derive.verify.stated import figures
+from tests.made import library_of
+
+CATS = ("bent_cat", "straight_cat")
+"""Trials that take seconds each, in the longer run."""
+TRIALS = [
+    pytest.param(path, marks=pytest.mark.long) if path.stem in CATS else path
+    for path in sorted((Path(__file__).parents[1] / "data" / "trials").glob("*.toml"))
+]
+FEW = Sampling(samples=256, rounds=2, batch=128, balls=2, motion_balls=2, corners=2)
+ABSURD = 2e3
+"""In u: ten times what is stated of any function of the catalogue."""
+
+
+@pytest.mark.parametrize("path", TRIALS, ids=lambda p: p.stem)
+def test_no_error_of_a_trial_is_absurd(path: Path) -> None:
+    try:
+        library = library_of(str(path))
+    except SceneError as refused:
+        pytest.skip(f"is refused: {refused}")
+    assert [m for m in figures(library, FEW) if m.worst > ABSURD] == []
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.long) for n in catalogue()])
+def test_no_error_of_the_catalogue_is_absurd(name: str) -> None:
+    assert [m for m in figures(library_of(name), FEW) if m.worst > ABSURD] == []
