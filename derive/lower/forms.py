@@ -10,11 +10,13 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations, product
+from itertools import product
+from math import prod
 
 from derive.lower.derivative import derivative
 from derive.lower.expand import Family, Terms, collected, degree, factored, families, terms
 from derive.lower.graph import Graph, Value
+from derive.lower.homogeneous import powers
 from derive.lower.schedule import draft
 from derive.program.program import FLOPS, Op
 
@@ -69,7 +71,7 @@ def _expanded(graph: Graph, block: Block, kept: frozenset[Family]) -> list[Terms
 def best_values(graph: Graph, blocks: Sequence[Block]) -> list[Value]:
     """Return the cheapest values of all blocks together."""
     forms = [value_forms(graph, block) for block in blocks]
-    if len(list(_choices(forms))) > MANY_CHOICES:
+    if prod(len(each) for each in forms) > MANY_CHOICES:
         forms = [[min(each, key=lambda form: cost(graph, form))] for each in forms]
     best = min(_choices(forms), key=lambda values: cost(graph, values))
     return list(best)
@@ -136,7 +138,10 @@ def by_euler(
 ) -> tuple[Value, ...] | None:
     """Return the values of ``block`` from its Jacobian, None if Euler's theorem does not apply."""
     expanded = _expanded(graph, block, frozenset())
-    degrees = None if expanded is None else _degrees(block, [m for t in expanded for m in t])
+    if expanded is None:
+        return None
+    own = [frozenset(leaf[1] for leaf in quantity) for quantity in block.inputs]
+    degrees = powers([degree(m, nodes) for nodes in own] for terms in expanded for m in terms)
     if degrees is None:
         return None
     starts, place = [], 0
@@ -156,23 +161,3 @@ def _contracted(
             entry = graph.let("entry", row[starts[q] + i])
             parts.append(graph.mul([entry, scaled]))
     return graph.add(parts)
-
-
-def _degrees(
-    block: Block, monomials: Sequence[tuple[tuple[int, int], ...]]
-) -> dict[int, int] | None:
-    """Return input quantities with degrees k such that every monomial has sum(degree / k) = 1."""
-    nodes = [frozenset(leaf[1] for leaf in quantity) for quantity in block.inputs]
-    found = [[degree(m, own) for own in nodes] for m in monomials]
-    for size in range(1, len(nodes) + 1):
-        for chosen in combinations(range(len(nodes)), size):
-            for powers in product((1, 2), repeat=size):
-                if all(_adds_up([row[q] for q in chosen], powers) for row in found):
-                    return dict(zip(chosen, powers, strict=True))
-    return None
-
-
-def _adds_up(degrees: Sequence[int | None], powers: Sequence[int]) -> bool:
-    if any(d is None for d in degrees):
-        return False
-    return sum(Fraction(d or 0, k) for d, k in zip(degrees, powers, strict=True)) == 1

@@ -72,7 +72,7 @@ WHOLE = {
     "motion/taylor/series.py: _uses": "operations counted",
     "motion/taylor/series.py: flops": "operations counted",
     "motion/exact/tumbling.py: _turn": "values that are recorded",
-    "lower/forms.py: _adds_up": "fractions",
+    "lower/homogeneous.py: _fewest": "fractions",
     "lower/arrange/plan.py: _terms": "terms counted",
     "lower/arrange/plan.py: tidied": "expressions",
     "mechanics/sweep.py: _valued": "arrays, which no interpreter compensates",
