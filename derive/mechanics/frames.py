@@ -11,7 +11,8 @@ from derive.mechanics.specialise import stated
 from derive.mechanics.turning import turn_matrix, unit_vector
 from derive.mechanics.words import Words, attitude
 from derive.scene import Machine, SceneError
-from derive.scene.machine import INERTIAL, Frame, Turning
+from derive.scene.declaration import Turning
+from derive.scene.machine import INERTIAL, Frame
 
 ZERO = zeros(3, 1)
 Point = tuple[str, Matrix]

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from sympy import Expr, Integer, Matrix, Pow, cos, eye, sin, zeros
 
 from derive.mechanics.vocabulary import Vocabulary, omega_is_given
-from derive.scene import Scene, Turn
+from derive.scene import Input, Scene, Turning
+from derive.scene.formula import Formula
 
 PLACE = {"x": 0, "y": 1, "z": 2}
 
@@ -66,7 +67,7 @@ def reduced(expression: Expr) -> Expr:
     return lowered.expand()
 
 
-def rotation(words: Vocabulary, turns: Iterable[Turn]) -> Matrix:
+def rotation(words: Vocabulary, turns: Iterable[Turning]) -> Matrix:
     """Return the product of the turns' matrices: last axes' components to first axes'."""
     R = eye(3)
     for turn in turns:
@@ -74,7 +75,9 @@ def rotation(words: Vocabulary, turns: Iterable[Turn]) -> Matrix:
     return R
 
 
-def turning_seen_after(words: Vocabulary, turns: Iterable[Turn], rates: dict[str, Expr]) -> Matrix:
+def turning_seen_after(
+    words: Vocabulary, turns: Iterable[Turning], rates: dict[str, Expr]
+) -> Matrix:
     """Return the angular velocity of the last axes in the first, along the last."""
     total = zeros(3, 1)
     for turn in turns:
@@ -83,7 +86,9 @@ def turning_seen_after(words: Vocabulary, turns: Iterable[Turn], rates: dict[str
     return total
 
 
-def turning_seen_before(words: Vocabulary, turns: Iterable[Turn], rates: dict[str, Expr]) -> Matrix:
+def turning_seen_before(
+    words: Vocabulary, turns: Iterable[Turning], rates: dict[str, Expr]
+) -> Matrix:
     """Return the angular velocity of the last axes in the first, along the first."""
     total, R = zeros(3, 1), eye(3)
     for turn in turns:
@@ -98,24 +103,27 @@ def coordinate_rates(words: Vocabulary, scene: Scene) -> dict[str, Expr]:
         name.removesuffix("_dot"): words.symbols[name]
         for name in (words["coordinate_rates"].components if "coordinate_rates" in words else ())
     }
-    given = {
-        c.name: words.symbols[c.rate.name] if c.rate else Integer(0)
-        for c in scene.coordinates
-        if c.motion == "prescribed"
-    }
+    given = {c.name: _given(words, c.rate) for c in scene.coordinates if not c.free}
     return given | unknown
+
+
+def _given(words: Vocabulary, rate: Input | Formula | None) -> Expr:
+    """Return a rate that is given: an input, a formula, or zero."""
+    if isinstance(rate, Input):
+        return words.symbols[rate.name]
+    return Integer(0) if rate is None else words.expression(rate)
 
 
 def time_rates(words: Vocabulary, scene: Scene) -> dict[Expr, Expr]:
     """Return the rate of every prescribed symbol, for the chain rule."""
     rates: dict[Expr, Expr] = {}
     for s in scene.speeds:
-        rates[words.symbols[s.name]] = words.symbols[s.rate.name] if s.rate else Integer(0)
+        rates[words.symbols[s.name]] = _given(words, s.rate)
     for c in scene.coordinates:
-        if c.motion == "prescribed" and c.rate:
-            rate = words.symbols[c.rate.name]
-            rates[words.symbols[c.name]] = rate
-            rates[rate] = words.symbols[c.acceleration.name] if c.acceleration else Integer(0)
+        if not c.free:
+            rates[words.symbols[c.name]] = _given(words, c.rate)
+            if isinstance(c.rate, Input):
+                rates[words.symbols[c.rate.name]] = _given(words, c.acceleration)
     return rates
 
 

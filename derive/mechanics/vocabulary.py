@@ -12,7 +12,8 @@ from typing import Any
 from sympy import Abs, Expr, Matrix, Rational, Symbol, cos, pi, sin, sqrt, tan
 
 from derive.program.program import Quantity
-from derive.scene import Given, Scene, SceneError
+from derive.scene import Given, Input, Scene, SceneError
+from derive.scene.declaration import Moving
 from derive.scene.escape import brief
 from derive.scene.formula import Formula
 
@@ -101,6 +102,10 @@ def _scalar(name: str, unit: str, low: Fraction, high: Fraction, meaning: str) -
     return Quantity(name, (name,), (), unit, "", low, high, meaning)
 
 
+def _of(entry: Moving | Input) -> Quantity:
+    return _scalar(entry.name, entry.unit, entry.low, entry.high, entry.meaning)
+
+
 def _vector(name: str, unit: str, frame: str, given: Given | None, meaning: str) -> Quantity:
     low, high = (given.low, given.high) if given else ANY
     return Quantity(name, tuple(f"{name}_{a}" for a in XYZ), (3,), unit, frame, low, high, meaning)
@@ -113,7 +118,7 @@ def axes_name(scene: Scene) -> str:
 
 def free_coordinates(scene: Scene) -> tuple[str, ...]:
     """Return the coordinates whose motion is unknown."""
-    return tuple(c.name for c in scene.coordinates if c.motion == "free")
+    return tuple(c.name for c in scene.coordinates if c.free)
 
 
 def omega_is_given(scene: Scene) -> bool:
@@ -129,9 +134,7 @@ def _by_formulas(given: Given | None) -> bool:
 
 def _states(scene: Scene) -> tuple[Quantity, ...]:
     states = [
-        _scalar(c.name, c.unit, c.low, c.high, c.meaning)
-        for c in scene.coordinates
-        if c.motion == "free"
+        _scalar(c.name, c.unit, c.low, c.high, c.meaning) for c in scene.coordinates if c.free
     ]
     if scene.position is not None:
         states.append(
@@ -165,14 +168,11 @@ def _wheels(scene: Scene, name: str, unit: str, says: str) -> tuple[Quantity, ..
 def _inputs(scene: Scene) -> tuple[Quantity, ...]:
     inputs: list[Quantity] = []
     for c in scene.coordinates:
-        if c.motion == "prescribed":
-            inputs.append(_scalar(c.name, c.unit, c.low, c.high, c.meaning))
-            each = [i for i in (c.rate, c.acceleration) if i]
-            inputs += [_scalar(i.name, i.unit, i.low, i.high, i.meaning) for i in each]
+        if not c.free:
+            inputs += [_of(c), *map(_of, c.given)]
     for s in scene.speeds:
-        each_speed = [i for i in (s, s.rate) if i]
-        inputs += [_scalar(i.name, i.unit, i.low, i.high, i.meaning) for i in each_speed]
-    inputs += [_scalar(i.name, i.unit, i.low, i.high, i.meaning) for i in scene.inputs]
+        inputs += [_of(s), *map(_of, s.given)]
+    inputs += map(_of, scene.inputs)
     axes, known = axes_name(scene), scene.known
     if omega_is_given(scene) and not _by_formulas(known["angular_acceleration"]):
         given = scene.known.get("angular_acceleration")

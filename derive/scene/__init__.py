@@ -14,15 +14,13 @@ from pathlib import Path
 from derive.scene.declaration import (
     Axes,
     Body,
-    Coordinate,
     Given,
     Input,
     Parameter,
     Point,
     Scene,
     SceneError,
-    Speed,
-    Turn,
+    Turning,
     Wheel,
 )
 from derive.scene.doubtful import (
@@ -33,12 +31,12 @@ from derive.scene.doubtful import (
     turns_in_degrees,
 )
 from derive.scene.escape import brief, visible
-from derive.scene.file import read_scene
 from derive.scene.machine import Machine
-from derive.scene.machine_file import is_machine, read_machine
 from derive.scene.names import file_name
+from derive.scene.reader import is_machine, read_machine
 from derive.scene.rules import check, warnings
 from derive.scene.safe import require_values
+from derive.scene.short_form import read_scene
 from derive.scene.table import THE_FILE, gate, nearest, shown, table
 from derive.scene.times import idle_times
 from derive.scene.wanted import check_form
@@ -46,7 +44,6 @@ from derive.scene.wanted import check_form
 __all__ = [
     "Axes",
     "Body",
-    "Coordinate",
     "Given",
     "Input",
     "Machine",
@@ -54,8 +51,7 @@ __all__ = [
     "Point",
     "Scene",
     "SceneError",
-    "Speed",
-    "Turn",
+    "Turning",
     "Wheel",
     "argument",
     "catalogue",

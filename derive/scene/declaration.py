@@ -48,10 +48,11 @@ class Input:
 
 
 @dataclass(frozen=True)
-class Coordinate:
-    """An angle that axes or bodies are turned through.
+class Moving:
+    """A coordinate, speed or input; a rate is an input, a formula, or None where it is unknown.
 
-    A rate or acceleration of None is zero for a prescribed coordinate, unknown for a free one.
+    Of an input no rate is known, of a free coordinate or speed the last rate is an unknown. A free
+    coordinate without a rate is an angle of a single body, whose rate its angular velocity fixes.
     """
 
     name: str
@@ -59,29 +60,33 @@ class Coordinate:
     low: Fraction
     high: Fraction
     meaning: str
-    motion: Literal["free", "prescribed"]
-    rate: Input | None
-    acceleration: Input | None
+    kind: Literal["coordinate", "speed", "input"]
+    free: bool
+    rate: Input | Formula | None
+    acceleration: Input | Formula | None
+
+    @property
+    def unknown(self) -> str:
+        """Return the name of its highest rate: x_ddot of a coordinate, u_dot of a speed."""
+        return f"{self.name}_{'ddot' if self.kind == 'coordinate' else 'dot'}"
+
+    @property
+    def given(self) -> tuple[Input, ...]:
+        """Return the rate and the acceleration where they are inputs."""
+        return tuple(i for i in (self.rate, self.acceleration) if isinstance(i, Input))
 
 
 @dataclass(frozen=True)
-class Speed:
-    """An angular rate given directly, without an angle; a rate of None is zero (steady)."""
-
-    name: str
-    unit: str
-    low: Fraction
-    high: Fraction
-    meaning: str
-    rate: Input | None
-
-
-@dataclass(frozen=True)
-class Turn:
-    """One turn about an axis of the axes so far, through a coordinate."""
+class Turning:
+    """One turn about an axis of the axes so far, through a formula."""
 
     axis: Axis
-    coordinate: str
+    angle: Formula
+
+    @property
+    def coordinate(self) -> str:
+        """Return the coordinate that the angle is, "" if it is another formula."""
+        return self.angle.name if self.angle.operator == "symbol" else ""
 
 
 @dataclass(frozen=True)
@@ -89,7 +94,7 @@ class Axes:
     """The moving axes xyz: body axes, turned from the inertial axes, or Omega given along them."""
 
     kind: Literal["body", "turned", "given"]
-    turned: tuple[Turn, ...]
+    turned: tuple[Turning, ...]
     quaternion: bool
     fixed_in_body: bool
     angular_velocity: Triple | None
@@ -107,7 +112,7 @@ class Body:
     inertia: Sextuple
     centre: Triple | None
     axis: Axis | None
-    turned: tuple[Turn, ...]
+    turned: tuple[Turning, ...]
     spin: Formula | None
     lengths: Mapping[str, Formula]
 
@@ -148,9 +153,9 @@ class Scene:
     title: str
     text: str
     parameters: tuple[Parameter, ...]
-    coordinates: tuple[Coordinate, ...]
-    speeds: tuple[Speed, ...]
-    inputs: tuple[Input, ...]
+    coordinates: tuple[Moving, ...]
+    speeds: tuple[Moving, ...]
+    inputs: tuple[Moving, ...]
     axes: Axes
     body: Body
     wheels: tuple[Wheel, ...]

@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from fractions import Fraction
 
-    from derive.scene.declaration import Coordinate, Input, Parameter
+    from derive.scene.declaration import Moving, Parameter
     from derive.scene.formula import Formula
-    from derive.scene.machine import Machine, Member, Moving
+    from derive.scene.machine import Machine, Member
 
 MANY_RADIANS = 20
 """More than three turns: an angle in degrees that was not converted looks so."""
@@ -85,7 +85,7 @@ def idle_frames(machine: Machine) -> Iterator[str]:
             yield f"frame '{frame.name}' carries nothing"
 
 
-def in_degrees(scalars: Iterable[Coordinate | Moving | Parameter | Input]) -> Iterator[str]:
+def in_degrees(scalars: Iterable[Moving | Parameter]) -> Iterator[str]:
     """Yield a sentence for every angle whose range or value looks as if it were in degrees."""
     for c in scalars:
         end = max(c.low, c.high, key=abs)

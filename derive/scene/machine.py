@@ -8,48 +8,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from derive.scene.declaration import Axis, Given, Input, Parameter, Triple
+from derive.scene.declaration import Axis, Given, Moving, Parameter, Triple, Turning
 from derive.scene.formula import Formula
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from fractions import Fraction
 
 INERTIAL = "inertial"
 LEFT_OVER = "0 where motion is steady"
 """What is said of a value of the function ``steady``, which is no answer but a measure."""
 Entries = tuple[Formula | None, ...]
-
-
-@dataclass(frozen=True)
-class Moving:
-    """A coordinate, speed or input; a rate is an input, a formula, or None where it is unknown.
-
-    Of an input no rate is known, of a free coordinate or speed the last rate is an unknown.
-    """
-
-    name: str
-    unit: str
-    low: Fraction
-    high: Fraction
-    meaning: str
-    kind: Literal["coordinate", "speed", "input"]
-    free: bool
-    rate: Input | Formula | None
-    acceleration: Input | Formula | None
-
-    @property
-    def unknown(self) -> str:
-        """Return the name of its highest rate: x_ddot of a coordinate, u_dot of a speed."""
-        return f"{self.name}_{'ddot' if self.kind == 'coordinate' else 'dot'}"
-
-
-@dataclass(frozen=True)
-class Turning:
-    """One turn about an axis of the axes so far, through a formula."""
-
-    axis: Axis
-    angle: Formula
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,8 @@ from derive.scene.shape import moved
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from derive.scene.declaration import Body, Coordinate, Parameter, Sextuple, Triple, Wheel
-    from derive.scene.machine import Entries, Moving
+    from derive.scene.declaration import Body, Moving, Parameter, Sextuple, Triple, Wheel
+    from derive.scene.machine import Entries
 
 MOST_ENDS = 256
 """Enough for every combination of the ends of eight ranges."""
@@ -275,7 +275,7 @@ def _without(body: Body, wheels: tuple[Wheel, ...], values: Mapping[str, float])
     return matrix
 
 
-def merging(middle_turn: Coordinate, angle: float) -> float | None:
+def merging(middle_turn: Moving, angle: float) -> float | None:
     """Return ``angle`` plus a whole number of pi in the range of a middle turn; None without one.
 
     There the first and the third turn are about one line and merge: at 0 for axes as z, x, z,

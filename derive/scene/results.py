@@ -8,7 +8,7 @@ from derive.scene.declaration import SceneError
 from derive.scene.escape import brief
 from derive.scene.formula import substitute
 from derive.scene.grammar import parse
-from derive.scene.load import MARK, unknown_units
+from derive.scene.loads import MARK, unknown_units
 from derive.scene.machine import Result
 from derive.scene.names import functions, identifier
 from derive.scene.scalars import unknown_rates

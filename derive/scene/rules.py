@@ -27,7 +27,7 @@ from derive.scene.wanted import moves
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from derive.scene.declaration import Scene, Turn
+    from derive.scene.declaration import Scene, Turning
     from derive.scene.formula import Formula
 
 FORWARD = ("acceleration", "state_rate")
@@ -52,20 +52,20 @@ def check(scene: Scene, said: tuple[str, ...]) -> None:
     check_moving(scene, _prescribed(scene))
 
 
-def _chain(scene: Scene) -> tuple[Turn, ...]:
+def _chain(scene: Scene) -> tuple[Turning, ...]:
     return scene.axes.turned + scene.body.turned
 
 
 def _prescribed(scene: Scene) -> str:
     """Return what prescribes the rotation of the body, "" if it is free."""
-    motions = {entry.name: entry.motion for entry in scene.coordinates}
+    motions = {entry.name: entry.free for entry in scene.coordinates}
     if scene.axes.kind == "given":
         return "axes.angular_velocity is given"
     if scene.body.spin is not None:
         return "body.spin is given"
     if scene.known["angular_velocity"].formulas:
         return "known.angular_velocity is given by formulas"
-    driven = [turn.coordinate for turn in _chain(scene) if motions[turn.coordinate] != "free"]
+    driven = [turn.coordinate for turn in _chain(scene) if not motions[turn.coordinate]]
     return f"coordinate '{driven[0]}' is prescribed" if driven else ""
 
 
@@ -99,14 +99,14 @@ def _symmetry(scene: Scene) -> None:
 
 def _turns(scene: Scene) -> None:
     """Every angle turns once, all are free or all are prescribed, and free ones are three."""
-    motions = {entry.name: entry.motion for entry in scene.coordinates}
+    motions = {entry.name: entry.free for entry in scene.coordinates}
     used = [turn.coordinate for turn in _chain(scene)]
     for name, motion in motions.items():
         if used.count(name) > 1:
             raise SceneError(f"coordinate '{name}' is turned through {used.count(name)} times")
-        if motion == "free" and name not in used:
+        if motion and name not in used:
             raise SceneError(f"coordinate '{name}' is free, but nothing is turned through it")
-    free = [name for name in used if motions[name] == "free"]
+    free = [name for name in used if motions[name]]
     if not free:
         return
     if reason := _prescribed(scene):
@@ -263,7 +263,7 @@ def singular_attitude(scene: Scene) -> str:
     """Return words on where two of three free angles merge in the ranges, "" if nowhere."""
     ranges = {entry.name: entry for entry in scene.coordinates}
     chain = _chain(scene)
-    if len(chain) != 3 or any(ranges[turn.coordinate].motion != "free" for turn in chain):
+    if len(chain) != 3 or any(not ranges[turn.coordinate].free for turn in chain):
         return ""
     middle = ranges[chain[1].coordinate]
     angle = merging(middle, 0 if chain[0].axis == chain[2].axis else math.pi / 2)

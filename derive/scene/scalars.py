@@ -1,18 +1,27 @@
-"""The scalars of a machine that move: coordinates, speeds and inputs, and who may use them."""
+"""The scalars of a scene: parameters, and what moves; and who may use them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
-from derive.scene.declaration import Axis, Input, Parameter, SceneError
+from derive.scene.declaration import Axis, Input, Moving, Parameter, SceneError, Turning
 from derive.scene.formula import ZERO, Formula
-from derive.scene.machine import Moving, Turning
 from derive.scene.names import identifier
 from derive.scene.numbers import middle
-from derive.scene.symbols import read_symbols
-from derive.scene.table import Scope, Table, formula, interval, keys, shown, table, text, word
+from derive.scene.table import (
+    Scope,
+    Table,
+    formula,
+    interval,
+    keys,
+    rational,
+    shown,
+    table,
+    text,
+    word,
+)
 from derive.scene.table import unit as unit_of
 from derive.scene.unit import (
     ANGULAR_VELOCITY,
@@ -29,18 +38,19 @@ if TYPE_CHECKING:
 
 UNITS = {"coordinate": ("rad", "m"), "speed": ("rad/s", "m/s")}
 DIMENSIONS = {"coordinate": (NONE, LENGTH), "speed": (ANGULAR_VELOCITY, VELOCITY)}
-ARTICLE = {"coordinate": "a", "speed": "a", "input": "an"}
+ARTICLE = {"parameter": "a", "coordinate": "a", "speed": "a", "input": "an"}
 PER_SECOND = {"rad": "rad/s", "m": "m/s", "rad/s": "rad/s^2", "m/s": "m/s^2"}
+MOTIONS = ("free", "prescribed")
 
 
 @dataclass(frozen=True)
 class Scalars:
-    """The scalars of a machine, in the order of the file."""
+    """The scalars of a scene, in the order of the file."""
 
     parameters: tuple[Parameter, ...]
-    coordinates: tuple[Moving, ...]
-    speeds: tuple[Moving, ...]
-    inputs: tuple[Moving, ...]
+    coordinates: tuple[Moving, ...] = ()
+    speeds: tuple[Moving, ...] = ()
+    inputs: tuple[Moving, ...] = ()
 
     @property
     def moving(self) -> tuple[Moving, ...]:
@@ -51,37 +61,97 @@ class Scalars:
         """Return the middle of every range."""
         return middle((*self.parameters, *self.moving))
 
+    @property
+    def declared(self) -> list[tuple[str, str]]:
+        """List every name with what it is, derived ones included."""
+        found = [(p.name, f"parameter '{p.name}'") for p in self.parameters]
+        for m in self.moving:
+            found.append((m.name, f"{m.kind} '{m.name}'"))
+            rates = [i.name for i in m.given]
+            if m.free and m.kind != "input":
+                rates.append(m.unknown)
+            found += [(name, f"the rate '{name}'") for name in rates]
+        return found
+
+    @cached_property
+    def constants(self) -> Scope:
+        """Return the scope of what a rigid body keeps: parameters only."""
+        known = {p.name: dimension(p.unit) for p in self.parameters}
+        others = {m.name: f"{ARTICLE[m.kind]} {m.kind}" for m in self.moving}
+        others |= {i.name: "a rate" for m in self.moving for i in m.given}
+        return Scope(known, others, "only parameters may stand here")
+
     @cached_property
     def places(self) -> Scope:
         """Return the scope of where things are: parameters and coordinates."""
-        return _places(self)
+        known = {"pi": NONE} | dict(self.constants.dimensions)
+        known |= {c.name: dimension(c.unit) for c in self.coordinates}
+        others = {m.name: f"{ARTICLE[m.kind]} {m.kind}" for m in (*self.speeds, *self.inputs)}
+        return Scope(known, others, "only parameters and coordinates may stand here")
 
     @cached_property
     def motions(self) -> Scope:
-        """Return the scope of how things move: places, rates of coordinates, and speeds."""
-        return _motions(self)
+        """Return the scope of how things move: what has a known rate, and those rates."""
+        lost = [c.name for c in self.coordinates if c.rate is None]
+        known = {n: d for n, d in self.places.dimensions.items() if n not in lost}
+        known |= rates(self)
+        known |= {s.name: dimension(s.unit) for s in self.speeds}
+        others = {m.name: "an input, whose rate is not known" for m in self.inputs}
+        others |= dict.fromkeys(lost, "a coordinate, whose rate is to be found")
+        others |= dict.fromkeys(accelerations(self), "an acceleration")
+        return Scope(
+            known, others, "only parameters, coordinates, their rates and speeds may stand here"
+        )
 
     @cached_property
     def known(self) -> Scope:
         """Return the scope of a load: all that is known with the state and the inputs."""
-        return _known(self)
+        dimensions = dict(self.places.dimensions) | dict(self.motions.dimensions)
+        dimensions |= accelerations(self)
+        dimensions |= {m.name: dimension(m.unit) for m in self.inputs}
+        others = dict.fromkeys(unknown_rates(self), "an acceleration that is found")
+        others |= {f"{c.name}_dot": "a rate that is found" for c in self.coordinates
+                   if c.rate is None}  # fmt: skip
+        return Scope(dimensions, others, "a load is a formula of what is known with the state")
 
 
 def read_scalars(part: Mapping[str, Table]) -> Scalars:
     """Return the scalars declared in the tables parameters, coordinates, speeds and inputs."""
-    empty = Table("", {})
-    parameters = read_symbols(part["parameters"], empty, empty, empty).parameters
+    parameters = tuple(_parameter(*entry) for entry in _entries(part["parameters"], "parameter"))
+    speeds = tuple(_speed(*entry) for entry in _entries(part["speeds"], "speed"))
     fixed = {p.name: dimension(p.unit) for p in parameters}
-    speeds = tuple(_speed(name, given) for name, given in _entries(part["speeds"], "speed"))
-    for s in speeds:
-        fixed[s.name] = dimension(s.unit)
-    scope = Scope(fixed, {}, "")
+    scope = Scope(fixed | {s.name: dimension(s.unit) for s in speeds}, {}, "")
     coordinates = tuple(
-        _coordinate(name, given, scope)
-        for name, given in _entries(part["coordinates"], "coordinate")
+        _coordinate(*entry, scope) for entry in _entries(part["coordinates"], "coordinate")
     )
-    inputs = tuple(_input(name, given) for name, given in _entries(part["inputs"], "input"))
+    inputs = tuple(_input(*entry) for entry in _entries(part["inputs"], "input"))
     return Scalars(parameters, coordinates, speeds, inputs)
+
+
+def of_one_body(part: Mapping[str, Table]) -> Scalars:
+    """Return the scalars of a single body: angles, free unless they say more, and given speeds.
+
+    The rate of a free angle follows from the angular velocity of the body.
+    """
+    written = dict(part)
+    found = {}
+    for name, value in part["coordinates"].entries.items():
+        entries = {"motion": "free", **table(value, f"coordinate '{name}'").entries}
+        given = [key for key in ("rate", "acceleration") if key in entries]
+        if entries["motion"] == "free" and given:
+            rule = f"is free, so its {given[0]} is found, not given"
+            raise SceneError(f"coordinate '{name}' {rule}")
+        found[name] = entries
+    written["coordinates"] = Table("coordinates", found)
+    scalars = read_scalars(written)
+    for m in (*scalars.coordinates, *scalars.speeds):
+        if m.unit != UNITS[m.kind][0]:
+            raise SceneError(f"{m.kind} '{m.name}' must be in {UNITS[m.kind][0]}, not {m.unit}")
+        if m.free and m.kind == "speed":
+            rule = "needs rate = { range = [low, high] } or rate = 0"
+            raise SceneError(f"speed '{m.name}' {rule}")
+    angles = tuple(replace(c, rate=None) if c.free else c for c in scalars.coordinates)
+    return replace(scalars, coordinates=angles)
 
 
 def _entries(given: Table, kind: str) -> list[tuple[str, Table]]:
@@ -89,6 +159,19 @@ def _entries(given: Table, kind: str) -> list[tuple[str, Table]]:
         (identifier(name, f"{ARTICLE[kind]} {kind}"), table(value, f"{kind} '{name}'"))
         for name, value in given.entries.items()
     ]
+
+
+def _parameter(name: str, given: Table) -> Parameter:
+    keys(given, ("unit",), ("range", "value", "meaning"))
+    unit_of(given)
+    if ("range" in given.entries) == ("value" in given.entries):
+        raise SceneError(f"{given.label} needs either a range or a value")
+    spelling, meaning = str(given.entries["unit"]), _meaning(given)
+    if "value" in given.entries:
+        value = rational(given.entries["value"], f"{given.label}: value")
+        return Parameter(name, spelling, value, value, meaning, value)
+    low, high = interval(given.entries["range"], f"{given.label}: range")
+    return Parameter(name, spelling, low, high, meaning, None)
 
 
 def _spelling(given: Table, kind: str) -> str:
@@ -109,8 +192,7 @@ def _free(given: Table, kinds: tuple[str, ...]) -> bool:
     """Tell whether a motion is free: it says so, or nothing of its rates is given."""
     entries = given.entries
     if "motion" in entries:
-        motion = word(entries["motion"], f"{given.label}: motion", ("free", "prescribed"))
-        return motion == "free"
+        return word(entries["motion"], f"{given.label}: motion", MOTIONS) == "free"
     return not any(key in entries for key in kinds)
 
 
@@ -177,7 +259,9 @@ def _speed(name: str, given: Table) -> Moving:
         elif value == 0 and value is not None:
             rate = ZERO
         else:
-            raise SceneError(f"{given.label} needs rate = {{ range = [low, high] }} or rate = 0")
+            found = "" if value is None else f", not {shown(value)}"
+            rule = "needs rate = { range = [low, high] } or rate = 0"
+            raise SceneError(f"{given.label} {rule}{found}")
     elif value is not None:
         raise SceneError(f"{given.label} is free, so its rate is found, not given")
     return Moving(name, spelling, low, high, _meaning(given), "speed", free, rate, None)
@@ -191,31 +275,10 @@ def _input(name: str, given: Table) -> Moving:
     return Moving(name, spelling, low, high, _meaning(given), "input", False, None, None)  # noqa: FBT003
 
 
-def _places(scalars: Scalars) -> Scope:
-    known = {"pi": NONE} | {p.name: dimension(p.unit) for p in scalars.parameters}
-    known |= {c.name: dimension(c.unit) for c in scalars.coordinates}
-    others = {m.name: f"{'an' if m.kind == 'input' else 'a'} {m.kind}"
-              for m in (*scalars.speeds, *scalars.inputs)}  # fmt: skip
-    return Scope(known, others, "only parameters and coordinates may stand here")
-
-
-def _motions(scalars: Scalars) -> Scope:
-    known = dict(scalars.places.dimensions)
-    known |= rates(scalars)
-    known |= {s.name: dimension(s.unit) for s in scalars.speeds}
-    others = {m.name: "an input, whose rate is not known" for m in scalars.inputs}
-    return Scope(
-        known, others, "only parameters, coordinates, their rates and speeds may stand here"
-    )
-
-
 def rates(scalars: Scalars) -> dict[str, Dimension]:
     """Return the rates of coordinates that have a name of their own."""
-    return {
-        c.rate.name: dimension(c.rate.unit)
-        for c in scalars.coordinates
-        if isinstance(c.rate, Input)
-    }
+    each = [c.rate for c in scalars.coordinates]
+    return {i.name: dimension(i.unit) for i in each if isinstance(i, Input)}
 
 
 def accelerations(scalars: Scalars) -> dict[str, Dimension]:
@@ -227,21 +290,11 @@ def accelerations(scalars: Scalars) -> dict[str, Dimension]:
 def unknown_rates(scalars: Scalars) -> dict[str, Dimension]:
     """Return the accelerations that the balances are to find."""
     found = {}
-    for c in scalars.coordinates:
-        if c.free:
-            found[c.unknown] = dimension(PER_SECOND[PER_SECOND[c.unit]])
-    for s in scalars.speeds:
-        if s.free:
-            found[s.unknown] = dimension(PER_SECOND[s.unit])
+    for m in (*scalars.coordinates, *scalars.speeds):
+        if m.free:
+            unit = PER_SECOND[m.unit]
+            found[m.unknown] = dimension(PER_SECOND[unit] if m.kind == "coordinate" else unit)
     return found
-
-
-def _known(scalars: Scalars) -> Scope:
-    dimensions = dict(scalars.motions.dimensions)
-    dimensions |= accelerations(scalars)
-    dimensions |= {m.name: dimension(m.unit) for m in scalars.inputs}
-    others = dict.fromkeys(unknown_rates(scalars), "an acceleration that is found")
-    return Scope(dimensions, others, "a load is a formula of what is known with the state")
 
 
 def turnings(value: object, label: str, scope: Scope) -> tuple[Turning, ...]:

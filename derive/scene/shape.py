@@ -29,6 +29,11 @@ class Round:
     axial: Terms
     transverse: Terms
 
+    @property
+    def sphere(self) -> bool:
+        """Tell whether all its axes are alike."""
+        return self.kind == "spherical"
+
 
 def _terms(*rows: tuple[int, int, str]) -> Terms:
     return tuple((Fraction(above, below), length) for above, below, length in rows)
@@ -54,8 +59,15 @@ ROUND: Mapping[str, Round] = {
     "hollow_sphere": Round(
         "spherical", ("radius",), _terms((2, 3, "radius")), _terms((2, 3, "radius"))
     ),
+    "tube": Round(
+        "axisymmetric",
+        ("inner", "outer", "length"),
+        _terms((1, 2, "inner"), (1, 2, "outer")),
+        _terms((1, 4, "inner"), (1, 4, "outer"), (1, 12, "length")),
+    ),
 }
-SHAPES = (*ROUND, "box")
+SHAPES = (*(name for name in ROUND if name != "tube"), "box")
+"""Shapes that a single body may have."""
 CONE_CENTRE = Fraction(3, 4)
 """How far the mass centre of a cone lies from its apex, in heights."""
 

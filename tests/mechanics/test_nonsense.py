@@ -68,7 +68,7 @@ def test_the_plain_machine_is_accepted_without_a_warning() -> None:
     [
         ('"a + b"', '"a"', "body 'bob': outer must be more than inner, but is the same"),
         ('"a + b"', '"b"', "body 'bob': outer - inner must not be negative, but 'b - a' is at"),
-        (TUBE, 'shape = "plate"\nlengths = ["a", "-b"]', "body 'bob'.lengths must be positive"),
+        (TUBE, 'shape = "plate"\nlengths = ["a", "-b"]', "body 'bob'.lengths.z must be positive"),
         ("weight =", PUSH + "weight =", "load 'push': the divisor 'q - pi/4' must not vanish"),
         ("weight =", SPRING.format('spring = "k"') + "weight =", "load 'spring': spring must not"),
         ("weight =", SPRING.format('damper = "-m/1"') + "weight =", "load 'spring'.damper = '-m"),

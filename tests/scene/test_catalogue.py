@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from derive.mechanics.vocabulary import vocabulary
-from derive.scene import CATALOGUE, Machine, Scene, SceneError, Turn, catalogue, load
+from derive.scene import CATALOGUE, Machine, Scene, SceneError, Turning, catalogue, load
 from derive.scene.formula import ZERO, symbol
 from derive.scene.grammar import parse
 from derive.scene.names import distinct
@@ -60,8 +60,8 @@ def test_the_free_body_has_a_full_tensor_in_body_axes() -> None:
 
 def test_the_heavy_top_turns_in_axes_that_do_not_spin_with_it() -> None:
     scene = load("heavy_top")
-    assert scene.axes.turned == (Turn("z", "psi"), Turn("x", "theta"))
-    assert scene.body.turned == (Turn("z", "phi"),)
+    assert scene.axes.turned == (Turning("z", parse("psi")), Turning("x", parse("theta")))
+    assert scene.body.turned == (Turning("z", parse("phi")),)
     assert not scene.axes.fixed_in_body
     assert scene.body.inertia[:3] == (symbol("A"), symbol("A"), symbol("C"))
     assert scene.known["moment"].formulas == (parse("m*g*l*sin(theta)"), ZERO, ZERO)
@@ -95,12 +95,12 @@ def test_the_rotor_turns_with_given_speeds_that_all_have_rates() -> None:
 def test_the_unsymmetrical_rotor_turns_through_a_prescribed_angle() -> None:
     scene = load("unsymmetrical_rotor_in_carrier_axes")
     gamma = scene.coordinates[0]
-    assert gamma.motion == "prescribed"
+    assert gamma.free is False
     assert gamma.rate is not None
     assert gamma.acceleration is not None
     assert (gamma.rate.name, gamma.acceleration.name) == ("gamma_dot", "gamma_ddot")
     assert scene.axes.angular_velocity == (ZERO, ZERO, symbol("W"))
-    assert scene.body.turned == (Turn("x", "gamma"),)
+    assert scene.body.turned == (Turning("x", parse("gamma")),)
 
 
 def test_numbers_of_a_file_are_exact() -> None:

@@ -5,10 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from derive.scene import SceneError, catalogue, parse_scene, shape, unit
-from derive.scene import body as scene_body
-from derive.scene import file as scene_file
-from derive.scene import symbols as scene_symbols
+from derive.scene import SceneError, catalogue, parse_scene, shape, short_form, unit
+from derive.scene import bodies as scene_bodies
+from derive.scene import scalars as scene_scalars
 from derive.scene import wanted as scene_wanted
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -42,21 +41,21 @@ def test_the_page_has_its_examples_and_is_one_page() -> None:
 def test_every_word_that_a_scene_may_use_stands_on_the_page() -> None:
     words = [
         *scene_wanted.EQUATIONS,
-        *(*scene_file.TABLES, "wheels", *scene_file.LATER),
-        *(*scene_file.KNOWN, *scene_file.POINTS),
-        *scene_body.KINDS,
-        *(key for keys in scene_body.KINDS.values() for key in keys),
-        *(*scene_body.COMMON, "moments", "second_moments", "lengths", "apex"),
+        *(*short_form.TABLES, "wheels", *short_form.LATER),
+        *(*short_form.KNOWN, *short_form.POINTS),
+        *scene_bodies.KINDS,
+        *(key for keys in scene_bodies.KINDS.values() for key in keys),
+        *(*scene_bodies.COMMON, "moments", "second_moments", "lengths", "apex"),
         *shape.SHAPES,
-        *(length for row in shape.ROUND.values() for length in row.lengths),
-        *scene_symbols.MOTIONS,
+        *(length for s in shape.SHAPES if s in shape.ROUND for length in shape.ROUND[s].lengths),
+        *scene_scalars.MOTIONS,
         *unit.UNITS,
     ]
     assert [word for word in words if not re.search(rf"\b{word}\b", PAGE)] == []
 
 
 def test_every_motion_and_attitude_formula_stands_on_its_page() -> None:
-    words = [*scene_wanted.STEPS, *scene_wanted.STEP_DERIVATIVES, *scene_file.TIMES]
+    words = [*scene_wanted.STEPS, *scene_wanted.STEP_DERIVATIVES, *short_form.TIMES]
     words += [name for name in scene_wanted.ATTITUDES if "euler" not in name]
     numbered = {f"step_taylor{order}" for order in range(13, 19)}
     lacking = [w for w in words if w not in numbered and not re.search(rf"\b{w}\b", MOTION)]

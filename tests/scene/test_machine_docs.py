@@ -9,15 +9,15 @@ from derive.check import proof
 from derive.library.library import library
 from derive.scene import (
     Machine,
+    bodies,
     catalogue,
     frames,
     load,
-    machine_file,
-    member,
     parse_scene,
+    reader,
     results,
 )
-from derive.scene.load import MAIN
+from derive.scene.loads import MAIN
 from derive.scene.wanted import OF_MACHINES
 from tests.made import scene_of
 
@@ -38,9 +38,10 @@ def test_the_page_has_two_examples_and_is_one_page() -> None:
 
 def test_every_word_that_a_machine_may_use_stands_on_the_page() -> None:
     words = [
-        *machine_file.TABLES, *results.FUNCTIONS, *OF_MACHINES[:7],
+        *reader.TABLES, *results.FUNCTIONS, *OF_MACHINES[:7],
         *frames.TURNING, *frames.ORIGIN, *MAIN,
-        *member.OWN, *member.MORE_SHAPES, *(w for row in member.MORE_SHAPES.values() for w in row),
+        *bodies.OWN, "tube", *(set(bodies.SAID) - {"box"}),
+        *(w for row in bodies.SAID.values() for w in row),
     ]  # fmt: skip
     assert [word for word in words if not re.search(rf"\b{word}\b", PAGE)] == []
 

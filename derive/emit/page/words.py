@@ -1,7 +1,7 @@
 """What a scene says, in sentences: the body, the point, the axes, what acts, what is wanted."""
 
 from derive.emit.page import machine
-from derive.scene import Given, Machine, Scene, Turn
+from derive.scene import Given, Machine, Scene, Turning
 from derive.scene.formula import Formula
 
 _BODIES = {
@@ -72,7 +72,7 @@ def _loads(scene: Scene) -> list[str]:
     return found
 
 
-def _turns(turns: tuple[Turn, ...]) -> str:
+def _turns(turns: tuple[Turning, ...]) -> str:
     return ", then ".join(f"about {turn.axis} by {turn.coordinate}" for turn in turns)
 
 

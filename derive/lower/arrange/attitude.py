@@ -6,7 +6,7 @@ from sympy import Expr, Matrix, zeros
 
 from derive.lower.arrange.draft import Draft
 from derive.mechanics.turning import PLACE, rotation, turn_matrix, unit_vector
-from derive.scene import Turn
+from derive.scene import Turning
 
 
 def coordinate_rates(draft: Draft, bindings: dict[str, Any]) -> dict[str, Any]:
@@ -30,7 +30,7 @@ def coordinate_rates(draft: Draft, bindings: dict[str, Any]) -> dict[str, Any]:
 
 
 def _rates(
-    draft: Draft, turns: tuple[Turn, ...], R: Matrix, omega: Matrix
+    draft: Draft, turns: tuple[Turning, ...], R: Matrix, omega: Matrix
 ) -> tuple[dict[str, Expr], Matrix]:
     """Return the rates of three turns, and omega less the last one's share.
 
@@ -54,11 +54,11 @@ def _rates(
     return rates, less
 
 
-def _turned(draft: Draft, turn: Turn) -> Matrix:
+def _turned(draft: Draft, turn: Turning) -> Matrix:
     return turn_matrix(turn.axis, draft.known.words.symbols[turn.coordinate])
 
 
-def _before_last(draft: Draft, last: Turn, axes_after: int) -> Matrix:
+def _before_last(draft: Draft, last: Turning, axes_after: int) -> Matrix:
     """Return omega along the axes before the last turn."""
     omega = draft.known.words.column("omega")
     return draft.column("cut", "u", _turned(draft, last) * omega) if axes_after == 3 else omega

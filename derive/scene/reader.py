@@ -6,12 +6,12 @@ import re
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from derive.scene.bodies import read_member
 from derive.scene.declaration import Input, SceneError
 from derive.scene.formula import ZERO, Formula
 from derive.scene.frames import read_frames
-from derive.scene.load import read_loads
+from derive.scene.loads import read_loads
 from derive.scene.machine import INERTIAL, Frame, Machine, Member, Place, Result, Steady, Unknown
-from derive.scene.member import read_member
 from derive.scene.names import distinct, label
 from derive.scene.numbers import member_doubts
 from derive.scene.results import (
@@ -106,14 +106,7 @@ def _declared(
     scalars: Scalars, unknowns: tuple[Unknown, ...], results: tuple[Result, ...]
 ) -> list[tuple[str, str]]:
     """List every name of the scene with what it is, derived ones included."""
-    found = [(p.name, f"parameter '{p.name}'") for p in scalars.parameters]
-    for m in scalars.moving:
-        found.append((m.name, f"{m.kind} '{m.name}'"))
-        rates = [i.name for i in (m.rate, m.acceleration) if isinstance(i, Input)]
-        if m.free and m.kind != "input":
-            rates.append(m.unknown)
-        found += [(name, f"the rate '{name}'") for name in rates]
-    found += [(u.name, f"the unknown '{u.name}'") for u in unknowns]
+    found = [*scalars.declared, *((u.name, f"the unknown '{u.name}'") for u in unknowns)]
     return found + [(r.name, f"the result '{r.name}'") for r in results]
 
 
