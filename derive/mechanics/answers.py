@@ -16,7 +16,7 @@ from derive.mechanics.choice import (
     unbalanced,
 )
 from derive.mechanics.frames import ZERO, Frames
-from derive.mechanics.linearised import linearised
+from derive.mechanics.linearised import linearised, require_free
 from derive.mechanics.loads import potential_energy
 from derive.mechanics.matter import without_factors
 from derive.mechanics.pivots import where
@@ -239,6 +239,7 @@ class Answers:
         if steady.vanishes is not None:
             values: list[Expr] = [self.expression(steady.vanishes)]
             return self._asked(base, (q,), dict(zip(self._symbols(q), values, strict=True)), ())
+        require_free(self.machine, "steady", ", or say what vanishes by steady.vanishes")
         rows = self._at_rest(len(steady.unknown))
         split = self.frames.sheet.split
         written = [split(self.balances.written(row))[0] for row in rows]

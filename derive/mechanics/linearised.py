@@ -18,6 +18,7 @@ from derive.mechanics.probe import DIGITS, Probe, at_rest, independent, point, s
 from derive.mechanics.valued import Valued
 from derive.mechanics.words import Words
 from derive.scene import Input, Machine, SceneError
+from derive.scene.escape import brief
 
 NEARBY = 1e-6
 """Change of what is set, relative to it, that nobody means: values are given to a few digits."""
@@ -38,6 +39,7 @@ def linearised(machine: Machine, balances: Balances) -> dict[str, Matrix]:
     """
     free = [m for m in (*machine.coordinates, *machine.speeds) if m.free]
     sheet = balances.frames.sheet
+    require_free(machine, "linearised")
     if not free:
         raise SceneError("'linearised' needs a free coordinate or speed")
     accelerations = [sheet.symbols[m.unknown] for m in free]
@@ -64,6 +66,14 @@ def linearised(machine: Machine, balances: Balances) -> dict[str, Matrix]:
     made = {name: table.reduced(column) for name, column in columns.items()}
     own = _own_rows(made["mass_matrix"], balances)
     return {name: _in_order(matrix, own) for name, matrix in made.items()}
+
+
+def require_free(machine: Machine, answer: str, way_out: str = "") -> None:
+    """Refuse coordinates that formulas move: by them it cannot be told what is small, or rests."""
+    for c in machine.coordinates:
+        if c.state and not c.free:
+            rule = f"needs coordinates that are free, but the rate of '{c.name}' is"
+            raise SceneError(f"'{answer}' {rule} '{brief(c.rate)}'; let it be free{way_out}")
 
 
 def unsteady(machine: Machine, balances: Balances, given: Mapping[str, float]) -> Iterator[str]:

@@ -86,7 +86,7 @@ def _of(entry: Input) -> Quantity:
 
 def _states(machine: Machine) -> Iterator[Quantity]:
     for m in (*machine.coordinates, *machine.speeds):
-        if m.free:
+        if m.state:
             yield _scalar(m.name, m.unit, m.low, m.high, m.meaning)
             if isinstance(m.rate, Input):
                 yield replace(_of(m.rate), meaning=m.rate.meaning or f"rate of {m.name}")
@@ -105,7 +105,7 @@ def attitude(frame: str) -> str:
 
 def _inputs(machine: Machine) -> Iterator[Quantity]:
     for m in machine.moving:
-        if not m.free:
+        if not m.state:
             yield _scalar(m.name, m.unit, m.low, m.high, m.meaning)
             for rate in (m.rate, m.acceleration):
                 if isinstance(rate, Input):

@@ -53,6 +53,7 @@ class Moving:
 
     Of an input no rate is known, of a free coordinate or speed the last rate is an unknown. A free
     coordinate without a rate is an angle of a single body, whose rate its angular velocity fixes.
+    A state is summed up from its rate: all that is free, and coordinates that a formula moves.
     """
 
     name: str
@@ -62,6 +63,7 @@ class Moving:
     meaning: str
     kind: Literal["coordinate", "speed", "input"]
     free: bool
+    state: bool
     rate: Input | Formula | None
     acceleration: Input | Formula | None
 

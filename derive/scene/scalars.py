@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 from derive.scene.declaration import Axis, Input, Moving, Parameter, SceneError, Turning
-from derive.scene.formula import ZERO, Formula
+from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.names import identifier
 from derive.scene.numbers import middle
 from derive.scene.table import (
@@ -35,9 +35,14 @@ from derive.scene.unit import (
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from collections.abc import Set as AbstractSet
 
 UNITS = {"coordinate": ("rad", "m"), "speed": ("rad/s", "m/s")}
 DIMENSIONS = {"coordinate": (NONE, LENGTH), "speed": (ANGULAR_VELOCITY, VELOCITY)}
+KEYS = {
+    "coordinate": ("meaning", "motion", "rate", "acceleration"),
+    "speed": ("meaning", "motion", "rate"),
+}
 ARTICLE = {"parameter": "a", "coordinate": "a", "speed": "a", "input": "an"}
 PER_SECOND = {"rad": "rad/s", "m": "m/s", "rad/s": "rad/s^2", "m/s": "m/s^2"}
 MOTIONS = ("free", "prescribed")
@@ -119,12 +124,16 @@ def read_scalars(part: Mapping[str, Table]) -> Scalars:
     """Return the scalars declared in the tables parameters, coordinates, speeds and inputs."""
     parameters = tuple(_parameter(*entry) for entry in _entries(part["parameters"], "parameter"))
     speeds = tuple(_speed(*entry) for entry in _entries(part["speeds"], "speed"))
-    fixed = {p.name: dimension(p.unit) for p in parameters}
-    scope = Scope(fixed | {s.name: dimension(s.unit) for s in speeds}, {}, "")
-    coordinates = tuple(
-        _coordinate(*entry, scope) for entry in _entries(part["coordinates"], "coordinate")
-    )
     inputs = tuple(_input(*entry) for entry in _entries(part["inputs"], "input"))
+    own = _entries(part["coordinates"], "coordinate")
+    known = {"pi": NONE} | {p.name: dimension(p.unit) for p in parameters}
+    known |= {s.name: dimension(s.unit) for s in speeds}
+    known |= {name: dimension(_spelling(given, "coordinate")) for name, given in own}
+    others = {f"{name}_dot": "a rate" for name in known if f"{name}_dot" not in known}
+    others |= dict.fromkeys((m.name for m in inputs), "an input, whose rate is not known")
+    scope = Scope(known, others, "only parameters, coordinates and speeds may stand here")
+    moved = {name for name, _ in own} | {s.name for s in speeds if s.free}
+    coordinates = tuple(_coordinate(name, given, scope, moved) for name, given in own)
     return Scalars(parameters, coordinates, speeds, inputs)
 
 
@@ -175,6 +184,7 @@ def _parameter(name: str, given: Table) -> Parameter:
 
 
 def _spelling(given: Table, kind: str) -> str:
+    keys(given, ("unit", "range"), KEYS[kind])
     found = unit_of(given)
     for spelling, known in zip(UNITS[kind], DIMENSIONS[kind], strict=True):
         if found == known:
@@ -196,8 +206,7 @@ def _free(given: Table, kinds: tuple[str, ...]) -> bool:
     return not any(key in entries for key in kinds)
 
 
-def _coordinate(name: str, given: Table, scope: Scope) -> Moving:
-    keys(given, ("unit", "range"), ("meaning", "motion", "rate", "acceleration"))
+def _coordinate(name: str, given: Table, scope: Scope, moved: AbstractSet[str]) -> Moving:
     spelling = _spelling(given, "coordinate")
     low, high = interval(given.entries["range"], f"{given.label}: range")
     rate = given.entries.get("rate")
@@ -220,7 +229,10 @@ def _coordinate(name: str, given: Table, scope: Scope) -> Moving:
             second = _second(name, given, PER_SECOND[own])
         elif "acceleration" in given.entries and given.entries["acceleration"] != 0:
             raise SceneError(f"{given.label}: its acceleration follows from the rate '{made}'")
-    return Moving(name, spelling, low, high, _meaning(given), "coordinate", free, made, second)
+    by_moved = isinstance(made, Formula) and not moved.isdisjoint(symbols(made))
+    state = free or given.entries.get("motion", "free" if by_moved else "") == "free"
+    return Moving(name, spelling, low, high, _meaning(given), "coordinate", free, state, made,
+                  second)  # fmt: skip
 
 
 def _rate(name: str, given: Table, value: object, scope: Scope, unit: str) -> Input | Formula:
@@ -247,7 +259,6 @@ def _given_rate(name: str, given: Table, key: str, value: object, dots: str, uni
 
 
 def _speed(name: str, given: Table) -> Moving:
-    keys(given, ("unit", "range"), ("meaning", "motion", "rate"))
     spelling = _spelling(given, "speed")
     low, high = interval(given.entries["range"], f"{given.label}: range")
     free = _free(given, ("rate",))
@@ -264,7 +275,7 @@ def _speed(name: str, given: Table) -> Moving:
             raise SceneError(f"{given.label} {rule}{found}")
     elif value is not None:
         raise SceneError(f"{given.label} is free, so its rate is found, not given")
-    return Moving(name, spelling, low, high, _meaning(given), "speed", free, rate, None)
+    return Moving(name, spelling, low, high, _meaning(given), "speed", free, free, rate, None)
 
 
 def _input(name: str, given: Table) -> Moving:
@@ -272,7 +283,7 @@ def _input(name: str, given: Table) -> Moving:
     unit_of(given)
     low, high = interval(given.entries["range"], f"{given.label}: range")
     spelling = str(given.entries["unit"])
-    return Moving(name, spelling, low, high, _meaning(given), "input", False, None, None)  # noqa: FBT003
+    return Moving(name, spelling, low, high, _meaning(given), "input", False, False, None, None)  # noqa: FBT003
 
 
 def rates(scalars: Scalars) -> dict[str, Dimension]:

@@ -72,7 +72,7 @@ WHOLE = {
     "motion/taylor/series.py: _uses": "operations counted",
     "motion/taylor/series.py: flops": "operations counted",
     "motion/exact/tumbling.py: _turn": "values that are recorded",
-    "lower/homogeneous.py: _fewest": "fractions",
+    "lower/homogeneous.py: _fewest": "degrees, which are whole",
     "lower/arrange/plan.py: _terms": "terms counted",
     "lower/arrange/plan.py: tidied": "expressions",
     "mechanics/sweep.py: _valued": "arrays, which no interpreter compensates",

@@ -12,6 +12,7 @@ from derive.mechanics.pivots import Pivots
 from derive.mechanics.sweep import Weakest
 from derive.scene import CATALOGUE, SceneError, catalogue, parse_scene
 from tests.mechanics.poles import ALLOWED, poles
+from tests.scene.fuzzed import LONG_FORM
 
 ROOT = Path(__file__).parents[2]
 BLOCK = re.compile(r"^```toml\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -22,6 +23,7 @@ EVERY = {
         for folder in (ROOT / "tests/data/trials", ROOT / "tests/mechanics/scenes")
         for page in sorted(folder.glob("*.toml"))
     },
+    **{f"long_{page.stem}": page.read_text() for page in LONG_FORM},
     **{
         f"{page.stem}_{n}": text
         for page in sorted((ROOT / "docs").glob("*.md"))

@@ -26,6 +26,8 @@ MOST, SECONDS = 300, 30
 """Characters of a sentence that is read at once; time that nobody minds to wait."""
 ROOT = Path(__file__).parents[2]
 FOLDERS = (CATALOGUE, ROOT / "tests" / "data" / "trials", ROOT / "tests" / "mechanics" / "scenes")
+LONG_FORM = sorted((ROOT / "tests" / "data" / "long_form").glob("*.toml"))
+"""Scenes of the catalogue, by the same names, written with frames, bodies and loads."""
 LONG = "a" * 5000
 NUMBERS = ("1e308", "-1", "0", "nan", "inf", "-inf", "1e-400", "1e400", "5e-324", "1e300", "0.1")
 ODD: tuple[Any, ...] = (
@@ -46,6 +48,7 @@ def texts() -> dict[str, str]:
     """Return the scenes that are changed: of the catalogue, the trials, machines and the pages."""
     files = [p for folder in FOLDERS for p in sorted(folder.glob("*.toml"))]
     found = {p.stem: p.read_text(encoding="utf-8") for p in files}
+    found |= {f"long_{p.stem}": p.read_text(encoding="utf-8") for p in LONG_FORM}
     for page in ("scenes", "motion", "machines"):
         text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
         blocks = re.findall(r"^```toml\n(.*?)^```$", text, re.M | re.S)

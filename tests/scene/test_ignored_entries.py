@@ -12,6 +12,7 @@ from derive.mechanics import specialise
 from derive.scene import CATALOGUE, parse_scene
 from tests.made import thinned
 from tests.scene import mutated
+from tests.scene.fuzzed import LONG_FORM
 from tests.scene.mutated import ignored, unread
 
 ROOT = Path(__file__).parents[2]
@@ -28,6 +29,7 @@ TEXTS = {
     for path in sorted(folder.glob("*.toml"))
     if not path.stem.startswith("meaning_")
 }  # those are refused, whatever else is changed
+TEXTS |= {f"long_{path.stem}": path.read_text(encoding="utf-8") for path in LONG_FORM}
 BLOCKS = [
     text
     for page in ("scenes", "motion", "machines")
@@ -87,6 +89,7 @@ SHORT = {
     "turned_with_the_body": TURNED_WITH_THE_BODY,
     "point_by_inputs": POINT_BY_INPUTS,
     "force": FORCE,
+    "top_by_speeds": TEXTS["long_heavy_top"],
     "propeller_3_blade": EVERY["propeller_3_blade"],
 }
 

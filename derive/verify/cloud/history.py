@@ -37,8 +37,20 @@ class History:
             if isinstance(m.rate, Input):
                 found[m.rate.name] = series(self.values[m.rate.name])
         for c in self.machine.coordinates:
-            self._add_coordinate(c, found)
+            if isinstance(c.rate, Input):
+                self._add_coordinate(c, found)
+            else:
+                found[c.name] = series(self.values[c.name])
+        self._follow(found)
         return found
+
+    def _follow(self, found: dict[str, Series]) -> None:
+        """Move coordinates by formulas: values give their rates, then both give the second ones."""
+        for _ in range(2):
+            rates = {c.name: evaluate(c.rate, found, ARITHMETIC) for c in self.machine.coordinates
+                     if isinstance(c.rate, Formula)}  # fmt: skip
+            found |= {n: Series((self.values[n], rate.value, rate.velocity / 2))
+                      for n, rate in rates.items()}  # fmt: skip
 
     def _rate(self, rate: Any, found: Mapping[str, Series]) -> Any:
         if isinstance(rate, Input):
@@ -46,15 +58,11 @@ class History:
         return mpf(0) if rate is None else evaluate(rate, found, ARITHMETIC).value
 
     def _add_coordinate(self, c: Any, found: dict[str, Series]) -> None:
-        if isinstance(c.rate, Input):
-            first = self.values[c.rate.name]
-            second = self.values[c.unknown] if c.free else self._rate(c.acceleration, found)
-            found[c.rate.name] = Series((first, second, mpf(0)))
-            if isinstance(c.acceleration, Input):
-                found[c.acceleration.name] = series(second)
-        else:
-            rate = evaluate(c.rate, found, ARITHMETIC)
-            first, second = rate.value, rate.velocity
+        first = self.values[c.rate.name]
+        second = self.values[c.unknown] if c.free else self._rate(c.acceleration, found)
+        found[c.rate.name] = Series((first, second, mpf(0)))
+        if isinstance(c.acceleration, Input):
+            found[c.acceleration.name] = series(second)
         found[c.name] = Series((self.values[c.name], first, second / 2))
 
     def value(self, formula: Formula) -> Series:
