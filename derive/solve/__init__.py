@@ -1,4 +1,4 @@
-"""A scene and values in, numbers out: answers, roots of a steady motion, frequencies, limits.
+"""A scene and values in, numbers out: answers, roots of a steady motion, principal axes.
 
 >>> from derive.solve import opened
 >>> runner = opened("edge_runner_flat")
@@ -9,16 +9,19 @@
 
 from derive.solve.instrument import Instrument, opened
 from derive.solve.motions import frequencies, growth, limits, roots
+from derive.solve.principal import PrincipalAxes, principal_axes
 from derive.solve.simulation import Simulation, plot, simulated
 
 __all__ = [
     "Instrument",
+    "PrincipalAxes",
     "Simulation",
     "frequencies",
     "growth",
     "limits",
     "opened",
     "plot",
+    "principal_axes",
     "roots",
     "simulated",
 ]

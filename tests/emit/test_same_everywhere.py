@@ -47,7 +47,6 @@ ASKED = {
     "mechanics/sweep.py: sin": "as its linalg",
     "mechanics/sweep.py: cos": "as its linalg",
     "mechanics/sweep.py: tan": "as its linalg",
-    "lecture/principal.py: hypot": "of two numbers, in a direction that iteration makes exact",
     "scene/numbers.py: hypot": "a length in a sentence of refusal, to ten digits",
     "check/attitudes.py: atan": "verdicts against a bound of many u",
     "check/attitudes.py: atan2": "as atan",

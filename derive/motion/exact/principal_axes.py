@@ -27,13 +27,15 @@ Three = tuple[Number, Number, Number]
 
 @dataclass(frozen=True)
 class PrincipalAxes:
-    """Moments over a power of two near their sum, smallest first, and the axes they belong to.
+    """Moments over ``size``, smallest first, and the axes they belong to.
 
+    size : a power of two near their sum
     axes : three right-handed unit vectors along body axes, the rows of the turn from those axes
     """
 
     moments: Three
     axes: tuple[Row, Row, Row]
+    size: Number
 
 
 def principal_axes(body: Inertia) -> PrincipalAxes:
@@ -49,7 +51,7 @@ def principal_axes(body: Inertia) -> PrincipalAxes:
         moments, rows = _turned_to_principal(moments, products, rows)
     for i, j in ((0, 1), (1, 2), (0, 1)):
         moments, rows = _in_order(i, j, moments, rows)
-    return PrincipalAxes((moments[0], moments[1], moments[2]), (rows[0], rows[1], rows[2]))
+    return PrincipalAxes((moments[0], moments[1], moments[2]), (rows[0], rows[1], rows[2]), size)
 
 
 def root(x: Number) -> Number:

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import eigsy, matrix, mp, mpf
 
-from derive.lecture.principal import PrincipalAxes, principal_axes
+from derive.solve.principal import PrincipalAxes, principal_axes
 
 Rows = list[list[float]]
 U = 2.0**-53
