@@ -20,20 +20,11 @@ from derive.program.program import Program
 from derive.program.status import CONSTANT, INERTIA, LENGTH, MASS, PARAMETER, RIGHT, SAYS, statuses
 from derive.scene import Machine, Scene
 from derive.scene.formula import Formula, evaluate, symbols
+from derive.verify.operators import IN_BALLS
 
 BITS = 400
 Values = Mapping[str, float]
 Entries = Mapping[tuple[int, int], Any]
-BALLS: Mapping[str, Any] = {
-    "number": lambda q: arb(int(q.numerator)) / int(q.denominator),
-    "add": lambda a, b: a + b,
-    "sub": lambda a, b: a - b,
-    "mul": lambda a, b: a * b,
-    "div": lambda a, b: a / b,
-    "neg": lambda a: -a,
-    "power": lambda a, n: a**n,
-    **{name: (lambda f: lambda a: getattr(a, f)())(name) for name in ("sin", "cos", "tan", "sqrt")},
-}
 
 
 @dataclass(frozen=True)
@@ -47,7 +38,7 @@ class Told:
         return formula is not None and set(symbols(formula)) <= set(self.values)
 
     def __getitem__(self, formula: Formula) -> Any:
-        return evaluate(formula, self.values, BALLS)
+        return evaluate(formula, self.values, IN_BALLS)
 
 
 @dataclass(frozen=True)
@@ -68,7 +59,7 @@ def allowed(scene: Scene | Machine, values: Values, precision: Precision) -> set
         return {PARAMETER}
     with ctx.workprec(BITS):
         fixed = {p.name: p.value for p in scene.parameters if p.value is not None}
-        numbers = {name: BALLS["number"](x) for name, x in fixed.items()}
+        numbers = {name: IN_BALLS["number"](x) for name, x in fixed.items()}
         told = Told(numbers | {"pi": arb.pi()} | {n: arb(float(x)) for n, x in values.items()})
         found: set[int] = set()
         for status, margin in sorted(_margins(scene, told, precision), key=lambda m: m[0]):

@@ -22,7 +22,7 @@ from derive.library.library import Library
 from derive.program.largest import largest
 from derive.program.program import Program, Quantity, component_names, run
 from derive.verify.convergence import BITS
-from derive.verify.motion_error import LONG_FLOATS
+from derive.verify.operators import LONG_FLOATS
 from derive.verify.sample import Sample
 
 SHIFT = arb(2) ** -20  # exact; what formulas take for zero is less

@@ -23,7 +23,7 @@ from derive.verify.cloud import Answers, answers
 from derive.verify.cloud.power import Powers, powers
 from derive.verify.cloud.series import DIGITS
 from derive.verify.convergence import unit_attitude
-from derive.verify.motion_error import LONG_FLOATS
+from derive.verify.operators import LONG_FLOATS
 from derive.verify.sample import Sample
 
 BITS = 600

@@ -9,7 +9,8 @@ from derive.emit.c.comment import told
 from derive.emit.c.scope import declared_in_python, require_free
 from derive.emit.c.series import series_casadi
 from derive.emit.c.source import first_line, works_in_pairs
-from derive.emit.c.text import machine_number, pair_functions
+from derive.emit.c.text import pair_functions
+from derive.emit.operators import in_casadi
 from derive.emit.templates import TEMPLATES
 from derive.library.library import Library
 from derive.motion.runge_kutta.compact import Compact
@@ -21,9 +22,7 @@ from derive.program.program import Line, Op, Operand, Program, Quantity, Repeat,
 from derive.program.status import CONSTANT, PARAMETER, computed, possible
 
 Text = Callable[[Operand], str]
-_INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/", "less": "<", "at_most": "<="}
 KEPT = "_kept("
-_CALLS = {"select": "if_else", "both": "logic_and", "either": "logic_or"}
 
 
 def casadi_file(library: Library) -> str:
@@ -63,10 +62,10 @@ def _pairs(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
         return place.get(operand, f"{operand}[0]")
 
     def one(op: Op) -> str:
-        operands = ", ".join(text(operand) for operand in op.operands)
+        operands = [text(operand) for operand in op.operands]
         if op.operator in ("both", "either"):
-            return f"{op.result} = ca.{_CALLS[op.operator]}({operands})"
-        return f"{op.result} = _{op.operator}({operands})"
+            return f"{op.result} = {in_casadi(op.operator, operands)}"
+        return f"{op.result} = _{op.operator}({', '.join(operands)})"
 
     return _written(program.ops, one, text, "_select"), stored
 
@@ -213,19 +212,7 @@ def _with_slope(program: Program, text: Text) -> Iterator[str]:
 
 
 def _operation(op: Op, text: Text) -> str:
-    operands = [text(operand) for operand in op.operands]
-    if op.operator in _INFIX:
-        return f"{operands[0]} {_INFIX[op.operator]} {operands[1]}"
-    if op.operator == "neg":
-        return f"-{operands[0]}"
-    if not op.operands:
-        return repr(float(rounded(machine_number(op.operator, F64), F64.dtype)))
-    if op.operator == "abs":  # fabs has the derivative 0 at 0, and |x|^2 then no second one
-        return f"ca.if_else({operands[0]} < 0.0, -1.0, 1.0) * {operands[0]}"
-    if op.operator == "power_of_two":
-        top = f"4503599627370497.0 * {operands[0]}"
-        return f"{top} - 0.9999999999999999 * ({top})"
-    return f"ca.{_CALLS.get(op.operator, op.operator)}({', '.join(operands)})"
+    return in_casadi(op.operator, [text(operand) for operand in op.operands])
 
 
 def _outputs(program: Program, ends: Sequence[str]) -> list[dict[str, object]]:

@@ -18,7 +18,8 @@ from derive.lower.expand import Family, Terms, collected, degree, factored, fami
 from derive.lower.graph import Graph, Value
 from derive.lower.homogeneous import powers
 from derive.lower.schedule import draft
-from derive.program.program import FLOPS, Op
+from derive.program.arithmetic import FLOPS
+from derive.program.program import Op
 
 MANY_TERMS = 60  # beyond this, multiplying out has never been the cheaper form
 MANY_CHOICES = 30

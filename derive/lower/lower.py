@@ -6,6 +6,7 @@ from fractions import Fraction
 from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, pi, sin, tan
 
 from derive.lower.arrange.draft import Arrangement
+from derive.lower.derivative import RULES
 from derive.lower.graph import Graph, Value
 
 
@@ -48,7 +49,7 @@ def _called(graph: Graph, e: Expr, known: Mapping[Symbol, Value]) -> Value:
     if e == pi:
         return graph.call("pi")
     name = e.func.__name__
-    if name not in ("sin", "cos", "power_of_two"):
+    if name not in RULES:
         raise NotImplementedError(f"no operator for {e}")
     return graph.call(name, value_of(graph, e.args[0], known))
 

@@ -13,8 +13,7 @@ from dataclasses import dataclass, replace
 from derive.program.program import Op, Operand, Program
 from derive.program.recorded import needed
 from derive.program.tape import Number, Tape, number
-
-PASSES_THROUGH = ("add", "sub", "mul", "div", "neg")
+from derive.scene.functions import PLAIN
 
 
 @dataclass(frozen=True)
@@ -55,7 +54,7 @@ def with_signs_moved(program: Program, prefix: str) -> Program:
 
 
 def _moved(tape: Tape, op: Op, given: Sequence[Signed]) -> Signed:
-    if op.operator not in PASSES_THROUGH:
+    if op.operator not in PLAIN:
         operands = tuple(_plain(each).operand for each in given)
         return Signed(1, Number(tape, tape.record(op.operator, operands)))
     if op.operator == "neg":

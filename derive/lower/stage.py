@@ -76,8 +76,8 @@ def exact_number(graph: Graph, value: Value) -> Fraction | None:
         made = sum((c * known[n] for c, n in rest[0]), Fraction(0))
     elif kind == "product":
         made = prod((known[n] ** p for n, p in rest[0]), start=Fraction(1))
-    elif rest[0] == "power_of_two":
-        made = EXACT["power_of_two"](rest[1][0][0] * known[rest[1][0][1]])
+    elif rest[0] in EXACT:
+        made = EXACT[rest[0]](*(c * known[n] for c, n in rest[1]))
     return None if made is None else coefficient * made
 
 

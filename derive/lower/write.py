@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from derive.lower.graph import Value
 from derive.lower.table import Signed, Table
+from derive.program.arithmetic import OPERATORS
 from derive.program.program import Op, Operand
 
 
@@ -24,7 +25,7 @@ class Writer:
 
     def emit(self, operator: str, *operands: Operand) -> str:
         """Return the name of an operation's result; no operation is written twice."""
-        same = sorted(operands, key=str) if operator in ("add", "mul") else operands
+        same = sorted(operands, key=str) if OPERATORS[operator].commutes else operands
         key = (operator, *same)
         if key not in self.written:
             self.written[key] = f"{self.prefix}{len(self.ops)}"

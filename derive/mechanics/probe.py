@@ -10,7 +10,7 @@ from random import Random
 from typing import Any
 
 from mpmath import mp, mpf
-from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, nan, pi, sin, tan, zoo
+from sympy import Add, Expr, Mul, Pow, Rational, Symbol, nan, pi, zoo
 
 from derive.mechanics.words import Words
 from derive.program.program import Quantity
@@ -19,7 +19,6 @@ DIGITS = 60
 NOTHING = mpf(10) ** -40
 POINTS = 2
 SEED = "derive: trial values"
-_FUNCTIONS = {sin: "sin", cos: "cos", tan: "tan"}
 
 
 @dataclass
@@ -52,7 +51,7 @@ class Probe:
                     return mp.fprod(self.value(a) for a in e.args)
                 case Pow():
                     return self._power(e)
-            return getattr(mp, _FUNCTIONS[e.func])(self.value(e.args[0]))
+            return getattr(mp, e.func.__name__)(self.value(e.args[0]))
 
     def _power(self, e: Expr) -> Any:
         base, exponent = self.value(e.base), e.exp

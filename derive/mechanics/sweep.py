@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from mpmath import mp, mpf
 from numpy.typing import NDArray
-from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, pi, sin, tan
+from sympy import Add, Expr, Mul, Pow, Rational, Symbol, pi, tan
 
 from derive.mechanics.probe import DIGITS, Probe, point
 from derive.mechanics.words import Words
@@ -115,10 +115,8 @@ class Field:
                 return value, size
             case Pow():
                 return self._power(e)
-        (x, _), kind = self.of(e.args[0]), e.func
-        if kind is tan:
-            return np.tan(x), abs(np.tan(x))
-        return {sin: np.sin, cos: np.cos}[kind](x), np.ones_like(x)
+        value = getattr(np, e.func.__name__)(self.of(e.args[0])[0])
+        return value, abs(value) if e.func is tan else np.ones_like(value)
 
     def _power(self, e: Expr) -> Sized:
         (base, size), exponent = self.of(e.base), float(e.exp)

@@ -9,13 +9,15 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-from sympy import Abs, Expr, Matrix, Rational, Symbol, cos, pi, sin, sqrt, tan
+import sympy
+from sympy import Abs, Expr, Matrix, Rational, Symbol, pi
 
 from derive.program.program import Quantity
 from derive.scene import Given, Input, Scene, SceneError
 from derive.scene.declaration import Moving
 from derive.scene.escape import brief
 from derive.scene.formula import Formula
+from derive.scene.functions import FUNCTIONS, PLAIN
 
 XYZ = ("x", "y", "z")
 ANY = (Fraction(-1), Fraction(1))
@@ -69,17 +71,11 @@ def rational(value: Fraction) -> Rational:
     return Rational(value.numerator, value.denominator)
 
 
-_OPERATORS: dict[str, Any] = {
-    "add": lambda a, b: a + b,
-    "sub": lambda a, b: a - b,
-    "mul": lambda a, b: a * b,
-    "div": lambda a, b: a / b,
-    "neg": lambda a: -a,
-    "sin": sin,
-    "cos": cos,
-    "tan": tan,
-    "sqrt": sqrt,
+_OPERATORS: Mapping[str, Any] = {
+    **PLAIN,
+    **{name: getattr(sympy, name) for name in FUNCTIONS},
 }
+"""SymPy calls its functions as a formula does."""
 
 
 def vocabulary(scene: Scene) -> Vocabulary:

@@ -1,13 +1,15 @@
-"""What an operator means: one table an arithmetic, one row an operator.
+"""What an operator means: one table, a row an operator, a column an arithmetic.
 
-A backend is a table. The same program runs in exact fractions, in floats of either precision, in
-pairs of floats (twice the working precision, for set-up) and in CasADi, and prints as C.
+The same program runs in exact fractions, in floats of either precision, in pairs of floats (twice
+the working precision, for set-up) and in CasADi, and prints as C.
 """
 
-import operator
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from functools import partial
+from operator import add, and_, le, lt, mul, neg, or_, sub, truediv
+from typing import Any, Literal
 
 import flint
 import numpy as np
@@ -17,7 +19,9 @@ from derive.program.pair_sine import PI, pair_sine
 from derive.program.pairs import (
     MANTISSA,
     Pair,
+    pair_absolute,
     pair_add,
+    pair_below,
     pair_div,
     pair_minus,
     pair_mul,
@@ -28,35 +32,93 @@ from derive.program.pairs import (
 
 Table = dict[str, Callable[..., Any]]
 
-_PYTHON: Table = {
-    "add": operator.add,
-    "sub": operator.sub,
-    "mul": operator.mul,
-    "div": operator.truediv,
-    "neg": operator.neg,
-}
+
+@dataclass(frozen=True)
+class Wide:
+    """What operations on pairs of a float type need: the number that splits one, and sines."""
+
+    dtype: type
+    factor: Any
+    sine: Callable[[Pair, int], Pair]
+
+
+@dataclass(frozen=True)
+class Operator:
+    """What an operator is, and what it does; None where an arithmetic does not have it.
+
+    kind   : "flop" counts as one, "truth" gives true or false, "libm" asks the platform's library,
+             "number" has no operands and rests on the precision alone
+    exact  : what it does to fractions; roots, sines and their like need a proof's own (``prove``)
+    floats : what it does to floats, in columns; a libm's is rounded correctly for every type
+    pairs  : what it does to pairs of floats, in columns, told the float first
+    number : the number that it is, by the bits of a float
+    libc   : the function of <math.h>; in float it takes an f at its end
+    """
+
+    kind: Literal["flop", "truth", "libm", "number", "value"]
+    exact: Callable[..., Any] | None = None
+    floats: Callable[..., Any] | None = None
+    pairs: Callable[..., Any] | None = None
+    number: Callable[[int], Fraction] | None = None
+    libc: str = ""
+    commutes: bool = False
+
+
+def _exact_floor(x: Fraction) -> Fraction:
+    return Fraction(x.numerator // x.denominator)
+
+
+def _of_truths(operation: Callable[[Any, Any], Any]) -> Callable[..., Any]:
+    return lambda _, a, b: operation(a, b)
 
 
 def _exact_power_of_two(x: Fraction) -> Fraction:
     return Fraction(2) ** (abs(x).numerator.bit_length() - abs(x).denominator.bit_length())
 
 
-# Roots, sines and their like have no row here: a proof must bring its own (see ``prove``).
-EXACT: Table = _PYTHON | {
-    "number": Fraction,
-    "power_of_two": _exact_power_of_two,
-    "abs": abs,
-    "floor": lambda x: Fraction(x.numerator // x.denominator),
-    "less": operator.lt,
-    "at_most": operator.le,
-    "both": operator.and_,
-    "either": operator.or_,
-    "select": lambda condition, yes, no: yes if condition else no,
+OPERATORS: Mapping[str, Operator] = {
+    "add": Operator("flop", add, add, lambda _, a, b: pair_add(a, b), commutes=True),
+    "sub": Operator("flop", sub, sub, lambda _, a, b: pair_add(a, pair_minus(b))),
+    "mul": Operator("flop", mul, mul, lambda by, a, b: pair_mul(a, b, by.factor), commutes=True),
+    "div": Operator("flop", truediv, truediv, lambda by, a, b: pair_div(a, b, by.factor)),
+    "neg": Operator("value", neg, neg, lambda _, a: pair_minus(a)),
+    "low": Operator("value", pairs=lambda _, a: (a[1], a[1] * 0)),
+    "sqrt": Operator("value", None, np.sqrt, lambda by, a: pair_sqrt(a, by.factor), libc="sqrt"),
+    "sin": Operator("libm", pairs=lambda by, a: by.sine(a, 0), libc="sin"),
+    "cos": Operator("libm", pairs=lambda by, a: by.sine(a, 1), libc="cos"),
+    "atan2": Operator("libm", libc="atan2"),
+    "abs": Operator("value", abs, np.abs, lambda _, a: pair_absolute(a), libc="fabs"),
+    "floor": Operator("value", _exact_floor, np.floor, libc="floor"),
+    "power_of_two": Operator(
+        "value",
+        _exact_power_of_two,
+        lambda x: power_of_two(x, np.asarray(x).dtype.type),
+        lambda by, a: (power_of_two(a[0], by.dtype), a[0] * 0),
+    ),
+    "less": Operator("truth", lt, np.less, lambda _, a, b: pair_below(np.less, a, b)),
+    "at_most": Operator(
+        "truth", le, np.less_equal, lambda _, a, b: pair_below(np.less_equal, a, b)
+    ),
+    "both": Operator("truth", and_, np.logical_and, _of_truths(np.logical_and), commutes=True),
+    "either": Operator("truth", or_, np.logical_or, _of_truths(np.logical_or), commutes=True),
+    "select": Operator(
+        "value",
+        lambda condition, yes, no: yes if condition else no,
+        np.where,
+        lambda _, condition, yes, no: pair_select(condition, yes, no),
+    ),
+    "pi": Operator("number", number=lambda _: PI),
+    "unit_roundoff": Operator("number", number=lambda bits: Fraction(1, 2**bits)),
+    "splitter": Operator("number", number=lambda bits: Fraction(splitter(bits))),
 }
-
-# Operators whose result is a truth and not a number, and those that ask the platform's libm.
-TRUTHS = frozenset(("less", "at_most", "both", "either"))
-LIBM = frozenset(("sin", "cos", "atan2"))
+FLOPS, TRUTHS, LIBM = (
+    frozenset(name for name, row in OPERATORS.items() if row.kind == kind)
+    for kind in ("flop", "truth", "libm")
+)
+EXACT: Table = {
+    "number": Fraction,
+    **{name: row.exact for name, row in OPERATORS.items() if row.exact is not None},
+}
 
 
 def rounded(q: Fraction, dtype: type) -> Any:
@@ -107,27 +169,20 @@ def _at_the_edge(function: str, *given: Any) -> float:
 
 def working(dtype: type) -> Table:
     """Return the arithmetic of one float type, vectorised over samples."""
-    return _PYTHON | {
-        "number": lambda q: rounded(q, dtype),
-        "sqrt": np.sqrt,
-        **{name: _correctly(name, dtype) for name in sorted(LIBM)},
-        "abs": np.abs,
-        "floor": np.floor,
-        **_CHOICES,
-        "pi": lambda: rounded(PI, dtype),
-        "power_of_two": lambda x: power_of_two(x, dtype),
-        "unit_roundoff": lambda: dtype(2.0 ** -MANTISSA[dtype]),
-        "splitter": lambda: dtype(splitter(MANTISSA[dtype])),
-    }
+
+    def number(q: Fraction) -> Any:
+        return rounded(q, dtype)
+
+    own = {name: row.floats for name, row in OPERATORS.items() if row.floats is not None}
+    own |= {name: _correctly(name, dtype) for name in sorted(LIBM)}
+    return {"number": number, **own, **_numbers(number, dtype)}
 
 
-_CHOICES: Table = {
-    "less": np.less,
-    "at_most": np.less_equal,
-    "both": np.logical_and,
-    "either": np.logical_or,
-    "select": np.where,
-}
+def _numbers(number: Callable[[Fraction], Any], dtype: type) -> Table:
+    """Return the operators without operands, as an arithmetic has numbers."""
+    bits = MANTISSA[dtype]
+    every = {name: row.number(bits) for name, row in OPERATORS.items() if row.number is not None}
+    return {name: partial(number, q) for name, q in every.items()}
 
 
 def power_of_two(x: Any, dtype: type) -> Any:
@@ -145,35 +200,15 @@ def pair_of(q: Fraction, dtype: type) -> tuple[Fraction, Fraction]:
 
 def extended(dtype: type) -> Table:
     """Return the arithmetic of pairs of ``dtype``, vectorised over samples."""
-    factor = dtype(splitter(MANTISSA[dtype]))
 
     def number(q: Fraction) -> Pair:
         high, low = pair_of(q, dtype)
         return rounded(high, dtype), rounded(low, dtype)
 
     sine = pair_sine(dtype, lambda q: rounded(q, dtype))
-    return {
-        "number": number,
-        "add": pair_add,
-        "sub": lambda a, b: pair_add(a, pair_minus(b)),
-        "neg": pair_minus,
-        "low": lambda a: (a[1], a[1] * 0),
-        "mul": lambda a, b: pair_mul(a, b, factor),
-        "div": lambda a, b: pair_div(a, b, factor),
-        "sqrt": lambda a: pair_sqrt(a, factor, np.sqrt),
-        "sin": lambda a: sine(a, 0),
-        "cos": lambda a: sine(a, 1),
-        "power_of_two": lambda a: (power_of_two(a[0], dtype), a[0] * 0),
-        "abs": lambda a: pair_select(a[0] < 0, pair_minus(a), a),
-        "less": lambda a, b: (a[0] < b[0]) | ((a[0] == b[0]) & (a[1] < b[1])),
-        "at_most": lambda a, b: (a[0] < b[0]) | ((a[0] == b[0]) & (a[1] <= b[1])),
-        "both": np.logical_and,
-        "either": np.logical_or,
-        "select": pair_select,
-        "pi": lambda: number(PI),
-        "unit_roundoff": lambda: number(Fraction(1, 2 ** MANTISSA[dtype])),
-        "splitter": lambda: number(Fraction(splitter(MANTISSA[dtype]))),
-    }
+    by = Wide(dtype, dtype(splitter(MANTISSA[dtype])), sine)
+    own = {name: partial(row.pairs, by) for name, row in OPERATORS.items() if row.pairs is not None}
+    return {"number": number, **own, **_numbers(number, dtype)}
 
 
 def paired(values: NDArray[Any]) -> list[Pair]:

@@ -66,9 +66,9 @@ def pair_div(a: Pair, b: Pair, factor: Any) -> Pair:
     return pair_add(pair_add((q1, zero), (q2, zero)), (r[0] / b[0], zero))
 
 
-def pair_sqrt(a: Pair, factor: Any, root: Callable[[Any], Any]) -> Pair:
+def pair_sqrt(a: Pair, factor: Any) -> Pair:
     """Return the square root of a within a few u^2 relative (Karp and Markstein)."""
-    s = root(a[0])
+    s = np.sqrt(a[0])
     r = pair_add(a, pair_minus(two_product(s, s, factor)))
     return fast_two_sum(s, np.where(s > 0, r[0] / (s + s), s * 0))
 
@@ -76,6 +76,16 @@ def pair_sqrt(a: Pair, factor: Any, root: Callable[[Any], Any]) -> Pair:
 def pair_minus(a: Pair) -> Pair:
     """Return -a."""
     return -a[0], a[1] * 0 - a[1]  # a zero stays a positive zero, as CasADi has it
+
+
+def pair_absolute(a: Pair) -> Pair:
+    """Return a without its sign."""
+    return pair_select(a[0] < 0, pair_minus(a), a)
+
+
+def pair_below(compared: Callable[[Any, Any], Any], a: Pair, b: Pair) -> Any:
+    """Return where a < b or a <= b, as the second parts are to be ``compared``."""
+    return (a[0] < b[0]) | ((a[0] == b[0]) & compared(a[1], b[1]))
 
 
 def pair_select(condition: Any, yes: Pair, no: Pair) -> Pair:

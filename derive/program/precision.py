@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from derive.program.arithmetic import OPERATORS
+
 
 @dataclass(frozen=True)
 class Precision:
@@ -25,14 +27,7 @@ class Precision:
 
 
 # The functions of <math.h> by operator; in float each takes an f at its end.
-MATH = {
-    "sin": "sin",
-    "cos": "cos",
-    "sqrt": "sqrt",
-    "atan2": "atan2",
-    "abs": "fabs",
-    "floor": "floor",
-}
+MATH = {name: row.libc for name, row in OPERATORS.items() if row.libc}
 
 
 F64 = Precision("f64", "double", np.float64, "", 17, 53, MATH)

@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Literal, Protocol
 
+from derive.program.arithmetic import FLOPS
+
 Operand = str | Fraction
 
 Table = Mapping[str, Callable[..., Any]]  # an arithmetic: what each operator does
-
-FLOPS = ("add", "sub", "mul", "div")
 
 
 @dataclass(frozen=True)

@@ -1,21 +1,13 @@
 """What is recorded whole: a loop, another program; and what of it the results rest on."""
 
-import operator
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from derive.program.program import Line, Op, Operand, Program, Repeat
 from derive.program.tape import Number, Tape, number, operation, seen_from
+from derive.scene.functions import PLAIN
 
 Body = Callable[[list[Number]], tuple[Sequence[Number], Number | None]]
-FOLDED: Mapping[str, Callable[..., Number]] = {
-    "add": operator.add,
-    "sub": operator.sub,
-    "mul": operator.mul,
-    "div": operator.truediv,
-    "neg": operator.neg,
-}
-"""What may come to no operation of the program, as x + 0 or a sum of exact numbers."""
 
 
 def repeat(tape: Tape, passes: int, start: Sequence[Number], body: Body) -> list[Number]:
@@ -93,7 +85,8 @@ def called(tape: Tape, program: Program, values: Mapping[str, Number]) -> list[N
     for op in program.ops:
         if not isinstance(op, Op):
             raise TypeError(f"'{program.name}' has a loop, and a loop cannot be called yet")
-        known[op.result] = FOLDED.get(op.operator, partial(operation, op.operator))(
+        # x + 0, or a sum of exact numbers, is no operation of the program
+        known[op.result] = PLAIN.get(op.operator, partial(operation, op.operator))(
             *map(value, op.operands)
         )
     return [value(result) for result in program.results]

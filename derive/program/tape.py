@@ -13,9 +13,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from derive.program.arithmetic import OPERATORS
 from derive.program.program import Line, Op, Operand
-
-COMMUTATIVE = ("add", "mul", "both", "either")
 
 
 @dataclass
@@ -45,7 +44,7 @@ class Tape:
 
     def record(self, operator: str, operands: tuple[Operand, ...]) -> str:
         """Return the name of an operation's result; no operation is recorded twice."""
-        same = sorted(operands, key=str) if operator in COMMUTATIVE else operands
+        same = sorted(operands, key=str) if OPERATORS[operator].commutes else operands
         key = (operator, *same)
         if key not in self.numbered:
             self.numbered[key] = self.fresh()

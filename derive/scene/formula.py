@@ -7,13 +7,15 @@ nothing downstream has to guess. Python never evaluates a formula's text.
 from __future__ import annotations
 
 import math
+import operator
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-FUNCTIONS = ("sin", "cos", "tan", "sqrt")
+from derive.scene.functions import FUNCTIONS, PLAIN
+
 LARGEST_EXPONENT = 16
 LARGEST_NUMBER_BITS = 4096
 
@@ -101,9 +103,9 @@ def symbol(name: str) -> Formula:
 
 
 def apply(function: str, operand: Formula) -> Formula:
-    """Return sin, cos, tan or sqrt of a formula; 0 and exact square roots fold."""
+    """Return a function of a formula; its value at 0 and exact square roots fold."""
     if operand == ZERO:
-        return ONE if function == "cos" else ZERO
+        return number(FUNCTIONS[function].at_zero)
     if function == "sqrt" and operand.operator == "number":
         root = _exact_root(operand.number)
         return Formula("sqrt", (operand,)) if root is None else number(root)
@@ -178,16 +180,9 @@ def evaluate(formula: Formula, values: Mapping[str, Any], arithmetic: Arithmetic
 
 FLOATS: Arithmetic = {
     "number": float,
-    "add": lambda a, b: a + b,
-    "sub": lambda a, b: a - b,
-    "mul": lambda a, b: a * b,
-    "div": lambda a, b: a / b,
-    "neg": lambda a: -a,
-    "power": lambda a, n: a**n,
-    "sin": math.sin,
-    "cos": math.cos,
-    "tan": math.tan,
-    "sqrt": math.sqrt,
+    **PLAIN,
+    "power": operator.pow,
+    **{name: function.floats for name, function in FUNCTIONS.items()},
 }
 
 _LONG_TAIL = re.compile("(?<=[0-9])0{16,300}$")

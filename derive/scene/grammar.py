@@ -17,7 +17,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from derive.scene.escape import brief
-from derive.scene.formula import FUNCTIONS, ZERO, Formula, FormulaError, apply, number, symbol
+from derive.scene.formula import ZERO, Formula, FormulaError, apply, number, symbol
+from derive.scene.functions import FUNCTIONS
 
 LONGEST_TEXT = 1000
 DEEPEST_NESTING = 30

@@ -1,7 +1,6 @@
 """Intervals of floats, rounded outward: what a formula can be at most and at least on a box."""
 
 import math
-from collections.abc import Mapping
 from typing import Any
 
 Interval = tuple[float, float]
@@ -15,32 +14,38 @@ def _outward(low: float, high: float) -> Interval:
     return math.nextafter(low, -math.inf), math.nextafter(high, math.inf)
 
 
-def _number(value: Any) -> Interval:
+def number(value: Any) -> Interval:
+    """Return the interval of a number."""
     return _outward(float(value), float(value))
 
 
-def _add(a: Interval, b: Interval) -> Interval:
+def added(a: Interval, b: Interval) -> Interval:
+    """Return a + b."""
     return _outward(a[0] + b[0], a[1] + b[1])
 
 
-def _neg(a: Interval) -> Interval:
+def negative(a: Interval) -> Interval:
+    """Return -a."""
     return -a[1], -a[0]
 
 
-def _mul(a: Interval, b: Interval) -> Interval:
+def multiplied(a: Interval, b: Interval) -> Interval:
+    """Return a b."""
     ends = [x * y for x in a for y in b]
     return EVERYTHING if any(map(math.isnan, ends)) else _outward(min(ends), max(ends))
 
 
-def _div(a: Interval, b: Interval) -> Interval:
+def divided(a: Interval, b: Interval) -> Interval:
+    """Return a / b, everything if b may be 0."""
     if b[0] <= 0 <= b[1]:
         return EVERYTHING
-    return _mul(a, _outward(1 / b[1], 1 / b[0]))
+    return multiplied(a, _outward(1 / b[1], 1 / b[0]))
 
 
-def _power(a: Interval, exponent: int) -> Interval:
+def raised(a: Interval, exponent: int) -> Interval:
+    """Return a to a whole power."""
     if exponent < 0:
-        return _div((1.0, 1.0), _power(a, -exponent))
+        return divided((1.0, 1.0), raised(a, -exponent))
     try:
         ends = [x**exponent for x in a]
     except OverflowError:
@@ -53,12 +58,13 @@ def _power(a: Interval, exponent: int) -> Interval:
     return max(low, 0.0) if exponent % 2 == 0 else low, high
 
 
-def _sqrt(a: Interval) -> Interval:
+def root(a: Interval) -> Interval:
+    """Return the square root of what of a is not negative."""
     low, high = (math.sqrt(max(x, 0.0)) for x in a)
     return max(_outward(low, high)[0], 0.0), _outward(low, high)[1]
 
 
-def _sine(a: Interval, quarter: int) -> Interval:
+def _shifted(a: Interval, quarter: int) -> Interval:
     """Return sin of an angle so many right angles further."""
     if not all(map(math.isfinite, a)) or a[1] - a[0] >= 2 * math.pi:
         return -1.0, 1.0
@@ -72,25 +78,11 @@ def _sine(a: Interval, quarter: int) -> Interval:
     return -1.0 if 3 in turning else max(min(ends) - wider, -1.0), top
 
 
-def _sin(a: Interval) -> Interval:
-    return _sine(a, 0)
+def sine(a: Interval) -> Interval:
+    """Return the sine of an angle in rad."""
+    return _shifted(a, 0)
 
 
-def _cos(a: Interval) -> Interval:
-    return _sine(a, 1)
-
-
-INTERVALS: Mapping[str, Any] = {
-    "number": _number,
-    "add": _add,
-    "sub": lambda a, b: _add(a, _neg(b)),
-    "mul": _mul,
-    "div": _div,
-    "neg": _neg,
-    "power": _power,
-    "sin": _sin,
-    "cos": _cos,
-    "tan": lambda a: _div(_sin(a), _cos(a)),
-    "sqrt": _sqrt,
-}
-"""An arithmetic for ``derive.scene.formula.evaluate``."""
+def cosine(a: Interval) -> Interval:
+    """Return the cosine of an angle in rad."""
+    return _shifted(a, 1)

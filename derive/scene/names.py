@@ -9,6 +9,7 @@ import re
 from typing import TYPE_CHECKING
 
 from derive.scene.declaration import SceneError
+from derive.scene.functions import FUNCTIONS, PLAIN
 from derive.scene.reserved import is_device, owner
 
 if TYPE_CHECKING:
@@ -22,8 +23,8 @@ HELPERS: Mapping[str, str] = {
     "constants": "the struct of constants",
     "pair": "a pair of floats",
     **dict.fromkeys(
-        ("abs", "add", "at_most", "cos", "div", "less", "low", "mul", "neg", "pi", "power_of_two",
-         "sin", "sine", "splitter", "sqrt", "sub", "two_product", "unit_roundoff"),
+        (*PLAIN, *FUNCTIONS, "abs", "at_most", "less", "low", "pi", "power_of_two", "sine",
+         "splitter", "two_product", "unit_roundoff"),
         "a function of pairs of floats",
     ),
     "PARAMETERS": "the list of parameters in the CasADi module",

@@ -9,7 +9,7 @@ import keyword
 import re
 from collections.abc import Mapping
 
-from derive.scene.formula import FUNCTIONS
+from derive.scene.functions import FUNCTIONS
 
 _M = r"M_(1_PI|2_PI|2_SQRTPI|E|LN10|LN2|LOG10E|LOG2E|PI|PI_2|PI_4|SQRT1_2|SQRT2)(f|l|[fF][0-9]+x?)?"
 _INTEGERS = (

@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING, Any
 from derive.scene.declaration import SceneError
 from derive.scene.escape import at_place, brief
 from derive.scene.formula import FLOATS, Formula, apply, evaluate, symbols
-from derive.scene.interval import INTERVALS, Interval
+from derive.scene.functions import INTERVALS
+from derive.scene.interval import Interval
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -12,30 +12,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.program.arithmetic import LIBM, extended, rounded, working
-from derive.program.pair_sine import pair_sine
-from derive.program.pairs import (
-    MANTISSA,
-    Pair,
-    fast_two_sum,
-    pair_add,
-    pair_div,
-    pair_minus,
-    pair_mul,
-    splitter,
-)
+from derive.program.arithmetic import LIBM, extended, working
+from derive.program.pairs import Pair
 from derive.program.program import Line, Program, component_names, operands_of, run_lines, values_of
+from derive.verify.operators import IN_DOUBLES, UNROUNDED, pair_sines
 
 Table = dict[str, Callable[..., Any]]
 Column = NDArray[Any]
-FACTOR = np.float64(splitter(MANTISSA[np.float64]))
 SMALL, LARGE = 2.0**-27, 2.0**20
 """Sines are taken in pairs between these; below, x is the float next to sin x, and 1 to cos x."""
 FAR = 2.0**200
 """Components of an angle's direction are taken in pairs up to this, and down to its inverse."""
 SURE = {np.float32: 2.0**-46, np.float64: 2.0**-94}
 """Relative errors that the values of more digits keep: a libm's in double, and a pair's."""
-NUMPY = {"sin": np.sin, "cos": np.cos, "atan2": np.arctan2}
 
 
 @dataclass(frozen=True)
@@ -123,7 +112,7 @@ def arithmetics(dtype: type) -> Arithmetics:
 @cache
 def doubles() -> Table:
     """Return double with the libm of the machine: for what needs a few digits only."""
-    return _with_numbers(working(np.float64) | NUMPY | {"low": lambda a: a * 0})
+    return _with_numbers(working(np.float64) | {n: IN_DOUBLES[n] for n in (*LIBM, "low")})
 
 
 def _with_numbers(table: Table) -> Table:
@@ -133,37 +122,7 @@ def _with_numbers(table: Table) -> Table:
 
 def _unrounded() -> Table:
     """Return pairs of doubles as if they were numbers of all digits: nothing is left below."""
-    table = extended(np.float64)
-    return table | {
-        "low": lambda a: (a[0] * 0, a[0] * 0),
-        "splitter": lambda: table["number"](1),
-        "unit_roundoff": lambda: (np.float64(2.0**-53), np.float64(0.0)),
-        "atan2": _pair_atan2,
-        "floor": _pair_floor,
-    }
-
-
-def _pair_floor(a: Pair) -> Pair:
-    whole = np.floor(a[0])
-    return np.where(whole == a[0], whole + np.floor(a[1]), whole), whole * 0
-
-
-def _pair_atan2(y: Pair, x: Pair) -> Pair:
-    """Return the angle of (x, y): a libm's, turned on by the sine of what it leaves."""
-    start = np.arctan2(y[0], x[0])
-    sine = _pair_sines()
-    s, c = sine((start, start * 0), 0), sine((start, start * 0), 1)
-    across = pair_add(pair_mul(y, c, FACTOR), pair_minus(pair_mul(x, s, FACTOR)))
-    along = pair_add(pair_mul(x, c, FACTOR), pair_mul(y, s, FACTOR))
-    rest = pair_div(across, along, FACTOR)
-    high, low = fast_two_sum(start, rest[0])
-    there = along[0] > 0
-    return np.where(there, high, start), np.where(there, low + rest[1], start * 0)
-
-
-@cache
-def _pair_sines() -> Callable[[Pair, int], Pair]:
-    return pair_sine(np.float64, lambda q: rounded(q, np.float64))
+    return {**extended(np.float64), **UNROUNDED}
 
 
 def _correctly(name: str, dtype: type) -> Callable[..., Any]:
@@ -186,7 +145,7 @@ def _correctly(name: str, dtype: type) -> Callable[..., Any]:
 
 def _single(name: str, given: Sequence[Column]) -> tuple[Column, NDArray[np.bool_]]:
     wide = [x.astype(np.float64) for x in given]
-    value = NUMPY[name](*wide)
+    value = IN_DOUBLES[name](*wide)
     found = value.astype(np.float32)
     ends = [(value * (1 + side * SURE[np.float32])).astype(np.float32) for side in (-1, 1)]
     within = np.all([np.abs(x) < (LARGE if len(wide) == 1 else FAR) for x in wide], axis=0)
@@ -195,12 +154,12 @@ def _single(name: str, given: Sequence[Column]) -> tuple[Column, NDArray[np.bool
 
 def _double(name: str, given: Sequence[Column]) -> tuple[Column, NDArray[np.bool_]]:
     if name == "atan2":
-        high, low = _pair_atan2(*((x, x * 0) for x in given))
+        high, low = UNROUNDED["atan2"](*((x, x * 0) for x in given))
         sizes = np.abs(given)
         sure = np.all((sizes < FAR) & (sizes > 1 / FAR), axis=0)
     else:
         (x,) = given
-        high, low = _pair_sines()((x, x * 0), ("sin", "cos").index(name))
+        high, low = pair_sines()((x, x * 0), ("sin", "cos").index(name))
         tiny = (np.abs(x) < SMALL) & (x != 0)
         high = np.where(tiny, x if name == "sin" else 1.0, high)
         low = np.where(tiny, 0.0, low)

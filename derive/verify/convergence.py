@@ -19,7 +19,7 @@ from derive.program.largest import largest
 from derive.program.program import Program, component_names, run
 from derive.scene.wanted import SPLITTINGS, TAYLOR, step_of
 from derive.verify.equations import Equations, equations
-from derive.verify.motion_error import LONG_FLOATS
+from derive.verify.operators import LONG_FLOATS
 from derive.verify.reference import BALLS
 from derive.verify.solution import solution
 

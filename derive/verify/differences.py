@@ -14,7 +14,7 @@ from derive.library.library import Library
 from derive.program.largest import largest
 from derive.program.program import Program, component_names, run
 from derive.verify.convergence import BITS, unit_attitude
-from derive.verify.motion_error import LONG_FLOATS
+from derive.verify.operators import LONG_FLOATS
 
 SHIFT = arb(2) ** -130  # exact
 GAP = 1e-70

@@ -6,7 +6,7 @@ the report shows error against cost. What errors are counted in, ``scale`` says.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -20,7 +20,8 @@ from derive.program.precision import Precision
 from derive.program.program import Program, Quantity, component_names, run
 from derive.verify.columns import arithmetics, known, planned
 from derive.verify.measure import Errors, replayed
-from derive.verify.reference import BALLS, BITS
+from derive.verify.operators import LONG_FLOATS
+from derive.verify.reference import BITS
 from derive.verify.sample import Sample, Source, Values, source, uniform
 from derive.verify.scale import PLAN, Sizing, around, measured_outputs, motion_scales
 
@@ -29,50 +30,6 @@ REACH = 0.3
 LONG = 1000.0
 """So many such steps make the longest time that a flow is sampled at."""
 OMEGA_DOT = ("omega_dot_x", "omega_dot_y", "omega_dot_z")
-
-
-def _power_of_two(x: Any) -> Any:
-    if not x.is_finite() or x == 0:
-        return x  # on a way that is not taken
-    mantissa, exponent = x.mid().man_exp()
-    return arb(2) ** (int(exponent) + int(abs(mantissa)).bit_length() - 1)
-
-
-def _rounded(operation: Callable[..., Any]) -> Callable[..., Any]:
-    """Return an operation on numbers of many digits, rounded like those of floats."""
-    return lambda *given: operation(*given).mid()
-
-
-_LONG: Mapping[str, Callable[..., Any]] = {
-    "number": BALLS["number"],
-    "sin": BALLS["sin"],
-    "cos": BALLS["cos"],
-    "sqrt": BALLS["sqrt"],
-    "pi": BALLS["pi"],
-    "add": lambda a, b: a + b,
-    "sub": lambda a, b: a - b,
-    "mul": lambda a, b: a * b,
-    "div": lambda a, b: a / b,
-    "neg": lambda a: -a,
-    "low": lambda a: a * 0,
-    "abs": abs,
-    "exp": lambda x: x.exp(),
-    "log": lambda x: x.log(),
-    "atan2": lambda y, x: arb.atan2(y, x),
-    "floor": lambda x: x.floor(),
-    "power_of_two": _power_of_two,
-    "unit_roundoff": lambda: arb(2) ** (-ctx.prec // 2),
-    "splitter": lambda: arb(1),
-}
-LONG_FLOATS: Mapping[str, Callable[..., Any]] = {
-    **{name: _rounded(operation) for name, operation in _LONG.items()},
-    "less": lambda a, b: bool(a < b),
-    "at_most": lambda a, b: bool(a <= b),
-    "both": lambda a, b: a and b,
-    "either": lambda a, b: a or b,
-    "select": lambda condition, yes, no: yes if condition else no,
-}
-"""Floats of whatever precision is set: balls would lose a choice that is made next to zero."""
 
 
 def with_motion(

@@ -5,7 +5,6 @@ in a million a point; sine and cosine enter as a pair of rationals with unit nor
 holds a root or half an angle, balls of 4000 bits stand in for fractions.
 """
 
-import operator
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -19,6 +18,7 @@ from derive.program.program import Op, Program, component_names, read_by, run
 from derive.program.recorded import needed
 from derive.scene.wanted import JACOBIAN
 from derive.verify.equations import Equations, equations
+from derive.verify.operators import IN_FRACTIONS, IrrationalError
 from derive.verify.reference import BALLS, NoValueError
 from derive.verify.solution import Known, solution
 
@@ -35,57 +35,24 @@ class ProofError(ArithmeticError):
     """A program that does not satisfy its equations; the sentence says where and by how much."""
 
 
-class IrrationalError(ArithmeticError):
-    """A root that no fraction is, or an angle beside its half."""
-
-
-def _root(x: Any) -> Any:
-    top, bottom = fmpq(x).p, fmpq(x).q
-    if x < 0 or top.isqrt() ** 2 != top or bottom.isqrt() ** 2 != bottom:
-        raise IrrationalError
-    return fmpq(top.isqrt(), bottom.isqrt())
-
-
 def _inverse(rows: list[list[Any]]) -> list[list[Any]]:
     return [list(row) for row in fmpq_mat(rows).inv().tolist()]
 
 
-def _power_of_two(x: Any) -> Any:
-    return fmpq(2) ** (int(abs(x.p)).bit_length() - int(x.q).bit_length())
-
-
-_INFIX: Table = {
-    "add": operator.add,
-    "sub": operator.sub,
-    "mul": operator.mul,
-    "div": operator.truediv,
-    "neg": operator.neg,
-    "low": lambda x: x * 0,
-}
-
-FRACTIONS: Table = _INFIX | {
-    "number": lambda q: fmpq(q.numerator, q.denominator),
-    "sin": lambda x: 2 * x / (1 + x * x),
-    "cos": lambda x: (1 - x * x) / (1 + x * x),
-    "sqrt": _root,
-    "pi": lambda: fmpq(355, 113),  # any value will do: pi enters nowhere but as a name
-    "power_of_two": _power_of_two,
+FRACTIONS: Table = {
+    **IN_FRACTIONS,
     "inverse": _inverse,
     "size": lambda _: 1.0,
     "coefficient": lambda _: 1.0,
     "most": max,
     "unless_zero": lambda size, other: size or other,
 }
-
-WIDE_BALLS: Table = (
-    _INFIX
-    | dict(BALLS)
-    | {
-        "power_of_two": lambda x: x * 0 + 1,
-        "size": lambda _: 1.0,
-        "coefficient": lambda _: 1.0,
-    }
-)
+WIDE_BALLS: Table = {
+    **BALLS,
+    "power_of_two": lambda x: x * 0 + 1,
+    "size": lambda _: 1.0,
+    "coefficient": lambda _: 1.0,
+}
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import Any
 from flint import arb, arb_mat, ctx
 
 from derive.verify.equations import Equations
+from derive.verify.operators import IN_BALLS
 from derive.verify.solution import Known, solution
 from derive.verify.valuation import Arithmetic
 
@@ -24,13 +25,7 @@ def _inverse(rows: list[list[Any]]) -> list[list[Any]]:
 
 
 BALLS: Arithmetic = {
-    "number": lambda q: (
-        arb(q.numerator) / q.denominator if q.denominator != 1 else arb(q.numerator)
-    ),
-    "sin": lambda x: x.sin(),
-    "cos": lambda x: x.cos(),
-    "sqrt": lambda x: x.sqrt(),
-    "pi": lambda: arb.pi(),
+    **IN_BALLS,
     "inverse": _inverse,
     "size": lambda x: abs(float(x.mid())),
     "coefficient": lambda products: max(abs(float(x.mid())) for x in products),

@@ -15,11 +15,11 @@ import numpy as np
 
 from derive.library.library import Library
 from derive.motion.runge_kutta.system import FLOW, NEXT
-from derive.program.pair_sine import PI
 from derive.program.program import Program, Quantity, component_names
 from derive.scene.wanted import JACOBIAN
 from derive.verify.columns import Column, Plan, doubles, in_columns, planned
 from derive.verify.equations import Equations, equations
+from derive.verify.operators import IN_DOUBLES
 from derive.verify.solution import Known as Solved
 from derive.verify.solution import solution
 
@@ -66,11 +66,7 @@ def _pivoted(m: Column, i: int) -> None:
 
 
 DOUBLES: dict[str, Callable[..., Any]] = {
-    "number": lambda q: q.numerator / q.denominator,
-    "sin": np.sin,
-    "cos": np.cos,
-    "sqrt": np.sqrt,
-    "pi": lambda: float(PI),
+    **IN_DOUBLES,
     "inverse": _inverse,
     "size": np.abs,
     "coefficient": lambda products: reduce(np.maximum, map(np.abs, products)),

@@ -16,6 +16,7 @@ from types import MappingProxyType
 from typing import Any
 
 from derive.verify.equations import Block, Coefficient, Equations, Part, Sum
+from derive.verify.operators import SLOPES
 from derive.verify.valuation import Arithmetic, Atom, raised, value
 
 Slopes = dict[str, tuple[Any, Any]]
@@ -99,17 +100,8 @@ def _applied(atom: Atom, known: Mapping[int, Known], arithmetic: Arithmetic) -> 
     parts = tuple(Part(n, monomial) for n, (monomial, _) in enumerate(atom.inner))
     inner = _summed(parts, known, coefficients, arithmetic)
     x = inner.value
-    match atom.kind:
-        case "sin":
-            here, slope = arithmetic["sin"](x), arithmetic["cos"](x)
-        case "cos":
-            here, slope = arithmetic["cos"](x), -arithmetic["sin"](x)
-        case "root":
-            here = arithmetic["sqrt"](x)
-            slope = 1 / (2 * here)
-        case _:
-            here = 1 / x
-            slope = -here * here
+    here = 1 / x if atom.kind == "inverse" else arithmetic[atom.kind](x)
+    slope = -here * here if atom.kind == "inverse" else SLOPES[atom.kind](arithmetic, x, here)
     exact = len(atom.inner) == 1 and abs(atom.inner[0][1]) == 1 and len(atom.inner[0][0]) == 1
     error = 0.0 if exact else size(slope) * inner.scale
     slopes = {c: (slope * v, size(slope) * s) for c, (v, s) in inner.slopes.items()}

@@ -12,18 +12,18 @@ from typing import Any
 
 from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, pi, sin, tan
 
+from derive.verify.operators import SLOPES
+
 Monomial = tuple[tuple[int, int], ...]  # (atom, power), by atom
 Polynomial = dict[Monomial, Fraction]
 Arithmetic = Mapping[str, Callable[..., Any]]
-
-_FUNCTIONS = {sin: "sin", cos: "cos"}
 
 
 @dataclass(frozen=True)
 class Atom:
     """What a term is a product of: a symbol, pi, or a function of a polynomial."""
 
-    kind: str  # "symbol" | "pi" | "sin" | "cos" | "root" | "inverse"
+    kind: str  # "symbol" | "pi" | "inverse" | a function with a slope
     symbol: Symbol | None
     inner: tuple[tuple[Monomial, Fraction], ...]
 
@@ -84,17 +84,17 @@ class Atoms:
             return multiplied(*(self.polynomial(part) for part in e.args))
         if isinstance(e, Pow) and isinstance(e.exp, Rational):
             return self._raised(self.polynomial(e.base), e.exp)
-        if type(e) in _FUNCTIONS:
-            return self.power(_FUNCTIONS[type(e)], self.polynomial(e.args[0]), 1)
+        if e.func.__name__ in SLOPES:
+            return self.power(e.func.__name__, self.polynomial(e.args[0]), 1)
         if isinstance(e, tan):
             return self.polynomial(sin(e.args[0]) / cos(e.args[0]))
         if e == pi:
             return {((self.place(Atom("pi", None, ())), 1),): Fraction(1)}
-        raise TypeError(f"an exact expression is made of + * ^ sin cos sqrt, found {e}")
+        raise TypeError(f"an exact expression is made of + * ^ {' '.join(SLOPES)}, found {e}")
 
     def _raised(self, base: Polynomial, exponent: Rational) -> Polynomial:
         if exponent.q == 2:
-            return self.power("root", base, int(exponent.p))
+            return self.power("sqrt", base, int(exponent.p))
         power = int(exponent)
         if power > 0:
             return multiplied(*[base] * power)

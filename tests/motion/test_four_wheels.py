@@ -8,7 +8,7 @@ from flint import arb, ctx
 from derive.library.library import Library, library
 from derive.program.program import component_names, run
 from derive.scene import parse_scene
-from derive.verify.motion_error import LONG_FLOATS
+from derive.verify.operators import LONG_FLOATS
 from derive.verify.reference import BITS
 
 QUADROTOR = (Path(__file__).parents[1] / "data" / "trials" / "quadrotor.toml").read_text()

@@ -8,7 +8,7 @@ import numpy as np
 
 from derive.program.arithmetic import MANTISSA
 from derive.program.program import run
-from derive.verify.motion_error import LONG_FLOATS
+from derive.verify.operators import LONG_FLOATS
 from tests.motion.free import FACTOR, LEAST, Flow, Rows, apart, errors
 
 BITS = 500  # of motions without rounding

@@ -20,7 +20,7 @@ from derive.scene import Machine, Scene, parse_scene
 from derive.verify.cloud import answers
 from derive.verify.convergence import unit_attitude
 from derive.verify.equations import equations
-from derive.verify.motion_error import LONG_FLOATS
+from derive.verify.operators import LONG_FLOATS
 from derive.verify.reference import BITS, reference
 from derive.verify.sample import samples
 

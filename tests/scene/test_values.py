@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from derive.command.generation import made
 from derive.scene import CATALOGUE, SceneError, parse_scene, safe
 from derive.scene.formula import FLOATS, evaluate
+from derive.scene.functions import INTERVALS
 from derive.scene.grammar import parse
-from derive.scene.interval import INTERVALS
 from derive.verify.kept import Measuring
 from derive.verify.search import QUICK
 

@@ -16,7 +16,7 @@ from derive.program.program import Measurement, component_names, run
 from derive.scene import catalogue
 from derive.verify.kept import stated_figures
 from derive.verify.measure import Expected, error, upwards
-from derive.verify.motion_error import LONG_FLOATS
+from derive.verify.operators import LONG_FLOATS
 from derive.verify.sample import samples
 from derive.verify.scale import measured_outputs
 from derive.verify.search import SAMPLING, Sampling

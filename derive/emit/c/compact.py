@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from derive.emit.c.text import body, literal, table
+from derive.emit.c.text import body, table
+from derive.emit.operators import literal
 from derive.motion.runge_kutta.compact import SIXTH, WEIGHTS, Columns, Compact
 from derive.program.precision import Precision
 from derive.program.program import Program, Quantity

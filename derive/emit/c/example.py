@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from derive.emit.c.signature import Names
-from derive.emit.c.text import literal
+from derive.emit.operators import literal
 from derive.library.library import Library
 from derive.program.precision import Precision
 from derive.program.program import Quantity

@@ -4,7 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from derive.emit.c.text import body, literal, places
+from derive.emit.c.text import body, places
+from derive.emit.operators import literal
 from derive.motion.taylor.series import INVERSE, ORDER, SHARE, Convolution, Series
 from derive.program.arithmetic import rounded
 from derive.program.precision import F64, Precision

@@ -11,7 +11,8 @@ from derive.emit.c.example import example
 from derive.emit.c.scope import declared_in_c, require_free, require_no_symbol
 from derive.emit.c.signature import Names, dense_prototype, dense_size, prototype
 from derive.emit.c.status import status
-from derive.emit.c.text import literal, pair_body, pair_functions, table
+from derive.emit.c.text import pair_body, pair_functions, table
+from derive.emit.operators import literal
 from derive.emit.templates import TEMPLATES
 from derive.library.library import Library
 from derive.program.arithmetic import pair_of, rounded

@@ -6,7 +6,7 @@ The rules are the program's own; the order in which they are tried is that of th
 from collections.abc import Sequence
 from fractions import Fraction
 
-from derive.emit.c.text import literal
+from derive.emit.operators import literal
 from derive.program.precision import Precision
 from derive.program.program import Operand, Program
 from derive.program.status import CONSTANT, PARAMETER, RIGHT, computed

@@ -3,40 +3,12 @@
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 
-from derive.program.arithmetic import TRUTHS, pair_of, rounded
-from derive.program.pair_sine import PI
-from derive.program.pairs import splitter
-from derive.program.precision import F64, Precision
+from derive.emit.operators import WRITTEN, in_c, literal
+from derive.program.arithmetic import TRUTHS, pair_of
+from derive.program.precision import Precision
 from derive.program.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
 
 UNSIGNED_CHAR = 255
-
-
-INFIX = {
-    "add": "+",
-    "sub": "-",
-    "mul": "*",
-    "div": "/",
-    "less": "<",
-    "at_most": "<=",
-    "both": "&",
-    "either": "|",
-}
-
-
-def literal(q: Fraction, precision: Precision) -> str:
-    """Return a constant that reads back as the float nearest to ``q``.
-
-    >>> from derive.program.precision import F32
-    >>> literal(Fraction(1, 3), F32), literal(Fraction(-2), F64)
-    ('0.333333343F', '(-2.0)')
-    """
-    text = f"{float(rounded(q, precision.dtype)):.{precision.digits}g}"
-    if precision is F64:
-        text = repr(float(rounded(q, precision.dtype)))
-    if not any(mark in text for mark in ".en"):
-        text += ".0"
-    return f"({text}{precision.suffix})" if q < 0 else text + precision.suffix
 
 
 def places(quantities: tuple[Quantity, ...]) -> dict[str, str]:
@@ -62,7 +34,9 @@ def body(program: Program, precision: Precision) -> list[str]:
 
     def one(op: Op) -> str:
         kind = "int" if op.operator in TRUTHS else precision.scalar
-        return f"const {kind} {op.result} = {_operation(op, text, precision)};"
+        return (
+            f"const {kind} {op.result} = {in_c(op.operator, [*map(text, op.operands)], precision)};"
+        )
 
     return [*written(program.ops, one, text, precision.scalar), *_stores(program, text, precision)]
 
@@ -93,42 +67,6 @@ def _loop(
     name = f"pass_{loop.carried[0]}"
     head = f"for (int {name} = 0; {name} < {loop.passes}; ++{name}) {{"
     return [*begin, head, *(f"    {line}" for line in inner), "}"]
-
-
-def _operation(op: Op, text: Callable[[Operand], str], precision: Precision) -> str:
-    operands = [text(operand) for operand in op.operands]
-    if op.operator in INFIX:
-        return f"{operands[0]} {INFIX[op.operator]} {operands[1]}"
-    if op.operator == "neg":
-        return f"-{operands[0]}"
-    if op.operator == "select":
-        return f"{operands[0]} ? {operands[1]} : {operands[2]}"
-    if not op.operands:
-        return literal(machine_number(op.operator, precision), precision)
-    if op.operator == "power_of_two":
-        return _power_of_two(operands[0], precision)
-    return f"{precision.functions[op.operator]}({', '.join(operands)})"
-
-
-def machine_number(operator: str, precision: Precision) -> Fraction:
-    """Return a number that depends on the precision alone: pi, u, or what splits a float."""
-    numbers = {
-        "pi": PI,
-        "unit_roundoff": Fraction(1, 2**precision.bits),
-        "splitter": Fraction(splitter(precision.bits)),
-    }
-    return numbers[operator]
-
-
-def _power_of_two(x: str, precision: Precision) -> str:
-    """Return the expression of a power of two near x, by float operations only (Rump).
-
-    Every product is one with a power of two, so that fused operations give the same.
-    """
-    top = literal(Fraction(2 ** (precision.bits - 1)), precision)
-    u = literal(Fraction(1, 2**precision.bits), precision)
-    q = f"({top} * {x} + {x})"
-    return f"{q} - ({q} - {u} * {q})"
 
 
 def table(name: str, values: Sequence[int]) -> list[str]:
@@ -174,10 +112,8 @@ def pair_body(program: Program, scene: str, precision: Precision) -> list[str]:
     def one(op: Op) -> str:
         kind = "int" if op.operator in TRUTHS else pair
         operands = [text(operand) for operand in op.operands]
-        if op.operator == "select":
-            return f"const {kind} {op.result} = {operands[0]} ? {operands[1]} : {operands[2]};"
-        if op.operator in ("both", "either"):
-            return f"const {kind} {op.result} = {operands[0]} {INFIX[op.operator]} {operands[1]};"
+        if WRITTEN[op.operator].rests is None:  # of truths, or a choice between two structs
+            return f"const {kind} {op.result} = {in_c(op.operator, operands, precision)};"
         symbol = f"{scene}_{op.operator}_{precision.name}"
         return f"const {kind} {op.result} = {symbol}({', '.join(operands)});"
 
@@ -200,30 +136,8 @@ def _pair_literal(q: Fraction, pair: str, precision: Precision) -> str:
     return f"({pair}){{{literal(high, precision)}, {literal(low, precision)}}}"
 
 
-RESTS_ON: dict[str, tuple[str, ...]] = {
-    "neg": (),
-    "low": (),
-    "add": (),
-    "sub": ("neg", "add"),
-    "two_product": (),
-    "mul": ("two_product",),
-    "div": ("neg", "add", "two_product", "mul"),
-    "sqrt": ("neg", "add", "two_product"),
-    "sine": ("neg", "add", "two_product", "mul"),
-    "sin": ("neg", "add", "two_product", "mul", "sine"),
-    "cos": ("neg", "add", "two_product", "mul", "sine"),
-    "power_of_two": (),
-    "pi": (),
-    "unit_roundoff": (),
-    "splitter": (),
-    "abs": ("neg",),
-    "less": (),
-    "at_most": (),
-}
-
-
 def pair_functions(programs: Iterable[Program]) -> list[str]:
     """Return the pair operations that programs in pairs need, each after those it rests on."""
     used = {op.operator for program in programs for op, _ in every_op(program.ops)}
-    wanted = used | {name for kind in used for name in RESTS_ON.get(kind, ())}
-    return [name for name in RESTS_ON if name in wanted]
+    wanted = used | {name for kind in used for name in WRITTEN[kind].rests or ()}
+    return [name for name, row in WRITTEN.items() if name in wanted and row.rests is not None]

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 from derive.emit.notation.glyph import GREEK, Glyph, glyph
 from derive.emit.notation.layout import Layout
+from derive.scene.functions import FUNCTIONS
 
 _XML = "http://www.w3.org/1998/Math/MathML"
 SIGNS = {"x": "×", ".": "·"}
@@ -129,7 +130,7 @@ def _base(factor: Layout) -> Layout:
 
 def _is_bare(layout: Layout) -> bool:
     """Return whether a layout is a sine or its like of a single sign, without parentheses."""
-    circular = layout.kind == "call" and layout.text in ("sin", "cos", "tan")
+    circular = layout.kind == "call" and layout.text in FUNCTIONS.keys() - {"sqrt"}
     return circular and layout.parts[0].kind in ("name", "number")
 
 

@@ -3,13 +3,13 @@
 from collections.abc import Mapping
 from fractions import Fraction
 
-from sympy import Add, Expr, Mul, Pow, Rational, S, Symbol, cos, sin, tan
+from sympy import Add, Expr, Mul, Pow, Rational, S, Symbol
 
 from derive.emit.notation.layout import Layout, added, multiplied, name, negative, number, operand
 from derive.emit.notation.text import plain
 from derive.emit.notation.tree import NotationError
+from derive.scene.functions import FUNCTIONS
 
-_FUNCTIONS = {sin: "sin", cos: "cos", tan: "tan"}
 Names = Mapping[Symbol, str]
 
 
@@ -25,12 +25,11 @@ def symbolic_layout(expression: Expr, names: Names) -> Layout:
         return _sum(expression, names)
     if isinstance(expression, Mul | Pow):
         return _product(expression, names)
-    if expression.func in _FUNCTIONS:
+    if expression.func.__name__ in FUNCTIONS:
         inside = symbolic_layout(expression.args[0], names)
-        return Layout("call", (inside,), _FUNCTIONS[expression.func])
-    raise NotationError(
-        f"the notation reads sums, products, powers, sin, cos and tan; not '{expression}'"
-    )
+        return Layout("call", (inside,), expression.func.__name__)
+    known = ", ".join(FUNCTIONS)
+    raise NotationError(f"the notation reads sums, products, powers, {known}; not '{expression}'")
 
 
 def _sum(expression: Add, names: Names) -> Layout:
@@ -82,7 +81,7 @@ def _product(expression: Expr, names: Names) -> Layout:
 def _factor_key(factor: Expr, names: Names) -> tuple[bool, str, str]:
     base, exponent = factor.as_base_exp()
     size = abs(exponent) if exponent.is_Rational else exponent
-    return base.func in _FUNCTIONS, _first(factor), plain(_power(base, size, names))
+    return base.func.__name__ in FUNCTIONS, _first(factor), plain(_power(base, size, names))
 
 
 def _power(base: Expr, exponent: Expr, names: Names) -> Layout:

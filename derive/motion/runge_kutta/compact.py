@@ -14,7 +14,8 @@ from functools import cached_property
 from typing import Any
 
 from derive.motion.runge_kutta.system import System, pattern_of
-from derive.program.program import FLOPS, Op, Program, Sparsity, operands_of, run
+from derive.program.arithmetic import FLOPS
+from derive.program.program import Op, Program, Sparsity, operands_of, run
 
 WEIGHTS = (1, 2, 2, 1)
 SIXTH = Fraction(1, 6)

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from derive.program.program import FLOPS, Op, Operand, Program, Quantity
+from derive.program.arithmetic import FLOPS
+from derive.program.program import Op, Operand, Program, Quantity
 
 # What is known by these names at order k: k, 1/k and h/(k + 1).
 ORDER, INVERSE, SHARE = "order_k", "one_over_k", "step_over_k_plus_1"
