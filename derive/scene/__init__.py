@@ -38,8 +38,7 @@ from derive.scene.rules import check, warnings
 from derive.scene.safe import require_values
 from derive.scene.short_form import read_scene
 from derive.scene.table import THE_FILE, gate, nearest, shown, table
-from derive.scene.times import idle_times
-from derive.scene.wanted import check_form
+from derive.scene.wanted import check_form, idle_times
 
 __all__ = [
     "Axes",

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 from derive.scene.bodies import read_member
 from derive.scene.declaration import Input, SceneError
+from derive.scene.entries import MOMENTUM, STEADY, TIME_STEP
+from derive.scene.entry import Reading, entries_of
 from derive.scene.formula import ZERO, Formula
 from derive.scene.frames import read_frames
 from derive.scene.loads import read_loads
-from derive.scene.machine import INERTIAL, Frame, Machine, Member, Place, Result, Steady, Unknown
+from derive.scene.machine import Frame, Machine, Member, Place, Result, Steady, Unknown
 from derive.scene.names import distinct, label
 from derive.scene.numbers import member_doubts
 from derive.scene.results import (
@@ -23,9 +25,8 @@ from derive.scene.results import (
     written_out,
 )
 from derive.scene.scalars import PER_SECOND, Scalars, read_scalars
-from derive.scene.table import Scope, Table, formula, keys, several, table, text, triple, word
-from derive.scene.times import read_time
-from derive.scene.unit import BESIDE_SI, LENGTH, dimension, misnamed, spelled
+from derive.scene.table import Scope, Table, formula, keys, several, table, text
+from derive.scene.unit import BESIDE_SI, dimension, misnamed, spelled
 from derive.scene.wanted import read_emission, read_form
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ def read_machine(document: Mapping[str, object], name: str, source: str) -> Mach
         about=_about(part["linearised"], scalars),
         steady=_steady(part["steady"], scalars, unknowns, results, asked),
         asked=asked, wanted=tuple(asked), form=read_form(document),
-        emission=read_emission(document), time_step=read_time(part["motion"], "time_step"),
+        emission=read_emission(document), **entries_of(part["motion"], (TIME_STEP,), Reading()),
         warnings=(*_unused(scalars, source), *_doubts(bodies, scalars),
                   *_misnamed(scalars, results)),
     )  # fmt: skip
@@ -88,9 +89,7 @@ def _tables(document: Mapping[str, object]) -> Mapping[str, Table]:
         raise SceneError("the file needs 'wanted', above its first [table]")
     keys(Table("the file", document), ("wanted", "bodies"),
          (*TABLES, "title", "source", "form", "emission"))  # fmt: skip
-    part = {key: table(document.get(key, {}), key) for key in TABLES}
-    keys(part["motion"], (), ("time_step",))
-    return part
+    return {key: table(document.get(key, {}), key) for key in TABLES}
 
 
 def _bodies(given: Table, frames: tuple[Frame, ...], scalars: Scalars) -> tuple[Member, ...]:
@@ -141,13 +140,9 @@ def _doubts(bodies: tuple[Member, ...], scalars: Scalars) -> Iterator[str]:
 def _momentum(
     given: Table, frames: tuple[Frame, ...], bodies: tuple[Member, ...], scalars: Scalars
 ) -> Place:
-    keys(given, (), ("frame", "at", "of"))
-    frame = word(given.entries.get("frame", INERTIAL), "angular_momentum.frame",
-                 [f.name for f in frames])  # fmt: skip
-    at = triple(given.entries.get("at", [0, 0, 0]), "angular_momentum.at", scalars.places, LENGTH)
-    names = [b.name for b in bodies]
-    value = given.entries.get("of", names)
-    return Place(frame, at, several(value, "angular_momentum.of", names))
+    names = {"frame": tuple(f.name for f in frames), "body": tuple(b.name for b in bodies)}
+    said = entries_of(given, MOMENTUM, Reading(scalars.scopes, names))
+    return Place(said["frame"], said["at"], said["of"] or names["body"])
 
 
 def _about(given: Table, scalars: Scalars) -> Mapping[str, Formula]:
@@ -178,7 +173,7 @@ def _steady(
         if any("steady" in answers for answers in asked.values()):
             raise SceneError("wanted has 'steady', which needs [steady] with its unknown")
         return None
-    keys(given, ("unknown",), ("vanishes",))
+    entries_of(given, STEADY, Reading())
     if given.entries["unknown"] == []:
         raise SceneError("steady.unknown is an empty list; it must name what is to be found")
     fixed = {"pi", *(p.name for p in scalars.parameters if p.value is not None)}

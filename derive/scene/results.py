@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from derive.scene.declaration import SceneError
+from derive.scene.entries import RESULT
+from derive.scene.entry import Reading, entries_of
 from derive.scene.escape import brief
 from derive.scene.formula import substitute
 from derive.scene.grammar import parse
@@ -12,7 +14,7 @@ from derive.scene.loads import MARK, unknown_units
 from derive.scene.machine import Result
 from derive.scene.names import functions, identifier
 from derive.scene.scalars import unknown_rates
-from derive.scene.table import Scope, Table, formula, keys, shown, text
+from derive.scene.table import Scope, Table, formula, shown, text
 from derive.scene.unit import BESIDE_SI, NONE, UnitError, dimension, dimension_of, spelled
 from derive.scene.wanted import JACOBIAN, OF_MACHINES, resembling
 
@@ -41,11 +43,8 @@ def read_results(
     for key, value in given.entries.items():
         name, meaning, said = identifier(key, "a result"), "", value
         if isinstance(value, dict):
-            inner = Table(f"result '{key}'", value)
-            keys(inner, ("formula",), ("meaning", "unit"))
-            said = inner.entries["formula"]
-            if "meaning" in inner.entries:
-                meaning = text(inner.entries["meaning"], f"{inner.label}: meaning")
+            entry = entries_of(Table(f"result '{key}'", value), RESULT, Reading())
+            said, meaning = entry["formula"], entry["meaning"] or ""
         both = Scope(dict(scope.dimensions) | answers, {}, "")
         read, unit = of_any_unit(said, f"result '{key}'", both)
         spelling = spelled(unit)

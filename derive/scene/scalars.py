@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, Literal
 
-from derive.scene.declaration import Axis, Input, Moving, Parameter, SceneError, Turning
+from derive.scene.declaration import Input, Moving, Parameter, SceneError
+from derive.scene.entries import COORDINATE, INPUT, MEANING, PARAMETER, RANGE, SPEED
+from derive.scene.entry import Reading, entries_of
 from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.names import identifier
 from derive.scene.numbers import middle
@@ -14,13 +16,8 @@ from derive.scene.table import (
     Scope,
     Table,
     formula,
-    interval,
-    keys,
-    rational,
     shown,
     table,
-    text,
-    word,
 )
 from derive.scene.table import unit as unit_of
 from derive.scene.unit import (
@@ -39,13 +36,8 @@ if TYPE_CHECKING:
 
 UNITS = {"coordinate": ("rad", "m"), "speed": ("rad/s", "m/s")}
 DIMENSIONS = {"coordinate": (NONE, LENGTH), "speed": (ANGULAR_VELOCITY, VELOCITY)}
-KEYS = {
-    "coordinate": ("meaning", "motion", "rate", "acceleration"),
-    "speed": ("meaning", "motion", "rate"),
-}
 ARTICLE = {"parameter": "a", "coordinate": "a", "speed": "a", "input": "an"}
 PER_SECOND = {"rad": "rad/s", "m": "m/s", "rad/s": "rad/s^2", "m/s": "m/s^2"}
-MOTIONS = ("free", "prescribed")
 
 
 @dataclass(frozen=True)
@@ -78,10 +70,16 @@ class Scalars:
             found += [(name, f"the rate '{name}'") for name in rates]
         return found
 
+    @property
+    def scopes(self) -> Mapping[str, Scope]:
+        """Return who may stand where, by what the tables of entries call it."""
+        names = ("constants", "places", "motions", "known")
+        return {name: getattr(self, name) for name in names}
+
     @cached_property
     def constants(self) -> Scope:
         """Return the scope of what a rigid body keeps: parameters only."""
-        known = {p.name: dimension(p.unit) for p in self.parameters}
+        known = {"pi": NONE} | {p.name: dimension(p.unit) for p in self.parameters}
         others = {m.name: f"{ARTICLE[m.kind]} {m.kind}" for m in self.moving}
         others |= {i.name: "a rate" for m in self.moving for i in m.given}
         return Scope(known, others, "only parameters may stand here")
@@ -89,7 +87,7 @@ class Scalars:
     @cached_property
     def places(self) -> Scope:
         """Return the scope of where things are: parameters and coordinates."""
-        known = {"pi": NONE} | dict(self.constants.dimensions)
+        known = dict(self.constants.dimensions)
         known |= {c.name: dimension(c.unit) for c in self.coordinates}
         others = {m.name: f"{ARTICLE[m.kind]} {m.kind}" for m in (*self.speeds, *self.inputs)}
         return Scope(known, others, "only parameters and coordinates may stand here")
@@ -171,20 +169,16 @@ def _entries(given: Table, kind: str) -> list[tuple[str, Table]]:
 
 
 def _parameter(name: str, given: Table) -> Parameter:
-    keys(given, ("unit",), ("range", "value", "meaning"))
+    said = entries_of(given, PARAMETER, Reading())
     unit_of(given)
-    if ("range" in given.entries) == ("value" in given.entries):
+    if (said["range"] is None) == (said["value"] is None):
         raise SceneError(f"{given.label} needs either a range or a value")
-    spelling, meaning = str(given.entries["unit"]), _meaning(given)
-    if "value" in given.entries:
-        value = rational(given.entries["value"], f"{given.label}: value")
-        return Parameter(name, spelling, value, value, meaning, value)
-    low, high = interval(given.entries["range"], f"{given.label}: range")
-    return Parameter(name, spelling, low, high, meaning, None)
+    low, high = said["range"] or (said["value"], said["value"])
+    return Parameter(name, said["unit"], low, high, said["meaning"] or "", said["value"])
 
 
 def _spelling(given: Table, kind: str) -> str:
-    keys(given, ("unit", "range"), KEYS[kind])
+    entries_of(given, COORDINATE if kind == "coordinate" else SPEED, Reading())
     found = unit_of(given)
     for spelling, known in zip(UNITS[kind], DIMENSIONS[kind], strict=True):
         if found == known:
@@ -193,29 +187,20 @@ def _spelling(given: Table, kind: str) -> str:
     raise SceneError(f"{given.label} must be in {first} or {second}, not {spelled(found)}")
 
 
-def _meaning(given: Table) -> str:
-    value = given.entries.get("meaning")
-    return "" if value is None else text(value, f"{given.label}: meaning")
-
-
-def _free(given: Table, kinds: tuple[str, ...]) -> bool:
+def _free(said: Mapping[str, Any], key: str) -> bool:
     """Tell whether a motion is free: it says so, or nothing of its rates is given."""
-    entries = given.entries
-    if "motion" in entries:
-        return word(entries["motion"], f"{given.label}: motion", MOTIONS) == "free"
-    return not any(key in entries for key in kinds)
+    return said[key] is None if said["motion"] is None else said["motion"] == "free"
 
 
 def _coordinate(name: str, given: Table, scope: Scope, moved: AbstractSet[str]) -> Moving:
+    said = entries_of(given, COORDINATE, Reading())
     spelling = _spelling(given, "coordinate")
-    low, high = interval(given.entries["range"], f"{given.label}: range")
-    rate = given.entries.get("rate")
-    own = PER_SECOND[spelling]
-    free = _free(given, ("acceleration",)) and (rate is None or isinstance(rate, dict))
+    rate, own = said["rate"], PER_SECOND[spelling]
+    free = _free(said, "acceleration") and (rate is None or isinstance(rate, dict))
     made: Input | Formula | None
     second: Input | Formula | None = None
     if free:
-        if "acceleration" in given.entries:
+        if said["acceleration"] is not None:
             raise SceneError(f"{given.label} is free, so its acceleration is found, not given")
         bounds = {"range": [-1, 1]} if rate is None else rate
         made = _given_rate(name, given, "rate", bounds, "dot", own)
@@ -227,12 +212,23 @@ def _coordinate(name: str, given: Table, scope: Scope, moved: AbstractSet[str]) 
         made = _rate(name, given, rate, scope, own)
         if isinstance(made, Input):
             second = _second(name, given, PER_SECOND[own])
-        elif "acceleration" in given.entries and given.entries["acceleration"] != 0:
+        elif said["acceleration"] not in (None, 0):
             raise SceneError(f"{given.label}: its acceleration follows from the rate '{made}'")
     by_moved = isinstance(made, Formula) and not moved.isdisjoint(symbols(made))
-    state = free or given.entries.get("motion", "free" if by_moved else "") == "free"
-    return Moving(name, spelling, low, high, _meaning(given), "coordinate", free, state, made,
-                  second)  # fmt: skip
+    state = free or (said["motion"] or ("free" if by_moved else "")) == "free"
+    return _moving(name, spelling, said, "coordinate", (free, state), (made, second))
+
+
+def _moving(
+    name: str,
+    unit: str,
+    said: Mapping[str, Any],
+    kind: Literal["coordinate", "speed", "input"],
+    free_and_state: tuple[bool, bool],
+    rates_: tuple[Input | Formula | None, Input | Formula | None],
+) -> Moving:
+    low, high = said["range"]
+    return Moving(name, unit, low, high, said["meaning"] or "", kind, *free_and_state, *rates_)
 
 
 def _rate(name: str, given: Table, value: object, scope: Scope, unit: str) -> Input | Formula:
@@ -252,18 +248,18 @@ def _second(name: str, given: Table, unit: str) -> Input | Formula:
 
 
 def _given_rate(name: str, given: Table, key: str, value: object, dots: str, unit: str) -> Input:
-    inner = table(value, f"{given.label}: {key}")
-    keys(inner, ("range",), ("meaning",))
-    low, high = interval(inner.entries["range"], f"{inner.label}: range")
-    return Input(f"{name}_{dots}", unit, low, high, _meaning(inner))
+    said = entries_of(table(value, given.of(key)), (RANGE, MEANING), Reading())
+    low, high = said["range"]
+    return Input(f"{name}_{dots}", unit, low, high, said["meaning"] or "")
 
 
 def _speed(name: str, given: Table) -> Moving:
-    spelling = _spelling(given, "speed")
-    low, high = interval(given.entries["range"], f"{given.label}: range")
-    free = _free(given, ("rate",))
+    said = entries_of(given, SPEED, Reading())
+    spelling, value = _spelling(given, "speed"), said["rate"]
+    free = _free(said, "rate")
     rate: Input | Formula | None = None
-    value = given.entries.get("rate")
+    if free and value is not None:
+        raise SceneError(f"{given.label} is free, so its rate is found, not given")
     if not free:
         if isinstance(value, dict):
             rate = _given_rate(name, given, "rate", value, "dot", PER_SECOND[spelling])
@@ -273,17 +269,13 @@ def _speed(name: str, given: Table) -> Moving:
             found = "" if value is None else f", not {shown(value)}"
             rule = "needs rate = { range = [low, high] } or rate = 0"
             raise SceneError(f"{given.label} {rule}{found}")
-    elif value is not None:
-        raise SceneError(f"{given.label} is free, so its rate is found, not given")
-    return Moving(name, spelling, low, high, _meaning(given), "speed", free, free, rate, None)
+    return _moving(name, spelling, said, "speed", (free, free), (rate, None))
 
 
 def _input(name: str, given: Table) -> Moving:
-    keys(given, ("unit", "range"), ("meaning",))
+    said = entries_of(given, INPUT, Reading())
     unit_of(given)
-    low, high = interval(given.entries["range"], f"{given.label}: range")
-    spelling = str(given.entries["unit"])
-    return Moving(name, spelling, low, high, _meaning(given), "input", False, False, None, None)  # noqa: FBT003
+    return _moving(name, said["unit"], said, "input", (False, False), (None, None))
 
 
 def rates(scalars: Scalars) -> dict[str, Dimension]:
@@ -306,18 +298,3 @@ def unknown_rates(scalars: Scalars) -> dict[str, Dimension]:
             unit = PER_SECOND[m.unit]
             found[m.unknown] = dimension(PER_SECOND[unit] if m.kind == "coordinate" else unit)
     return found
-
-
-def turnings(value: object, label: str, scope: Scope) -> tuple[Turning, ...]:
-    """Return the turns of a list such as ["z psi", "x theta - tilt"]."""
-    if not isinstance(value, list) or not value:
-        raise SceneError(f"{label} must be a list such as ['z psi'], not {shown(value)}")
-    return tuple(_turning(entry, label, scope) for entry in value)
-
-
-def _turning(entry: object, label: str, scope: Scope) -> Turning:
-    axis, _, angle = entry.strip().partition(" ") if isinstance(entry, str) else ("", "", "")
-    if axis not in ("x", "y", "z") or not angle.strip():
-        rule = "a turn is an axis and an angle, as 'z psi'"
-        raise SceneError(f"{label}: {rule}, not {shown(entry)}")
-    return Turning(cast("Axis", axis), formula(angle.strip(), label, scope, NONE))

@@ -7,24 +7,12 @@ tables is in ``derive.scene.rules``.
 from __future__ import annotations
 
 from dataclasses import replace
-from fractions import Fraction
 from typing import TYPE_CHECKING, Literal, cast
 
-from derive.scene.bodies import (
-    AXES,
-    COMMON,
-    KINDS,
-    BodyTable,
-    Kind,
-    Substance,
-    apex,
-    of_kind,
-    of_shape,
-)
+from derive.scene.bodies import Kind, Substance, of_kind, of_shape
 from derive.scene.declaration import (
     Axes,
     Body,
-    Given,
     Input,
     Point,
     Scene,
@@ -34,38 +22,24 @@ from derive.scene.declaration import (
     Turning,
     Wheel,
 )
+from derive.scene.entries import (
+    AXES_OF_ONE,
+    BODY,
+    KNOWN,
+    POINT,
+    POSITION,
+    TIME,
+    TIME_STEP,
+    WHEEL,
+)
+from derive.scene.entry import AXES, Reading, entries_of
 from derive.scene.escape import brief
 from derive.scene.formula import ZERO
 from derive.scene.names import distinct
-from derive.scene.numbers import positive
-from derive.scene.scalars import Scalars, of_one_body, turnings
+from derive.scene.scalars import Scalars, of_one_body
 from derive.scene.shape import SHAPES, moved
-from derive.scene.table import (
-    Scope,
-    Table,
-    formula,
-    interval,
-    keys,
-    nearest,
-    shown,
-    table,
-    text,
-    triple,
-    word,
-)
-from derive.scene.times import TIMES, read_time
-from derive.scene.unit import (
-    ACCELERATION,
-    ANGULAR_ACCELERATION,
-    ANGULAR_VELOCITY,
-    FORCE,
-    INERTIA,
-    LENGTH,
-    MOMENT,
-    NONE,
-    VELOCITY,
-    Dimension,
-)
+from derive.scene.table import Scope, Table, keys, nearest, shown, table, text
+from derive.scene.unit import ANGULAR_VELOCITY, LENGTH, NONE, VELOCITY, Dimension
 from derive.scene.wanted import attitudes_only, read_emission, read_form, read_wanted
 
 if TYPE_CHECKING:
@@ -76,29 +50,23 @@ TABLES = (
     *("position", "motion"),
 )
 LATER = ("frames", "bodies", "loads")
-KNOWN: Mapping[str, tuple[Dimension, int]] = {
-    "angular_velocity": (ANGULAR_VELOCITY, 10),
-    "angular_acceleration": (ANGULAR_ACCELERATION, 50),
-    "moment": (MOMENT, 1),
-    "force": (FORCE, 10),
-}
-"""Dimension of each known vector, and the end of its range where none is given."""
-PointKind = Literal["centre_of_mass", "fixed", "moving"]
-POINTS: tuple[PointKind, ...] = ("centre_of_mass", "fixed", "moving")
 
 
 def read_scene(document: dict[str, object], name: str, source: str) -> Scene:
     """Return the scene of a parsed TOML document, checked table by table."""
     _top_level(document)
     part = {key: table(document.get(key, {}), key) for key in TABLES}
-    keys(part["motion"], (), tuple(TIMES))
     scalars = of_one_body(part)
     wheels = _wheels(document.get("wheels", []), scalars)
     distinct(_declared(scalars, wheels))
     scope = _known_with(scalars, wheels)
-    point = _point(part["point"], scope)
     axes = _axes(part["axes"], scalars)
-    ranges = _position(part["position"]) if "position" in document else (None, None)
+    place = entries_of(part["position"], POSITION, Reading()) if "position" in document else {}
+    state = _state(axes, "position" in document)
+    loads = Scope({**scope.dimensions, **state}, scope.others, scope.rule)
+    by = Reading({"motions": scalars.motions, "known": scope, "loads": loads})
+    times = entries_of(part["motion"], (TIME_STEP, TIME), by)
+    point = _point(part["point"], scope)
     return Scene(
         name=name,
         title=text(document.get("title", name), "title"),
@@ -111,14 +79,14 @@ def read_scene(document: dict[str, object], name: str, source: str) -> Scene:
         body=_body(part["body"], point.kind, scalars),
         wheels=wheels,
         point=point,
-        known=_known(part["known"], scope, scalars, _state(axes, "position" in document)),
-        position=ranges[0],
-        velocity=ranges[1],
+        known=entries_of(part["known"], KNOWN, by),
+        position=place.get("position"),
+        velocity=place.get("velocity"),
         wanted=read_wanted(document["wanted"]),
         form=read_form(document),
         emission=read_emission(document),
-        time_step=read_time(part["motion"], "time_step"),
-        time=read_time(part["motion"], "time"),
+        time_step=times["time_step"],
+        time=times["time"],
         warnings=(),
     )
 
@@ -138,22 +106,16 @@ def _top_level(document: dict[str, object]) -> None:
 
 
 def _axes(given: Table, scalars: Scalars) -> Axes:
-    keys(given, (), ("fixed_in", "attitude", "turned", "angular_velocity"))
-    entries = given.entries
-    if "turned" in entries and "angular_velocity" in entries:
+    said = entries_of(given, AXES_OF_ONE, Reading(scalars.scopes))
+    turned, omega = said["turned"], said["angular_velocity"]
+    if turned and omega:
         raise SceneError("axes have both turned and angular_velocity; give one of them")
-    fixed = "fixed_in" in entries or not ("turned" in entries or "angular_velocity" in entries)
-    word(entries.get("fixed_in", "body"), "axes.fixed_in", ("body",))
-    word(entries.get("attitude", "quaternion"), "axes.attitude", ("quaternion",))
-    quaternion = "attitude" in entries
-    if "turned" in entries:
-        turned = _angles(entries["turned"], "axes.turned", scalars)
-        return Axes("turned", turned, quaternion, fixed, None)
-    if "angular_velocity" in entries:
-        value, scope = entries["angular_velocity"], scalars.motions
-        omega = triple(value, "axes.angular_velocity", scope, ANGULAR_VELOCITY)
-        return Axes("given", (), quaternion, fixed, omega)
-    return Axes("body", (), quaternion, fixed_in_body=True, angular_velocity=None)
+    _through_coordinates(turned or (), "axes.turned", scalars)
+    kind: Literal["body", "turned", "given"] = "body"
+    if turned or omega:
+        kind = "turned" if turned else "given"
+    fixed = said["fixed_in"] is not None or kind == "body"
+    return Axes(kind, turned or (), said["attitude"] is not None, fixed, omega)
 
 
 def _wheels(value: object, scalars: Scalars) -> tuple[Wheel, ...]:
@@ -163,22 +125,18 @@ def _wheels(value: object, scalars: Scalars) -> tuple[Wheel, ...]:
 
 
 def _wheel(given: Table, scalars: Scalars) -> Wheel:
-    keys(given, ("name", "axis", "axial", "speed_range", "torque_range"), ())
-    name = given.entries["name"]
+    name = given.entries.get("name", "")
     if not isinstance(name, str) or not name.isascii() or not name.isalnum() or len(name) > 20:
+        keys(given, [row.key for row in WHEEL], ())
         rule = "name must be up to 20 letters and digits"
         raise SceneError(f"{given.label}: {rule}, not {shown(name)}")
-    label, scope = f"wheel '{name}'", scalars.constants
-    axial = formula(given.entries["axial"], f"{label}: axial", scope, INERTIA)
-    speed = interval(given.entries["speed_range"], f"{label}: speed_range")
-    torque = interval(given.entries["torque_range"], f"{label}: torque_range")
-    return Wheel(
-        name,
-        triple(given.entries["axis"], f"{label}: axis", scope, NONE),
-        positive(axial, f"{label}: axial", scalars.parameters),
-        Input(f"s_{name}", "rad/s", *speed, f"speed of {label} relative to the carrier"),
-        Input(f"u_{name}", "N m", *torque, f"motor torque on {label} about its axis"),
-    )
+    label = f"wheel '{name}'"
+    by = Reading(scalars.scopes, {}, scalars.parameters)
+    said = entries_of(Table(label, given.entries), WHEEL, by)
+    (slow, fast), (least, most) = said["speed_range"], said["torque_range"]
+    speed = Input(f"s_{name}", "rad/s", slow, fast, f"speed of {label} relative to the carrier")
+    torque = Input(f"u_{name}", "N m", least, most, f"motor torque on {label} about its axis")
+    return Wheel(name, said["axis"], said["axial"], speed, torque)
 
 
 def _declared(scalars: Scalars, wheels: tuple[Wheel, ...]) -> list[tuple[str, str]]:
@@ -194,42 +152,41 @@ def _declared(scalars: Scalars, wheels: tuple[Wheel, ...]) -> list[tuple[str, st
     return found
 
 
-def _body(table: Table, point: str, scalars: Scalars) -> Body:
+def _body(given: Table, point: str, scalars: Scalars) -> Body:
     """Return the body of a scene, its inertia about the scene's point along its own axes.
 
     point : the kind of the scene's point; a shape is moved to it unless it is the mass centre
     """
-    given = BodyTable(table, scalars)
-    if given.has("shape") == given.has("kind"):
+    if ("shape" in given.entries) == ("kind" in given.entries):
         raise SceneError("body needs either a kind or a shape")
-    centre = None
-    if given.has("shape"):
-        made = of_shape(given, SHAPES, COMMON)
-        if given.has("centre"):
-            centre = given.three("centre", LENGTH)
-        if word(table.entries.get("about", "centre"), "body.about", ("centre", "apex")) == "apex":
-            centre = _fromapex(given, made, point)
+    by = Reading(scalars.scopes, {}, scalars.parameters)
+    if "shape" in given.entries:
+        made = of_shape(given, SHAPES, BODY, by)
+        centre = made.said["centre"]
+        if made.said.get("about") == "apex":
+            centre = _from_apex(made, point)
         made = _at_point(made, centre, point)
     else:
-        made = of_kind(given, KINDS, COMMON)
-        if given.has("centre"):
-            centre = given.three("centre", LENGTH)
-    turned: tuple[Turning, ...] = ()
-    if given.has("turned"):
-        turned = _angles(table.entries["turned"], "body.turned", scalars)
+        made = of_kind(given, BODY, by)
+        centre = made.said["centre"]
+        for key in ("axial", "transverse"):
+            if made.kind == "axisymmetric" and made.said[key] is None:
+                raise SceneError(f"body needs '{key}'")
+    turned, spin = made.said["turned"] or (), made.said["spin"]
+    _through_coordinates(turned, "body.turned", scalars)
     return Body(
-        cast("Kind", made.kind), given.mass(), cast("Sextuple", made.inertia), centre, made.axis,
-        turned, given.moves("spin"), given.lengths(),
+        cast("Kind", made.kind), made.mass, cast("Sextuple", made.inertia), centre, made.axis,
+        turned, spin, made.lengths or {},
     )  # fmt: skip
 
 
-def _fromapex(given: BodyTable, made: Substance, point: str) -> Triple:
+def _from_apex(made: Substance, point: str) -> Triple:
     """Return the mass centre of a cone that opens from the point along its positive axis."""
     if point == "centre_of_mass":
         raise SceneError("body.about = 'apex' needs a fixed or moving point, not 'centre_of_mass'")
-    if given.has("centre"):
+    if made.said["centre"] is not None:
         raise SceneError("body.centre follows from body.about = 'apex'; leave it out")
-    return apex(given, made)
+    return made.apex()
 
 
 def _at_point(made: Substance, centre: Triple | None, point: str) -> Substance:
@@ -251,27 +208,13 @@ def _at_point(made: Substance, centre: Triple | None, point: str) -> Substance:
 
 
 def _point(given: Table, scope: Scope) -> Point:
-    keys(given, (), ("kind", "acceleration"))
-    kind = cast("PointKind", word(given.entries.get("kind", POINTS[0]), "point.kind", POINTS))
-    if kind != "moving":
-        if "acceleration" in given.entries:
-            raise SceneError(f"point.acceleration needs point.kind = 'moving', not '{kind}'")
-        return Point(kind, None)
-    if "acceleration" not in given.entries:
+    said = entries_of(given, POINT, Reading({"known": scope}))
+    kind, acceleration = said["kind"], said["acceleration"]
+    if kind != "moving" and acceleration is not None:
+        raise SceneError(f"point.acceleration needs point.kind = 'moving', not '{kind}'")
+    if kind == "moving" and acceleration is None:
         raise SceneError("a moving point needs point.acceleration, a range or three formulas")
-    value = given.entries["acceleration"]
-    return Point("moving", _given(value, "point.acceleration", scope, ACCELERATION))
-
-
-def _given(value: object, label: str, scope: Scope, expected: Dimension) -> Given:
-    if isinstance(value, list):
-        return Given(None, None, triple(value, label, scope, expected))
-    if not isinstance(value, dict):
-        rule = "must be { range = [low, high] } or three formulas"
-        raise SceneError(f"{label} {rule}, not {shown(value)}")
-    inner = table(value, label)
-    keys(inner, ("range",), ())
-    return Given(*interval(inner.entries["range"], f"{label}.range"), None)
+    return Point(kind, acceleration)
 
 
 def _state(axes: Axes, position: bool) -> Mapping[str, Dimension]:  # noqa: FBT001
@@ -282,41 +225,6 @@ def _state(axes: Axes, position: bool) -> Mapping[str, Dimension]:  # noqa: FBT0
     return state | {f"{name}_{part}": unit for name, unit in moving.items() for part in "xyz"}
 
 
-def _known(
-    given: Table, scope: Scope, scalars: Scalars, state: Mapping[str, Dimension]
-) -> Mapping[str, Given]:
-    keys(given, (), KNOWN)
-    result = {}
-    for name, (expected, end) in KNOWN.items():
-        allowed = scalars.motions if name == "angular_velocity" else scope
-        if name in given.entries:
-            wider = _wider(allowed, state) if name in ("moment", "force") else allowed
-            result[name] = _given(given.entries[name], f"known.{name}", wider, expected)
-        else:
-            result[name] = Given(Fraction(-end), Fraction(end), None)
-    return result
-
-
-def _position(given: Table) -> tuple[Given, Given]:
-    keys(given, ("position", "velocity"), ())
-    found = []
-    for key in ("position", "velocity"):
-        if isinstance(given.entries[key], list):
-            raise SceneError(f"position.{key} must be {{ range = [low, high] }}, not formulas")
-        found.append(_given(given.entries[key], f"position.{key}", Scope({}, {}, ""), NONE))
-    return found[0], found[1]
-
-
-def _angles(value: object, label: str, scalars: Scalars) -> tuple[Turning, ...]:
-    """Return turns of which each is through a coordinate."""
-    turned, known = turnings(value, label, scalars.places), [c.name for c in scalars.coordinates]
-    for turn in turned:
-        if turn.coordinate not in known:
-            rule = f"turns through '{brief(turn.angle)}', which is no coordinate of the scene"
-            raise SceneError(f"{label} {rule}{nearest(str(turn.angle), known)}")
-    return turned
-
-
 def _known_with(scalars: Scalars, wheels: tuple[Wheel, ...]) -> Scope:
     """Return the scope of a known vector: what is known with the state, speeds of wheels too."""
     known, speeds = scalars.known, [wheel.speed for wheel in wheels]
@@ -325,6 +233,10 @@ def _known_with(scalars: Scalars, wheels: tuple[Wheel, ...]) -> Scope:
     return Scope({**known.dimensions, **dimensions}, {**known.others, **others}, known.rule)
 
 
-def _wider(scope: Scope, state: Mapping[str, Dimension]) -> Scope:
-    """Return the scope of a moment or force that depends on components of the state."""
-    return Scope({**scope.dimensions, **state}, scope.others, scope.rule)
+def _through_coordinates(turned: tuple[Turning, ...], label: str, scalars: Scalars) -> None:
+    """Refuse turns of which one is not through a coordinate."""
+    known = [c.name for c in scalars.coordinates]
+    for turn in turned:
+        if turn.coordinate not in known:
+            rule = f"turns through '{brief(turn.angle)}', which is no coordinate of the scene"
+            raise SceneError(f"{label} {rule}{nearest(str(turn.angle), known)}")

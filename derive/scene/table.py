@@ -43,12 +43,21 @@ NAMED = {
 """Tables whose entries are named by the scene, and what one of them is called."""
 
 
+SCALARS = ("parameter", "coordinate", "speed", "input", "wheel", "result")
+"""What a table of few entries is called."""
+
+
 @dataclass(frozen=True)
 class Table:
     """One TOML table and the name that its errors begin with."""
 
     label: str
     entries: Mapping[str, object]
+
+    def of(self, key: str) -> str:
+        """Return what an entry is called in a sentence."""
+        apart = ": " if self.label.partition(" ")[0] in SCALARS else "."
+        return f"{self.label}{apart}{key}"
 
 
 @dataclass(frozen=True)

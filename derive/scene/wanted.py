@@ -9,7 +9,7 @@ from derive.scene.declaration import SceneError
 from derive.scene.table import nearest, shown, word
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
 EQUATIONS = (
     "angular_momentum",
@@ -154,3 +154,13 @@ def base_of(name: str) -> str:
     ('acceleration', 'state_rate', 'moment')
     """
     return name.removesuffix(JACOBIAN).removesuffix(SENSITIVITY)
+
+
+def idle_times(motion: Iterable[str], wanted: Iterable[str]) -> Iterator[str]:
+    """Yield a sentence for each time of a scene's table ``motion`` that nothing wanted takes."""
+    moving = [name for name in wanted if moves(name)]
+    flows = [name for name in moving if name.startswith("flow_")]
+    takers = {"time": flows, "time_step": [name for name in moving if name not in flows]}
+    for time in motion:
+        if not takers[time]:
+            yield f"motion.{time} is given, but nothing that is wanted takes it"

@@ -1,0 +1,215 @@
+"""What a scene file may hold: every table, an entry a row; readers and manual follow them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from decimal import Decimal
+
+from derive.scene.entry import AXES, REQUIRED, Entry
+from derive.scene.shape import ROUND
+
+ORIGIN = [0, 0, 0]
+MEANING = Entry("meaning", "text", "said wherever the name stands")
+RANGE = Entry("range", "range", "where the code is checked", default=REQUIRED)
+UNIT = Entry("unit", "text", "coherent SI, as `kg m^2`", default=REQUIRED)
+
+PARAMETER = (
+    UNIT,
+    Entry("range", "range", "of an argument of set-up; either this or `value`"),
+    Entry("value", "number", "a number in the code"),
+    MEANING,
+)
+SPEED = (
+    Entry("unit", "text", "`rad/s` or `m/s`", default=REQUIRED),
+    RANGE,
+    MEANING,
+    Entry("motion", "word", "if its rate is found or given", words=("free", "prescribed")),
+    Entry("rate", "any", "prescribed: `{ range = [low, high] }`, an input `W_dot`, or 0"),
+)
+COORDINATE = (
+    Entry("unit", "text", "`rad` or `m`", default=REQUIRED),
+    *SPEED[1:4],
+    Entry(
+        "rate",
+        "any",
+        "`{ range }`, an input `psi_dot` or the range of a free one; 0; a formula",
+    ),
+    Entry("acceleration", "any", "prescribed: `{ range }`, an input `psi_ddot`, or 0"),
+)
+INPUT = (UNIT, RANGE, MEANING)
+FRAME = (
+    Entry("parent", "text", "the frame that carries it", default="inertial"),
+    Entry("turned", "turns", "from the parent, each about the axes so far", scope="places"),
+    Entry("angular_velocity", "three formulas", "relative to the parent, along its own axes",
+          "rad/s", "motions"),
+    Entry("attitude", "word", "a free attitude beside `angular_velocity`: a state, scalar first",
+          words=("quaternion",)),
+    Entry("origin", "three formulas", "along the parent's axes from its origin", "m", "places"),
+    Entry("rolls", "table", "`{ body, at }`: that particle of the body is at rest"),
+    Entry("velocity", "three formulas", "of the origin, seen from N, along its own axes", "m/s",
+          "motions"),
+    Entry("acceleration", "three formulas", "of the origin, seen from N, along its own axes",
+          "m/s^2", "known"),
+)  # fmt: skip
+ROLLS = (
+    Entry("body", "body", "that rolls", default=REQUIRED),
+    Entry("at", "three formulas", "the particle, from the frame's origin", "m", "places", REQUIRED),
+)
+MOMENTS = (
+    Entry("moments", "three formulas", "xx, yy, zz", "kg m^2"),
+    Entry("second_moments", "three formulas", "sums of x^2, y^2, z^2 instead", "kg m^2"),
+)
+AXIS = Entry("axis", "word", "of symmetry", default=REQUIRED, words=AXES)
+ACROSS = Entry(
+    "moment", "formula", "about every axis; of a rod, across", "kg m^2", default=REQUIRED
+)
+KINDS: Mapping[str, tuple[Entry, ...]] = {
+    "general": (
+        *MOMENTS,
+        Entry("products", "any", "xy, xz, yz = +sum x y dm", "kg m^2", default=REQUIRED),
+    ),
+    "principal": MOMENTS,
+    "axisymmetric": (
+        AXIS,
+        Entry("axial", "formula", "about the axis", "kg m^2"),
+        Entry("transverse", "formula", "across it", "kg m^2"),
+    ),
+    "spherical": (ACROSS,),
+    "rod": (AXIS, ACROSS),
+}
+"""What each kind of body must say."""
+MASS = Entry("mass", "formula above 0", "if it is known", "kg")
+WHOLE_MASS = Entry("mass", "formula above 0", "of uniform density", "kg", default=REQUIRED)
+SAID: Mapping[str, tuple[Entry, ...]] = {
+    "box": (Entry("lengths", "any", "three edges", "m", default=REQUIRED),),
+    "plate": (AXIS, Entry("lengths", "any", "two edges across the axis", "m", default=REQUIRED)),
+    "point": (),
+    "blades": (
+        AXIS,
+        Entry("number", "count", "of slender blades from the hub, `mass` each", default=REQUIRED),
+        Entry(
+            "length",
+            "formula above 0",
+            "of a blade; the first along the axis after `axis`",
+            "m",
+            default=REQUIRED,
+        ),
+    ),
+}
+"""Shapes that are not round, and what each must say besides its mass."""
+ABOUT = Entry(
+    "about",
+    "word",
+    "what moments or a cone are about",
+    default="centre",
+    words=("centre", "origin", "apex"),
+)
+CENTRE_OR_APEX = Entry(
+    "about", "word", "where the point lies", default="centre", words=("centre", "apex")
+)
+CENTRE = Entry("centre", "three formulas", "of mass", "m")
+BODY = (
+    CENTRE,
+    Entry("turned", "turns", "from the axes to the body's own", scope="places"),
+    Entry("spin", "formula", "relative to the axes, about `axis`", "rad/s", "motions"),
+)
+"""What a single body may say besides its kind or shape."""
+MEMBER = (
+    Entry("frame", "frame", "that carries it", default=REQUIRED),
+    *BODY,
+    Entry("axial_speed", "formula", "the whole angular velocity about `axis`", "rad/s", "motions"),
+    Entry("angular_velocity", "three formulas", "of a ball in its frame", "rad/s", "motions"),
+    ABOUT,
+)
+"""What a body of a machine may say besides its kind or shape."""
+AT = Entry("at", "three formulas", "a place, from the origin of `frame`", "m", "places", ORIGIN)
+ON = Entry("on", "body", "that feels it", default=REQUIRED)
+AGAINST = Entry("against", "body", "that feels the opposite")
+OF = Entry("frame", "frame", "of the place; the body's if left out")
+ALL = Entry("on", "bodies", "that feel it; all if left out")
+ALONG = Entry("along", "frame", "along whose axes it is given", default="inertial")
+FORCE = (
+    ON,
+    Entry("force", "any", "three formulas in N, or one unknown for three; 0 if left out"),
+    Entry("couple", "any", "three formulas in N m, or one unknown for three; 0 if left out"),
+    OF,
+    AT,
+    Entry("along", "frame", "along whose axes both are given; `frame` if left out"),
+    AGAINST,
+)
+WEIGHT = (
+    Entry("gravity", "three formulas", "free fall", "m/s^2", "known", REQUIRED),
+    ALONG,
+    ALL,
+)
+SPRING = (
+    ON,
+    Entry("spring", "formula", "stiffness", "N/m", "known", 0),
+    Entry("damper", "formula", "damping", "N s/m", "known", 0),
+    Entry("length", "formula", "at rest", "m", "known", 0),
+    OF,
+    AT,
+    Entry("to", "three formulas", "the other end, from the origin of `to_frame`", "m", "places",
+          ORIGIN),
+    Entry("to_frame", "frame", "of the other end", default="inertial"),
+    AGAINST,
+)  # fmt: skip
+GRADIENT = (
+    Entry("gravity_gradient", "formula", "times e x I e", "1/s^2", "known", REQUIRED),
+    Entry("towards", "three formulas", "the unit vector e", "1", "known", REQUIRED),
+    ALONG,
+    ALL,
+)
+RESULT = (
+    Entry("formula", "any", "of answers, parameters and the motion", default=REQUIRED),
+    MEANING,
+    Entry("unit", "any", "in which it is given: of SI, or min, h, d, deg, rpm"),
+)
+MOMENTUM = (
+    Entry("frame", "frame", "along whose axes it is", default="inertial"),
+    Entry("at", "three formulas", "the point, from that frame's origin", "m", "places", ORIGIN),
+    Entry("of", "bodies", "counted in; all if left out"),
+)
+STEADY = (
+    Entry("unknown", "any", "what is to be found: a name or a list", default=REQUIRED),
+    Entry("vanishes", "any", "a formula that is 0, instead of a balance"),
+)
+TIME_STEP = Entry("time_step", "bounds", "of a step, s", default={"range": [0, Decimal("0.01")]})
+TIME = Entry("time", "bounds", "that a flow goes on for, s", default={"range": [0, 10]})
+AXES_OF_ONE = (
+    Entry("fixed_in", "word", "axes of the body", words=("body",)),
+    Entry("attitude", "word", "free body axes: a state, scalar first", words=("quaternion",)),
+    Entry("turned", "turns", "from the inertial axes, each about the axes so far", scope="places"),
+    Entry("angular_velocity", "three formulas", "Omega, along themselves", "rad/s", "motions"),
+)
+WHEEL = (
+    Entry("name", "any", "letters and digits", default=REQUIRED),
+    Entry("axis", "three formulas", "a unit vector along the body's axes", default=REQUIRED),
+    Entry("axial", "formula above 0", "moment of inertia about it", "kg m^2", default=REQUIRED),
+    Entry("speed_range", "range", "relative to the body, rad/s", default=REQUIRED),
+    Entry("torque_range", "range", "of the motor, N m", default=REQUIRED),
+)
+POINT = (
+    Entry("kind", "word", "what moments are about", default="centre_of_mass",
+          words=("centre_of_mass", "fixed", "moving")),
+    Entry("acceleration", "vector", "of a moving one", "m/s^2", "known"),
+)  # fmt: skip
+KNOWN = (
+    Entry("angular_velocity", "vector", "omega", "rad/s", "motions", {"range": [-10, 10]}),
+    Entry("angular_acceleration", "vector", "its rate", "rad/s^2", "known", {"range": [-50, 50]}),
+    Entry("moment", "vector", "about the point", "N m", "loads", {"range": [-1, 1]}),
+    Entry("force", "vector", "resultant", "N", "loads", {"range": [-10, 10]}),
+)
+POSITION = (
+    Entry("position", "bounds", "of the mass centre, m", default=REQUIRED),
+    Entry("velocity", "bounds", "of the mass centre, m/s", default=REQUIRED),
+)
+
+
+def round_entries(shape: str) -> tuple[Entry, ...]:
+    """Return what a round shape must say besides its mass."""
+    lengths = tuple(
+        Entry(name, "formula above 0", "", "m", default=REQUIRED) for name in ROUND[shape].lengths
+    )
+    axes = () if ROUND[shape].sphere else (AXIS,)
+    return (*lengths, *axes, *((CENTRE_OR_APEX,) if shape == "cone" else ()))
