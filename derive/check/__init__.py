@@ -113,7 +113,7 @@ def interface(made: Library, found: Files) -> Verdict:
     programs = [*([made.setup] if made.constants else []), *made.printed()]
     for program in programs:
         every = (*program.inputs, *program.outputs)
-        meant = {q.name: list(q.components) for q in every if q.name != "constants"}
+        meant = {q.name: list(q.components) for q in every if q.role != "constants"}
         given = {a["name"]: a["components"] for a in described.get(program.name, ())}
         given.pop("constants", None)
         if meant != given:

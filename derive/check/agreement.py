@@ -181,7 +181,7 @@ class _Built:
 
 def _built(module: Any, program: Program) -> _Built:
     whole = getattr(module, program.name)()
-    if not any(q.name == "constants" for q in program.inputs):
+    if not any(q.role == "constants" for q in program.inputs):
         return _Built(program, (), whole, whole)
     hot = getattr(module, f"{program.name}_hot")()
     return _Built(program, tuple(module.PARAMETERS), whole, hot)
@@ -203,7 +203,7 @@ def _same_setup(emitted: Emitted, module: Any, makes: Any, sample: Sample) -> bo
 def _same(emitted: Emitted, built: _Built, sample: Sample) -> bool:
     given = inputs(built.program, sample, emitted.constants(sample))
     ours = emitted.results(built.program, sample)
-    rest = [v for name, v in given.items() if name != "constants"]
+    rest = [given[q.name] for q in built.program.inputs if q.role != "constants"]
     first = [[sample.values[name] for name in built.parameters]] if built.parameters else []
     return same_values(_numbers(built.hot, list(given.values())), ours) and same_values(
         _numbers(built.whole, [*first, *rest]), ours

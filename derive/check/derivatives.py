@@ -67,7 +67,7 @@ def compared(
 
     each : the first of them with every place that may be special, the others as they are
     """
-    takes = [q for q in program.inputs if q.name != "constants"]
+    takes = [q for q in program.inputs if q.role != "constants"]
     if len(takes) < len(program.inputs):
         takes = [*library.setup.inputs, *takes]
     names = [c for q in takes for c in q.components]

@@ -64,7 +64,7 @@ def inputs(
     """Return a function's inputs by name at a sample."""
     return {
         q.name: constants["constants"]
-        if q.name == "constants"
+        if q.role == "constants"
         else [sample.values[c] for c in q.components]
         for q in program.inputs
     }

@@ -41,9 +41,9 @@ def inlined(library: Library, module: Any, each: Sequence[Sample]) -> Iterator[V
 
 
 def _results(module: Any, function: Any, program: Program, sample: Sample) -> list[list[float]]:
-    names = [list(q.components) for q in program.inputs if q.name != "constants"]
-    if len(names) < len(program.inputs) or program.name == "setup":
-        names = [list(module.PARAMETERS), *(names if program.name != "setup" else ())]
+    names = [list(q.components) for q in program.inputs if q.role != "constants"]
+    if len(names) < len(program.inputs) or program.makes("constants"):
+        names = [list(module.PARAMETERS), *(names if not program.makes("constants") else ())]
     given = [casadi.DM([sample.values[c] for c in own]) for own in names]
     return [list(y.nonzeros()) for y in function.call(given)]
 
@@ -55,7 +55,7 @@ def _differing(
     for q, a, b in zip(program.outputs, true, found, strict=True):
         if q.name == LEFT:
             same = any(b) or not any(a)
-        elif program.name == "setup":
+        elif program.makes("constants"):
             same = all(abs(x - y) <= LAST * abs(x) for x, y in zip(a, b, strict=True))
         else:
             size = largest([abs(x) for x in a])

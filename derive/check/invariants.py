@@ -70,7 +70,7 @@ def _power_gap(emitted: Emitted, sample: Sample) -> float:
     """
     rates = _rates(emitted, sample)
     moving = emitted.library["kinetic_energy"].inputs
-    names = [c for q in moving if q.name != "constants" for c in q.components]
+    names = [c for q in moving if q.role != "constants" for c in q.components]
     fastest = max((abs(sample.values[c]) for c in names), default=0.0)
     step = 2.0 ** (frexp(fastest)[1] - frexp(max(abs(rates[c]) for c in names))[1])
     ahead, behind = (

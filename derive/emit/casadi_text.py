@@ -8,7 +8,7 @@ import numpy as np
 from derive.emit.c.comment import told
 from derive.emit.c.scope import declared_in_python, require_free
 from derive.emit.c.series import series_casadi
-from derive.emit.c.source import first_line, works_in_pairs
+from derive.emit.c.source import first_line
 from derive.emit.c.text import pair_functions
 from derive.emit.operators import in_casadi
 from derive.emit.templates import TEMPLATES
@@ -29,7 +29,8 @@ def casadi_file(library: Library) -> str:
     """Return the text of ``<scene>_casadi.py``."""
     name = library.known.scene.name
     has_setup = bool(library.constants)
-    in_pairs = [p for p in library.printed() if works_in_pairs(p)] + [library.setup] * has_setup
+    every = (*library.printed(), *[library.setup] * has_setup)
+    in_pairs = [p for p in every if p.arithmetic == "pairs"]
     functions = [_function(p, name) for p in library.printed()]
     return TEMPLATES.get_template("casadi.py.jinja").render(
         first_line=first_line(library),
@@ -182,7 +183,7 @@ def _function(program: Program, scene: str) -> dict[str, object]:
         "says": program.says,
         "singular": [told(s) for s in program.singular],
         "inputs": [{"name": q.name, "size": len(q.components)} for q in program.inputs],
-        "needs_constants": any(q.name == "constants" for q in program.inputs),
+        "needs_constants": any(q.role == "constants" for q in program.inputs),
         "lines": lines,
         "outputs": _outputs(program, ends),
     }
@@ -198,7 +199,7 @@ def _ends(
     if program.slopes is not None:
         more, own = plain_lines(program.slopes, place)
         ends_too = ", ".join(own(x) for x in program.slopes.results)
-        given = ", ".join(q.name for q in program.inputs if q.name != "constants")
+        given = ", ".join(q.name for q in program.inputs if q.role != "constants")
         made = f"ends = _sloped(ca.vertcat({', '.join(ends)}), ca.vertcat({ends_too}), {given})"
         return [*lines, *more, made], [f"ends[{k}]" for k in range(len(ends))]
     return lines, ends
@@ -207,7 +208,7 @@ def _ends(
 def _with_slope(program: Program, text: Text) -> Iterator[str]:
     free, results = (", ".join(map(text, operands)) for operands in (program.free, program.results))
     yield f"free = [{free}]"
-    given = ", ".join(q.name for q in program.inputs if q.name != "constants")
+    given = ", ".join(q.name for q in program.inputs if q.role != "constants")
     yield f"ends = _with_slope(ca.vertcat({results}), free, {given})"
 
 

@@ -95,7 +95,7 @@ def _arguments(program: Program) -> list[dict[str, Any]]:
 
 
 def _kind(q: Quantity) -> str:
-    if q.name == "constants":
+    if q.role == "constants":
         return "struct"
     return "array" if q.shape else "scalar"
 

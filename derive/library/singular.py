@@ -35,14 +35,13 @@ QUARTERS = range(-4, 5)  # of a turn, each way
 HALVINGS = 60
 NEAR = 1e-9  # of a place, which halving has found again
 AROUND = 1.5  # of the ranges, in which divisors are looked at
-HELD = ("constants", "plan", "remainder")
 Place = tuple[tuple[str, ...], float]
 
 
 def with_singular(programs: Sequence[Program], setup: Program) -> tuple[Program, ...]:
     """Return the programs, each with the places at which it has no value."""
     table = working(np.float64)
-    plan = next((p for p in programs if p.name.startswith("plan_")), None)
+    plan = next((p for p in programs if p.makes("plan")), None)
     constants = _constants(setup)
     return tuple(
         replace(p, singular=_singular(_Trial(p, plan, constants, table))) for p in programs
@@ -60,12 +59,12 @@ class _Trial:
 
     def free(self) -> tuple[Quantity, ...]:
         """Return the inputs that may be set."""
-        return tuple(q for q in self.program.inputs if q.name not in HELD)
+        return tuple(q for q in self.program.inputs if q.role == "value")
 
     def results(self, columns: Columns, table: Table) -> NDArray[Any]:
         """Return the results, a row a component; ``columns`` hold what may be set."""
         given, count = dict(columns), len(next(iter(columns.values())))
-        if self.plan is not None and any(q.name == "plan" for q in self.program.inputs):
+        if self.plan is not None and any(q.role == "plan" for q in self.program.inputs):
             made = _run(self.plan, given, self.constants, self.table)
             given |= dict(zip(component_names(self.plan), made, strict=True))
         found = _run(self.program, given, self.constants, table)

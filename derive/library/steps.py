@@ -200,7 +200,7 @@ def _dmv(setting: Setting) -> tuple[Program, ...]:
     names = tuple(f"plan_{name}" for name, _, _ in entries)
     plan = Quantity(
         "plan", names, (len(names),), "", "", None, None,
-        "what a motion without torque and a length of step keep",
+        "what a motion without torque and a length of step keep", "plan",
     )  # fmt: skip
     says = "Plan many steps of one length from an angular velocity; call it once."
     made = Recorded((omega, step), (plan,), tuple(number(n) for _, n, _ in entries))

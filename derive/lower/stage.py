@@ -174,7 +174,7 @@ def setup(
     whole = needed(whole, (*made, *asking))  # a trace may hold what no constant rests on
     names = (*constants.names.values(), *traced.names.values())
     says = "constants made of parameters only, for the functions of this scene"
-    output = Quantity("constants", names, (len(names),), "", "", None, None, says)
+    output = Quantity("constants", names, (len(names),), "", "", None, None, says, "constants")
     return Program(
         "setup",
         "Make the constants of this scene from its parameters; call it once.",
@@ -183,6 +183,7 @@ def setup(
         whole,
         made,
         rules=rules,
+        arithmetic="pairs",
     )
 
 

@@ -4,7 +4,7 @@ Whole vectors are valued at trial points in common axes, so that thousands of ba
 looked at; only those that are chosen are written out.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
@@ -13,13 +13,13 @@ from typing import Literal
 from mpmath import mp
 from sympy import Expr, Integer, Matrix, Symbol
 
-from derive.mechanics.bodies import Effort, carries, moment_about
+from derive.mechanics.bodies import carries, moment_about
 from derive.mechanics.frames import ZERO, Frames, Point
 from derive.mechanics.loads import Wrench
 from derive.mechanics.probe import DIGITS, NOTHING, POINTS
 from derive.mechanics.specialise import stated
 from derive.mechanics.turning import unit_vector
-from derive.mechanics.valued import Array, Sides, Valued
+from derive.mechanics.valued import Array, Sides, Valued, sides, trial_points
 from derive.scene.machine import Force, Spring
 
 MOST_TOGETHER = 6
@@ -77,17 +77,7 @@ class Balances:
     @cached_property
     def sides(self) -> Sides:
         """Return what the motion of the bodies needs and what acts on them."""
-        return Sides(self.frames)
-
-    @cached_property
-    def efforts(self) -> Mapping[str, Effort]:
-        """Return what each body's motion needs."""
-        return self.sides.efforts
-
-    @cached_property
-    def wrenches(self) -> tuple[Wrench, ...]:
-        """Return all loads."""
-        return self.sides.wrenches
+        return sides(self.frames)
 
     @cached_property
     def unknowns(self) -> tuple[Symbol, ...]:
@@ -98,7 +88,7 @@ class Balances:
     def rows(self) -> tuple[Row, ...]:
         """Return every balance that holds anything, plainest first."""
         with mp.workdps(DIGITS):
-            most = min(len(self.efforts), MOST_TOGETHER)
+            most = min(len(self.sides.efforts), MOST_TOGETHER)
             return tuple(row for row in self._every(most) if not row.empty)
 
     @cached_property
@@ -108,17 +98,16 @@ class Balances:
             return tuple(row for row in self._every(1) if not row.empty)
 
     def _every(self, most: int) -> Iterator[Row]:
-        valued = [Valued(self.sides, probe) for probe in self.sides.probes]
-        names = list(self.efforts)
+        own = {name: effort.frame for name, effort in self.sides.efforts.items()}
+        valued = [Valued(self.sides, probe) for probe in trial_points(self.frames)]
         for size in range(1, most + 1):
-            for bodies in filter(self._joined, combinations(names, size)):
-                if all(self.frames.linked(self.efforts[bodies[0]].frame, self.efforts[b].frame)
-                       for b in bodies):  # fmt: skip
+            for bodies in filter(self._joined, combinations(own, size)):
+                if all(self.frames.linked(own[bodies[0]], own[b]) for b in bodies):
                     yield from self._on(bodies, valued)
 
     def _joined(self, bodies: tuple[str, ...]) -> bool:
         """Tell whether bodies hang together by loads between them, or are few or all."""
-        if len(bodies) <= FEW or len(bodies) == len(self.efforts):
+        if len(bodies) <= FEW or len(bodies) == len(self.sides.efforts):
             return True
         pairs = [load for load in self.frames.machine.loads if isinstance(load, Force | Spring)]
         reached = {bodies[0]}
@@ -156,17 +145,18 @@ class Balances:
 
     def _central(self, bodies: tuple[str, ...], place: Point, valued: Valued) -> bool:
         """Tell whether a point is the mass centre of the one body, whatever it is called."""
-        centre = self.efforts[bodies[0]].centre
+        centre = self.sides.efforts[bodies[0]].centre
         if len(bodies) > 1 or not self._reachable(centre[0], bodies):
             return False
         return bool(max(abs(valued.place(centre) - valued.place(place))) < NOTHING)
 
     def _frames_of(self, bodies: tuple[str, ...]) -> list[str]:
         """Return the frames whose axes and origins are near at hand for these bodies."""
-        own = [self.efforts[b].frame for b in bodies]
-        found = dict.fromkeys([*own, *(name for b in bodies for name in self.efforts[b].force)])
-        found |= dict.fromkeys(w.along for w in self.wrenches if w.body in bodies)
-        found |= dict.fromkeys(w.point[0] for w in self.wrenches if w.body in bodies)
+        efforts = [self.sides.efforts[b] for b in bodies]
+        own = [effort.frame for effort in efforts]
+        found = dict.fromkeys([*own, *(name for effort in efforts for name in effort.force)])
+        found |= dict.fromkeys(w.along for w in self.sides.wrenches if w.body in bodies)
+        found |= dict.fromkeys(w.point[0] for w in self.sides.wrenches if w.body in bodies)
         for name in [*found]:
             found |= dict.fromkeys(self.frames.chain(name))
         return [name for name in found if self.frames.linked(own[0], name)]
@@ -184,12 +174,12 @@ class Balances:
 
     def _points(self, bodies: tuple[str, ...], valued: Valued) -> list[tuple[str, Point]]:
         """Return the points that moments of these bodies may be taken about."""
-        acting = [w for w in self.wrenches if w.body in bodies and w.force != ZERO]
+        acting = [w for w in self.sides.wrenches if w.body in bodies and w.force != ZERO]
         inner = {w.load for w in acting if sum(v.load == w.load for v in acting) > 1}
         alone = bodies if len(bodies) == 1 else ()
         near: list[tuple[str, Point]] = [
             *((f"the origin of {frame}", (frame, ZERO)) for frame in self._frames_of(bodies)),
-            *((f"the mass centre of {b}", self.efforts[b].centre) for b in alone),
+            *((f"the mass centre of {b}", self.sides.efforts[b].centre) for b in alone),
             *((f"the point of {w.load}", w.point) for w in acting if w.load not in inner),
         ]
         found: list[tuple[str, Point]] = []
@@ -205,8 +195,8 @@ class Balances:
 
     def _reachable(self, frame: str, bodies: tuple[str, ...]) -> bool:
         """Tell whether all that acts on bodies has a known place from a frame's origin."""
-        ends = [self.efforts[b].centre[0] for b in bodies]
-        ends += [w.point[0] for w in self.wrenches if w.body in bodies and w.force != ZERO]
+        ends = [self.sides.efforts[b].centre[0] for b in bodies]
+        ends += [w.point[0] for w in self.sides.wrenches if w.body in bodies and w.force != ZERO]
         return all(self.frames.placed(frame, e) and self.frames.linked(frame, e) for e in ends)
 
     def written(self, row: Row) -> Expr:
@@ -215,7 +205,7 @@ class Balances:
         e = unit_vector(balance.axis)
         total: Expr = Integer(0)
         for body in balance.bodies:
-            own = self.efforts[body]
+            own = self.sides.efforts[body]
             if balance.point is not None and carries(frames, body, balance.point):
                 moment = moment_about(frames, body, balance.point[1])
                 total += (e.T * frames.carried(moment, own.frame, balance.frame))[0]
@@ -227,7 +217,7 @@ class Balances:
                 vector = frames.carried(own.moment, own.frame, balance.frame)
                 vector = vector + self._shift(balance, own.centre, force)
             total += (e.T * vector)[0]
-        for w in self.wrenches:
+        for w in self.sides.wrenches:
             if w.body in balance.bodies:
                 total -= (e.T * self._load(balance, w))[0]
         rest, slopes = sheet.split(total)
@@ -243,8 +233,9 @@ class Balances:
 
     def carried_vectors(self, balance: Balance) -> int:
         """Return how many vectors must be carried to other axes to write a balance."""
-        own = [f for b in balance.bodies for f in (self.efforts[b].frame, *self.efforts[b].force)]
-        own += [w.along for w in self.wrenches if w.body in balance.bodies]
+        efforts = [self.sides.efforts[b] for b in balance.bodies]
+        own = [name for effort in efforts for name in (effort.frame, *effort.force)]
+        own += [w.along for w in self.sides.wrenches if w.body in balance.bodies]
         return sum(frame != balance.frame for frame in own)
 
     def _shift(self, balance: Balance, place: Point, force: Matrix) -> Matrix:

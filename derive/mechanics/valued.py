@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -19,42 +18,35 @@ from derive.scene.machine import INERTIAL
 Array = NDArray[Any]
 
 
-@dataclass
+@dataclass(frozen=True)
 class Sides:
-    """Both sides of every balance: the efforts of the bodies and the loads on them."""
+    """Both sides of every balance: the efforts of the bodies, by name, and the loads on them.
+
+    unknowns : what is in them and to be found, in order of their names' places
+    """
 
     frames: Frames
+    efforts: Mapping[str, Effort]
+    wrenches: tuple[Wrench, ...]
+    unknowns: tuple[Symbol, ...]
 
-    @cached_property
-    def efforts(self) -> Mapping[str, Effort]:
-        """Return what each body's motion needs."""
-        return {b.name: effort(self.frames, b.name) for b in self.frames.machine.bodies}
 
-    @cached_property
-    def wrenches(self) -> tuple[Wrench, ...]:
-        """Return all loads."""
-        return wrenches(self.frames)
+def sides(frames: Frames) -> Sides:
+    """Return both sides of every balance of a machine; what they name is on its sheet then."""
+    efforts = {b.name: effort(frames, b.name) for b in frames.machine.bodies}
+    acting = wrenches(frames)
+    used = {s for e in efforts.values() for s in e.moment.free_symbols}
+    used |= {s for e in efforts.values() for part in e.force.values() for s in part.free_symbols}
+    used |= {s for w in acting for s in w.force.free_symbols | w.couple.free_symbols}
+    return Sides(frames, efforts, acting, tuple(sorted(used & frames.sheet.unknowns, key=str)))
 
-    @cached_property
-    def unknowns(self) -> tuple[Symbol, ...]:
-        """Return the unknowns in order of their names' places."""
-        used: set[Symbol] = set()
-        for e in self.efforts.values():
-            used |= e.moment.free_symbols
-            used |= {s for part in e.force.values() for s in part.free_symbols}
-        for w in self.wrenches:
-            used |= w.force.free_symbols | w.couple.free_symbols
-        return tuple(sorted(used & self.frames.sheet.unknowns, key=str))
 
-    @cached_property
-    def probes(self) -> tuple[Probe, ...]:
-        """Return the trial points, every named quantity valued."""
-        self.efforts, self.wrenches  # noqa: B018 - they name quantities on the sheet
-        words = self.frames.words
-        found = (*(point(words, n) for n in range(POINTS)), at_rest(words))
-        for probe in found:
-            probe.define(self.frames.sheet.definitions)
-        return found
+def trial_points(frames: Frames) -> tuple[Probe, ...]:
+    """Return the trial points, all that is named so far valued."""
+    found = (*(point(frames.words, n) for n in range(POINTS)), at_rest(frames.words))
+    for probe in found:
+        probe.define(frames.sheet.definitions)
+    return found
 
 
 @dataclass

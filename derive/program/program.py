@@ -15,6 +15,9 @@ Operand = str | Fraction
 
 Table = Mapping[str, Callable[..., Any]]  # an arithmetic: what each operator does
 
+Role = Literal["value", "constants", "plan", "remainder"]
+"""What a quantity is for: a value of its own, or what one function makes for others to read."""
+
 
 @dataclass(frozen=True)
 class Quantity:
@@ -28,6 +31,7 @@ class Quantity:
     low: Fraction | None
     high: Fraction | None
     meaning: str
+    role: Role = "value"
 
     def __post_init__(self) -> None:
         """Refuse a range of one value: whatever is sampled on it would go unseen."""
@@ -160,6 +164,10 @@ class Program:
     singular: tuple[Singular, ...] = ()
     free: tuple[Operand, ...] = ()
     slopes: "Program | None" = None
+
+    def makes(self, role: Role) -> bool:
+        """Tell whether it is the function that makes what others read: constants, or a plan."""
+        return any(q.role == role for q in self.outputs)
 
     def count(self) -> dict[str, int]:
         """Return how often each operator is used at most, every pass of a loop counted."""

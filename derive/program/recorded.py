@@ -74,7 +74,7 @@ def called(tape: Tape, program: Program, values: Mapping[str, Number]) -> list[N
 
     The program's constants are read as they are; equal operations are recorded once.
     """
-    inputs = [c for q in program.inputs if q.name != "constants" for c in q.components]
+    inputs = [c for q in program.inputs if q.role != "constants" for c in q.components]
     known = {name: number(values[name]) for name in inputs}
 
     def value(operand: Operand) -> Number:

@@ -9,13 +9,12 @@ from derive.scene.entries import RESULT
 from derive.scene.entry import Reading, entries_of
 from derive.scene.escape import brief
 from derive.scene.formula import substitute
-from derive.scene.grammar import parse
 from derive.scene.loads import MARK, unknown_units
 from derive.scene.machine import Result
 from derive.scene.names import functions, identifier
 from derive.scene.scalars import unknown_rates
-from derive.scene.table import Scope, Table, formula, shown, text
-from derive.scene.unit import BESIDE_SI, NONE, UnitError, dimension, dimension_of, spelled
+from derive.scene.table import Scope, Table, measured, shown, text
+from derive.scene.unit import BESIDE_SI, NONE, UnitError, dimension, spelled
 from derive.scene.wanted import JACOBIAN, OF_MACHINES, resembling
 
 if TYPE_CHECKING:
@@ -75,21 +74,8 @@ def _spelling(value: object, label: str, found: Dimension) -> str:
 def of_any_unit(value: object, label: str, scope: Scope) -> tuple[Formula, Dimension]:
     """Return a formula and the dimension that it turns out to have."""
     plain = MARK.sub(r"\1", value) if isinstance(value, str) else value
-    try:
-        read = formula(plain, label, scope, NONE)
-    except SceneError as error:
-        unit = _unit_found(str(error), plain, scope)
-        if unit is None:
-            raise
-        return formula(plain, label, scope, unit), unit
-    return read, dimension_of(read, scope.dimensions) or NONE
-
-
-def _unit_found(sentence: str, value: object, scope: Scope) -> Dimension | None:
-    """Return the dimension of a formula that was refused for not being a plain number."""
-    if " is in " not in sentence or not isinstance(value, str):
-        return None
-    return dimension_of(parse(value), scope.dimensions)
+    read, unit = measured(plain, label, scope)
+    return read, unit or NONE
 
 
 def read_asked(

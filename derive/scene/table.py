@@ -228,17 +228,22 @@ def formula(value: object, label: str, scope: Scope, expected: Dimension) -> For
 
     A plain number stands for itself in the SI unit of the quantity.
     """
-    read = _read(value, label)
-    _check_symbols(read, label, scope)
-    try:
-        found = dimension_of(read, scope.dimensions)
-    except UnitError as error:
-        raise SceneError(f"{label}: {error}") from None
+    read, found = measured(value, label, scope)
     if found is not None and found != expected and read.operator != "number":
         raise SceneError(
             f"{label} = '{brief(read)}' is in {spelled(found)}, not {spelled(expected)}"
         )
     return read
+
+
+def measured(value: object, label: str, scope: Scope) -> tuple[Formula, Dimension | None]:
+    """Return a formula in known symbols and its dimension, None where it is 0 in any unit."""
+    read = _read(value, label)
+    _check_symbols(read, label, scope)
+    try:
+        return read, dimension_of(read, scope.dimensions)
+    except UnitError as error:
+        raise SceneError(f"{label}: {error}") from None
 
 
 def _read(value: object, label: str) -> Formula:

@@ -47,7 +47,7 @@ class Instrument:
         if isinstance(known, Mechanism) and function in self.library.truths:
             return depends_on(known, function)
         program = self.library[function]
-        own = [c for q in program.inputs if q.name != "constants" for c in q.components]
+        own = [c for q in program.inputs if q.role != "constants" for c in q.components]
         return (*(c for q in self.library.setup.inputs for c in q.components), *own)
 
     def answer(self, function: str, given: Values) -> dict[str, Any]:
@@ -92,8 +92,8 @@ class Instrument:
     def _called(self, program: Program, given: Values) -> list[Any]:
         if program.name not in self.built:
             self.built[program.name] = getattr(self.module, program.name)()
-        arguments = [self._column(q, given) for q in program.inputs if q.name != "constants"]
-        if any(q.name == "constants" for q in program.inputs):
+        arguments = [self._column(q, given) for q in program.inputs if q.role != "constants"]
+        if any(q.role == "constants" for q in program.inputs):
             of_setup = [self._value(q, q.name, given) for q in self.library.setup.inputs]
             arguments.insert(0, casadi.vertcat(*of_setup))
         results = self.built[program.name].call(arguments)

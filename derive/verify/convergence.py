@@ -206,7 +206,7 @@ def stepped(library: Library, name: str, values: Mapping[str, Any], h: Any) -> d
     known |= _results(library.setup, known)
     for program in library.motions:
         if program.name in (f"plan_{name.removeprefix('step_')}", name):
-            carried = [q for q in program.inputs if q.name == "remainder"]
+            carried = [q for q in program.inputs if q.role == "remainder"]
             known |= {c: arb(0) for q in carried for c in q.components}
             known |= _results(program, known)
     return known

@@ -77,7 +77,7 @@ class Ranges:
 
 def _ends(q: Quantity) -> tuple[float, float]:
     """Return the ends of a range; a remainder is drawn as a part of u times its state."""
-    low, high = (-1, 1) if q.name == REMAINDER else q.ends
+    low, high = (-1, 1) if q.role == "remainder" else q.ends
     return float(low), float(high)
 
 
@@ -185,7 +185,7 @@ class Completing:
 
 def completing(library: Library) -> Completing:
     """Return what completes the samples of a scene."""
-    plans = [f for f in library.motions if f.name.startswith("plan_")]
+    plans = [f for f in library.motions if f.makes("plan")]
     rate, plan = (planned(p[0]) if p else None for p in (telling(library), plans))
     return Completing(planned(library.setup), rate, plan)
 
@@ -198,7 +198,7 @@ def complete(of: Ranges, by: Completing, rows: Column) -> Known:
         c: own[c] * np.abs(own[c.removeprefix(f"{REMAINDER}_")]) * dtype(of.precision.unit_roundoff)
         for q in of.quantities
         for c in q.components
-        if q.name == REMAINDER
+        if q.role == "remainder"
     }
     table = arithmetics(of.precision.dtype)
     with np.errstate(all="ignore"):

@@ -95,9 +95,9 @@ def replayed(
 
 def _replay(program: Program, table: Table, known: Mapping[str, NDArray[Any]]) -> list[Any]:
     given = [known[c] for q in program.inputs for c in q.components]
-    in_pairs = program.name == "setup" or program.arithmetic == "pairs"
-    results = run(program, table, paired(np.array(given)) if in_pairs else given)
-    return [r[0] for r in results] if in_pairs else results
+    if program.arithmetic != "pairs":
+        return run(program, table, given)
+    return [r[0] for r in run(program, table, paired(np.array(given)))]
 
 
 def errors(

@@ -23,7 +23,7 @@ from derive.verify.measure import Errors, replayed
 from derive.verify.operators import LONG_FLOATS
 from derive.verify.reference import BITS
 from derive.verify.sample import Sample, Source, Values, source, uniform
-from derive.verify.scale import PLAN, Sizing, around, measured_outputs, motion_scales
+from derive.verify.scale import Sizing, around, measured_outputs, motion_scales
 
 REACH = 0.3
 """Turn in rad, by omega and by its rate, that a sampled step covers at most."""
@@ -44,7 +44,7 @@ def with_motion(
         replace(s, values={c: dice.held(x) for c, x in _in_reach(s.values, fast).items()})
         for s, fast in zip(drawn, rates, strict=True)
     )
-    plans = any(q.name == PLAN for f in library.motions for q in f.inputs)
+    plans = any(q.role == "plan" for f in library.motions for q in f.inputs)
     return tuple(_planned(library, kept, precision)) if plans else kept
 
 
@@ -53,7 +53,7 @@ def fresh_quantities(library: Library) -> list[Quantity]:
     known = {c for q in library.known.words.every() for c in q.components}
     known |= set(component_names(library.setup))
     given = {q.name: q for f in library.motions for q in f.inputs}
-    return [q for q in given.values() if not known & set(q.components) and q.name != PLAN]
+    return [q for q in given.values() if not known & set(q.components) and q.role != "plan"]
 
 
 def telling(library: Library) -> list[Program]:
@@ -64,7 +64,7 @@ def telling(library: Library) -> list[Program]:
 
 def _drawn(of: Source, sample: Sample, component: str, q: Quantity) -> float:
     """Return a number on a range; a remainder is what rounding may leave of its state."""
-    if q.name != REMAINDER:
+    if q.role != "remainder":
         return uniform(of.dice, q)
     state = sample.values[component.removeprefix(f"{REMAINDER}_")]
     return of.precision.unit_roundoff * abs(state) * (2 * of.dice.random() - 1)
@@ -102,7 +102,7 @@ def bounds_of_times(omega: Any, fast: Any) -> tuple[Any, Any]:
 
 def _planned(library: Library, each: Sequence[Sample], precision: Precision) -> Iterator[Sample]:
     """Yield the samples, each with the plan that the plan's own function makes of it."""
-    (plan,) = (f for f in library.motions if f.name.startswith("plan_"))
+    (plan,) = (f for f in library.motions if f.makes("plan"))
     only = replace(library, functions=(), motions=(plan,))
     columns = replayed(only, each, precision, working(precision.dtype))[plan.name]
     rows = np.array([np.broadcast_to(c, len(each)) for c in columns]).T.tolist()

@@ -155,9 +155,9 @@ def constants_at(setup: Program, at: Point) -> dict[str, Any]:
 
 
 def _run(program: Program, at: Point, constants: Mapping[str, Any]) -> list[Any]:
-    known = {**at.values, **constants} if program.name != "setup" else at.values
+    known = {**at.values, **constants}
     given = [  # constants of motion alone are not made here, and not read either
-        known.get(c) if q.name == "constants" else known[c]
+        known.get(c) if q.role == "constants" else known[c]
         for q in program.inputs
         for c in q.components
     ]

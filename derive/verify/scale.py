@@ -23,7 +23,6 @@ from derive.verify.operators import IN_DOUBLES
 from derive.verify.solution import Known as Solved
 from derive.verify.solution import solution
 
-PLAN = "plan"
 ANGLES = "angles"
 STATE_RATE = "state_rate"
 UNMEASURED = ("remainder_next", "step_proposed")
@@ -153,7 +152,7 @@ def motion_scales(by: Sizing, plan: Plan, wide: Wide, true: Sequence[Column]) ->
     for q, own in grouped:
         before = [added[c] for c in _states_of(q) if c in added]
         most = reduce(np.maximum, (*own, *before), np.asarray(by.smallest))
-        if q.name == PLAN:
+        if q.role == "plan":
             scales += [np.where(x > most * NOTHING, np.maximum(x, by.smallest), most) for x in own]
         else:
             scales += [most] * len(own)
@@ -186,7 +185,7 @@ def _added(by: Sizing, wide: Wide) -> dict[str, Column]:
 def _magnified(by: Sizing, plan: Plan, wide: Wide, grouped: Outputs) -> list[Column]:
     """Return kappa times the largest component of each output: what its inputs' changes make."""
     inputs = (*by.setup.program.inputs, *plan.program.inputs)
-    names = {c: None for q in inputs for c in q.components if q.name != "constants"}
+    names = {c: None for q in inputs for c in q.components if q.role != "constants"}
     start = _values(by, plan, wide)
     total = [np.asarray(by.smallest) for _ in grouped]
     for c in names:

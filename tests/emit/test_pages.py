@@ -107,7 +107,7 @@ def test_a_scene_page_says_all_that_a_reader_needs(name: str) -> None:
         assert f'id="{program.name}"' in text
         assert f"{program.flops()} operations" in text
         for q in program.inputs:
-            assert q.name == "constants" or q.meaning in text.replace("&#39;", "'")
+            assert q.role == "constants" or q.meaning in text.replace("&#39;", "'")
     assert "3.2" in text
     assert all(
         f"lecture.html#{a}" in text for p in library_of(name).printed() for a in p.assumptions

@@ -57,7 +57,7 @@ def test_a_divisor_that_is_put_in_is_told(name: str) -> None:
     function, divisor, where = MADE_UP[name]
     lib = library_of("heavy_top")
     program = lib[function]
-    inputs = [c for q in program.inputs if q.name != "constants" for c in q.components]
+    inputs = [c for q in program.inputs if q.role != "constants" for c in q.components]
     more, by = divisor(inputs)
     ops = (*program.ops, *more, Op("zzz", "div", (program.results[0], by)))
     mutant = replace(program, ops=ops, results=("zzz", *program.results[1:]))
@@ -106,7 +106,7 @@ def test_a_comment_that_is_silent_is_found() -> None:
 
 def unsaid(lib: Library, program: Program) -> list[str]:
     """Return the states at which a function has no value although its comment does not say so."""
-    if any(q.name == "plan" for q in program.inputs):
+    if any(q.role == "plan" for q in program.inputs):
         return []
     constants, found = constants_of(lib), []
     said = " ".join(s.where for s in program.singular)
@@ -130,7 +130,7 @@ def constants_of(lib: Library) -> dict[str, float]:
 def special(program: Program) -> list[tuple[dict[str, float], list[str]]]:
     """Return states with one quantity, or two of one component, at 0: found by their own loop."""
     dice = Random(program.name[::-1])
-    free = [q for q in program.inputs if q.name not in ("constants", "remainder")]
+    free = [q for q in program.inputs if q.role in ("value", "plan")]
     found = []
     single = [[q] for q in free]
     scalars = [q for q in free if not q.shape]

@@ -43,7 +43,7 @@ def test_the_free_body_has_sixty_six_nonzeros():
 def test_no_operation_works_on_parameters_only(scene, function):
     library_ = library_of(scene)
     program = library_[function]
-    fixed = {c for q in program.inputs if q.name == "constants" for c in q.components}
+    fixed = {c for q in program.inputs if q.role == "constants" for c in q.components}
     for op, _ in every_op(program.ops):
         if op.operator in TRUTHS:
             continue  # a truth is no constant: it is told from one where it is needed

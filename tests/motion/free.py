@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -61,7 +61,7 @@ def recorded(body: Callable[[list[Number]], Inertia]) -> Flow:
     attitude, omega = flow_exact(tape, inertia, given[:4], given[4:7], given[7])
     results = tuple(x.operand for x in (*attitude, *omega))
     sources, names = list(setup.names), [name for name, _ in setup.names.values()]
-    constants = quantity("constants", names)
+    constants = replace(quantity("constants", names), role="constants")
     return Flow(
         Program(
             "setup", "", (quantity("inertia", TENSOR),), (constants,),

@@ -2,7 +2,7 @@
 
 import ctypes
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
@@ -181,6 +181,7 @@ def _stepper(
 ) -> Stepper:
     sources = tuple(setup.names)
     constants = _quantity("constants", [setup.names[x][0] for x in sources])
+    constants = replace(constants, role="constants")
     planned, state = _quantity("plan", plan), _quantity("state", _named("s", len(ends[1])))
     step = Quantity("h", ("h",), (), "", "", None, None, "")
     omega = _quantity("omega", ["w0", "w1", "w2"])

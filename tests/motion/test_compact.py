@@ -80,7 +80,7 @@ def c_source(program: Program, precision: Precision) -> str:
     """Return a file with one function: the struct of constants, and the step in loops."""
     assert isinstance(program.loops, Compact)
     kind, head = precision.scalar, prototype(program, Names("body"), precision)
-    fields = [c for q in program.inputs if q.name == "constants" for c in q.components]
+    fields = [c for q in program.inputs if q.role == "constants" for c in q.components]
     lines = "\n".join(f"    {line}" for line in compact_c(program.loops, program, precision))
     struct = " ".join(f"{kind} {field};" for field in fields)
     typedef = f"typedef struct {{ {struct} }} body_constants_{precision.name};"

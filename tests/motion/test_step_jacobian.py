@@ -115,7 +115,7 @@ def test_the_step_is_the_same_with_its_jacobian(name: str) -> None:
 @pytest.mark.parametrize("name", thinned(["principal", "rigid_body", "heavy_top"], 2))
 def test_the_sensitivity_is_the_slope_by_what_the_rates_are_made_of(name: str) -> None:
     given, values = case(name)
-    constants = [c for q in given.rate.inputs if q.name == "constants" for c in q.components]
+    constants = [c for q in given.rate.inputs if q.role == "constants" for c in q.components]
     used = [c for c in constants if any(c in op.operands for op in given.rate.ops)]
     sensitive = replace(given, slopes=with_slopes(given.rate, [*given.names, *used]))
     assert worst(step_rk4_sensitivity(sensitive), step_rk4(without_slopes(given)), values) < EXACTLY

@@ -22,7 +22,7 @@ WIDTH = 96
 
 def comment(program: Program, figures: Sequence[Measurement]) -> str:
     """Return the comment block of ``program`` as C text."""
-    if program.name == "setup":
+    if program.makes("constants"):
         lines = _setup(program)
     else:
         lines = [program.says, *_arguments(program), *_postconditions(program)]
@@ -59,7 +59,7 @@ def _arguments(program: Program) -> list[str]:
 
 
 def _line(q: Quantity, bounds: str) -> str:
-    size = f"[{len(q.components)}]" if q.shape and q.name != "constants" else ""
+    size = f"[{len(q.components)}]" if q.shape and q.role != "constants" else ""
     frame = f"along {q.frame}" if q.frame in ("B", "xyz", "N") else q.frame
     return "  ".join(part for part in (f"{q.name}{size}", q.unit, frame, bounds, q.meaning) if part)
 

@@ -13,12 +13,12 @@ def example(library: Library, names: Names, precision: Precision) -> list[str]:
     """Return a few lines of C that use the first function."""
     program = library.printed()[0]
     lines = []
-    if any(q.name == "constants" for q in program.inputs):
+    if any(q.role == "constants" for q in program.inputs):
         given = ", ".join(literal(_middle(q), precision) for q in library.setup.inputs)
         call = f"{names.symbol('setup', precision)}({given}, &constants)"
         lines.append(f"{names.scene}_constants_{precision.name} constants;")
         lines.append(f"if ({call} != 0) {{ return 1; }}")
-    arrays = [q for q in program.inputs if q.shape and q.name != "constants"]
+    arrays = [q for q in program.inputs if q.shape and q.role != "constants"]
     if arrays:
         lines.append(
             " ".join(
@@ -45,6 +45,6 @@ def _values(q: Quantity, precision: Precision) -> str:
 
 
 def _passed(q: Quantity, precision: Precision) -> str:
-    if q.name == "constants":
+    if q.role == "constants":
         return "&constants"
     return q.name if q.shape else literal(_middle(q), precision)

@@ -26,7 +26,7 @@ class Names:
 
 def parameters(program: Program, scene: str, precision: Precision) -> list[str]:
     """Return the declared parameters of a function, inputs first, in call order."""
-    if program.name == "setup":
+    if program.makes("constants"):
         inputs = [f"{precision.scalar} {q.name}" for q in program.inputs]
         outputs = [f"{scene}_constants_{precision.name} *constants" for _ in program.outputs]
         return inputs + outputs
@@ -39,7 +39,7 @@ def parameters(program: Program, scene: str, precision: Precision) -> list[str]:
 
 
 def _given(q: Quantity, scene: str, precision: Precision) -> str:
-    if q.name == "constants":
+    if q.role == "constants":
         return f"const {scene}_constants_{precision.name} *constants"
     return (
         f"const {precision.scalar} {q.name}[{len(q.components)}]"
@@ -50,7 +50,7 @@ def _given(q: Quantity, scene: str, precision: Precision) -> str:
 
 def prototype(program: Program, names: Names, precision: Precision) -> str:
     """Return the declaration of a function without its semicolon."""
-    result = "int" if program.name == "setup" else "void"
+    result = "int" if program.makes("constants") else "void"
     arguments = parameters(program, names.scene, precision) or ["void"]
     return declaration(f"{result} {names.symbol(program.name, precision)}", arguments)
 

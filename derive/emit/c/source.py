@@ -122,14 +122,14 @@ def _header(
 def names_in(program: Program) -> set[str]:
     """Return the names that a function's declaration and the struct of constants hold."""
     every = (*program.inputs, *program.outputs)
-    members = {c for q in every if q.name == "constants" for c in q.components}
+    members = {c for q in every if q.role == "constants" for c in q.components}
     return members | {q.name for q in every}
 
 
 def _source(library: Library, names: Names, precision: Precision) -> str:
     has_setup = bool(library.constants)
     programs = [library.setup] if has_setup else []
-    pairs = pair_functions(p for p in (*programs, *library.printed()) if works_in_pairs(p))
+    pairs = pair_functions(p for p in (*programs, *library.printed()) if p.arithmetic == "pairs")
     return TEMPLATES.get_template("source.c.jinja").render(
         first_line=f"/* {first_line(library)}",
         header=names.file(precision, "h"),
@@ -160,11 +160,6 @@ def _definitions(library: Library, names: Names, precision: Precision) -> list[d
             text = _dense_definition(program, names, precision)
             found.append({"says": f"{program.says} Dense.", "definition": text})
     return found
-
-
-def works_in_pairs(program: Program) -> bool:
-    """Tell whether a program works on pairs of floats: set-up does, and accurate forms."""
-    return program.name == "setup" or program.arithmetic == "pairs"
 
 
 def _uses_math(library: Library) -> bool:

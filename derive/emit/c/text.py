@@ -16,7 +16,7 @@ def places(quantities: tuple[Quantity, ...]) -> dict[str, str]:
     found: dict[str, str] = {}
     for q in quantities:
         for i, name in enumerate(q.components):
-            if q.name == "constants":
+            if q.role == "constants":
                 found[name] = f"constants->{name}"
             else:
                 found[name] = f"{q.name}[{i}]" if q.shape else q.name
@@ -84,7 +84,7 @@ def table(name: str, values: Sequence[int]) -> list[str]:
 def _stores(program: Program, text: Callable[[Operand], str], precision: Precision) -> list[str]:
     """Return the stores; an input that is also a result is read first: outputs may lie over it."""
     slots = [slot for q in program.outputs for slot in _slots(q)]
-    arrays = {c for q in program.inputs if q.shape and q.name != "constants" for c in q.components}
+    arrays = {c for q in program.inputs if q.shape and q.role != "constants" for c in q.components}
     read = [r for r in dict.fromkeys(program.results) if r in arrays]
     loads = [f"const {precision.scalar} {name}_in = {text(name)};" for name in read]
     held = [f"{r}_in" if r in arrays else text(r) for r in program.results]
@@ -92,14 +92,14 @@ def _stores(program: Program, text: Callable[[Operand], str], precision: Precisi
 
 
 def _slots(q: Quantity) -> list[str]:
-    if q.name == "constants":
+    if q.role == "constants":
         return [f"constants->{name}" for name in q.components]
     return [f"{q.name}[{i}]" for i in range(len(q.components))] if q.shape else [f"*{q.name}"]
 
 
 def pair_body(program: Program, scene: str, precision: Precision) -> list[str]:
     """Return the lines of a program in pairs of floats: rounded once, at the end."""
-    place = places(program.inputs) if program.name != "setup" else _by_value(program)
+    place = places(program.inputs) if not program.makes("constants") else _by_value(program)
     pair = f"{scene}_pair_{precision.name}"
 
     def text(operand: Operand) -> str:

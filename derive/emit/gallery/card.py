@@ -86,7 +86,7 @@ def _equation(library: Library, program: Program) -> str:
 
 def _answer(library: Library, program: Program) -> str:
     """Return the first function's results at seven tenths of all ranges."""
-    given_to = [q for q in (*library.setup.inputs, *program.inputs) if q.name != "constants"]
+    given_to = [q for q in (*library.setup.inputs, *program.inputs) if q.role != "constants"]
     middle = {c: x for q in given_to for c, x in zip(q.components, _within(q), strict=True)}
     given = [middle[c] for q in library.setup.inputs for c in q.components]
     table, pairs = working(np.float64), extended(np.float64)

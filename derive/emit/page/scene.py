@@ -128,7 +128,7 @@ def _notes(library: Library, program: Program) -> list[str]:
 
 
 def _arguments(library: Library, program: Program) -> tuple[Argument, ...]:
-    given_ = [_argument(library, q, "given") for q in program.inputs if q.name != "constants"]
+    given_ = [_argument(library, q, "given") for q in program.inputs if q.role != "constants"]
     return (*given_, *(_argument(library, q, "returned") for q in program.outputs))
 
 

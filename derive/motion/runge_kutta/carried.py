@@ -24,7 +24,7 @@ def remainder(states: Sequence[Quantity]) -> Quantity:
     """Return the quantity that carries what rounding left of earlier steps: zeros at the start."""
     parts = tuple(f"remainder_{c}" for q in states for c in q.components)
     says = "what rounding left of earlier steps, zeros at the start"
-    return Quantity(REMAINDER, parts, (len(parts),), "", "", None, None, says)
+    return Quantity(REMAINDER, parts, (len(parts),), "", "", None, None, says, "remainder")
 
 
 def carried_on(system: System, start: Row, increments: Row, remainders: Row) -> tuple[Row, Row]:

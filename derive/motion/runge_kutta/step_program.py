@@ -68,7 +68,7 @@ def program_of(name: str, says: str, made: Traced) -> Program:
     Its inputs are constants, every state, the inputs that the rates use, and the step's length.
     """
     system, results = made.system, tuple[Operand, ...](n.operand for n in made.numbers)
-    constants = tuple(q for q in system.rate.inputs if q.name == "constants")
+    constants = tuple(q for q in system.rate.inputs if q.role == "constants")
     program = Program(
         name,
         says,

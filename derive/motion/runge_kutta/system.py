@@ -48,8 +48,9 @@ class System:
     @property
     def inputs(self) -> tuple[Quantity, ...]:
         """Return what the rates use besides constants and states, held while the step lasts."""
-        own = {q.name for q in self.states} | {"constants"}
-        return tuple(q for q in self.rate.inputs if q.name not in own)
+        own = {q.name for q in self.states}
+        given = (q for q in self.rate.inputs if q.role == "value")
+        return tuple(q for q in given if q.name not in own)
 
     @property
     def columns(self) -> tuple[str, ...]:

@@ -62,7 +62,7 @@ def _read(
     rate: Program, states: tuple[Quantity, ...], inputs: tuple[Quantity, ...]
 ) -> tuple[Quantity, ...]:
     """Return what a step reads: the constants, the state, and the inputs that its rate reads."""
-    constants = [q for q in rate.inputs if q.name == "constants"]
+    constants = [q for q in rate.inputs if q.role == "constants"]
     return (*constants, *states, *(q for q in inputs if q in rate.inputs))
 
 
