@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from derive.library.library import library
+from derive.lower.arrange.draft import Draft
 from derive.lower.expand import family
 from derive.lower.graph import Graph
 from derive.program.program import Line, Op, Operand, Program
@@ -117,6 +118,22 @@ def test_other_names_give_the_same_operations(name: str) -> None:
     second = library(parse_scene(disguised(load(name).text, name), name))
     pairs = zip((first.setup, *first.printed()), (second.setup, *second.printed()), strict=True)
     assert [one.name for one, other in pairs if shape(one) != shape(other)] == []
+
+
+@pytest.mark.parametrize("name", thinned(("unsymmetrical_rotor_in_carrier_axes", "gyrostat"), 2))
+def test_what_the_stages_are_called_does_not_matter(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without the letters before "_" no name tells which vector it belongs to."""
+    before, made = Draft.named, library_of(name)
+
+    def named(self: Draft, kind: str, called: str, *of: Any) -> Any:
+        return before(self, kind, called.replace("_", ""), *of)
+
+    monkeypatch.setattr(Draft, "named", named)
+    other = library(load(name))
+    pairs = zip((made.setup, *made.printed()), (other.setup, *other.printed()), strict=True)
+    assert [one.name for one, two in pairs if shape(one) != shape(two)] == []
 
 
 def test_names_that_begin_alike_are_no_vector() -> None:

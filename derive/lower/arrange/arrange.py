@@ -42,12 +42,15 @@ def _arranged(known: Specialised, fact: Truth, ways: Mapping[str, Way]) -> Arran
 
 
 def bindings_of(draft: Draft) -> Bindings:
-    """Return the lecture's bindings, the rates of free coordinates and a varying tensor named."""
+    """Return the lecture's bindings, the rates of free coordinates and a varying tensor named.
+
+    The tensor and its rate are one family: they are multiplied out together or not at all.
+    """
     bindings = dict(draft.known.bindings)
     bindings |= coordinate_rates(draft, bindings)
     if bindings["I"].free_symbols & varying(draft.known):
-        bindings["I"] = symmetric(draft, "I", bindings["I"])
-    bindings["I_dot"] = symmetric(draft, "I_dot", bindings["I_dot"])
+        bindings["I"] = symmetric(draft, "I", bindings["I"], "I")
+    bindings["I_dot"] = symmetric(draft, "I_dot", bindings["I_dot"], "I")
     return bindings
 
 

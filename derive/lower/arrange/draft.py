@@ -36,15 +36,18 @@ class Draft:
     known: Specialised
     stages: list[Stage]
 
-    def named(self, kind: str, name: str, value: Expr) -> Expr:
-        """Return a symbol for ``value``, unless it is plain already; ``name`` is no scene's."""
+    def named(self, kind: str, name: str, value: Expr, family: str = "") -> Expr:
+        """Return a symbol for ``value``, unless it is plain already; ``name`` is no scene's.
+
+        family : what it shares with others, such as the vector whose component it is
+        """
         if value.is_Symbol or value.is_Number or (-value).is_Symbol:
             return value
         symbol = Symbol(name, real=True)
         taken = {stage.symbol for stage in self.stages}
         while symbol in taken:
             symbol = Symbol(f"{symbol.name}'", real=True)
-        self.stages.append(Stage(kind, symbol, value, name.partition("_")[0]))
+        self.stages.append(Stage(kind, symbol, value, family))
         return symbol
 
     def column(self, kind: str, name: str, values: Matrix) -> Matrix:
@@ -53,15 +56,16 @@ class Draft:
         if values.shape == (3, 3):
             labels = [f"{name}_{a}{b}" for a in "xyz" for b in "xyz"]
         named = [
-            self.named(kind, label, value) for label, value in zip(labels, values, strict=True)
+            self.named(kind, label, value, name)
+            for label, value in zip(labels, values, strict=True)
         ]
         return Matrix(*values.shape, named)
 
 
-def symmetric(draft: Draft, name: str, tensor: Matrix) -> Matrix:
-    """Return a symmetric tensor with its six entries named."""
+def symmetric(draft: Draft, name: str, tensor: Matrix, family: str) -> Matrix:
+    """Return a symmetric tensor with its six entries named, all of one family."""
     upper = {
-        (i, k): draft.named("let", f"{name}_{'xyz'[i]}{'xyz'[k]}", tensor[i, k])
+        (i, k): draft.named("let", f"{name}_{'xyz'[i]}{'xyz'[k]}", tensor[i, k], family)
         for i in range(3)
         for k in range(i, 3)
     }
