@@ -150,10 +150,11 @@ class Answers:
         if name == "state_rate" and not self._states:
             raise SceneError("'state_rate' needs something free, and nothing is")
         if name == "accelerations":
-            free = [m.unknown for m in (*self.machine.coordinates, *self.machine.speeds) if m.free]
+            free = [m.answer for m in (*self.machine.coordinates, *self.machine.speeds) if m.free]
             if not free:
                 raise SceneError("'accelerations' needs a free coordinate or speed")
-            return {self._quantity(n): self._symbols(self._quantity(n)) for n in free}
+            named = map(self._quantity, dict.fromkeys(free))
+            return {q: list(self._symbols(q)) for q in named}
         if name == "state_rate":
             return {self._quantity(f"{q.name}_rate"): self._rates(q) for q in self._states}
         if name == "linearised":

@@ -1,6 +1,6 @@
 """What a machine's quantities are called: arguments, answers, and the data that nobody knows."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -10,6 +10,7 @@ from derive.mechanics.sheet import Sheet
 from derive.mechanics.vocabulary import ANY, Vocabulary
 from derive.program.program import Quantity
 from derive.scene import Input, Machine
+from derive.scene.declaration import Moving
 from derive.scene.formula import Formula
 from derive.scene.results import AXES, ENERGIES, groups
 from derive.scene.scalars import PER_SECOND
@@ -80,16 +81,12 @@ def _scalar(
     return Quantity(name, (name,), (), unit, "", low, high, says)
 
 
-def _of(entry: Input) -> Quantity:
+def _of(entry: Input | Moving) -> Quantity:
     return _scalar(entry.name, entry.unit, entry.low, entry.high, entry.meaning)
 
 
 def _states(machine: Machine) -> Iterator[Quantity]:
-    for m in (*machine.coordinates, *machine.speeds):
-        if m.state:
-            yield _scalar(m.name, m.unit, m.low, m.high, m.meaning)
-            if isinstance(m.rate, Input):
-                yield replace(_of(m.rate), meaning=m.rate.meaning or f"rate of {m.name}")
+    yield from _with_rates(m for m in (*machine.coordinates, *machine.speeds) if m.state)
     for frame in machine.frames:
         if frame.quaternion:
             name = attitude(frame.name)
@@ -104,12 +101,27 @@ def attitude(frame: str) -> str:
 
 
 def _inputs(machine: Machine) -> Iterator[Quantity]:
-    for m in machine.moving:
-        if not m.state:
-            yield _scalar(m.name, m.unit, m.low, m.high, m.meaning)
-            for rate in (m.rate, m.acceleration):
-                if isinstance(rate, Input):
-                    yield replace(_of(rate), meaning=rate.meaning or f"rate of {m.name}")
+    yield from _with_rates(m for m in machine.moving if not m.state)
+
+
+def _with_rates(moving: Iterable[Moving]) -> Iterator[Quantity]:
+    """Yield what moves, each with its rates that are inputs or states; components as one vector."""
+    found: dict[str, list[Quantity]] = {}
+    for m in moving:
+        found.setdefault(m.vector or m.name, []).append(_of(m))
+        for rate in m.given:
+            named = replace(_of(rate), meaning=rate.meaning or f"rate of {m.vector or m.name}")
+            found.setdefault(m.of_vector(rate.name), []).append(named)
+    for name, parts in found.items():
+        yield _joined(name, parts)
+
+
+def _joined(name: str, parts: Sequence[Quantity]) -> Quantity:
+    """Return the vector of some scalars, or the scalar that is alone."""
+    if len(parts) == 1:
+        return parts[0]
+    components = tuple(q.name for q in parts)
+    return replace(parts[0], name=name, components=components, shape=(len(parts),))
 
 
 def _outputs(machine: Machine) -> Iterator[Quantity]:
@@ -120,11 +132,16 @@ def _outputs(machine: Machine) -> Iterator[Quantity]:
         parts = tuple(f"{group}_{a}" for a in AXES)
         says = first.meaning.removesuffix(" along x")
         yield Quantity(group, parts, (3,), first.unit, "", None, None, says)
+    vectors: dict[str, list[Quantity]] = {}
     for m in (*machine.coordinates, *machine.speeds):
         if m.free:
             unit = PER_SECOND[m.unit]
             unit = PER_SECOND[unit] if m.kind == "coordinate" else unit
-            yield _scalar(m.unknown, unit, None, None, f"acceleration of {m.name}")
+            one = _scalar(m.unknown, unit, None, None, f"acceleration of {m.vector or m.name}")
+            yield one
+            if m.vector:
+                vectors.setdefault(m.answer, []).append(one)
+    yield from (_joined(vector, each) for vector, each in vectors.items())
     for q in _states(machine):
         own, parts = f"{q.name}_rate", tuple(f"{c}_rate" for c in q.components)
         unit = PER_SECOND.get(q.unit, f"{q.unit}/s").replace("rad/s^2/s", "rad/s^3")

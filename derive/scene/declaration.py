@@ -53,7 +53,8 @@ class Moving:
 
     Of an input no rate is known, of a free coordinate or speed the last rate is an unknown. A free
     coordinate without a rate is an angle of a single body, whose rate its angular velocity fixes.
-    A state is summed up from its rate: all that is free, and coordinates that a formula moves.
+    A state is summed up from its rate: all that is free, and coordinates that a formula moves. What
+    was declared with ``components`` says of which ``vector`` it is one.
     """
 
     name: str
@@ -66,11 +67,21 @@ class Moving:
     state: bool
     rate: Input | Formula | None
     acceleration: Input | Formula | None
+    vector: str = ""
 
     @property
     def unknown(self) -> str:
         """Return the name of its highest rate: x_ddot of a coordinate, u_dot of a speed."""
         return f"{self.name}_{'ddot' if self.kind == 'coordinate' else 'dot'}"
+
+    @property
+    def answer(self) -> str:
+        """Return what answers with its highest rate: that alone, or the vector that holds it."""
+        return self.of_vector(self.unknown)
+
+    def of_vector(self, rate: str) -> str:
+        """Return the rate of its vector that holds a rate of its own; the rate if it has none."""
+        return self.vector + rate.removeprefix(self.name) if self.vector else rate
 
     @property
     def given(self) -> tuple[Input, ...]:

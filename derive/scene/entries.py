@@ -13,6 +13,7 @@ MEANING = Entry("meaning", "text", "said wherever the name stands")
 RANGE = Entry("range", "range", "where the code is checked", default=REQUIRED)
 UNIT = Entry("unit", "text", "coherent SI, as `kg m^2`", default=REQUIRED)
 
+COMPONENTS = Entry("components", "names", "of a vector: `x` makes `NAME_x`")
 PARAMETER = (
     UNIT,
     Entry("range", "range", "of an argument of set-up; either this or `value`"),
@@ -25,6 +26,7 @@ SPEED = (
     MEANING,
     Entry("motion", "word", "if its rate is found or given", words=("free", "prescribed")),
     Entry("rate", "any", "prescribed: `{ range = [low, high] }`, an input `W_dot`, or 0"),
+    COMPONENTS,
 )
 COORDINATE = (
     Entry("unit", "text", "`rad` or `m`", default=REQUIRED),
@@ -35,8 +37,9 @@ COORDINATE = (
         "`{ range }`, an input `psi_dot` or the range of a free one; 0; a formula",
     ),
     Entry("acceleration", "any", "prescribed: `{ range }`, an input `psi_ddot`, or 0"),
+    COMPONENTS,
 )
-INPUT = (UNIT, RANGE, MEANING)
+INPUT = (UNIT, RANGE, MEANING, COMPONENTS)
 FRAME = (
     Entry("parent", "text", "the frame that carries it", default="inertial"),
     Entry("turned", "turns", "from the parent, each about the axes so far", scope="places"),

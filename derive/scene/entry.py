@@ -8,6 +8,7 @@ from typing import Any
 
 from derive.scene.declaration import Axis, Given, Parameter, SceneError, Turning
 from derive.scene.formula import Formula
+from derive.scene.names import label
 from derive.scene.numbers import positive
 from derive.scene.table import (
     Scope,
@@ -136,6 +137,15 @@ def _vector(one: _One) -> Given:
     return _bounds(one)
 
 
+def _names(one: _One) -> tuple[str, ...]:
+    """Return the names of the components of a vector."""
+    names = one.value if isinstance(one.value, list) else []
+    if not 2 <= len(names) <= MOST or len(set(map(str, names))) < len(names):
+        rule = "must be a list of different names such as ['x', 'y', 'z']"
+        raise SceneError(f"{one.label} {rule}, not {shown(one.value)}")
+    return tuple(label(text(name, one.label), f"a component in {one.label}") for name in names)
+
+
 READERS: Mapping[str, Callable[[_One], Any]] = {
     "formula": _One.formula,
     "formula above 0": lambda one: positive(one.formula(), one.label, one.by.parameters),
@@ -144,6 +154,7 @@ READERS: Mapping[str, Callable[[_One], Any]] = {
     "range": lambda one: interval(one.value, one.label),
     "number": lambda one: rational(one.value, one.label),
     "count": _count,
+    "names": _names,
     "text": lambda one: text(one.value, one.label),
     "word": lambda one: word(one.value, one.label, one.row.words),
     "frame": lambda one: word(one.value, one.label, one.by.names["frame"]),

@@ -88,8 +88,9 @@ def read_asked(
         if result.name in groups(unknowns):
             rule = f"is the vector of the unknowns '{result.name}_x' to '{result.name}_z' already"
             raise SceneError(f"result '{result.name}' needs another name: '{result.name}' {rule}")
+    vectors = (m.answer for m in scalars.moving if m.free and m.vector)
     known_ = [*FUNCTIONS, *OF_MACHINES, *groups(unknowns), *(u.name for u in unknowns),
-              *(r.name for r in results), *unknown_rates(scalars)]  # fmt: skip
+              *(r.name for r in results), *unknown_rates(scalars), *vectors]  # fmt: skip
     asked: dict[str, tuple[str, ...]] = {}
     for entry in value:
         name, answers = _entry(entry, known_)

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
 UNITS = {"coordinate": ("rad", "m"), "speed": ("rad/s", "m/s")}
 DIMENSIONS = {"coordinate": (NONE, LENGTH), "speed": (ANGULAR_VELOCITY, VELOCITY)}
+ROWS = {"coordinate": COORDINATE, "speed": SPEED, "input": INPUT}
 ARTICLE = {"parameter": "a", "coordinate": "a", "speed": "a", "input": "an"}
 PER_SECOND = {"rad": "rad/s", "m": "m/s", "rad/s": "rad/s^2", "m/s": "m/s^2"}
 
@@ -68,6 +69,11 @@ class Scalars:
             if m.free and m.kind != "input":
                 rates.append(m.unknown)
             found += [(name, f"the rate '{name}'") for name in rates]
+        vectors = dict.fromkeys((m.vector, m.kind) for m in self.moving if m.vector)
+        for name, kind in vectors:
+            found.append((name, f"the vector '{name}'"))
+            rates = [] if kind == "input" else [f"{name}_dot", f"{name}_ddot"]
+            found += [(rate, f"the rate of the vector '{name}'") for rate in rates]
         return found
 
     @property
@@ -121,17 +127,17 @@ class Scalars:
 def read_scalars(part: Mapping[str, Table]) -> Scalars:
     """Return the scalars declared in the tables parameters, coordinates, speeds and inputs."""
     parameters = tuple(_parameter(*entry) for entry in _entries(part["parameters"], "parameter"))
-    speeds = tuple(_speed(*entry) for entry in _entries(part["speeds"], "speed"))
-    inputs = tuple(_input(*entry) for entry in _entries(part["inputs"], "input"))
-    own = _entries(part["coordinates"], "coordinate")
+    speeds = tuple(_speed(*entry) for entry in _components(part["speeds"], "speed"))
+    inputs = tuple(_input(*entry) for entry in _components(part["inputs"], "input"))
+    own = _components(part["coordinates"], "coordinate")
     known = {"pi": NONE} | {p.name: dimension(p.unit) for p in parameters}
     known |= {s.name: dimension(s.unit) for s in speeds}
-    known |= {name: dimension(_spelling(given, "coordinate")) for name, given in own}
+    known |= {name: dimension(_spelling(given, "coordinate")) for name, given, _ in own}
     others = {f"{name}_dot": "a rate" for name in known if f"{name}_dot" not in known}
     others |= dict.fromkeys((m.name for m in inputs), "an input, whose rate is not known")
     scope = Scope(known, others, "only parameters, coordinates and speeds may stand here")
-    moved = {name for name, _ in own} | {s.name for s in speeds if s.free}
-    coordinates = tuple(_coordinate(name, given, scope, moved) for name, given in own)
+    moved = {name for name, *_ in own} | {s.name for s in speeds if s.free}
+    coordinates = tuple(_coordinate(*entry, scope, moved) for entry in own)
     return Scalars(parameters, coordinates, speeds, inputs)
 
 
@@ -168,6 +174,21 @@ def _entries(given: Table, kind: str) -> list[tuple[str, Table]]:
     ]
 
 
+def _components(given: Table, kind: str) -> list[tuple[str, Table, str]]:
+    """Return name and table of each scalar, and the vector that it is a component of."""
+    found = []
+    for name, one in _entries(given, kind):
+        if "components" not in one.entries:
+            found.append((name, one, ""))
+            continue
+        parts = entries_of(one, ROWS[kind], Reading())["components"]
+        alone = {key: value for key, value in one.entries.items() if key != "components"}
+        for part in parts:
+            own = identifier(f"{name}_{part}", f"{ARTICLE[kind]} {kind}")
+            found.append((own, Table(f"{kind} '{own}'", alone), name))
+    return found
+
+
 def _parameter(name: str, given: Table) -> Parameter:
     said = entries_of(given, PARAMETER, Reading())
     unit_of(given)
@@ -178,7 +199,7 @@ def _parameter(name: str, given: Table) -> Parameter:
 
 
 def _spelling(given: Table, kind: str) -> str:
-    entries_of(given, COORDINATE if kind == "coordinate" else SPEED, Reading())
+    entries_of(given, ROWS[kind], Reading())
     found = unit_of(given)
     for spelling, known in zip(UNITS[kind], DIMENSIONS[kind], strict=True):
         if found == known:
@@ -192,7 +213,9 @@ def _free(said: Mapping[str, Any], key: str) -> bool:
     return said[key] is None if said["motion"] is None else said["motion"] == "free"
 
 
-def _coordinate(name: str, given: Table, scope: Scope, moved: AbstractSet[str]) -> Moving:
+def _coordinate(
+    name: str, given: Table, vector: str, scope: Scope, moved: AbstractSet[str]
+) -> Moving:
     said = entries_of(given, COORDINATE, Reading())
     spelling = _spelling(given, "coordinate")
     rate, own = said["rate"], PER_SECOND[spelling]
@@ -216,11 +239,12 @@ def _coordinate(name: str, given: Table, scope: Scope, moved: AbstractSet[str]) 
             raise SceneError(f"{given.label}: its acceleration follows from the rate '{made}'")
     by_moved = isinstance(made, Formula) and not moved.isdisjoint(symbols(made))
     state = free or (said["motion"] or ("free" if by_moved else "")) == "free"
-    return _moving(name, spelling, said, "coordinate", (free, state), (made, second))
+    return _moving(name, vector, spelling, said, "coordinate", (free, state), (made, second))
 
 
 def _moving(
     name: str,
+    vector: str,
     unit: str,
     said: Mapping[str, Any],
     kind: Literal["coordinate", "speed", "input"],
@@ -228,7 +252,8 @@ def _moving(
     rates_: tuple[Input | Formula | None, Input | Formula | None],
 ) -> Moving:
     low, high = said["range"]
-    return Moving(name, unit, low, high, said["meaning"] or "", kind, *free_and_state, *rates_)
+    says = said["meaning"] or ""
+    return Moving(name, unit, low, high, says, kind, *free_and_state, *rates_, vector)
 
 
 def _rate(name: str, given: Table, value: object, scope: Scope, unit: str) -> Input | Formula:
@@ -253,7 +278,7 @@ def _given_rate(name: str, given: Table, key: str, value: object, dots: str, uni
     return Input(f"{name}_{dots}", unit, low, high, said["meaning"] or "")
 
 
-def _speed(name: str, given: Table) -> Moving:
+def _speed(name: str, given: Table, vector: str) -> Moving:
     said = entries_of(given, SPEED, Reading())
     spelling, value = _spelling(given, "speed"), said["rate"]
     free = _free(said, "rate")
@@ -269,13 +294,13 @@ def _speed(name: str, given: Table) -> Moving:
             found = "" if value is None else f", not {shown(value)}"
             rule = "needs rate = { range = [low, high] } or rate = 0"
             raise SceneError(f"{given.label} {rule}{found}")
-    return _moving(name, spelling, said, "speed", (free, free), (rate, None))
+    return _moving(name, vector, spelling, said, "speed", (free, free), (rate, None))
 
 
-def _input(name: str, given: Table) -> Moving:
+def _input(name: str, given: Table, vector: str) -> Moving:
     said = entries_of(given, INPUT, Reading())
     unit_of(given)
-    return _moving(name, said["unit"], said, "input", (False, False), (None, None))
+    return _moving(name, vector, said["unit"], said, "input", (False, False), (None, None))
 
 
 def rates(scalars: Scalars) -> dict[str, Dimension]:
