@@ -123,6 +123,10 @@ def _numbers(left: Formula, right: Formula) -> bool:
     return left.operator == right.operator == "number"
 
 
+PI = Fraction(
+    "3.14159265358979323846264338327950288419716939937510"
+    "58209749445923078164062862089986280348253421170679"
+)
 ZERO = Formula("number")
 ONE = Formula("number", number=Fraction(1))
 
@@ -164,12 +168,14 @@ def evaluate(formula: Formula, values: Mapping[str, Any], arithmetic: Arithmetic
     """Return the formula's value; ``arithmetic`` maps each operator, and "number", to a function.
 
     "number" takes the exact fraction, "power" the base and an int. ``FLOATS`` is one arithmetic.
+    The symbol pi is that number to a hundred digits, if the values hold none that is better.
 
     >>> evaluate(symbol("x") ** 2 - number(1), {"x": 1.5}, FLOATS)
     1.25
     """
     if formula.operator == "symbol":
-        return values[formula.name]
+        known = formula.name in values or formula.name != "pi"
+        return values[formula.name] if known else arithmetic["number"](PI)
     if formula.operator == "number":
         return arithmetic["number"](formula.number)
     parts = [evaluate(part, values, arithmetic) for part in formula.operands]
