@@ -59,10 +59,10 @@ def graphed(known: Known) -> Graphed:
 def arranged(scene: Graphed, base: str) -> Arranged:
     """Return what the lecture says of a function, in the cheapest way to compute it."""
     fact = truth_of(scene.known, base)
-    ways = [_lowered(scene, fact, way) for way in _ways(scene.known, fact)]
-    if len(ways) == 1:
-        return ways[0]
-    return min(ways, key=lambda way: cost(scene.graph, _best(scene.graph, way)))
+    found = [_lowered(scene, fact, way) for way in ways(scene.known, fact)]
+    if len(found) == 1:
+        return found[0]
+    return min(found, key=lambda way: cost(scene.graph, _best(scene.graph, way)))
 
 
 def function(scene: Graphed, wanted: Arranged, name: str) -> Program:
@@ -72,7 +72,8 @@ def function(scene: Graphed, wanted: Arranged, name: str) -> Program:
     return _with_jacobian(scene, wanted, name)
 
 
-def _ways(known: Known, fact: Truth) -> tuple[Arrangement, ...]:
+def ways(known: Known, fact: Truth) -> tuple[Arrangement, ...]:
+    """Return the ways to compute a wanted function: in which order, with what named in between."""
     return plan.arrange(known, fact) if isinstance(known, Mechanism) else arrange(known, fact)
 
 
