@@ -97,10 +97,8 @@ def _with_jacobian(scene: Graphed, wanted: Arranged, name: str) -> Program:
     column_names = [c for q in columns for c in q.components]
     pattern, nonzeros = compressed(rows, row_names, column_names)
     if not nonzeros:
-        raise SceneError(
-            f"scene '{scene.known.scene.name}': wanted '{fact.name}{JACOBIAN}' must have entries, "
-            "but nothing that varies changes it"
-        )
+        rule = "must have entries, but nothing that varies changes it"
+        raise SceneError(f"wanted '{fact.name}{JACOBIAN}' {rule}")
     program = _program(scene, fact, [*values, *nonzeros])
     return replace(
         program,

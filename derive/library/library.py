@@ -66,8 +66,6 @@ def library(scene: Scene | Machine) -> Library:
     try:
         return _library(scene)
     except SceneError as error:
-        if str(error).startswith("scene '"):
-            raise
         raise SceneError(f"scene '{scene.name}': {error}") from None
 
 

@@ -110,10 +110,8 @@ def _runge_kutta(setting: Setting, name: str) -> Program:
     _check_quaternions(setting, name, len(system.quaternions))
     program = _STEP_PROGRAMS[name](system)
     if program.sparsity and not any(pattern.row for pattern in program.sparsity.values()):
-        raise SceneError(
-            f"scene '{setting.known.scene.name}': wanted '{name}' must have entries, "
-            "but nothing that it is a derivative by changes the step"
-        )
+        rule = "must have entries, but nothing that it is a derivative by changes the step"
+        raise SceneError(f"wanted '{name}' {rule}")
     program = replace(
         program,
         inputs=used_inputs(program.inputs, program.ops, program.results),
@@ -128,13 +126,12 @@ def _looped(setting: Setting, name: str) -> bool:
 
 def _check_quaternions(setting: Setting, name: str, count: int) -> None:
     """Refuse a machine's step that knows of another number of quaternions than the state has."""
-    scene = setting.known.scene
     if name.endswith("_tangent") and count != 1:
         rule = f"is over the errors of one quaternion, and the state has {count}"
-        raise SceneError(f"scene '{scene.name}': '{name}' {rule}")
+        raise SceneError(f"'{name}' {rule}")
     if _looped(setting, name) and count > 1:
         rule = f"emission = 'compact' is for one quaternion at most, and the state has {count}"
-        raise SceneError(f"scene '{scene.name}': '{name}': {rule}")
+        raise SceneError(f"'{name}': {rule}")
 
 
 def _time_step(setting: Setting) -> Quantity:

@@ -111,13 +111,9 @@ def truth(known: Mechanism, base: str) -> Truth:
     """Return what the lecture says of a wanted function: named quantities, balances, answers."""
     try:
         known.lean(base)
-    except SceneError as error:
-        raise SceneError(f"scene '{known.scene.name}': {error}") from None
     except ZeroDivisionError:
         rule = "must change at a finite rate where all that varies is 0, as the root of a square"
-        raise SceneError(
-            f"scene '{known.scene.name}': what '{base}' rests on {rule} does not"
-        ) from None
+        raise SceneError(f"what '{base}' rests on {rule} does not") from None
     question = substituted(known.question(base), dict.fromkeys(known.made.hidden, Integer(1)))
     unknowns: list[Symbol] = [*question.definitions, *question.unknowns]
     residuals: list[Expr] = [value - s for s, value in question.definitions.items()]

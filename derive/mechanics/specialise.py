@@ -83,7 +83,7 @@ def _force(scene: Scene, words: Vocabulary) -> Matrix:
 def _moving_point(scene: Scene, words: Vocabulary) -> dict[str, Any]:
     given, centre = scene.point.acceleration, scene.body.centre
     if centre is None or given is None:
-        raise SceneError(f"scene '{scene.name}': point 'moving' needs body.centre")
+        raise SceneError("point 'moving' needs body.centre")
     own = Matrix([words.expression(f) for f in centre])
     a_A = given_vector(given, "point_acceleration", words)
     return {"rho_G": rotation(words, scene.body.turned) * own, "a_A": a_A}

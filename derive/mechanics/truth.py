@@ -81,10 +81,8 @@ def _moment(known: Specialised) -> Truth:
 
 def _kinetic_energy(known: Specialised) -> Truth:
     if known.scene.point.kind == "moving":
-        raise SceneError(
-            f"scene '{known.scene.name}': kinetic_energy needs a fixed point or the mass centre, "
-            "not 'moving'"
-        )
+        rule = "needs a fixed point or the mass centre, not 'moving'"
+        raise SceneError(f"kinetic_energy {rule}")
     step = "koenig" if "velocity" in known.words else "kinetic_energy_about_point"
     energy: Expr = stated(step, known.bindings)
     steps: tuple[str, ...] = (step,)
@@ -128,10 +126,7 @@ def _balance(known: Specialised) -> tuple[list[Symbol], list[Expr], list[str]]:
 
 def _needs_free_motion(known: Specialised, wanted: str) -> None:
     if "omega_dot" not in known.words:
-        raise SceneError(
-            f"scene '{known.scene.name}': {wanted} needs a free motion, "
-            "but every rate is prescribed"
-        )
+        raise SceneError(f"{wanted} needs a free motion, but every rate is prescribed")
 
 
 def _closure(known: Specialised) -> tuple[list[Symbol], list[Expr], list[str]]:
@@ -141,10 +136,8 @@ def _closure(known: Specialised) -> tuple[list[Symbol], list[Expr], list[str]]:
         return [], [], []
     rates = list(known.words.column("coordinate_rates"))
     if len(rates) != 3:
-        raise SceneError(
-            f"scene '{known.scene.name}': omega fixes the rates of three free coordinates, "
-            f"found {len(rates)}"
-        )
+        rule = f"fixes the rates of three free coordinates, found {len(rates)}"
+        raise SceneError(f"omega {rule}")
     return rates, list(closure), ["angular_velocities_add"]
 
 
