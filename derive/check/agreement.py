@@ -16,7 +16,6 @@ import numpy as np
 
 from derive.check.emitted import Emitted, inputs
 from derive.check.verdict import JUDGED, Outcome, Verdict
-from derive.motion.runge_kutta.compact import Compact
 from derive.program.arithmetic import LIBM, Table, working
 from derive.program.largest import largest
 from derive.program.program import Program
@@ -158,7 +157,7 @@ def casadi_bits(emitted: Emitted, module: Any, each: Sequence[Sample]) -> Iterat
         )
     for program in library.printed():
         built = _built(module, program)
-        if isinstance(program.loops, Compact):
+        if program.unrolled is not None:
             says = "the C has loops and rounds elsewhere; CasADi's is the unrolled step"
             yield _verdict(emitted, program, "CasADi's bits", "skipped", says)
             continue

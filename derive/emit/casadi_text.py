@@ -7,14 +7,12 @@ import numpy as np
 
 from derive.emit.c.comment import told
 from derive.emit.c.scope import declared_in_python, require_free
-from derive.emit.c.series import series_casadi
 from derive.emit.c.source import first_line
 from derive.emit.c.text import pair_functions
+from derive.emit.casadi_loops import loops_python
 from derive.emit.operators import in_casadi
 from derive.emit.templates import TEMPLATES
 from derive.library.library import Library
-from derive.motion.runge_kutta.compact import Compact
-from derive.motion.taylor.series import Series
 from derive.program.arithmetic import pair_of, rounded
 from derive.program.pair_sine import quarter_turn, series
 from derive.program.precision import F64
@@ -73,9 +71,18 @@ def _pairs(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
 
 def _written(lines: Sequence[Line], one: Callable[[Op], str], text: Text, select: str) -> list[str]:
     """Return the Python lines of operations and loops; a loop is unrolled where it is built."""
+
+    def inner(body: Sequence[Line]) -> list[str]:
+        return _written(body, one, text, select)
+
     found: list[str] = []
     for line in lines:
-        found += _loop(line, one, text, select) if isinstance(line, Repeat) else [one(line)]
+        if isinstance(line, Op):
+            found.append(one(line))
+        elif isinstance(line, Repeat):
+            found += _loop(line, one, text, select)
+        else:
+            found += loops_python(line, text, inner)
     return found
 
 
@@ -137,7 +144,8 @@ def _components(quantities: tuple[Quantity, ...]) -> list[str]:
 def plain_lines(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
     """Return the lines of a program in the working precision, and how to read a result."""
 
-    text, kept = _read(place), _to_keep(program.ops)
+    numbers = {n: repr(float(q[F64.bits])) for n, q in program.numbers.items()}
+    text, kept = _read(place | numbers), _to_keep(program.ops)
 
     def one(op: Op) -> str:
         value = _operation(op, text)
@@ -167,13 +175,9 @@ def _read(place: dict[str, str]) -> Text:
 
 
 def _function(program: Program, scene: str) -> dict[str, object]:
-    if isinstance(program.loops, Compact):
-        program = program.loops.unrolled  # CasADi has no loops to save memory with
+    program = program.unrolled or program  # CasADi has no loops to save memory with
     place = {c: f"{q.name}[{i}]" for q in program.inputs for i, c in enumerate(q.components)}
-    if isinstance(program.loops, Series):
-        lines, text = series_casadi(program.loops, _operation), _read(place)
-    else:
-        lines, text = (_pairs if program.arithmetic == "pairs" else plain_lines)(program, place)
+    lines, text = (_pairs if program.arithmetic == "pairs" else plain_lines)(program, place)
     lines, ends = _ends(program, lines, text, place)
     given = [q.name for q in program.inputs]
     require_free(scene, program.name, given, declared_in_python(lines))

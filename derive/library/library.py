@@ -14,8 +14,6 @@ from derive.lower.stage import Constant, Traced, Tried, in_pairs, setup, with_lo
 from derive.lower.wording import formula
 from derive.mechanics.mechanism import Known, in_terms
 from derive.mechanics.truth import Truth
-from derive.motion.runge_kutta.compact import Compact
-from derive.motion.taylor.series import Series
 from derive.program.program import Program, Quantity, read_by
 from derive.program.tape import Tape, free_prefix
 from derive.scene import Machine, Scene, SceneError
@@ -154,13 +152,8 @@ def _in_parameters(made: Program, functions: Sequence[Program]) -> tuple[Program
 
 def _with_inputs(program: Program, more: tuple[Quantity, ...]) -> Program:
     """Return a program that is given ``more`` before its other inputs."""
-    inputs, loops = (*more, *program.inputs), program.loops
-    if isinstance(loops, Series):
-        loops = replace(loops, inputs=inputs)
-    elif isinstance(loops, Compact):
-        rate, unrolled = (_with_inputs(p, more) for p in (loops.rate, loops.unrolled))
-        loops = replace(loops, rate=rate, unrolled=unrolled)
-    return replace(program, inputs=inputs, loops=loops)
+    unrolled = None if program.unrolled is None else _with_inputs(program.unrolled, more)
+    return replace(program, inputs=(*more, *program.inputs), unrolled=unrolled)
 
 
 def _reads(program: Program, names: set[str]) -> bool:

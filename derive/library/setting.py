@@ -9,7 +9,8 @@ from derive.lower.lower import value_of
 from derive.lower.stage import Traced, exact_number, hot, used_inputs
 from derive.mechanics.mechanism import Known, Mechanism, single
 from derive.motion.exact.inertia import Inertia, as_symmetric
-from derive.program.program import Program, renamed
+from derive.program.program import Program
+from derive.program.recorded import renamed
 from derive.program.tape import Number, Tape, free_prefix, number
 from derive.scene.wanted import SPLITTINGS, step_of
 

@@ -20,6 +20,7 @@ from derive.motion.runge_kutta.carried import remainder
 from derive.motion.runge_kutta.compact import compact
 from derive.motion.runge_kutta.system import System, next_of
 from derive.motion.splitting.splitting import step_split, step_split_compensated
+from derive.motion.taylor.series import in_loops
 from derive.motion.taylor.taylor import taylor_step
 from derive.program.program import Operand, Program, Quantity
 from derive.program.recorded import called, needed
@@ -86,7 +87,7 @@ def _taylor(setting: Setting, order: int) -> Program:
     words, rate = setting.known.words, setting.rates["state_rate"]
     step = _time_step(setting)
     series = taylor_step(rate, words.states, words.inputs, order, step)
-    return replace(series.signature, loops=series, assumptions=rate.assumptions)
+    return replace(in_loops(series), assumptions=rate.assumptions)
 
 
 _STEP_PROGRAMS: Mapping[str, Callable[[System], Program]] = {

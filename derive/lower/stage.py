@@ -23,9 +23,8 @@ from derive.program.program import (
     Sparsity,
     every_op,
     operands_of,
-    renamed,
 )
-from derive.program.recorded import needed
+from derive.program.recorded import needed, renamed
 from derive.program.tape import free_prefix
 
 

@@ -5,11 +5,21 @@ is the name of an earlier value or an exact number.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, Literal, Protocol
+from types import MappingProxyType
+from typing import Any, Literal
 
 from derive.program.arithmetic import FLOPS
+from derive.program.indexed import (
+    Even,
+    Indexed,
+    Integers,
+    Loop,
+    names_in,
+    operators_in,
+    run_indexed,
+)
 
 Operand = str | Fraction
 
@@ -97,23 +107,7 @@ class Repeat:
     passes: int
 
 
-Line = Op | Repeat
-
-
-class Loops(Protocol):
-    """Operations on arrays in loops over their places: what ``Program.ops`` cannot say."""
-
-    def count(self) -> dict[str, int]:
-        """Return how often each operator is used."""
-
-    def flops(self) -> int:
-        """Return the number of + - * / in the operations."""
-
-    def operands(self) -> set[str]:
-        """Return the names that the operations refer to."""
-
-    def run(self, arithmetic: Table, known: dict[str, Any]) -> list[Any]:
-        """Return the results in an arithmetic, from the inputs by name."""
+Line = Op | Repeat | Indexed
 
 
 @dataclass(frozen=True)
@@ -144,9 +138,10 @@ class Program:
     ``results`` are the values of the outputs' components in order; ``sparsity`` gives the pattern
     of an output that holds the nonzeros of a matrix; ``rules`` are what ``ops`` find out about
     the inputs of set-up. ``singular`` are the places that comments warn of. In ``arithmetic``
-    "pairs" every operation works on pairs of floats, and results are rounded once. With ``loops``
-    there are no ``ops``. ``free`` is what the slopes of an exact flow rest on (``flows.exact``),
-    ``slopes`` a program with the same values, by operations that may be differentiated.
+    "pairs" every operation works on pairs of floats, and results are rounded once. ``free`` is what
+    the slopes of an exact flow rest on (``flows.exact``), ``slopes`` a program with the same
+    values, by operations that may be differentiated; ``unrolled`` one without loops over arrays.
+    ``numbers`` are those that rest on the precision, by its bits: of a float, and of all else.
     """
 
     name: str
@@ -160,10 +155,11 @@ class Program:
     sparsity: Mapping[str, Sparsity] | None = None
     rules: tuple[Rule, ...] = ()
     arithmetic: Literal["working", "pairs"] = "working"
-    loops: Loops | None = None
     singular: tuple[Singular, ...] = ()
     free: tuple[Operand, ...] = ()
     slopes: "Program | None" = None
+    unrolled: "Program | None" = None
+    numbers: Mapping[str, Mapping[int, Fraction]] = field(default_factory=dict)
 
     def makes(self, role: Role) -> bool:
         """Tell whether it is the function that makes what others read: constants, or a plan."""
@@ -171,36 +167,64 @@ class Program:
 
     def count(self) -> dict[str, int]:
         """Return how often each operator is used at most, every pass of a loop counted."""
-        if self.loops is not None:
-            return self.loops.count()
         found: dict[str, int] = {}
-        for op, times in every_op(self.ops):
-            found[op.operator] = found.get(op.operator, 0) + times
+        for operator, times in _uses(self.ops, {}, {}):
+            found[operator] = found.get(operator, 0) + times
         return dict(sorted(found.items()))
 
     def flops(self) -> int:
         """Return the number of + - * / in the operations, every pass of a loop counted."""
-        if self.loops is not None:
-            return self.loops.flops()
-        return sum(times for op, times in every_op(self.ops) if op.operator in FLOPS)
+        return sum(times for operator, times in self.count().items() if operator in FLOPS)
+
+    @property
+    def has_arrays(self) -> bool:
+        """Tell whether there are loops over places of arrays."""
+        return any(isinstance(line, Loop) for line in self.ops)
+
+
+def _uses(
+    lines: Sequence[Line], at: Mapping[str, int], tables: dict[str, Any]
+) -> Iterator[tuple[str, int]]:
+    """Yield each use of an operator with how often it is made at most."""
+    for line in lines:
+        match line:
+            case Op() | Repeat():
+                yield from ((op.operator, times) for op, times in every_op((line,)))
+            case Loop() | Even():
+                for turn in line.turns(at, tables):
+                    yield from _uses(line.body, {**at, **turn}, tables)
+            case Integers():
+                tables[line.name] = line.values
+            case _:
+                yield from ((operator, 1) for operator in operators_in(line))
 
 
 def every_op(lines: Sequence[Line]) -> Iterator[tuple[Op, int]]:
-    """Yield each operation with how often it is run at most."""
+    """Yield each operation with how often it is run at most; of a loop over arrays, in a turn."""
     for line in lines:
         if isinstance(line, Repeat):
             yield from ((op, line.passes) for op in line.ops)
-        else:
+        elif isinstance(line, Op):
             yield line, 1
+        elif isinstance(line, Loop | Even):
+            yield from every_op(line.body)
 
 
 def operands_of(lines: Sequence[Line], results: Sequence[Operand] = ()) -> set[str]:
     """Return the names that operations, loops and results refer to."""
-    found: set[Operand] = {operand for op, _ in every_op(lines) for operand in op.operands}
+    found: set[Operand] = set(results)
     for line in lines:
-        if isinstance(line, Repeat):
-            found |= {*line.start, *line.then} | ({line.done} if line.done is not None else set())
-    return {operand for operand in found | set(results) if isinstance(operand, str)}
+        match line:
+            case Op():
+                found |= {*line.operands}
+            case Repeat():
+                found |= {*line.start, *line.then, *operands_of(line.ops)}
+                found |= set() if line.done is None else {line.done}
+            case Loop() | Even():
+                found |= operands_of(line.body)
+            case _:
+                found |= names_in(line)
+    return {operand for operand in found if isinstance(operand, str)}
 
 
 def component_names(program: Program) -> list[str]:
@@ -210,31 +234,7 @@ def component_names(program: Program) -> list[str]:
 
 def read_by(program: Program) -> set[str]:
     """Return the names that a program's operations and results refer to."""
-    inside = program.loops.operands() if program.loops is not None else set()
-    return operands_of(program.ops, program.results) | inside
-
-
-def renamed(lines: Sequence[Line], names: Mapping[str, Operand]) -> tuple[Line, ...]:
-    """Return the lines with operands called by their new ``names``; results keep theirs."""
-
-    def new(operands: Sequence[Operand]) -> tuple[Operand, ...]:
-        return tuple(names.get(o, o) if isinstance(o, str) else o for o in operands)
-
-    def one(op: Op) -> Op:
-        return Op(op.result, op.operator, new(op.operands))
-
-    return tuple(
-        one(line)
-        if isinstance(line, Op)
-        else replace(
-            line,
-            start=new(line.start),
-            ops=tuple(map(one, line.ops)),
-            then=new(line.then),
-            done=None if line.done is None else new((line.done,))[0],
-        )
-        for line in lines
-    )
+    return operands_of(program.ops, program.results)
 
 
 def run(program: Program, arithmetic: Table, values: Sequence[Any]) -> list[Any]:
@@ -244,21 +244,37 @@ def run(program: Program, arithmetic: Table, values: Sequence[Any]) -> list[Any]
     and "number" for constants, to a callable; loops need its "select" and "either".
     """
     names = [name for quantity in program.inputs for name in quantity.components]
-    known = dict(zip(names, values, strict=True))
-
-    if program.loops is not None:
-        return program.loops.run(arithmetic, known)
+    known = dict(zip(names, values, strict=True)) | numbers_of(program, arithmetic)
     run_lines(program.ops, arithmetic, known)
     return values_of(program.results, arithmetic, known)
 
 
-def run_lines(lines: Sequence[Line], arithmetic: Table, known: dict[str, Any]) -> None:
-    """Add the values that operations and loops give to what is known by name."""
+def numbers_of(program: Program, arithmetic: Table) -> dict[str, Any]:
+    """Return the numbers of a program that rest on the precision of the arithmetic, by name."""
+    if not program.numbers:
+        return {}
+    unit = arithmetic["unit_roundoff"]()
+    bits = 24 if float(unit[0] if isinstance(unit, tuple) else unit) == 2.0**-24 else 53
+    return {name: arithmetic["number"](q[bits]) for name, q in program.numbers.items()}
+
+
+def run_lines(
+    lines: Sequence[Line],
+    arithmetic: Table,
+    known: dict[str, Any],
+    at: Mapping[str, int] = MappingProxyType({}),
+) -> None:
+    """Add the values that operations and loops give to what is known by name.
+
+    at : the counters of the loops over arrays that the lines stand in
+    """
     for line in lines:
-        if isinstance(line, Repeat):
+        if isinstance(line, Op):
+            _operate((line,), arithmetic, known)
+        elif isinstance(line, Repeat):
             _repeat(line, arithmetic, known)
         else:
-            _operate((line,), arithmetic, known)
+            run_indexed(line, arithmetic, known, at, run_lines)
 
 
 def values_of(

@@ -1,8 +1,11 @@
 """What is recorded whole: a loop, another program; and what of it the results rest on."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
+from typing import Any
 
+from derive.program.indexed import Assign, Even, Loop, Row, Term
 from derive.program.program import Line, Op, Operand, Program, Repeat
 from derive.program.tape import Number, Tape, number, operation, seen_from
 from derive.scene.functions import PLAIN
@@ -54,7 +57,7 @@ def needed(ops: Sequence[Line], results: Sequence[Operand]) -> tuple[Line, ...]:
             if line.result in wanted:
                 kept.append(line)
                 wanted |= {o for o in line.operands if isinstance(o, str)}
-        elif wanted & set(line.carried):
+        elif isinstance(line, Repeat) and wanted & set(line.carried):
             loop = _needed_loop(line)
             kept.append(loop)
             every = [*loop.start, *loop.then, *(o for op in loop.ops for o in op.operands)]
@@ -90,3 +93,32 @@ def called(tape: Tape, program: Program, values: Mapping[str, Number]) -> list[N
             *map(value, op.operands)
         )
     return [value(result) for result in program.results]
+
+
+def renamed(lines: Sequence[Line], names: Mapping[str, Operand]) -> tuple[Line, ...]:
+    """Return the lines with operands called by their new ``names``; results keep theirs."""
+
+    def new(operands: Sequence[Operand]) -> tuple[Operand, ...]:
+        return tuple(names.get(o, o) if isinstance(o, str) else o for o in operands)
+
+    def one(line: Any) -> Any:
+        match line:
+            case Op():
+                return Op(line.result, line.operator, new(line.operands))
+            case Repeat():
+                done = None if line.done is None else new((line.done,))[0]
+                start, then, ops = new(line.start), new(line.then), tuple(map(one, line.ops))
+                return replace(line, start=start, ops=ops, then=then, done=done)
+            case Loop() | Even():
+                return replace(line, body=tuple(map(one, line.body)))
+            case Assign():
+                return replace(line, value=one(line.value))
+            case Row():
+                return replace(line, values=new(line.values))
+            case Term():
+                return replace(line, operands=tuple(map(one, line.operands)))
+            case str():
+                return names.get(line, line)
+        return line
+
+    return tuple(map(one, lines))

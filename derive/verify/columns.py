@@ -14,7 +14,17 @@ from numpy.typing import NDArray
 
 from derive.program.arithmetic import LIBM, extended, working
 from derive.program.pairs import Pair
-from derive.program.program import Line, Program, component_names, operands_of, run_lines, values_of
+from derive.program.program import (
+    Line,
+    Op,
+    Program,
+    Repeat,
+    component_names,
+    numbers_of,
+    operands_of,
+    run_lines,
+    values_of,
+)
 from derive.verify.operators import IN_DOUBLES, UNROUNDED, pair_sines
 
 Table = dict[str, Callable[..., Any]]
@@ -43,23 +53,23 @@ def planned(program: Program) -> Plan:
     kept = operands_of((), program.results)
     spent: list[list[str]] = [[] for _ in program.ops]
     for name, place in last.items():
-        if name not in kept:
+        if name not in kept and "[" not in name:  # loops find places of arrays by counters
             spent[place].append(name)
     return Plan(program, tuple(map(tuple, spent)))
 
 
 def _names(line: Line) -> set[str]:
     own = operands_of((line,))
-    own |= {line.result} if hasattr(line, "result") else {*line.carried}
-    return own
+    if isinstance(line, Op):
+        own.add(line.result)
+    return own | {*line.carried} if isinstance(line, Repeat) else own
 
 
 def in_columns(plan: Plan, table: Table, known: Mapping[str, Any]) -> list[Any]:
     """Return the results of a program by component, from the columns of its inputs by name."""
     program = plan.program
     own = {c: known[c] for q in program.inputs for c in q.components}
-    if program.loops is not None:
-        return program.loops.run(table, own)
+    own |= numbers_of(program, table)
     for line, spent in zip(program.ops, plan.spent, strict=True):
         run_lines((line,), table, own)
         for name in spent:

@@ -66,7 +66,7 @@ def _numbers(program: Program) -> tuple[Any, ...]:
     """Return what of a program its numbers depend on: all but its words."""
     ends = [[(q.name, q.components, q.low, q.high) for q in given]
             for given in (program.inputs, program.outputs)]  # fmt: skip
-    work = (program.ops, program.results, program.loops, program.sparsity, program.arithmetic)
+    work = (program.ops, program.results, program.numbers, program.sparsity, program.arithmetic)
     return (program.name, *ends, *work)
 
 

@@ -2527,6 +2527,16 @@ def _step_taylor():
     attitude = ca.SX.sym("attitude", 4)
     omega = ca.SX.sym("omega", 3)
     time_step = ca.SX.sym("time_step", 1)
+    attitude_w_terms = [None] * 21
+    attitude_x_terms = [None] * 21
+    attitude_y_terms = [None] * 21
+    attitude_z_terms = [None] * 21
+    omega_x_terms = [None] * 21
+    omega_y_terms = [None] * 21
+    omega_z_terms = [None] * 21
+    t0_terms = [None] * 20
+    t2_terms = [None] * 20
+    t5_terms = [None] * 20
     t0 = omega[0] * 0.5
     t1 = attitude[1] * t0
     t2 = omega[1] * 0.5
@@ -2568,18 +2578,15 @@ def _step_taylor():
     t38 = -t37
     t39 = omega[0] * omega[1]
     t40 = t39 * constants[7]
-    attitude_w_terms = [None, time_step * t8]
-    attitude_x_terms = [None, time_step * t13]
-    attitude_y_terms = [None, time_step * t18]
-    attitude_z_terms = [None, time_step * t23]
-    omega_x_terms = [None, time_step * t30]
-    omega_y_terms = [None, time_step * t38]
-    omega_z_terms = [None, time_step * t40]
-    t0_terms = [None]
-    t2_terms = [None]
-    t5_terms = [None]
+    attitude_w_terms[1] = time_step[0] * t8
+    attitude_x_terms[1] = time_step[0] * t13
+    attitude_y_terms[1] = time_step[0] * t18
+    attitude_z_terms[1] = time_step[0] * t23
+    omega_x_terms[1] = time_step[0] * t30
+    omega_y_terms[1] = time_step[0] * t38
+    omega_z_terms[1] = time_step[0] * t40
     for k in range(1, 20):
-        step_over_k_plus_1, order_k, one_over_k = time_step / (k + 1.0), float(k), 1.0 / k
+        step_over_k_plus_1 = time_step[0] / float(k + 1)
         attitude_w_k = attitude_w_terms[k]
         attitude_x_k = attitude_x_terms[k]
         attitude_y_k = attitude_y_terms[k]
@@ -2693,16 +2700,16 @@ def _step_taylor():
         t23_part4 = t23_part3 + t23_end3
         t23_part5 = t23_part4 - t23_end4
         t23_k = t23_part5 - t23_end5
-        t0_terms.append(t0_k)
-        t2_terms.append(t2_k)
-        t5_terms.append(t5_k)
-        attitude_w_terms.append(step_over_k_plus_1 * t8_k)
-        attitude_x_terms.append(step_over_k_plus_1 * t13_k)
-        attitude_y_terms.append(step_over_k_plus_1 * t18_k)
-        attitude_z_terms.append(step_over_k_plus_1 * t23_k)
-        omega_x_terms.append(step_over_k_plus_1 * t30_k)
-        omega_y_terms.append(step_over_k_plus_1 * t38_k)
-        omega_z_terms.append(step_over_k_plus_1 * t40_k)
+        t0_terms[k] = t0_k
+        t2_terms[k] = t2_k
+        t5_terms[k] = t5_k
+        attitude_w_terms[k + 1] = step_over_k_plus_1 * t8_k
+        attitude_x_terms[k + 1] = step_over_k_plus_1 * t13_k
+        attitude_y_terms[k + 1] = step_over_k_plus_1 * t18_k
+        attitude_z_terms[k + 1] = step_over_k_plus_1 * t23_k
+        omega_x_terms[k + 1] = step_over_k_plus_1 * t30_k
+        omega_y_terms[k + 1] = step_over_k_plus_1 * t38_k
+        omega_z_terms[k + 1] = step_over_k_plus_1 * t40_k
     attitude_w_sum = attitude_w_terms[20]
     attitude_x_sum = attitude_x_terms[20]
     attitude_y_sum = attitude_y_terms[20]

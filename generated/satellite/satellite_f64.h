@@ -254,7 +254,7 @@ void satellite_step_split_f64(const satellite_constants_f64 *constants, const do
  * Error: median 0.19, largest 2.3 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
- * Cost: 2054 add, 1258 sub, 3476 mul, 22 div, 20 neg, 9 sqrt, 28 abs, 3 less, 3 select.
+ * Cost: 2396 add, 916 sub, 3476 mul, 22 div, 20 neg, 9 sqrt, 28 abs, 3 less, 3 select.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

@@ -327,7 +327,7 @@ void tumbling_body_step_lie_f32(const tumbling_body_constants_f32 *constants,
  * Error: median 0.19, largest 1.4 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
- * Cost: 2052 add, 1257 sub, 3416 mul, 22 div, 1 neg, 9 sqrt, 28 abs, 3 less, 3 select.
+ * Cost: 2394 add, 915 sub, 3416 mul, 22 div, 1 neg, 9 sqrt, 28 abs, 3 less, 3 select.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

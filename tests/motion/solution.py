@@ -2,16 +2,17 @@
 
 import math
 import operator
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
 from random import Random
+from typing import Any
 
 import flint
 
-from derive.motion.taylor.series import Series, run_series, series_terms
+from derive.motion.taylor.series import Series, in_loops
 from derive.motion.taylor.taylor import taylor_step
-from derive.program.program import Program, Quantity, run
+from derive.program.program import Program, Quantity, run, run_lines
 from tests.made import library_of
 from tests.motion.rates import BODY, body, everything, hanging, no_moment
 
@@ -73,6 +74,24 @@ def picard(
         rates = run(rate, series, [now[c] for c in given])
         now |= {x: start[x] + f.integral() for x, f in zip(states, rates, strict=True)}
     return {x: [now[x][k] for k in range(order + 1)] for x in states}
+
+
+def run_series(
+    step: Series, table: Mapping[str, Callable[..., Any]], values: Sequence[Any], bits: int
+) -> list[Any]:
+    """Return what a step gives in an arithmetic, its length proposed for a precision."""
+    return run(in_loops(step), {**table, "unit_roundoff": lambda: 2.0**-bits}, values)
+
+
+def series_terms(
+    step: Series, table: Mapping[str, Callable[..., Any]], values: Sequence[Any]
+) -> dict[str, list[Any]]:
+    """Return the terms of the states that move; place k is order k."""
+    names = [c for q in step.inputs for c in q.components]
+    known = dict(zip(names, values, strict=True))
+    run_lines([line for line in in_loops(step).ops if line not in step.close], table, known)
+    orders = range(1, step.order + 1)
+    return {x: [known[x], *(known[f"{x}_terms[{k}]"] for k in orders)] for x in step.rates}
 
 
 def state_names(step: Series) -> list[str]:

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from derive.check.compiler import CompilerError, compiled, find_compiler
-from derive.emit.c.compact import compact_c
 from derive.emit.c.signature import Names, prototype
 from derive.emit.c.source import CONTRACTION_OFF
-from derive.motion.runge_kutta.compact import Compact, compact
+from derive.emit.c.text import body
+from derive.motion.runge_kutta.compact import compact
 from derive.motion.runge_kutta.steps import (
     step_rk4,
     step_rk4_jacobian,
@@ -78,10 +78,10 @@ def test_rounding_in_loops_is_as_small(name: str, dtype: type) -> None:
 
 def c_source(program: Program, precision: Precision) -> str:
     """Return a file with one function: the struct of constants, and the step in loops."""
-    assert isinstance(program.loops, Compact)
+    assert program.has_arrays
     kind, head = precision.scalar, prototype(program, Names("body"), precision)
     fields = [c for q in program.inputs if q.role == "constants" for c in q.components]
-    lines = "\n".join(f"    {line}" for line in compact_c(program.loops, program, precision))
+    lines = "\n".join(f"    {line}" for line in body(program, precision))
     struct = " ".join(f"{kind} {field};" for field in fields)
     typedef = f"typedef struct {{ {struct} }} body_constants_{precision.name};"
     return f"{CONTRACTION_OFF}\n#include <math.h>\n{typedef}\n{head};\n{head}\n{{\n{lines}\n}}\n"

@@ -12,7 +12,7 @@ import flint
 import numpy as np
 import pytest
 
-from derive.motion.taylor.series import Series, run_series
+from derive.motion.taylor.series import Series
 from derive.motion.taylor.taylor import taylor_step
 from derive.program.arithmetic import working
 from derive.program.program import Op, Program
@@ -28,6 +28,7 @@ from tests.motion.solution import (
     catalogued,
     handmade,
     largest,
+    run_series,
     truncation,
 )
 

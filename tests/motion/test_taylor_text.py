@@ -10,22 +10,23 @@ import numpy as np
 import pytest
 
 from derive.check.compiler import CompilerError, compiled, find_compiler
-from derive.emit.c.series import casadi_results, series_c, series_casadi
 from derive.emit.c.signature import Names, prototype
 from derive.emit.c.source import CONTRACTION_OFF
-from derive.emit.casadi_text import _operation
-from derive.motion.taylor.series import Series, run_series
+from derive.emit.c.text import body
+from derive.emit.casadi_text import plain_lines
+from derive.motion.taylor.series import Series, in_loops
 from derive.program.arithmetic import working
 from derive.program.precision import F32, F64, Precision
 from tests.made import thinned
 from tests.motion.solution import (
     handmade,
+    run_series,
 )
 
 
 def c_source(step: Series, precision: Precision) -> str:
-    head = prototype(step.signature, Names("body"), precision)
-    lines = "\n".join(f"    {line}" for line in series_c(step, precision))
+    head = prototype(in_loops(step), Names("body"), precision)
+    lines = "\n".join(f"    {line}" for line in body(in_loops(step), precision))
     return f"{CONTRACTION_OFF}\n#include <math.h>\n{head};\n{head}\n{{\n{lines}\n}}\n"
 
 
@@ -75,8 +76,11 @@ def test_casadi_gives_the_bits_of_numpy_and_stays_small(name: str) -> None:
         known = {q.name: ca.SX.sym(q.name, len(q.components)) for q in step.inputs}
         inputs = list(known.values())
         space: dict[str, Any] = {"ca": ca, **known}
-        exec("\n".join(series_casadi(step, _operation)), space)  # noqa: S102
-        results = [eval(text, space) for text in casadi_results(step)]  # noqa: S307
+        program = in_loops(step)
+        place = {c: f"{q.name}[{i}]" for q in step.inputs for i, c in enumerate(q.components)}
+        lines, text = plain_lines(program, place)
+        exec("\n".join(lines), space)  # noqa: S102
+        results = [eval(text(r), space) for r in program.results]  # noqa: S307
         built = ca.Function("step", inputs, [ca.vertcat(*results)])
     finally:
         ca.GlobalOptions.setSimplificationOnTheFly(before)

@@ -3,12 +3,11 @@
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 
+from derive.emit.c.loops import loops_c
 from derive.emit.operators import WRITTEN, in_c, literal
 from derive.program.arithmetic import TRUTHS, pair_of
 from derive.program.precision import Precision
 from derive.program.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
-
-UNSIGNED_CHAR = 255
 
 
 def places(quantities: tuple[Quantity, ...]) -> dict[str, str]:
@@ -26,6 +25,7 @@ def places(quantities: tuple[Quantity, ...]) -> dict[str, str]:
 def body(program: Program, precision: Precision) -> list[str]:
     """Return the lines between the braces of a hot function."""
     place = places(program.inputs)
+    place |= {n: literal(q[precision.bits], precision) for n, q in program.numbers.items()}
 
     def text(operand: Operand) -> str:
         if isinstance(operand, Fraction):
@@ -38,16 +38,32 @@ def body(program: Program, precision: Precision) -> list[str]:
             f"const {kind} {op.result} = {in_c(op.operator, [*map(text, op.operands)], precision)};"
         )
 
-    return [*written(program.ops, one, text, precision.scalar), *_stores(program, text, precision)]
+    return [*written(program.ops, one, text, precision), *_stores(program, text, precision)]
 
 
 def written(
-    lines: Sequence[Line], one: Callable[[Op], str], text: Callable[[Operand], str], kind: str
+    lines: Sequence[Line],
+    one: Callable[[Op], str],
+    text: Callable[[Operand], str],
+    precision: Precision,
+    kind: str = "",
 ) -> list[str]:
-    """Return the C lines of operations and loops; ``one`` writes an operation."""
+    """Return the C lines of operations and loops; ``one`` writes an operation.
+
+    kind : the type of what a loop carries, if it is not the precision's
+    """
+
+    def inner(body: Sequence[Line]) -> list[str]:
+        return written(body, one, text, precision, kind)
+
     found: list[str] = []
     for line in lines:
-        found += _loop(line, one, text, kind) if isinstance(line, Repeat) else [one(line)]
+        if isinstance(line, Op):
+            found.append(one(line))
+        elif isinstance(line, Repeat):
+            found += _loop(line, one, text, kind or precision.scalar)
+        else:
+            found += loops_c(line, text, precision, inner)
     return found
 
 
@@ -69,18 +85,6 @@ def _loop(
     return [*begin, head, *(f"    {line}" for line in inner), "}"]
 
 
-def table(name: str, values: Sequence[int]) -> list[str]:
-    """Return the lines of a constant table, in the smallest type that holds its numbers."""
-    kind = "unsigned char" if max(values) <= UNSIGNED_CHAR else "unsigned short"
-    lines, line = [f"static const {kind} {name}[{len(values)}] = {{"], ""
-    for value in values:
-        if len(line) > 80:
-            lines.append(f"    {line.rstrip()}")
-            line = ""
-        line += f"{value}, "
-    return [*lines, f"    {line.rstrip(', ')}", "};"]
-
-
 def _stores(program: Program, text: Callable[[Operand], str], precision: Precision) -> list[str]:
     """Return the stores; an input that is also a result is read first: outputs may lie over it."""
     slots = [slot for q in program.outputs for slot in _slots(q)]
@@ -88,7 +92,8 @@ def _stores(program: Program, text: Callable[[Operand], str], precision: Precisi
     read = [r for r in dict.fromkeys(program.results) if r in arrays]
     loads = [f"const {precision.scalar} {name}_in = {text(name)};" for name in read]
     held = [f"{r}_in" if r in arrays else text(r) for r in program.results]
-    return [*loads, *(f"{slot} = {value};" for slot, value in zip(slots, held, strict=True))]
+    stored = [pair for pair in zip(slots, held, strict=True) if pair[0] != pair[1]]
+    return [*loads, *(f"{slot} = {value};" for slot, value in stored)]
 
 
 def _slots(q: Quantity) -> list[str]:
@@ -117,7 +122,7 @@ def pair_body(program: Program, scene: str, precision: Precision) -> list[str]:
         symbol = f"{scene}_{op.operator}_{precision.name}"
         return f"const {kind} {op.result} = {symbol}({', '.join(operands)});"
 
-    lines = written(program.ops, one, text, pair)
+    lines = written(program.ops, one, text, precision, pair)
 
     def stored(operand: Operand) -> str:
         if isinstance(operand, str) and operand not in place:

@@ -93,7 +93,7 @@ def _answer(library: Library, program: Program) -> str:
     made = run(library.setup, pairs, paired(np.array(given, float)))
     names = [c for q in library.setup.outputs for c in q.components]
     known = middle | {n: r[0] for n, r in zip(names, made, strict=True)}
-    if program.arithmetic == "pairs" or program.loops is not None:
+    if program.arithmetic == "pairs" or program.has_arrays:
         return ""
     results = run(program, table, [known[c] for q in program.inputs for c in q.components])
     outputs = [(c, q.unit) for q in program.outputs for c in q.components][:3]

@@ -4,22 +4,29 @@ Rates and the nonzeros of their Jacobian are worked out in one place, four times
 of derivatives after the other is carried forward through the stages, by a table of the pattern.
 """
 
-from __future__ import annotations
-
-from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
-from typing import Any
 
 from derive.motion.runge_kutta.system import System, pattern_of
-from derive.program.arithmetic import FLOPS
-from derive.program.program import Op, Program, Sparsity, operands_of, run
+from derive.program.indexed import (
+    Arrays,
+    Assign,
+    Element,
+    Index,
+    Integers,
+    Loop,
+    Row,
+    Same,
+    Term,
+    Value,
+)
+from derive.program.program import Line, Operand, Program, Sparsity
+from derive.program.recorded import renamed
 
 WEIGHTS = (1, 2, 2, 1)
 SIXTH = Fraction(1, 6)
-Arithmetic = Mapping[str, Callable[..., Any]]
+ZERO, ONE = Fraction(0), Fraction(1)
 
 
 @dataclass(frozen=True)
@@ -34,49 +41,6 @@ class Columns:
     first: int
 
 
-@dataclass(frozen=True)
-class Compact:
-    """A step in loops.
-
-    names    : the components of all states
-    rate     : program of the rates, and of the nonzeros of their Jacobian if there are ``columns``
-    attitude : where the quaternion stands among the states, None if there is none
-    unrolled : the same step without loops, for what has none
-    """
-
-    names: tuple[str, ...]
-    rate: Program
-    columns: Columns | None
-    attitude: int | None
-    unrolled: Program
-
-    def count(self) -> dict[str, int]:
-        """Return how often each operator is used."""
-        return dict(sorted(_uses(self).items()))
-
-    def flops(self) -> int:
-        """Return the number of + - * / in the operations."""
-        return sum(times for operator, times in _uses(self).items() if operator in FLOPS)
-
-    def operands(self) -> set[str]:
-        """Return the names that the operations refer to."""
-        return operands_of(self.rate.ops, self.rate.results) | {*self.names, "time_step"}
-
-    def run(self, arithmetic: Arithmetic, known: dict[str, Any]) -> list[Any]:
-        """Return the results in an arithmetic, from the inputs by name: as the C does it."""
-        now = _Run(self, arithmetic, known)
-        stages, after = now.stages()
-        columns = self.columns
-        if columns is None:
-            return after
-        found, ends = list(after), columns.step.colind
-        for k in range(len(columns.step.columns)):
-            moved = now.column(columns, columns.first + k, stages)
-            moved = now.on_the_sphere(moved, after)
-            found += [moved[i] for i in columns.step.row[ends[k] : ends[k + 1]]]
-        return found
-
-
 def compact(system: System, step: Program) -> Program:
     """Return ``step``, a classic step of ``system``, in loops; of a tangent space as it is."""
     columns, rate = None, system.rate
@@ -87,118 +51,146 @@ def compact(system: System, step: Program) -> Program:
         columns = Columns(pattern_of(system), own, system.columns.index(own.columns[0]))
         rate = system.slopes or rate
     starts = [place.start for place in system.quaternions]
-    loops = Compact(system.names, rate, columns, starts[0] if starts else None, step)
-    results = tuple(c for q in step.outputs for c in q.components)
-    return replace(step, ops=(), results=results, loops=loops)
+    attitude = range(starts[0], starts[0] + 4) if starts else None
+    lines = (
+        *_stages(system.names, rate, columns, step),
+        *(_unit(attitude) if attitude else ()),
+        *(_columns(len(system.names), columns, attitude) if columns else ()),
+    )
+    ends = [f"after[{k}]" for k in range(len(system.names))]
+    entries = [f"jacobian[{k}]" for k in range(len(columns.step.row) if columns else 0)]
+    return replace(step, ops=lines, results=(*ends, *entries), unrolled=step)
 
 
-def _uses(loops: Compact) -> Counter[str]:
-    """Return how often each operator is used, as ``run`` and the C do it."""
-    n, columns = len(loops.names), loops.columns
-    found = Counter({"mul": 2 + 9 * n, "add": 9 * n})
-    for op in loops.rate.ops:
-        if isinstance(op, Op):
-            found[op.operator] += len(WEIGHTS)
-    if loops.attitude is not None:
-        found.update({"mul": 8, "add": 4, "div": 1, "sqrt": 1})
-    if columns is None:
-        return found
-    each = 4 * len(columns.rates.row) + 9 * n
-    each_on_sphere = Counter({"mul": 12, "add": 4, "sub": 4} if loops.attitude is not None else {})
-    for _ in columns.step.columns:
-        found.update({"mul": each, "add": each})
-        found.update(each_on_sphere)
-    return found
+def _at(array: str, *counters: str) -> Element:
+    return Element(array, tuple(Index(counter) for counter in counters))
 
 
-@dataclass
-class _Run:
-    """A run of a step: its loops, what operators mean, what is known by name."""
+def _times(a: Value, b: Value) -> Term:
+    return Term("mul", (a, b))
 
-    loops: Compact
-    table: Arithmetic
-    known: dict[str, Any]
-    scale: Any = None
 
-    def add(self, a: Any, b: Any) -> Any:
-        return self.table["add"](a, b)
+def _plus(a: Value, b: Value) -> Term:
+    return Term("add", (a, b))
 
-    def mul(self, a: Any, b: Any) -> Any:
-        return self.table["mul"](a, b)
 
-    def number(self, q: Fraction | int) -> Any:
-        return self.table["number"](Fraction(q))
+def _each(counter: str, places: range, *body: Line) -> Loop:
+    return Loop(counter, Index(plus=places.start), Index(plus=places.stop), body)
 
-    @cached_property
-    def parts(self) -> list[Any]:
-        """Return the parts of the step that the stages lead over, then the sixth of it."""
-        h = self.known["time_step"]
-        half = self.mul(self.number(Fraction(1, 2)), h)
-        return [half, half, h, h, self.mul(self.number(SIXTH), h)]
 
-    def stages(self) -> tuple[list[list[Any]], list[Any]]:
-        """Return the nonzeros of the Jacobians at the stages, and the state after the step."""
-        names, slopes = self.loops.names, list[list[Any]]()
-        start = [self.known[name] for name in names]
+def _stages(
+    names: Sequence[str], rate: Program, columns: Columns | None, step: Program
+) -> Iterator[Line]:
+    """Yield what works out the state after the step, before its attitude has length one."""
+    states = range(len(names))
+    if columns is not None:
+        yield Integers("rates_colind", columns.rates.colind)
+        yield Integers("rates_row", columns.rates.row)
+        yield Integers("step_colind", columns.step.colind)
+        yield Integers("step_row", columns.step.row)
+    yield Row("weights", tuple(map(Fraction, WEIGHTS)))
+    yield Assign("half", _times(Fraction(1, 2), "time_step"), makes="constant")
+    yield Assign("sixth", _times(SIXTH, "time_step"), makes="constant")
+    yield Row("parts", ("half", "half", "time_step", "time_step"))
+    yield Arrays(tuple((name, (len(names),)) for name in ("start", "now", "after", "rates")))
+    if columns is not None:
+        yield Arrays((("slopes", (len(WEIGHTS), len(columns.rates.row))),))
+    yield from (Assign(f"start[{k}]", name) for k, name in enumerate(names))
+    yield _each(
+        "i", states, Assign(_at("now", "i"), _at("start", "i")), Assign(_at("after", "i"), ZERO)
+    )
+    here, change = _at("after", "i"), _at("rates", "i")
+    yield _each(
+        "stage",
+        range(len(WEIGHTS)),
+        *_rates(names, rate, step),
+        _each(
+            "i",
+            states,
+            Assign(here, _times(_at("weights", "stage"), change), "add"),
+            Assign(
+                _at("now", "i"), _plus(_at("start", "i"), _times(_at("parts", "stage"), change))
+            ),
+        ),
+    )
+    yield _each("i", states, Assign(here, _plus(_at("start", "i"), _times("sixth", here))))
 
-        def rates(_: int, state: Sequence[Any]) -> list[Any]:
-            given = self.known | dict(zip(names, state, strict=True))
-            inputs = [given[c] for q in self.loops.rate.inputs for c in q.components]
-            found = run(self.loops.rate, self.table, inputs)
-            slopes.append(found[len(names) :])
-            return found[: len(names)]
 
-        after = self._through(start, rates)
-        return slopes, self._unit(after)
+def _rates(names: Sequence[str], rate: Program, step: Program) -> Iterator[Line]:
+    """Yield what works out the rates at ``now``, and the nonzeros of their Jacobian."""
+    now = {name: f"now[{k}]" for k, name in enumerate(names)}
+    arrays = {c for q in step.inputs if q.shape and q.role != "constants" for c in q.components}
+    yield from renamed(rate.ops, now)
+    held = {r: f"{r}_in" for r in rate.results if isinstance(r, str) and r in arrays | set(now)}
+    yield from (Assign(own, now.get(r, r), makes="constant") for r, own in held.items())
 
-    def column(self, columns: Columns, place: int, slopes: Sequence[Sequence[Any]]) -> list[Any]:
-        """Return the derivatives by one of the rates' columns, before the attitude's length."""
-        n, pattern = len(self.loops.names), columns.rates
-        unit = [self.number(int(i == place)) for i in range(len(pattern.columns))]
+    def result(r: Operand) -> Operand:
+        return held.get(r, r) if isinstance(r, str) else r
 
-        def change(stage: int, moved: Sequence[Any]) -> list[Any]:
-            found = [self.number(0)] * n
-            every = [*moved, *unit[n:]]
-            for entry, (i, k) in zip(slopes[stage], pattern.places(), strict=True):
-                found[i] = self.add(found[i], self.mul(entry, every[k]))
-            return found
+    for k, r in enumerate(rate.results):
+        place = Element("slopes", (Index("stage"), Index(plus=k - len(names))))
+        yield Assign(f"rates[{k}]" if k < len(names) else place, result(r))
 
-        return self._through(unit[:n], change)
 
-    def _through(
-        self, start: Sequence[Any], rates: Callable[[int, Sequence[Any]], list[Any]]
-    ) -> list[Any]:
-        """Return what ``start`` becomes: start + (k1 + 2 k2 + 2 k3 + k4) h / 6."""
-        *parts, sixth = self.parts
-        now, total = list(start), [self.number(0)] * len(start)
-        for stage, part in enumerate(parts):
-            found, weight = rates(stage, now), self.number(WEIGHTS[stage])
-            total = [self.add(t, self.mul(weight, k)) for t, k in zip(total, found, strict=True)]
-            now = [self.add(y, self.mul(part, k)) for y, k in zip(start, found, strict=True)]
-        return [self.add(y, self.mul(sixth, t)) for y, t in zip(start, total, strict=True)]
+def _unit(attitude: range) -> Iterator[Line]:
+    """Yield what makes the attitude of length one."""
+    q = _at("after", "i")
+    yield Assign("squared", ZERO, makes="variable")
+    yield _each("i", attitude, Assign("squared", _times(q, q), "add"))
+    yield Assign("scale", Term("div", (ONE, Term("sqrt", ("squared",)))), makes="constant")
+    yield _each("i", attitude, Assign(q, _times(q, "scale")))
 
-    def _unit(self, after: list[Any]) -> list[Any]:
-        """Return the state with its attitude made of length one."""
-        place = self.loops.attitude
-        if place is None:
-            return after
-        q = after[place : place + 4]
-        self.scale = self.table["div"](self.number(1), self.table["sqrt"](self._dot(q, q)))
-        return [*after[:place], *(self.mul(x, self.scale) for x in q), *after[place + 4 :]]
 
-    def on_the_sphere(self, moved: list[Any], after: Sequence[Any]) -> list[Any]:
-        """Return derivatives without what would change the attitude's length."""
-        place = self.loops.attitude
-        if place is None:
-            return moved
-        q = after[place : place + 4]
-        d = [self.mul(x, self.scale) for x in moved[place : place + 4]]
-        along = self._dot(q, d)
-        d = [self.table["sub"](x, self.mul(y, along)) for x, y in zip(d, q, strict=True)]
-        return [*moved[:place], *d, *moved[place + 4 :]]
+def _columns(n: int, columns: Columns, attitude: range | None) -> Iterator[Line]:
+    """Yield the loop over the columns of derivatives."""
+    every, first = len(columns.rates.columns), columns.first
+    own, place = Same(Index("i"), Index("column")), Index("column", -first)
+    states, total, change = range(n), _at("total", "i"), _at("change", "i")
+    product = _times(_at("slopes", "stage", "entry"), _at("moved", "k"))
+    row = Element("change", (Index("entry", table="rates_row"),))
+    entries = Loop(
+        "entry",
+        Index("k", table="rates_colind"),
+        Index("k", 1, "rates_colind"),
+        (Assign(row, product, "add"),),
+    )
+    stage = (
+        _each("i", states, Assign(change, ZERO)),
+        _each("k", range(every), entries),
+        _each(
+            "i",
+            states,
+            Assign(total, _times(_at("weights", "stage"), change), "add"),
+            Assign(_at("moved", "i"), _plus(own, _times(_at("parts", "stage"), change))),
+        ),
+    )
+    stored = Element("total", (Index("entry", table="step_row"),))
+    yield _each(
+        "column",
+        range(first, first + len(columns.step.columns)),
+        Arrays((("moved", (every,)), ("change", (n,)), ("total", (n,)))),
+        _each("i", range(every), Assign(_at("moved", "i"), own)),
+        _each("i", states, Assign(total, ZERO)),
+        _each("stage", range(len(WEIGHTS)), *stage),
+        _each("i", states, Assign(total, _plus(own, _times("sixth", total)))),
+        *(_on_the_sphere(attitude) if attitude else ()),
+        Loop(
+            "entry",
+            Index(place.counter, place.plus, "step_colind"),
+            Index(place.counter, place.plus + 1, "step_colind"),
+            (Assign(_at("jacobian", "entry"), stored),),
+        ),
+    )
 
-    def _dot(self, a: Sequence[Any], b: Sequence[Any]) -> Any:
-        total = self.number(0)
-        for x, y in zip(a, b, strict=True):
-            total = self.add(total, self.mul(x, y))
-        return total
+
+def _on_the_sphere(attitude: range) -> Iterator[Line]:
+    """Yield what takes from a column what would change the attitude's length."""
+    q, total = _at("after", "i"), _at("total", "i")
+    yield Assign("along", ZERO, makes="variable")
+    yield _each(
+        "i",
+        attitude,
+        Assign(total, _times(total, "scale")),
+        Assign("along", _times(q, total), "add"),
+    )
+    yield _each("i", attitude, Assign(total, _times(q, "along"), "sub"))
