@@ -12,9 +12,10 @@ from derive.lower.arrange.draft import Arrangement
 from derive.lower.forms import Block, best_values, best_with_jacobian, cost
 from derive.lower.graph import Graph, Value
 from derive.lower.lower import lower
-from derive.lower.stage import Constants, compressed, hot, used_inputs
+from derive.lower.stage import Constants, hot, used_inputs
 from derive.mechanics.mechanism import Known, Mechanism, truth_of
 from derive.mechanics.truth import Truth
+from derive.program.pattern import compressed
 from derive.program.program import Program, Quantity, Sparsity
 from derive.scene import SceneError
 from derive.scene.wanted import JACOBIAN, SENSITIVITY, base_of
@@ -95,7 +96,7 @@ def _with_jacobian(scene: Graphed, wanted: Arranged, name: str) -> Program:
     values, rows = _differentiated(scene, wanted, columns)
     row_names = [c for q in fact.outputs for c in q.components]
     column_names = [c for q in columns for c in q.components]
-    pattern, nonzeros = compressed(rows, row_names, column_names)
+    pattern, nonzeros = compressed(rows, row_names, column_names, lambda v: not v[0])
     if not nonzeros:
         rule = "must have entries, but nothing that varies changes it"
         raise SceneError(f"wanted '{fact.name}{JACOBIAN}' {rule}")

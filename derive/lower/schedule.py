@@ -7,6 +7,7 @@ from derive.lower.share import halve, orient, share_products, share_sums
 from derive.lower.table import Signed, Table, enter
 from derive.lower.write import Writer, shared_reciprocals
 from derive.program.program import Op, Operand
+from derive.program.tape import Tape
 
 
 def schedule(
@@ -54,10 +55,10 @@ def _written(
     constant: Callable[[Value], Operand],
     prefix: str,
 ) -> tuple[tuple[Op, ...], tuple[Operand, ...]]:
-    writer = Writer(table, constant, prefix)
+    writer = Writer(table, constant, Tape(prefix))
     shared_reciprocals(table, writer)
     operands = [
         constant(value) if result is None else writer.signed(result)
         for value, result in zip(outputs, results, strict=True)
     ]
-    return tuple(writer.ops), tuple(operands)
+    return tuple(op for op in writer.tape.ops if isinstance(op, Op)), tuple(operands)

@@ -20,7 +20,6 @@ from derive.program.program import (
     Program,
     Quantity,
     Rule,
-    Sparsity,
     every_op,
     operands_of,
 )
@@ -210,17 +209,3 @@ def used_inputs(
     """Return the quantities of which some component is used: inputs follow from use."""
     used = operands_of(ops, results)
     return tuple(q for q in quantities if used & set(q.components))
-
-
-def compressed(
-    rows: Sequence[Sequence[Value]], row_names: Sequence[str], column_names: Sequence[str]
-) -> tuple[Sparsity, list[Value]]:
-    """Return the pattern and the nonzeros of a matrix in compressed-column order."""
-    colind, row, nonzeros = [0], list[int](), list[Value]()
-    for column in range(len(column_names)):
-        for place, entries in enumerate(rows):
-            if entries[column][0]:
-                row.append(place)
-                nonzeros.append(entries[column])
-        colind.append(len(row))
-    return Sparsity(tuple(row_names), tuple(column_names), tuple(colind), tuple(row)), nonzeros

@@ -7,8 +7,8 @@ from fractions import Fraction
 
 from derive.lower.graph import Value
 from derive.lower.table import Signed, Table
-from derive.program.arithmetic import OPERATORS
-from derive.program.program import Op, Operand
+from derive.program.program import Operand
+from derive.program.tape import Tape
 
 
 @dataclass
@@ -17,20 +17,11 @@ class Writer:
 
     table: Table
     constant: Callable[[Value], Operand]
-    prefix: str
-    ops: list[Op] = field(default_factory=list)
+    tape: Tape
     done: dict[int, Operand] = field(default_factory=dict)
 
-    written: dict[tuple[object, ...], str] = field(default_factory=dict)
-
-    def emit(self, operator: str, *operands: Operand) -> str:
-        """Return the name of an operation's result; no operation is written twice."""
-        same = sorted(operands, key=str) if OPERATORS[operator].commutes else operands
-        key = (operator, *same)
-        if key not in self.written:
-            self.written[key] = f"{self.prefix}{len(self.ops)}"
-            self.ops.append(Op(self.written[key], operator, operands))
-        return self.written[key]
+    def _emit(self, operator: str, *operands: Operand) -> str:
+        return self.tape.record(operator, operands)
 
     def operand(self, key: int) -> Operand:
         """Return the operand that holds ``key``, written if need be."""
@@ -44,7 +35,7 @@ class Writer:
         operand = self.operand(key)
         if sign > 0:
             return operand
-        return -operand if isinstance(operand, Fraction) else self.emit("neg", operand)
+        return -operand if isinstance(operand, Fraction) else self._emit("neg", operand)
 
     def _write(self, key: int) -> Operand:
         table = self.table
@@ -54,9 +45,9 @@ class Writer:
             return self.constant(table.constants[key])
         if key in table.calls:
             function, terms = table.calls[key]
-            return self.emit(function, *(self.signed(term) for term in terms))
+            return self._emit(function, *(self.signed(term) for term in terms))
         if key in table.inverse:
-            return self.emit("div", Fraction(1), self.operand(table.inverse[key]))
+            return self._emit("div", Fraction(1), self.operand(table.inverse[key]))
         if key in table.addends:
             return self._sum(table.addends[key])
         return self._multiplied(table.factors[key])
@@ -67,11 +58,11 @@ class Writer:
         first, *rest = plus or minus
         total = self.operand(first)
         for key in rest:
-            total = self.emit("add", total, self.operand(key))
+            total = self._emit("add", total, self.operand(key))
         if not plus:
-            return self.emit("neg", total)
+            return self._emit("neg", total)
         for key in minus:
-            total = self.emit("sub", total, self.operand(key))
+            total = self._emit("sub", total, self.operand(key))
         return total
 
     def _multiplied(self, factors: list[int]) -> Operand:
@@ -83,13 +74,13 @@ class Writer:
         ]
         total: Operand = self.operand(top[0]) if top else Fraction(1)
         for key in top[1:]:
-            total = self.emit("mul", total, self.operand(key))
+            total = self._emit("mul", total, self.operand(key))
         if not bottom:
             return total
         divisor = self.operand(bottom[0])
         for key in bottom[1:]:
-            divisor = self.emit("mul", divisor, self.operand(key))
-        return self.emit("div", total, divisor)
+            divisor = self._emit("mul", divisor, self.operand(key))
+        return self._emit("div", total, divisor)
 
 
 def shared_reciprocals(table: Table, writer: Writer) -> None:

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from derive.lower.arrange.matching import blocks
 from derive.mechanics.mechanism import Known
 from derive.mechanics.truth import Truth
-from derive.verify.blocks import in_order
 from derive.verify.valuation import Atom, Atoms, Monomial, Polynomial, terms
 
 Coefficient = tuple[tuple[Monomial, Fraction], ...]
@@ -85,21 +85,19 @@ def equations(known: Known, fact: Truth) -> Equations:
     unknowns = [atoms.symbol(symbol) for symbol in fact.unknowns]
     parameters = {words.symbols[c] for q in words.parameters for c in q.components}
     splitter = _Splitter(atoms, _fixed(atoms, parameters), {})
-    blocks, later = [], set(unknowns)
-    for places, solved in in_order([_uses(atoms, row, unknowns) for row in rows]):
+    found, later = [], set(unknowns)
+    for places, solved in blocks([_uses(atoms, row, unknowns) for row in rows]):
         own = [unknowns[u] for u in solved]
-        blocks.append(splitter.block([rows[r] for r in places], own, later))
+        found.append(splitter.block([rows[r] for r in places], own, later))
         later -= set(own)
     component = {symbol: name for name, symbol in words.symbols.items()}
     names = {n: component[a.symbol] for n, a in enumerate(atoms.each) if a.symbol is not None}
-    return Equations(
-        tuple(atoms.each), names, splitter.fixed, tuple(splitter.places), tuple(blocks)
-    )
+    return Equations(tuple(atoms.each), names, splitter.fixed, tuple(splitter.places), tuple(found))
 
 
-def _uses(atoms: Atoms, row: Polynomial, unknowns: Sequence[int]) -> set[int]:
+def _uses(atoms: Atoms, row: Polynomial, unknowns: Sequence[int]) -> frozenset[int]:
     present = {atom for monomial in row for atom in atoms.within(monomial)}
-    return {place for place, atom in enumerate(unknowns) if atom in present}
+    return frozenset(place for place, atom in enumerate(unknowns) if atom in present)
 
 
 def _fixed(atoms: Atoms, parameters: set[Any]) -> frozenset[int]:

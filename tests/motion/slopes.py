@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from derive.motion.runge_kutta.matrices import compressed
 from derive.program.operations import cos, sin, sqrt
+from derive.program.pattern import compressed
 from derive.program.program import Op, Operand, Program, Quantity
 from derive.program.recorded import called, needed
 from derive.program.tape import Number, Tape, number
@@ -49,7 +49,7 @@ def with_slopes(rate: Program, columns: Sequence[str]) -> Program:
 
     matrix = [list(row) for row in zip(*(column(c) for c in columns), strict=True)]
     rows = [f"rate{k}" for k in range(len(matrix))]
-    pattern, nonzeros = compressed(matrix, rows, columns)
+    pattern, nonzeros = compressed(matrix, rows, columns, lambda n: n.exact == 0)
     results = (*(value(r).operand for r in rate.results), *(n.operand for n in nonzeros))
     entries = tuple(f"entry{k}" for k in range(len(nonzeros)))
     jacobian = Quantity("jacobian", entries, (len(entries),), "", "", None, None, "")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from derive.program.program import Sparsity
 from derive.program.tape import Number, number
 
 Matrix = list[list[Number]]
@@ -59,17 +58,3 @@ def transposed(a: Matrix) -> Matrix:
 def beside(*parts: Matrix) -> Matrix:
     """Return matrices side by side."""
     return [[x for row in rows for x in row] for rows in zip(*parts, strict=True)]
-
-
-def compressed(
-    matrix: Matrix, rows: Sequence[str], columns: Sequence[str]
-) -> tuple[Sparsity, list[Number]]:
-    """Return the pattern and the nonzeros of a matrix in compressed-column order."""
-    colind, row, nonzeros = [0], list[int](), list[Number]()
-    for k in range(len(columns)):
-        for i in range(len(rows)):
-            if matrix[i][k].exact != 0:
-                row.append(i)
-                nonzeros.append(matrix[i][k])
-        colind.append(len(row))
-    return Sparsity(tuple(rows), tuple(columns), tuple(colind), tuple(row)), nonzeros

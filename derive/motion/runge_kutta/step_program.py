@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from derive.lower.order import with_values_read_soon
 from derive.lower.signs import with_signs_moved
 from derive.motion.runge_kutta.carried import remainder
-from derive.motion.runge_kutta.matrices import Matrix, compressed
+from derive.motion.runge_kutta.matrices import Matrix
 from derive.motion.runge_kutta.system import System, next_of
+from derive.program.pattern import compressed
 from derive.program.program import Operand, Program, Quantity, Sparsity
 from derive.program.recorded import needed
 from derive.program.tape import Number, Tape
@@ -47,7 +48,9 @@ def moved(tape: Tape, system: System, after: Row) -> Traced:
 
 def moved_with_slopes(tape: Tape, system: System, after: Row, slopes: Slopes) -> Traced:
     """Return a step with derivatives."""
-    pattern, nonzeros = compressed(slopes.matrix, slopes.rows, slopes.columns)
+    pattern, nonzeros = compressed(
+        slopes.matrix, slopes.rows, slopes.columns, lambda n: n.exact == 0
+    )
     parts = tuple(f"d({pattern.rows[i]})/d({pattern.columns[k]})" for i, k in pattern.places())
     says = f"nonzeros of the {slopes.says}, {COMPRESSED}"
     jacobian = Quantity("jacobian", parts, (len(parts),), "", "", None, None, says)
