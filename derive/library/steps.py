@@ -19,7 +19,7 @@ from derive.motion.runge_kutta import steps
 from derive.motion.runge_kutta.carried import remainder
 from derive.motion.runge_kutta.compact import compact
 from derive.motion.runge_kutta.system import System, next_of
-from derive.motion.splitting.splitting import step_split, step_split_compensated
+from derive.motion.splitting.splitting import Start, step_split, step_split_compensated
 from derive.motion.taylor.series import in_loops
 from derive.motion.taylor.taylor import taylor_step
 from derive.program.program import Operand, Program, Quantity
@@ -232,18 +232,18 @@ def _split(setting: Setting, name: str) -> Program:
     attitude, omega = _rotation(setting.known.words)
     order, body, rest = SPLITTINGS[step_of(name)], setting.inertia(), remainder((attitude, omega))
     (h,) = _inputs(tape, step)
-    given = _inputs(tape, attitude), _inputs(tape, omega), _moment(setting, tape), h
+    start = Start(_inputs(tape, attitude), _inputs(tape, omega), _moment(setting, tape), h)
     inputs = (attitude, omega, *_outside(setting), step)
     outputs = [next_of(attitude), next_of(omega)]
     says = "One step of the rotation by splitting it into turns about two axes"
     if name.endswith(COMPENSATION):
         moved: tuple[list[Number], ...] = step_split_compensated(
-            tape, body, order, *given, _inputs(tape, rest)
+            tape, body, order, start, _inputs(tape, rest)
         )
         inputs, outputs = (*inputs, rest), [*outputs, next_of(rest)]
         says += f" (order {order}), carrying what rounding leaves."
     else:
-        moved = step_split(tape, body, order, *given)
+        moved = step_split(tape, body, order, start)
         says += f" (order {order})."
     made = Recorded(inputs, tuple(outputs), tuple(number(n) for part in moved for n in part))
     return _program(name, says, tape, made)

@@ -17,7 +17,7 @@ from derive.check.compiler import compiled, find_compiler
 from derive.emit.c import text as c_text
 from derive.motion.exact.inertia import Inertia
 from derive.motion.moser_veselov.moser_veselov import plan_dmv, step_dmv
-from derive.motion.splitting.splitting import step_split, step_split_compensated
+from derive.motion.splitting.splitting import Start, step_split, step_split_compensated
 from derive.program.arithmetic import extended
 from derive.program.program import Program, Quantity, run
 from derive.program.recorded import needed
@@ -157,7 +157,7 @@ def split(kind: str, order: int, moment: Moment | None = None) -> Stepper:
     first, second = Tape("t", below=setup), Tape("t", below=setup)
     state = [second.input(f"s{i}") for i in range(7)]
     h = second.input("h")
-    q, w = step_split(second, inertia, order, state[:4], state[4:], moment, h)
+    q, w = step_split(second, inertia, order, Start(state[:4], state[4:], moment, h))
     return _stepper(setup, (first, second), [], ([], [*q, *w]))
 
 
@@ -169,7 +169,7 @@ def split_compensated(kind: str, order: int) -> Stepper:
     first, second = Tape("t", below=setup), Tape("t", below=setup)
     s = [second.input(f"s{i}") for i in range(14)]
     h = second.input("h")
-    q, w, r = step_split_compensated(second, inertia, order, s[:4], s[4:7], None, h, s[7:])
+    q, w, r = step_split_compensated(second, inertia, order, Start(s[:4], s[4:7], None, h), s[7:])
     return _stepper(setup, (first, second), [], ([], [*q, *w, *r]))
 
 

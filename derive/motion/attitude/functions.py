@@ -52,12 +52,6 @@ def _plain(formula: Formula, _tape: Tape, *given: Sequence[Number]) -> list[Numb
     return formula(*given)
 
 
-def _with_sequence(
-    formula: Formula, sequence: str, _tape: Tape, given: list[Number]
-) -> list[Number]:
-    return formula(sequence, given)
-
-
 def _quaternion(name: str, frame: str, meaning: str) -> Quantity:
     parts = tuple(f"{name}_{part}" for part in PARTS)
     return Quantity(name, parts, (4,), "1", frame, Fraction(-1), Fraction(1), meaning)
@@ -96,111 +90,57 @@ MATRIX = Quantity(
 )
 
 
+LEFT = _quaternion("left", "N from A", "quaternion of the rotation that comes last")
+RIGHT = _quaternion("right", "A from B", "quaternion of the rotation that comes first")
+PRODUCT = _quaternion("attitude", "N from B", "left times right")
+
+
 def _euler(sequence: str) -> tuple[AttitudeFunction, AttitudeFunction]:
-    angles = _angles(sequence)
+    angles, name = _angles(sequence), f"euler_{sequence}"
+    says = f"Euler angles {sequence} of an attitude quaternion; the third is 0 at gimbal lock"
+    inverse = f"attitude quaternion of Euler angles {sequence}"
+    there, back = (
+        partial(_plain, partial(f, sequence)) for f in (euler.from_quaternion, euler.to_quaternion)
+    )
     return (
-        AttitudeFunction(
-            f"quaternion_to_euler_{sequence}",
-            f"Euler angles {sequence} of an attitude quaternion; the third is 0 at gimbal lock",
-            (ATTITUDE,),
-            (angles,),
-            partial(_with_sequence, euler.from_quaternion, sequence),
-            within=6,
-        ),
-        AttitudeFunction(
-            f"quaternion_from_euler_{sequence}",
-            f"attitude quaternion of Euler angles {sequence}",
-            (angles,),
-            (ATTITUDE,),
-            partial(_with_sequence, euler.to_quaternion, sequence),
-            within=5,
-        ),
+        AttitudeFunction(f"quaternion_to_{name}", says, (ATTITUDE,), (angles,), there, 6),
+        AttitudeFunction(f"quaternion_from_{name}", inverse, (angles,), (ATTITUDE,), back, 5),
     )
 
 
+def _of(
+    formula: Formula,
+    name: str,
+    inputs: tuple[Quantity, ...],
+    output: Quantity,
+    within: int,
+    says: str,
+) -> AttitudeFunction:
+    """Return a function whose formula needs no tape."""
+    made = partial(_plain, formula)
+    return AttitudeFunction(f"quaternion_{name}", says, inputs, (output,), made, within)
+
+
 FUNCTIONS: tuple[AttitudeFunction, ...] = (
-    AttitudeFunction(
-        "quaternion_product",
-        "product of two quaternions: the rotation of the second, then that of the first",
-        (
-            _quaternion("left", "N from A", "quaternion of the rotation that comes last"),
-            _quaternion("right", "A from B", "quaternion of the rotation that comes first"),
-        ),
-        (_quaternion("attitude", "N from B", "left times right"),),
-        partial(_plain, quaternion.product),
-        within=4,
-    ),
-    AttitudeFunction(
-        "quaternion_exp",
-        "unit quaternion of a rotation vector",
-        (TURN,),
-        (ATTITUDE,),
-        quaternion.exponential,
-        within=6,
-    ),
-    AttitudeFunction(
-        "quaternion_log",
-        "rotation vector of a quaternion of any length, angle at most pi; 0 for the quaternion 0",
-        (ANY_LENGTH,),
-        (TURN,),
-        partial(_plain, quaternion.logarithm),
-        within=5,
-    ),
-    AttitudeFunction(
-        "quaternion_normalise",
-        "quaternion of length 1 along one of any length; (1, 0, 0, 0) for the quaternion 0",
-        (ANY_LENGTH,),
-        (ATTITUDE,),
-        partial(_plain, quaternion.normalise),
-        within=4,
-    ),
-    AttitudeFunction(
-        "quaternion_rotate",
-        "components along N's axes of a vector given along B's",
-        (ATTITUDE, VECTOR_B),
-        (VECTOR_N,),
-        partial(_plain, quaternion.rotate),
-        within=8,
-    ),
-    AttitudeFunction(
-        "quaternion_rotate_back",
-        "components along B's axes of a vector given along N's",
-        (ATTITUDE, VECTOR_N),
-        (VECTOR_B,),
-        partial(_plain, quaternion.rotate_back),
-        within=8,
-    ),
-    AttitudeFunction(
-        "quaternion_to_matrix",
-        "rotation matrix of an attitude quaternion",
-        (ATTITUDE,),
-        (MATRIX,),
-        partial(_plain, matrix.from_quaternion),
-        within=7,
-    ),
-    AttitudeFunction(
-        "quaternion_from_matrix",
-        "attitude quaternion of a rotation matrix, scalar part not negative",
-        (MATRIX,),
-        (ATTITUDE,),
-        partial(_plain, matrix.to_quaternion),
-        within=6,
-    ),
-    AttitudeFunction(
-        "quaternion_to_mrp",
-        "modified Rodrigues parameters of an attitude quaternion, of length at most 1",
-        (ATTITUDE,),
-        (MRP,),
-        partial(_plain, rodrigues.from_quaternion),
-        within=4,
-    ),
-    AttitudeFunction(
-        "quaternion_from_mrp",
-        "attitude quaternion of modified Rodrigues parameters of any length",
-        (MRP,),
-        (ATTITUDE,),
-        partial(_plain, rodrigues.to_quaternion),
-        within=4,
-    ),
+    _of(quaternion.product, "product", (LEFT, RIGHT), PRODUCT, 4,
+        "product of two quaternions: the rotation of the second, then that of the first"),
+    AttitudeFunction("quaternion_exp", "unit quaternion of a rotation vector",
+                     (TURN,), (ATTITUDE,), quaternion.exponential, 6),
+    _of(quaternion.logarithm, "log", (ANY_LENGTH,), TURN, 5,
+        "rotation vector of a quaternion of any length, angle at most pi; 0 for the quaternion 0"),
+    _of(quaternion.normalise, "normalise", (ANY_LENGTH,), ATTITUDE, 4,
+        "quaternion of length 1 along one of any length; (1, 0, 0, 0) for the quaternion 0"),
+    _of(quaternion.rotate, "rotate", (ATTITUDE, VECTOR_B), VECTOR_N, 8,
+        "components along N's axes of a vector given along B's"),
+    _of(quaternion.rotate_back, "rotate_back", (ATTITUDE, VECTOR_N), VECTOR_B, 8,
+        "components along B's axes of a vector given along N's"),
+    _of(matrix.from_quaternion, "to_matrix", (ATTITUDE,), MATRIX, 7,
+        "rotation matrix of an attitude quaternion"),
+    _of(matrix.to_quaternion, "from_matrix", (MATRIX,), ATTITUDE, 6,
+        "attitude quaternion of a rotation matrix, scalar part not negative"),
+    _of(rodrigues.from_quaternion, "to_mrp", (ATTITUDE,), MRP, 4,
+        "modified Rodrigues parameters of an attitude quaternion, of length at most 1"),
+    _of(rodrigues.to_quaternion, "from_mrp", (MRP,), ATTITUDE, 4,
+        "attitude quaternion of modified Rodrigues parameters of any length"),
     *(function for sequence in SEQUENCES for function in _euler(sequence)),
-)
+)  # fmt: skip

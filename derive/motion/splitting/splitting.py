@@ -5,7 +5,7 @@ l_c. The first commutes with the others and is one turn about l; the others turn
 axes a and c. A body of revolution needs one of the two only, and the step is then exact.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -43,64 +43,59 @@ class Pieces:
     kick: Flow
 
 
-def step_split(
-    tape: Tape,
-    body: Inertia,
-    order: int,
-    attitude: Vector,
-    omega: Vector,
-    moment: Moment | None,
-    time_step: Number,
-) -> tuple[list[Number], list[Number]]:
-    """Return attitude and omega one time step later, by a splitting of order 2, 4 or 6.
+@dataclass(frozen=True)
+class Start:
+    """Where a step begins, and how far it leads.
 
     attitude : (4,) quaternion, scalar first, body to inertial      omega : (3,) rad/s along body
     axes      moment : of an attitude, (3,) N m along body axes; None where there is none
     time_step : s, in which the body turns by less than half a revolution
+    """
+
+    attitude: Vector
+    omega: Vector
+    moment: Moment | None
+    time_step: Number
+
+
+def step_split(
+    tape: Tape, body: Inertia, order: int, start: Start
+) -> tuple[list[Number], list[Number]]:
+    """Return attitude and omega one time step later, by a splitting of order 2, 4 or 6.
+
     Source: Fasso, J. Comput. Phys. 189 (2003) 527, for the pieces; coefficients: see ``schemes``.
     """
-    axes = frame(tape, body)
-    end = _moved(axes, body, order, attitude, omega, moment, time_step)
-    turn = quaternion_change(attitude, end.less, axes.back(end.turn))
-    q = [x + dx for x, dx in zip(attitude, turn, strict=True)]
-    return q, [w + dw for w, dw in zip(omega, _of_omega(axes, end.gain), strict=True)]
+    moves = zip((start.attitude, start.omega), _changes(tape, body, order, start), strict=True)
+    q, w = ([x + dx for x, dx in zip(now, change, strict=True)] for now, change in moves)
+    return q, w
 
 
 def step_split_compensated(
-    tape: Tape,
-    body: Inertia,
-    order: int,
-    attitude: Vector,
-    omega: Vector,
-    moment: Moment | None,
-    time_step: Number,
-    remainder: Vector,
+    tape: Tape, body: Inertia, order: int, start: Start, remainder: Vector
 ) -> tuple[list[Number], list[Number], list[Number]]:
     """Return attitude, omega and remainder one time step later; see ``step_split``.
 
     remainder : (7,) what rounding has kept from attitude and omega; zero at first
     """
+    turn, gain = _changes(tape, body, order, start)
+    return compensated_sums(start.attitude, start.omega, turn, gain, remainder)
+
+
+def _changes(tape: Tape, body: Inertia, order: int, start: Start) -> Iterator[list[Number]]:
+    """Yield what a step adds to attitude, then to omega."""
     axes = frame(tape, body)
-    end = _moved(axes, body, order, attitude, omega, moment, time_step)
-    turn = quaternion_change(attitude, end.less, axes.back(end.turn))
-    return compensated_sums(attitude, omega, turn, _of_omega(axes, end.gain), remainder)
+    end = _moved(axes, body, order, start)
+    yield quaternion_change(start.attitude, end.less, axes.back(end.turn))
+    yield _of_omega(axes, end.gain)
 
 
-def _moved(
-    axes: Frame,
-    body: Inertia,
-    order: int,
-    attitude: Vector,
-    omega: Vector,
-    moment: Moment | None,
-    time_step: Number,
-) -> State:
+def _moved(axes: Frame, body: Inertia, order: int, start: Start) -> State:
     """Return the state in which a step ends."""
     ratios = _ratios(axes)
-    begin = at_rest([r * w for r, w in zip(ratios, axes.along(omega), strict=True)])
-    pieces = _pieces(body, axes, attitude, moment, time_step)
+    begin = at_rest([r * w for r, w in zip(ratios, axes.along(start.omega), strict=True)])
+    pieces = _pieces(body, axes, start)
     closed = body.kind in ("axisymmetric", "spherical")
-    if moment is not None:
+    if start.moment is not None:
         scheme = NYSTROEM6 if closed and order == 4 else SCHEMES[order]
         return _kicked(pieces, scheme, begin)
     if closed:
@@ -128,10 +123,8 @@ def _of_omega(axes: Frame, change: Vector) -> list[Number]:
     return axes.back([c * i for c, i in zip(change, inverse, strict=True)])
 
 
-def _pieces(
-    body: Inertia, axes: Frame, attitude: Vector, moment: Moment | None, h: Number
-) -> Pieces:
-    quarter = Fraction(1, 4) * h
+def _pieces(body: Inertia, axes: Frame, start: Start) -> Pieces:
+    quarter = Fraction(1, 4) * start.time_step
     middle = axes.moments[1]
 
     def spin(place: int) -> Flow:
@@ -144,17 +137,17 @@ def _pieces(
         spin(0) if body.kind in ("general", "principal") else _still,
         spin(2) if body.kind != "spherical" else _still,
         lambda part, state: turn_with(part * quarter, state),
-        _still if moment is None else _kicks(axes, attitude, moment, h),
+        _still if start.moment is None else _kicks(axes, start, start.moment),
     )
 
 
-def _kicks(axes: Frame, attitude: Vector, moment: Moment, h: Number) -> Flow:
+def _kicks(axes: Frame, start: Start, moment: Moment) -> Flow:
     compliance = 1 / (axes.unit * axes.moments[1])
-    push = h * named("compliance", compliance, "one over the moment about b")
+    push = start.time_step * named("compliance", compliance, "one over the moment about b")
 
     def kick(part: Fraction, state: State) -> State:
-        now = quaternion_change(attitude, state.less, axes.back(state.turn))
-        M = moment([q + d for q, d in zip(attitude, now, strict=True)])
+        now = quaternion_change(start.attitude, state.less, axes.back(state.turn))
+        M = moment([q + d for q, d in zip(start.attitude, now, strict=True)])
         return kicked([part * push * m for m in axes.along(M)], state)
 
     return kick
