@@ -152,8 +152,8 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
         if one.library.constants:
             yield casadi_status(one, module)
         plain = [s for s in each if s.kind == "ordinary"][: FEW * FEW]
+        yield from clouds(one.library, plain[:FEW])
         if isinstance(one.library.known, Mechanism):
-            yield from clouds(one.library, plain[:FEW])
             yield from energy_balance(one.library, plain[:TWO])
         else:
             yield from power_balance(one, plain)

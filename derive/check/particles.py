@@ -1,4 +1,4 @@
-"""The answers of a machine beside a cloud of particles that knows positions only."""
+"""The answers of a scene beside a cloud of particles that knows positions only."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -12,10 +12,12 @@ from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.truth import Truth
 from derive.mechanics.words import MATRICES
 from derive.program.largest import largest
-from derive.scene import Input, Machine
+from derive.scene import Input, Machine, Scene
 from derive.scene.formula import symbols
+from derive.scene.long_form import FRAME, long_form
 from derive.scene.machine import Result
 from derive.scene.results import written_out
+from derive.scene.rules import FORWARD
 from derive.verify.cloud import Answers, answers
 from derive.verify.cloud.series import DIGITS
 from derive.verify.cloud.small import at_rest, slopes
@@ -40,10 +42,8 @@ PLAIN = (
 
 
 def clouds(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
-    """Yield whether every function of a machine has the answers of its cloud of particles."""
+    """Yield whether every function of a scene has the answers of its cloud of particles."""
     known = library.known
-    if not isinstance(known, Mechanism):
-        return
     for base, fact in library.truths.items():
         question = equations(known, fact)
         worst, count = 0.0, 0
@@ -51,7 +51,9 @@ def clouds(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
             true = reference(question, values, ())
             with mp.workdps(DIGITS):
                 given = {name: digits(x) for name, x in values.items()}
-            if base == "linearised" or fact.outputs[0].name in MATRICES:
+            if not isinstance(known, Mechanism):
+                gaps = _apart(fact, true, of_one_body(known.scene, base, given))
+            elif base == "linearised" or fact.outputs[0].name in MATRICES:
                 gaps = _small(known.scene, given, true)
             else:
                 gaps = _gaps(known.scene, given, fact, true)
@@ -122,7 +124,13 @@ def _gaps(
     if lasts and cloud.contradiction > AGREE:
         return []
     names = [c for q in fact.outputs for c in q.components]
-    found = [_of_cloud(machine, cloud, fact.name, name) for name in names]
+    return _apart(fact, true, {n: _of_cloud(machine, cloud, fact.name, n) for n in names})
+
+
+def _apart(fact: Truth, true: Mapping[str, Known], cloud: Mapping[str, Any]) -> list[Any]:
+    """Return how far what the cloud has is from each answer, relative to the largest term."""
+    names = [c for q in fact.outputs for c in q.components]
+    found = [cloud.get(name) for name in names]
     with mp.workdps(DIGITS):
         scale = max([mpf(true[name].scale) for name in names] + [abs(x) for x in found if x] or [1])
         return [
@@ -148,6 +156,24 @@ def _of_cloud(machine: Machine, cloud: Answers, function: str, name: str) -> Any
     if _of_matrices(machine, result):
         return _of_slopes(machine, cloud, result)
     return cloud.result(result.formula)
+
+
+def of_one_body(scene: Scene, base: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the cloud of a single body has of the quantities that such a scene speaks of."""
+    machine = long_form(scene, "sought" if base in FORWARD else "given")
+    parts = {f"{FRAME}_{p}": given[f"attitude_{p}"] for p in "wxyz" if f"attitude_{p}" in given}
+    cloud = answers(machine, {**given, **{f"attitude_{name}": x for name, x in parts.items()}})
+    found = dict(cloud.momenta)
+    for a in "xyz":
+        found[f"omega_dot_{a}"] = cloud.unknowns.get(f"omega_{a}_dot")
+        found[f"velocity_rate_{a}"] = cloud.unknowns.get(f"position_{a}_ddot")
+        if scene.point.kind != "moving":
+            found[f"rate_absolute_{a}"] = cloud.unknowns.get(f"moment_{a}")
+    if base in FORWARD:
+        rates = {f"{c.name}_dot": c.name for c in machine.coordinates if c.state}
+        rates |= {f"position_rate_{a}": f"position_{a}" for a in "xyz" if scene.position}
+        found |= {rate: cloud.rate(name) for rate, name in rates.items()}
+    return found | cloud.unknowns
 
 
 def _of_slopes(machine: Machine, cloud: Answers, result: Result) -> Any:

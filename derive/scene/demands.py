@@ -60,7 +60,7 @@ def _of_scene(scene: Scene) -> Iterator[Demand]:
     for wheel in scene.wheels:
         yield Above(f"wheel '{wheel.name}': axial", "inertia", wheel.axial)
     label = "body inertia less that of the wheels" if scene.wheels else "body inertia"
-    yield Tensor(label, _about_every_axis(body, _carrier(scene)), "positive")
+    yield Tensor(label, _about_every_axis(body, carrier(scene)), "positive")
 
 
 def _of_machine(machine: Machine) -> Iterator[Demand]:
@@ -82,7 +82,7 @@ def _of_substance(
         yield Above(f"{label}.{name}", "length", length)
 
 
-def _carrier(scene: Scene) -> Sextuple:
+def carrier(scene: Scene) -> Sextuple:
     """Return the inertia of the body without what its wheels have about their axes."""
     xx, yy, zz, xy, xz, yz = scene.body.inertia
     for wheel in scene.wheels:

@@ -95,9 +95,14 @@ SCENES = {
 }
 
 
+def text_of(name):
+    """Return the file of a scene."""
+    wanted, body = SCENES[name]
+    return HEAD.format(wanted=wanted) + body
+
+
 @pytest.mark.parametrize("name", SCENES)
 def test_an_unusual_scene_is_proved(name):
-    wanted, body = SCENES[name]
-    made = library(parse_scene(HEAD.format(wanted=wanted) + body, "unusual"))
+    made = library(parse_scene(text_of(name), "unusual"))
     prove(made)
     assert len(made.functions) == len(made.known.scene.wanted)

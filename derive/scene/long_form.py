@@ -1,0 +1,240 @@
+"""The scene of a single body written out with frames, bodies and loads: what the short form means.
+
+The axes become a frame, the body and its wheels become members, the known moment a load. A motion
+is *sought* where accelerations are found from the moment, *given* where the moment is found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import Literal
+
+from derive.scene.declaration import Given, Input, Moving, Scene, Triple, Turning
+from derive.scene.demands import carrier
+from derive.scene.formula import ONE, ZERO, Formula, apply, symbol
+from derive.scene.machine import (
+    INERTIAL,
+    Entries,
+    Force,
+    Frame,
+    Load,
+    Machine,
+    Member,
+    Place,
+    Unknown,
+)
+from derive.scene.shape import moved
+
+AXES = ("x", "y", "z")
+FRAME, BODY = "xyz", "body"
+NOWHERE: Triple = (ZERO, ZERO, ZERO)
+Motion = Literal["sought", "given"]
+_ANY = (Fraction(-1), Fraction(1))
+
+
+def long_form(scene: Scene, motion: Motion) -> Machine:
+    """Return the machine that a scene of a single body is; names of scalars stay what they are."""
+    speeds, inputs = [*scene.speeds], [*scene.inputs]
+    if _turns_freely(scene):
+        speeds += _omega(scene, motion)
+    coordinates = [_coordinate(scene, c) for c in scene.coordinates]
+    coordinates += _vector("position", scene.position, "velocity")
+    force = scene.known["force"] if scene.position else None
+    known = (("moment", scene.known["moment"], "N m"), ("force", force, "N"),
+             ("point_acceleration", scene.point.acceleration, "m/s^2"))  # fmt: skip
+    for name, given, unit in known:
+        if given is not None and given.formulas is None and (name, motion) != ("moment", "given"):
+            inputs += [_input(f"{name}_{a}", unit) for a in AXES]
+    if scene.axes.quaternion:  # a moment may be a formula of the attitude
+        inputs += [_input(f"attitude_{part}", "1") for part in ("w", *AXES)]
+    wheels = [_wheel(scene, n, motion) for n in range(len(scene.wheels))]
+    speeds += [speed for speed, _, _ in wheels]
+    inputs += [_input(w.torque.name, "N m") for w in scene.wheels]
+    loads, unknowns = _loads(scene, motion)
+    return Machine(
+        name=scene.name, title=scene.title, source="", text=scene.text,
+        parameters=scene.parameters, coordinates=tuple(coordinates), speeds=tuple(speeds),
+        inputs=tuple(inputs), frames=(_still(), _frame(scene)),
+        bodies=(_body(scene), *(member for _, member, _ in wheels)),
+        loads=(*loads, *(load for _, _, load in wheels)), unknowns=unknowns, results=(),
+        momentum=Place(FRAME, NOWHERE, (BODY, *(member.name for _, member, _ in wheels))),
+        about={}, steady=None, asked={}, wanted=(), form=scene.form, time_step=scene.time_step,
+        emission=scene.emission, warnings=(),
+    )  # fmt: skip
+
+
+def _turns_freely(scene: Scene) -> bool:
+    """Tell whether the components of omega are quantities of their own."""
+    alone = scene.axes.kind == "body" and scene.known["angular_velocity"].formulas is None
+    return alone or any(c.free for c in scene.coordinates)
+
+
+def _omega(scene: Scene, motion: Motion) -> list[Moving]:
+    """Return the components of omega: free, or with rates that are given."""
+    formulas = scene.known["angular_acceleration"].formulas
+    found = []
+    for k, a in enumerate(AXES):
+        name, rate = f"omega_{a}", Input(f"omega_dot_{a}", "rad/s^2", *_ANY, "")
+        if motion == "sought":
+            found.append(_moving(name, "rad/s", "speed", None))
+        else:
+            found.append(_moving(name, "rad/s", "speed", formulas[k] if formulas else rate))
+    return found
+
+
+def _moving(
+    name: str,
+    unit: str,
+    kind: Literal["coordinate", "speed", "input"],
+    rate: Input | Formula | None,
+) -> Moving:
+    free = rate is None and kind != "input"
+    return Moving(name, unit, *_ANY, "", kind, free, free, rate, None)
+
+
+def _input(name: str, unit: str) -> Moving:
+    return _moving(name, unit, "input", None)
+
+
+def _vector(name: str, given: Given | None, rate: str) -> list[Moving]:
+    """Return the coordinates of the mass centre, whose rates have names of their own."""
+    if given is None:
+        return []
+    each = [(f"{name}_{a}", Input(f"{rate}_{a}", "m/s", *_ANY, "")) for a in AXES]
+    return [replace(_moving(n, "m", "coordinate", i), free=True, state=True) for n, i in each]
+
+
+def _coordinate(scene: Scene, c: Moving) -> Moving:
+    """Return an angle of the body; the rate of a free one follows from omega."""
+    if not c.free:
+        return c
+    return replace(c, free=False, state=True, rate=angle_rates(scene)[c.name])
+
+
+def angle_rates(scene: Scene) -> dict[str, Formula]:
+    """Return the rates of three free angles, from the components of omega along the axes."""
+    chain = (*scene.axes.turned, *scene.body.turned)
+    columns = [_line(scene, n) for n in range(len(chain))]
+    whole, omega = _determinant(columns), [symbol(f"omega_{a}") for a in AXES]
+    return {
+        turn.coordinate: _determinant([*columns[:n], omega, *columns[n + 1 :]]) / whole
+        for n, turn in enumerate(chain)
+    }
+
+
+def _line(scene: Scene, n: int) -> list[Formula]:
+    """Return the unit vector along the axes that the n-th turn is about."""
+    before, after = scene.axes.turned, scene.body.turned
+    if n < len(before):
+        line, left = _unit(before[n].axis), before[n + 1 :]
+        for turn in left:
+            line = _turned(line, Turning(turn.axis, -turn.angle))
+        return line
+    line = _unit(after[n - len(before)].axis)
+    for turn in reversed(after[: n - len(before)]):
+        line = _turned(line, turn)
+    return line
+
+
+def _unit(axis: str) -> list[Formula]:
+    return [ONE if name == axis else ZERO for name in AXES]
+
+
+def _turned(v: Sequence[Formula], turn: Turning) -> list[Formula]:
+    """Return the components along the old axes of a vector given along turned ones."""
+    k = AXES.index(turn.axis)
+    i, j = (k + 1) % 3, (k + 2) % 3
+    s, c = apply("sin", turn.angle), apply("cos", turn.angle)
+    found = list(v)
+    found[i], found[j] = c * v[i] - s * v[j], s * v[i] + c * v[j]
+    return found
+
+
+def _determinant(columns: Sequence[Sequence[Formula]]) -> Formula:
+    a, b, c = columns
+    each = ((k, (k + 1) % 3, (k + 2) % 3) for k in range(3))
+    total = ZERO
+    for i, j, k in each:
+        total = total + a[i] * (b[j] * c[k] - b[k] * c[j])
+    return total
+
+
+def _still() -> Frame:
+    return Frame(INERTIAL, "", (), None, False, NOWHERE)  # noqa: FBT003
+
+
+def _frame(scene: Scene) -> Frame:
+    """Return the axes as a frame; its origin is the scene's point."""
+    axes, given = scene.axes, scene.known["angular_velocity"].formulas
+    omega = axes.angular_velocity
+    if axes.kind == "body":
+        omega = given or tuple(symbol(f"omega_{a}") for a in AXES)  # type: ignore[assignment]
+    frame = Frame(FRAME, INERTIAL, axes.turned, omega, axes.quaternion, NOWHERE)
+    if scene.position is not None:
+        x, y, z = (symbol(f"position_{a}") for a in AXES)
+        return replace(frame, origin=(x, y, z))
+    if scene.point.acceleration is None:
+        return replace(frame, velocity=NOWHERE)
+    x, y, z = scene.point.acceleration.formulas or (symbol(f"point_acceleration_{a}") for a in AXES)
+    return replace(frame, acceleration=(x, y, z))
+
+
+def _body(scene: Scene) -> Member:
+    """Return the carrier: the body without what its wheels have about their axes."""
+    body = scene.body
+    inertia: Entries = carrier(scene)
+    centre = NOWHERE
+    if body.mass is not None and body.centre is not None:
+        centre, inertia = body.centre, moved(carrier(scene), -body.mass, body.centre)
+        for turn in reversed(body.turned):
+            x, y, z = _turned(centre, turn)
+            centre = (x, y, z)
+    return Member(
+        BODY, FRAME, body.mass, inertia, centre, body.axis, body.turned, body.spin, None, None,
+        "", {},
+    )  # fmt: skip
+
+
+def _wheel(scene: Scene, n: int, motion: Motion) -> tuple[Moving, Member, Load]:
+    """Return the speed of a wheel, the wheel, and what its motor and its bearing do to it."""
+    wheel, (x, y, z) = scene.wheels[n], scene.wheels[n].axis
+    s, u, C = symbol(wheel.speed.name), symbol(wheel.torque.name), wheel.axial
+    rate = Input(f"{wheel.speed.name}_dot", "rad/s^2", *_ANY, "")
+    speed = _moving(wheel.speed.name, "rad/s", "speed", None if motion == "sought" else rate)
+    inertia = (C * x * x, C * y * y, C * z * z, -C * x * y, -C * x * z, -C * y * z)
+    name = f"wheel {wheel.name}"
+    member = Member(
+        name, FRAME, ZERO, inertia, NOWHERE, None, (), None, None, (s * x, s * y, s * z), "", {}
+    )
+    held = [symbol(_held(wheel.name, a)) for a in AXES]
+    along = x * held[0] + y * held[1] + z * held[2]
+    turning = u if motion == "sought" else along
+    couple = tuple(k + a * (turning - along) for k, a in zip(held, (x, y, z), strict=True))
+    force = tuple(symbol(_held(wheel.name, f"f{a}")) for a in AXES)
+    load = Force(name, name, BODY, FRAME, NOWHERE, FRAME, force, couple)  # type: ignore[arg-type]
+    return speed, member, load
+
+
+def _held(wheel: str, part: str) -> str:
+    return f"bearing of wheel {wheel}, {part}"
+
+
+def _loads(scene: Scene, motion: Motion) -> tuple[list[Load], tuple[Unknown, ...]]:
+    """Return what acts on the body, and which of it is to be found."""
+    names = [
+        _held(w.name, part) for w in scene.wheels for part in (*AXES, *(f"f{a}" for a in AXES))
+    ]
+    if motion == "given":
+        names += [f"moment_{a}" for a in AXES]
+    moment = scene.known["moment"].formulas if motion == "sought" else None
+    couple = moment or tuple(symbol(f"moment_{a}") for a in AXES)
+    force: tuple[Formula, ...] = NOWHERE
+    if scene.position is not None:
+        force = scene.known["force"].formulas or tuple(symbol(f"force_{a}") for a in AXES)
+    else:
+        names += [f"held_{a}" for a in AXES]
+        force = tuple(symbol(f"held_{a}") for a in AXES)
+    load = Force("known", BODY, "", FRAME, NOWHERE, FRAME, force, couple)  # type: ignore[arg-type]
+    return [load], tuple(Unknown(name, "", "known", "") for name in names)

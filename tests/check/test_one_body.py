@@ -1,0 +1,92 @@
+"""A scene of a single body agrees with particles of which only positions are known."""
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from derive.check import particles
+from derive.check.particles import clouds, of_one_body
+from derive.library.library import Library, library
+from derive.program.precision import F64
+from derive.scene import Machine, Scene, catalogue, parse_scene
+from derive.scene.wanted import EQUATIONS
+from derive.verify.sample import samples
+from tests.lower import test_unusual_scenes as unusual
+from tests.made import library_of, scene_of
+
+DOCS = Path(__file__).parents[2] / "docs"
+EXAMPLE = re.compile(r"^```toml\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+PAGES = [(DOCS / f"{page}.md").read_text(encoding="utf-8") for page in ("scenes", "motion")]
+EXAMPLES = [text for page in PAGES for text in EXAMPLE.findall(page)]
+WRITTEN = [text for text in EXAMPLES if not text.startswith("# scene")]
+OF_ONE_BODY = [n for n in catalogue() if n != "attitude" and not isinstance(scene_of(n), Machine)]
+
+
+def quick(names: Iterable[str], *at_once: str) -> list[Any]:
+    """Return cases of which the others run with ``-m long``."""
+    return [n if n in at_once else pytest.param(n, marks=pytest.mark.long) for n in names]
+
+
+def rows(made: Library) -> dict[str, str]:
+    """Return the verdict on every function of a scene that the lecture's equations state."""
+    each = samples(made.known, F64, 2, 0).each
+    return {verdict.function: verdict.outcome for verdict in clouds(made, each)}
+
+
+@pytest.mark.parametrize("name", quick(OF_ONE_BODY, "free_body_principal", "heavy_top"))
+def test_a_scene_of_the_catalogue_is_its_particles(name: str) -> None:
+    made = library_of(name)
+    assert rows(made) == dict.fromkeys(made.truths, "holds")
+
+
+@pytest.mark.parametrize("name", quick(unusual.SCENES, "a moving point"))
+def test_a_scene_of_any_axes_wheels_or_point_is_its_particles(name: str) -> None:
+    made = library(parse_scene(unusual.text_of(name), "unusual"))
+    assert set(rows(made).values()) == {"holds"}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("text", WRITTEN)
+def test_an_example_of_the_pages_is_its_particles(text: str) -> None:
+    scene = parse_scene(text, "example")
+    if not isinstance(scene, Scene) or not set(scene.wanted) & {*EQUATIONS}:
+        pytest.skip("a machine, or formulas alone")
+    assert set(rows(library(scene)).values()) == {"holds"}
+
+
+WRONG: Mapping[str, Callable[[Any], Any]] = {
+    "the wheels left out": lambda s: replace(s, wheels=s.wheels[:-1]),
+    "products turned in sign": lambda s: replace(
+        s, body=replace(s.body, inertia=(*s.body.inertia[:3], *(-p for p in s.body.inertia[3:])))
+    ),
+    "two moments swapped": lambda s: replace(
+        s, body=replace(s.body, inertia=(*s.body.inertia[1::-1], *s.body.inertia[2:]))
+    ),
+    "a turn about another axis": lambda s: replace(
+        s, axes=replace(s.axes, turned=(s.axes.turned[0], replace(s.axes.turned[1], axis="y")))
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong"),
+    [
+        ("free_body", "products turned in sign"),
+        ("free_body", "two moments swapped"),
+        ("heavy_top", "a turn about another axis"),
+        pytest.param("gyrostat", "the wheels left out", marks=pytest.mark.long),
+    ],
+)
+def test_the_programs_of_another_scene_are_noticed(
+    name: str, wrong: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = library_of(name)
+    other = WRONG[wrong](made.known.scene)
+    monkeypatch.setattr(
+        particles, "of_one_body", lambda _, base, given: of_one_body(other, base, given)
+    )
+    assert "FAILS" in rows(made).values()
