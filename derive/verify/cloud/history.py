@@ -11,7 +11,7 @@ from mpmath import mp, mpf
 from derive.scene import Input, Machine
 from derive.scene.formula import Formula, evaluate
 from derive.scene.machine import INERTIAL, Frame
-from derive.verify.cloud.series import ARITHMETIC, Array, Series, each, series, turn
+from derive.verify.cloud.series import ARITHMETIC, Array, Series, each, moving, series, turn
 
 UNKNOWN = mpf(1)  # a mass or moment that the user left out, and that must not matter
 
@@ -33,7 +33,7 @@ class History:
         for m in (*self.machine.inputs, *self.machine.speeds):
             rate = self._rate(m.rate, found) if m.kind == "speed" and not m.free else mpf(0)
             rate = self.values[m.unknown] if m.free and m.kind == "speed" else rate
-            found[m.name] = Series((self.values[m.name], rate, mpf(0)))
+            found[m.name] = moving(self.values[m.name], rate)
             if isinstance(m.rate, Input):
                 found[m.rate.name] = series(self.values[m.rate.name])
         for c in self.machine.coordinates:
@@ -49,7 +49,7 @@ class History:
         for _ in range(2):
             rates = {c.name: evaluate(c.rate, found, ARITHMETIC) for c in self.machine.coordinates
                      if isinstance(c.rate, Formula)}  # fmt: skip
-            found |= {n: Series((self.values[n], rate.value, rate.velocity / 2))
+            found |= {n: moving(self.values[n], rate.value, rate.velocity / 2)
                       for n, rate in rates.items()}  # fmt: skip
 
     def _rate(self, rate: Any, found: Mapping[str, Series]) -> Any:
@@ -60,10 +60,10 @@ class History:
     def _add_coordinate(self, c: Any, found: dict[str, Series]) -> None:
         first = self.values[c.rate.name]
         second = self.values[c.unknown] if c.free else self._rate(c.acceleration, found)
-        found[c.rate.name] = Series((first, second, mpf(0)))
+        found[c.rate.name] = moving(first, second)
         if isinstance(c.acceleration, Input):
             found[c.acceleration.name] = series(second)
-        found[c.name] = Series((self.values[c.name], first, second / 2))
+        found[c.name] = moving(self.values[c.name], first, second / 2)
 
     def value(self, formula: Formula) -> Series:
         """Return a formula as a series."""
@@ -141,7 +141,7 @@ class History:
                 found[frame.name] = each(lambda v: v.integral(mpf(0)), self._velocity(frame))
             elif frame.acceleration is not None:
                 a = self.rotations[frame.name] @ self.column(frame.acceleration)
-                found[frame.name] = each(lambda v: Series((mpf(0), mpf(0), v.value / 2)), a)
+                found[frame.name] = each(lambda v: moving(0, 0, v.value / 2), a)
             else:
                 placed = self.rotations[frame.parent] @ self.column(frame.origin)
                 found[frame.name] = found[frame.parent] + placed

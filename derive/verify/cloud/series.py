@@ -1,18 +1,21 @@
-"""Quantities that move, as the first coefficients of their power series in time."""
+"""Quantities that move, as the first coefficients of their power series in time, by flint."""
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from flint import arb, arb_series, ctx
 from mpmath import mp, mpf
 from numpy.typing import NDArray
 
 from derive.scene.formula import Arithmetic
+from derive.verify.operators import IN_BALLS
 
-DIGITS = 50
+DIGITS, BITS = 50, 200  # of the numbers that go in and come out, and of balls between
 ORDER = 3  # value, rate, half the acceleration
 Array = NDArray[Any]
 
@@ -21,109 +24,89 @@ Array = NDArray[Any]
 class Series:
     """Coefficients of 1, t, t^2; what is beyond is not known and never used."""
 
-    parts: tuple[Any, ...]
+    terms: arb_series
 
-    def __add__(self, other: Series | int) -> Series:
-        return Series(tuple(a + b for a, b in zip(self.parts, series(other).parts, strict=True)))
+    def __add__(self, other: Series | Any) -> Series:
+        return _by(operator.add, self, other)
 
     __radd__ = __add__
 
     def __neg__(self) -> Series:
-        return Series(tuple(-a for a in self.parts))
+        return _by(operator.neg, self)
 
-    def __sub__(self, other: Series | int) -> Series:
-        return self + (-series(other))
+    def __sub__(self, other: Series | Any) -> Series:
+        return _by(operator.sub, self, other)
 
-    def __rsub__(self, other: Series | int) -> Series:
-        return series(other) - self
+    def __rsub__(self, other: Series | Any) -> Series:
+        return _by(operator.sub, other, self)
 
     def __mul__(self, other: Series | Any) -> Series:
-        a, b = self.parts, series(other).parts
-        return Series(tuple(mp.fsum(a[k] * b[n - k] for k in range(n + 1)) for n in range(ORDER)))
+        return _by(operator.mul, self, other)
 
     __rmul__ = __mul__
-
-    def __truediv__(self, other: Series | Any) -> Series:
-        b, quotient = series(other).parts, list[Any]()
-        for n in range(ORDER):
-            known = mp.fsum(quotient[k] * b[n - k] for k in range(n))
-            quotient.append((self.parts[n] - known) / b[0])
-        return Series(tuple(quotient))
 
     @property
     def value(self) -> Any:
         """Return what it is at time zero."""
-        return self.parts[0]
+        return _number(self.terms[0])
 
     @property
     def velocity(self) -> Any:
         """Return its rate at time zero."""
-        return self.parts[1]
+        return _number(self.terms[1])
 
     @property
     def acceleration(self) -> Any:
         """Return its second rate at time zero."""
-        return 2 * self.parts[2]
+        return 2 * _number(self.terms[2])
 
     def rate(self) -> Series:
         """Return the series of its rate; the last coefficient is lost."""
-        return Series((*((n + 1) * c for n, c in enumerate(self.parts[1:])), mpf(0)))
+        return _by(arb_series.derivative, self)
 
     def integral(self, start: Any) -> Series:
         """Return the series that begins at ``start`` and has this rate."""
-        return Series((start, *(c / (n + 1) for n, c in enumerate(self.parts[:-1]))))
+        return _by(operator.add, _by(arb_series.integral, self), start)
+
+
+def moving(*parts: Any) -> Series:
+    """Return the series with these coefficients, zeros behind them."""
+    with ctx.workprec(BITS):
+        return Series(arb_series([_ball(x) for x in parts], prec=ORDER))
 
 
 def series(value: Series | Any) -> Series:
     """Return a constant as a series."""
-    if isinstance(value, Series):
-        return value
-    return Series((mpf(value), *(mpf(0) for _ in range(ORDER - 1))))
+    return value if isinstance(value, Series) else moving(value)
 
 
-def _composed(x: Series, value: Any, slope: Any, curvature: Any) -> Series:
-    """Return a function of a series, by its value and derivatives there."""
-    _, a, b = x.parts
-    return Series((value, slope * a, slope * b + curvature * a * a / 2))
+def _by(operation: Callable[..., Any], *given: Series | Any) -> Series:
+    with ctx.workprec(BITS):
+        return Series(operation(*(series(x).terms for x in given)))
 
 
-def sine(x: Series) -> Series:
-    """Return the sine of a series."""
-    s, c = mp.sin(x.value), mp.cos(x.value)
-    return _composed(x, s, c, -s)
+def _ball(x: Any) -> arb:
+    if not mp.isfinite(x):
+        return arb("nan")
+    sign, mantissa, exponent, _ = mpf(x)._mpf_
+    return arb(-int(mantissa) if sign else int(mantissa)) * arb(2) ** int(exponent)
 
 
-def cosine(x: Series) -> Series:
-    """Return the cosine of a series."""
-    s, c = mp.sin(x.value), mp.cos(x.value)
-    return _composed(x, c, -s, -c)
+def _number(ball: arb) -> Any:
+    if not ball.is_finite():
+        return mpf("nan")
+    mantissa, exponent = ball.mid().man_exp()
+    return mp.ldexp(mpf(int(mantissa)), int(exponent))
 
 
-def root(x: Series) -> Series:
-    """Return the square root of a series."""
-    r = mp.sqrt(x.value)
-    return _composed(x, r, 1 / (2 * r), -1 / (4 * r**3))
-
-
-def _power(x: Series, n: int) -> Series:
-    made = series(1)
-    for _ in range(abs(n)):
-        made = made * x
-    return made if n >= 0 else series(1) / made
+def _on_series(operation: Callable[..., Any]) -> Callable[..., Any]:
+    return lambda *given: _by(operation, *given)
 
 
 ARITHMETIC: Arithmetic = {
-    "number": lambda q: series(mpf(q.numerator) / q.denominator),
-    "add": lambda a, b: a + b,
-    "sub": lambda a, b: a - b,
-    "mul": lambda a, b: a * b,
-    "div": lambda a, b: a / b,
-    "neg": lambda a: -a,
-    "power": _power,
-    "sin": sine,
-    "cos": cosine,
-    "tan": lambda x: sine(x) / cosine(x),
-    "sqrt": root,
+    **{name: _on_series(operation) for name, operation in IN_BALLS.items()},
+    "number": lambda q: moving(mpf(q.numerator) / q.denominator),
+    "power": lambda x, n: _by(lambda terms: terms**n, x),
 }
 
 
@@ -138,8 +121,9 @@ def turn(axis: str, angle: Series) -> Array:
     k = "xyz".index(axis)
     i, j = (k + 1) % 3, (k + 2) % 3
     R = np.array([[series(int(r == c)) for c in range(3)] for r in range(3)], dtype=object)
-    R[i, i] = R[j, j] = cosine(angle)
-    R[j, i], R[i, j] = sine(angle), -sine(angle)
+    s = ARITHMETIC["sin"](angle)
+    R[i, i] = R[j, j] = ARITHMETIC["cos"](angle)
+    R[j, i], R[i, j] = s, -s
     return R
 
 
