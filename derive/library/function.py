@@ -9,6 +9,7 @@ from derive.lecture.chapters import LECTURE
 from derive.lower.arrange import plan
 from derive.lower.arrange.arrange import arrange
 from derive.lower.arrange.draft import Arrangement
+from derive.lower.expand import families
 from derive.lower.forms import Block, best_values, best_with_jacobian, cost
 from derive.lower.graph import Graph, Value
 from derive.lower.lower import lower
@@ -88,7 +89,9 @@ def _lowered(scene: Graphed, fact: Truth, way: Arrangement) -> Arranged:
 
 
 def _best(graph: Graph, wanted: Arranged) -> list[Value]:
-    return best_values(graph, [Block(output, ()) for output in wanted.outputs])
+    found = best_values(graph, [Block(output, ()) for output in wanted.outputs])
+    stands = [value for output in wanted.outputs for value in output]
+    return min(found, stands, key=lambda values: cost(graph, values))
 
 
 def _with_jacobian(scene: Graphed, wanted: Arranged, name: str) -> Program:
@@ -113,16 +116,53 @@ def _with_jacobian(scene: Graphed, wanted: Arranged, name: str) -> Program:
 def _differentiated(
     scene: Graphed, wanted: Arranged, columns: Sequence[Quantity]
 ) -> tuple[list[Value], list[list[Value]]]:
-    """Return the outputs' values and the rows of their Jacobian, sharing all that they can."""
+    """Return the outputs' values and the rows of their Jacobian, sharing all that they can.
+
+    Outputs are looked at one by one, and those together that vary by components of one vector.
+    """
     inputs = tuple(tuple(scene.leaves[c] for c in q.components) for q in columns)
-    values: list[Value] = []
-    rows: list[list[Value]] = []
-    for output in wanted.outputs:
-        shared = values + [entry for row in rows for entry in row]
-        own, derivatives = best_with_jacobian(scene.graph, Block(output, inputs), shared)
-        values += own
-        rows += derivatives
-    return values, rows
+    ways = dict.fromkeys((_one_by_one(wanted), _together(scene.graph, wanted)))
+    found = [_in_groups(scene.graph, wanted, groups, inputs) for groups in ways]
+    return min(found, key=lambda one: cost(scene.graph, [*one[0], *(e for r in one[1] for e in r)]))
+
+
+Groups = tuple[tuple[int, ...], ...]
+
+
+def _one_by_one(wanted: Arranged) -> Groups:
+    return tuple((n,) for n in range(len(wanted.outputs)))
+
+
+def _together(graph: Graph, wanted: Arranged) -> Groups:
+    """Return the places of outputs in groups that share a vector which they vary by."""
+    groups: list[tuple[set[str], list[int]]] = []
+    for n, output in enumerate(wanted.outputs):
+        own = {f for value in output for f in families(graph, value) if isinstance(f, str)}
+        near = [group for group in groups if group[0] & own]
+        groups = [group for group in groups if group not in near]
+        shared = own.union(*(vectors for vectors, _ in near))
+        groups.append((shared, sorted([n, *(k for _, places in near for k in places)])))
+    return tuple(sorted(tuple(places) for _, places in groups))
+
+
+def _in_groups(
+    graph: Graph, wanted: Arranged, groups: Groups, inputs: tuple[tuple[Value, ...], ...]
+) -> tuple[list[Value], list[list[Value]]]:
+    """Return values and rows in the order of the outputs, each group looked at as one block."""
+    values: dict[int, list[Value]] = {}
+    rows: dict[int, list[list[Value]]] = {}
+    for group in groups:
+        block = Block(tuple(v for n in group for v in wanted.outputs[n]), inputs)
+        before = [v for each in values.values() for v in each]
+        before += [entry for each in rows.values() for row in each for entry in row]
+        own, slopes = best_with_jacobian(graph, block, before)
+        place = 0
+        for n in group:
+            end = place + len(wanted.outputs[n])
+            values[n], rows[n] = own[place:end], slopes[place:end]
+            place = end
+    order = sorted(values)
+    return [v for n in order for v in values[n]], [row for n in order for row in rows[n]]
 
 
 def _jacobian_quantity(pattern: Sparsity) -> Quantity:

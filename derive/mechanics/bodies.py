@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from sympy import Expr, Matrix, eye, zeros
+from sympy import Expr, Matrix, zeros
 
 from derive.mechanics.frames import ZERO, Frames, Parts, Point
 from derive.mechanics.specialise import stated
@@ -105,18 +105,7 @@ def _moment(
     known["I_dot"] = zeros(3, 3) if I_dot.applyfunc(reduced) == zeros(3, 3) else I_dot
     known["omega_dot"] = sheet.column(f"{body}.omega_dot", sheet.rate_of_column(omega))
     step = "moving_point_form" if about else "general_form"
-    if omega != Omega:
-        return sheet.column(f"{label}.M", stated(step, known | dict(about)))
-    still = known | {"omega": ZERO, "Omega": ZERO}
-    gyroscopic = stated("body_axes_form", known | {"I": aspherical(I), "omega_dot": ZERO})
-    return sheet.column(f"{label}.M", stated(step, still | dict(about)) + gyroscopic)
-
-
-def aspherical(I: Matrix) -> Matrix:  # noqa: E741
-    """Return a tensor less a multiple of the identity, by the lecture step "spherical_part"."""
-    moments = [I[1, 1], I[0, 0], I[2, 2]]
-    best = max(moments, key=lambda c: sum((m - c).expand() == 0 for m in moments))
-    return I - best * eye(3)
+    return sheet.column(f"{label}.M", stated(step, known | dict(about)))
 
 
 def carries(frames: Frames, body: str, place: Point) -> bool:

@@ -22,9 +22,8 @@ class Pivots:
     definitions: Mapping[Symbol, Expr]
     label: Callable[[Symbol], str]
 
-    def vanish(self, matrix: Matrix, rows: Sequence[int]) -> bool:
-        """Tell whether some pivot vanishes, taken from rows in an order, columns as they stand."""
-        places = [(r, c) for c, r in enumerate(rows)]
+    def vanish(self, matrix: Matrix, places: Sequence[Place]) -> bool:
+        """Tell whether some pivot vanishes, taken one after another at (row, column)."""
         return weakest(self.ranges, self.definitions, self._measure(matrix, places)).vanishes
 
     def chosen(self, matrix: Matrix, unknowns: Sequence[Symbol], left: int) -> list[Place]:

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 a6c60385a9259908.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 35fa8da42b90b4e0.
  */
 #ifndef CENTRIFUGE_GONDOLA_F32_H
 #define CENTRIFUGE_GONDOLA_F32_H
@@ -25,14 +25,14 @@ typedef struct {
     float m; /* m */
     float e_x; /* e_x */
     float e_z; /* e_z */
-    float k1; /* I_yy + m*(e_x^2 + e_z^2) */
+    float k1; /* I_xx + m*e_z^2 */
     float k2; /* I_xz + m*e_x*e_z */
     float k3; /* I_yy - I_zz - m*e_x^2 + m*(e_x^2 + e_z^2) */
     float m_e_z; /* m*e_z */
-    float k4; /* I_xx - I_yy - m*(e_x^2 + e_z^2) + m*e_z^2 */
+    float k4; /* I_yy + m*(e_x^2 + e_z^2) */
+    float k5; /* I_xx - I_yy + m*e_z^2 - m*(e_x^2 + e_z^2) */
     float m_e_x; /* m*e_x */
-    float k5; /* I_zz + m*e_x^2 */
-    float k6; /* I_xx + m*e_z^2 */
+    float k6; /* I_zz + m*e_x^2 */
 } centrifuge_gondola_constants_f32;
 
 /* Make the constants of this scene from its parameters; call it once.
@@ -102,9 +102,9 @@ void centrifuge_gondola_F_f32(const centrifuge_gondola_constants_f32 *constants,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.93, largest 26 u of the largest product or sum in the equation (of M; 200000
+ * Error: median 0.96, largest 21 u of the largest product or sum in the equation (of M; 200000
  *            samples of the ranges, 65536 searched from the worst, 120 hard ones).
- * Cost: 17 add, 19 sub, 62 mul, 1 neg, 3 sin, 3 cos.
+ * Cost: 15 add, 18 sub, 56 mul, 3 sin, 3 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -86,21 +86,20 @@ static disc_two_bearings_pair_f32 disc_two_bearings_div_f32(disc_two_bearings_pa
 int disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, float g,
     disc_two_bearings_constants_f32 *constants)
 {
-    const disc_two_bearings_pair_f32 s0 = disc_two_bearings_mul_f32((disc_two_bearings_pair_f32){r, 0.0F}, (disc_two_bearings_pair_f32){w, 0.0F});
-    const disc_two_bearings_pair_f32 s1 = disc_two_bearings_mul_f32((disc_two_bearings_pair_f32){m, 0.0F}, (disc_two_bearings_pair_f32){r, 0.0F});
-    const disc_two_bearings_pair_f32 s2 = disc_two_bearings_mul_f32((disc_two_bearings_pair_f32){W, 0.0F}, s1);
-    const disc_two_bearings_pair_f32 s3 = disc_two_bearings_mul_f32(s0, s2);
-    const disc_two_bearings_pair_f32 s4 = disc_two_bearings_mul_f32(s3, (disc_two_bearings_pair_f32){0.5F, 0.0F});
-    const disc_two_bearings_pair_f32 s5 = disc_two_bearings_mul_f32((disc_two_bearings_pair_f32){m, 0.0F}, (disc_two_bearings_pair_f32){d, 0.0F});
-    const disc_two_bearings_pair_f32 s6 = disc_two_bearings_mul_f32(s5, (disc_two_bearings_pair_f32){g, 0.0F});
-    const disc_two_bearings_pair_f32 s7 = disc_two_bearings_add_f32(s3, s6);
-    const disc_two_bearings_pair_f32 s8 = disc_two_bearings_div_f32((disc_two_bearings_pair_f32){0.5F, 0.0F}, (disc_two_bearings_pair_f32){d, 0.0F});
-    const disc_two_bearings_pair_f32 s9 = disc_two_bearings_mul_f32(s7, s8);
-    const disc_two_bearings_pair_f32 s10 = disc_two_bearings_sub_f32(s3, s6);
-    const disc_two_bearings_pair_f32 s11 = disc_two_bearings_mul_f32(s10, s8);
+    const disc_two_bearings_pair_f32 s0 = disc_two_bearings_mul_f32((disc_two_bearings_pair_f32){m, 0.0F}, (disc_two_bearings_pair_f32){0.5F, 0.0F});
+    const disc_two_bearings_pair_f32 s1 = disc_two_bearings_mul_f32((disc_two_bearings_pair_f32){r, 0.0F}, (disc_two_bearings_pair_f32){r, 0.0F});
+    const disc_two_bearings_pair_f32 s2 = disc_two_bearings_mul_f32((disc_two_bearings_pair_f32){w, 0.0F}, (disc_two_bearings_pair_f32){W, 0.0F});
+    const disc_two_bearings_pair_f32 s3 = disc_two_bearings_mul_f32(s1, s2);
+    const disc_two_bearings_pair_f32 s4 = disc_two_bearings_mul_f32(s0, s3);
+    const disc_two_bearings_pair_f32 s5 = disc_two_bearings_mul_f32((disc_two_bearings_pair_f32){d, 0.0F}, (disc_two_bearings_pair_f32){g, 0.0F});
+    const disc_two_bearings_pair_f32 s6 = disc_two_bearings_add_f32(s5, s3);
+    const disc_two_bearings_pair_f32 s7 = disc_two_bearings_div_f32(s0, (disc_two_bearings_pair_f32){d, 0.0F});
+    const disc_two_bearings_pair_f32 s8 = disc_two_bearings_mul_f32(s6, s7);
+    const disc_two_bearings_pair_f32 s9 = disc_two_bearings_sub_f32(s3, s5);
+    const disc_two_bearings_pair_f32 s10 = disc_two_bearings_mul_f32(s9, s7);
     constants->s0010 = s4.high;
-    constants->k1 = s9.high;
-    constants->s0008 = s11.high;
+    constants->k1 = s8.high;
+    constants->s0008 = s10.high;
     if (!(m - m >= 0.0F)
         || !(r - r >= 0.0F)
         || !(w - w >= 0.0F)
@@ -116,8 +115,8 @@ int disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, flo
         return 3;
     }
     if (!(s4.high - s4.high >= 0.0F)
-        || !(s9.high - s9.high >= 0.0F)
-        || !(s11.high - s11.high >= 0.0F)) {
+        || !(s8.high - s8.high >= 0.0F)
+        || !(s10.high - s10.high >= 0.0F)) {
         return 5;
     }
     return 0;

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 744c6a2034f2c3d5.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 303fad25a2f74fe8.
  */
 #ifndef DISC_TWO_BEARINGS_F32_H
 #define DISC_TWO_BEARINGS_F32_H
@@ -39,7 +39,7 @@ typedef struct {
  *            body is not positive; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
- * Cost: once; 12 operations on pairs.
+ * Cost: once; 11 operations on pairs.
  */
 int disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, float g,
     disc_two_bearings_constants_f32 *constants);

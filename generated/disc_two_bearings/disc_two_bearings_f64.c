@@ -86,21 +86,20 @@ static disc_two_bearings_pair_f64 disc_two_bearings_div_f64(disc_two_bearings_pa
 int disc_two_bearings_setup_f64(double m, double r, double w, double W, double d, double g,
     disc_two_bearings_constants_f64 *constants)
 {
-    const disc_two_bearings_pair_f64 s0 = disc_two_bearings_mul_f64((disc_two_bearings_pair_f64){r, 0.0}, (disc_two_bearings_pair_f64){w, 0.0});
-    const disc_two_bearings_pair_f64 s1 = disc_two_bearings_mul_f64((disc_two_bearings_pair_f64){m, 0.0}, (disc_two_bearings_pair_f64){r, 0.0});
-    const disc_two_bearings_pair_f64 s2 = disc_two_bearings_mul_f64((disc_two_bearings_pair_f64){W, 0.0}, s1);
-    const disc_two_bearings_pair_f64 s3 = disc_two_bearings_mul_f64(s0, s2);
-    const disc_two_bearings_pair_f64 s4 = disc_two_bearings_mul_f64(s3, (disc_two_bearings_pair_f64){0.5, 0.0});
-    const disc_two_bearings_pair_f64 s5 = disc_two_bearings_mul_f64((disc_two_bearings_pair_f64){m, 0.0}, (disc_two_bearings_pair_f64){d, 0.0});
-    const disc_two_bearings_pair_f64 s6 = disc_two_bearings_mul_f64(s5, (disc_two_bearings_pair_f64){g, 0.0});
-    const disc_two_bearings_pair_f64 s7 = disc_two_bearings_add_f64(s3, s6);
-    const disc_two_bearings_pair_f64 s8 = disc_two_bearings_div_f64((disc_two_bearings_pair_f64){0.5, 0.0}, (disc_two_bearings_pair_f64){d, 0.0});
-    const disc_two_bearings_pair_f64 s9 = disc_two_bearings_mul_f64(s7, s8);
-    const disc_two_bearings_pair_f64 s10 = disc_two_bearings_sub_f64(s3, s6);
-    const disc_two_bearings_pair_f64 s11 = disc_two_bearings_mul_f64(s10, s8);
+    const disc_two_bearings_pair_f64 s0 = disc_two_bearings_mul_f64((disc_two_bearings_pair_f64){m, 0.0}, (disc_two_bearings_pair_f64){0.5, 0.0});
+    const disc_two_bearings_pair_f64 s1 = disc_two_bearings_mul_f64((disc_two_bearings_pair_f64){r, 0.0}, (disc_two_bearings_pair_f64){r, 0.0});
+    const disc_two_bearings_pair_f64 s2 = disc_two_bearings_mul_f64((disc_two_bearings_pair_f64){w, 0.0}, (disc_two_bearings_pair_f64){W, 0.0});
+    const disc_two_bearings_pair_f64 s3 = disc_two_bearings_mul_f64(s1, s2);
+    const disc_two_bearings_pair_f64 s4 = disc_two_bearings_mul_f64(s0, s3);
+    const disc_two_bearings_pair_f64 s5 = disc_two_bearings_mul_f64((disc_two_bearings_pair_f64){d, 0.0}, (disc_two_bearings_pair_f64){g, 0.0});
+    const disc_two_bearings_pair_f64 s6 = disc_two_bearings_add_f64(s5, s3);
+    const disc_two_bearings_pair_f64 s7 = disc_two_bearings_div_f64(s0, (disc_two_bearings_pair_f64){d, 0.0});
+    const disc_two_bearings_pair_f64 s8 = disc_two_bearings_mul_f64(s6, s7);
+    const disc_two_bearings_pair_f64 s9 = disc_two_bearings_sub_f64(s3, s5);
+    const disc_two_bearings_pair_f64 s10 = disc_two_bearings_mul_f64(s9, s7);
     constants->s0010 = s4.high;
-    constants->k1 = s9.high;
-    constants->s0008 = s11.high;
+    constants->k1 = s8.high;
+    constants->s0008 = s10.high;
     if (!(m - m >= 0.0)
         || !(r - r >= 0.0)
         || !(w - w >= 0.0)
@@ -116,8 +115,8 @@ int disc_two_bearings_setup_f64(double m, double r, double w, double W, double d
         return 3;
     }
     if (!(s4.high - s4.high >= 0.0)
-        || !(s9.high - s9.high >= 0.0)
-        || !(s11.high - s11.high >= 0.0)) {
+        || !(s8.high - s8.high >= 0.0)
+        || !(s10.high - s10.high >= 0.0)) {
         return 5;
     }
     return 0;

@@ -12,7 +12,7 @@ where it cannot and a derivative exists, it gives NaN or an infinity.
 import casadi as ca
 
 PARAMETERS = ['J_xx', 'J_yy', 'J_zz', 'J_xy', 'J_xz', 'J_yz', 'I_w']
-CONSTANTS = ['I_w', 'J_xy', 'J_yz', 'J_xx_minus_J_yy', 'J_xz', 'k1', 'J_yy_minus_J_zz', 'k2', 'k3', 'minus_inverse_det', 'k4', 'k5', 'k6', 'inverse_det', 'one_over_I_w']
+CONSTANTS = ['J_xz', 'J_yz', 'J_yy_minus_J_zz', 'I_w', 'J_xy', 'J_xx', 'J_xx_minus_J_yy', 'k1', 'k2', 'J_yy', 'k3', 'J_zz', 'one_over_I_w']
 SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
@@ -158,93 +158,68 @@ def _setup_status():
 
 def _tried():
     parameters = ca.SX.sym("parameters", 7)
-    s0 = _sub((parameters[0], 0.0), (parameters[1], 0.0))
-    s1 = _mul((parameters[6], 0.0), (parameters[4], 0.0))
-    s2 = _mul((parameters[3], 0.0), (parameters[5], 0.0))
+    s0 = _add((parameters[0], 0.0), (parameters[1], 0.0))
+    s1 = _add(s0, (parameters[2], 0.0))
+    s2 = _mul((parameters[6], 0.0), (3.0, 0.0))
     s3 = _sub(s1, s2)
-    s4 = _mul((parameters[1], 0.0), (parameters[4], 0.0))
-    s5 = _sub(s3, s4)
-    s6 = _sub((parameters[1], 0.0), (parameters[2], 0.0))
-    s7 = _mul((parameters[6], 0.0), (parameters[3], 0.0))
-    s8 = _mul((parameters[3], 0.0), (parameters[2], 0.0))
-    s9 = _sub(s7, s8)
-    s10 = _mul((parameters[5], 0.0), (parameters[4], 0.0))
-    s11 = _sub(s9, s10)
-    s12 = _mul((parameters[5], 0.0), (parameters[5], 0.0))
-    s13 = _mul((parameters[6], 0.0), (parameters[2], 0.0))
-    s14 = _add(s12, s13)
-    s15 = _mul((parameters[1], 0.0), (parameters[2], 0.0))
-    s16 = _sub(s14, s15)
-    s17 = _mul((parameters[6], 0.0), (parameters[6], 0.0))
-    s18 = _mul((parameters[6], 0.0), (parameters[1], 0.0))
-    s19 = _sub(s17, s18)
-    s20 = _sub(s16, s19)
-    s21 = _mul((parameters[6], 0.0), s17)
-    s22 = _mul((parameters[0], 0.0), s12)
-    s23 = _add(s21, s22)
-    s24 = _mul((parameters[4], 0.0), (parameters[4], 0.0))
-    s25 = _mul((parameters[1], 0.0), s24)
-    s26 = _add(s23, s25)
-    s27 = _mul((parameters[3], 0.0), (parameters[3], 0.0))
-    s28 = _mul((parameters[2], 0.0), s27)
-    s29 = _add(s26, s28)
-    s30 = _mul((parameters[6], 0.0), (parameters[0], 0.0))
-    s31 = _mul((parameters[1], 0.0), s30)
-    s32 = _add(s29, s31)
-    s33 = _mul((parameters[2], 0.0), s30)
-    s34 = _add(s32, s33)
-    s35 = _mul((parameters[6], 0.0), s15)
-    s36 = _add(s34, s35)
-    s37 = _mul((parameters[4], 0.0), s2)
-    s38 = _add(s36, s37)
-    s39 = _add(s38, s37)
-    s40 = _mul((parameters[0], 0.0), s17)
-    s41 = _sub(s39, s40)
-    s42 = _mul((parameters[1], 0.0), s17)
-    s43 = _sub(s41, s42)
-    s44 = _mul((parameters[2], 0.0), s17)
-    s45 = _sub(s43, s44)
-    s46 = _mul((parameters[6], 0.0), s27)
-    s47 = _sub(s45, s46)
-    s48 = _mul((parameters[6], 0.0), s24)
-    s49 = _sub(s47, s48)
-    s50 = _mul((parameters[6], 0.0), s12)
-    s51 = _sub(s49, s50)
-    s52 = _mul((parameters[0], 0.0), s15)
-    s53 = _sub(s51, s52)
-    s54 = _div((1.0, 0.0), s53)
-    s55 = _neg(s54)
-    s56 = _mul((parameters[6], 0.0), (parameters[5], 0.0))
-    s57 = _mul((parameters[3], 0.0), (parameters[4], 0.0))
-    s58 = _sub(s56, s57)
-    s59 = _mul((parameters[5], 0.0), (parameters[0], 0.0))
-    s60 = _sub(s58, s59)
-    s61 = _add(s24, s13)
-    s62 = _add(s61, s30)
-    s63 = _sub(s62, s17)
-    s64 = _mul((parameters[0], 0.0), (parameters[2], 0.0))
-    s65 = _sub(s63, s64)
-    s66 = _add(s27, s30)
-    s67 = _mul((parameters[0], 0.0), (parameters[1], 0.0))
-    s68 = _sub(s66, s67)
-    s69 = _sub(s68, s19)
-    s70 = _div((1.0, 0.0), (parameters[6], 0.0))
-    s71 = _sub((parameters[0], 0.0), (parameters[6], 0.0))
-    s72 = _sub((parameters[1], 0.0), (parameters[6], 0.0))
-    s73 = _sub((parameters[2], 0.0), (parameters[6], 0.0))
+    s4 = _power_of_two(s3)
+    s5 = _div((1.0, 0.0), s4)
+    s6 = _sub((parameters[1], 0.0), (parameters[6], 0.0))
+    s7 = _mul(s5, s6)
+    s8 = _sub((parameters[2], 0.0), (parameters[6], 0.0))
+    s9 = _mul(s5, s8)
+    s10 = _mul(s7, s9)
+    s11 = _mul((parameters[5], 0.0), s5)
+    s12 = _mul(s11, s11)
+    s13 = _sub(s10, s12)
+    s14 = _sub((parameters[0], 0.0), (parameters[6], 0.0))
+    s15 = _mul(s5, s14)
+    s16 = _mul(s13, s15)
+    s17 = _mul((parameters[3], 0.0), s5)
+    s18 = _mul((parameters[4], 0.0), s5)
+    s19 = _mul(s11, s18)
+    s20 = _mul(s9, s17)
+    s21 = _add(s19, s20)
+    s22 = _mul(s17, s21)
+    s23 = _sub(s16, s22)
+    s24 = _mul(s11, s17)
+    s25 = _mul(s7, s18)
+    s26 = _add(s24, s25)
+    s27 = _mul(s18, s26)
+    s28 = _sub(s23, s27)
+    s29 = _mul(s4, s28)
+    s30 = _div((1.0, 0.0), s29)
+    s31 = _sub((parameters[1], 0.0), (parameters[2], 0.0))
+    s32 = _mul(s13, s30)
+    s33 = _sub((parameters[0], 0.0), (parameters[1], 0.0))
+    s34 = _mul(s21, s30)
+    s35 = _mul(s26, s30)
+    s36 = _mul(s9, s15)
+    s37 = _mul(s18, s18)
+    s38 = _sub(s36, s37)
+    s39 = _mul(s30, s38)
+    s40 = _mul(s17, s18)
+    s41 = _mul(s11, s15)
+    s42 = _add(s40, s41)
+    s43 = _mul(s30, s42)
+    s44 = _mul(s7, s15)
+    s45 = _mul(s17, s17)
+    s46 = _sub(s44, s45)
+    s47 = _mul(s30, s46)
+    s48 = _div((1.0, 0.0), (parameters[6], 0.0))
     r0 = _neg((parameters[3], 0.0))
     r1 = _neg((parameters[4], 0.0))
     r2 = _neg((parameters[5], 0.0))
-    r3 = _add(s71, s72)
-    r4 = _add(r3, s73)
+    r3 = _add(s14, s6)
+    r4 = _add(r3, s8)
     r5 = _unit_roundoff()
     r6 = _mul(r5, (4.0, 0.0))
     r7 = _mul(r6, r4)
     r8 = _less((0.0, 0.0), r4)
     r9 = _select(r8, r7, (7.888609052210118e-31, 0.0))
-    r10 = _add(s71, r9)
-    r11 = _add(s72, r9)
-    r12 = _add(s73, r9)
+    r10 = _add(s14, r9)
+    r11 = _add(s6, r9)
+    r12 = _add(s8, r9)
     r13 = _div(r0, r10)
     r14 = _mul(r13, r0)
     r15 = _sub(r11, r14)
@@ -256,10 +231,10 @@ def _tried():
     r21 = _div(r17, r15)
     r22 = _mul(r21, r17)
     r23 = _sub(r20, r22)
-    constants = ca.vertcat(parameters[6], parameters[3], parameters[5], s0[0], parameters[4], s5[0], s6[0], s11[0], s20[0], s55[0], s60[0], s65[0], s69[0], s54[0], s70[0])
+    constants = ca.vertcat(parameters[4], parameters[5], s31[0], parameters[6], parameters[3], s32[0], s33[0], s34[0], s35[0], s39[0], s43[0], s47[0], s48[0])
     status = ca.SX(0)
-    status = _refused(status, 5, _endless(s71[0]), _endless(s72[0]), _endless(s73[0]), _endless(r10[0]), _endless(r15[0]), _endless(r23[0]), _endless(s0[0]), _endless(s5[0]), _endless(s6[0]), _endless(s11[0]), _endless(s20[0]), _endless(s55[0]), _endless(s60[0]), _endless(s65[0]), _endless(s69[0]), _endless(s54[0]), _endless(s70[0]))
-    status = _refused(status, 4, s71[0] < 0.0, s72[0] < 0.0, s73[0] < 0.0, r10[0] < 0.0, r15[0] < 0.0, r23[0] < 0.0, parameters[6] < 0.0)
+    status = _refused(status, 5, _endless(s14[0]), _endless(s6[0]), _endless(s8[0]), _endless(r10[0]), _endless(r15[0]), _endless(r23[0]), _endless(s31[0]), _endless(s32[0]), _endless(s33[0]), _endless(s34[0]), _endless(s35[0]), _endless(s39[0]), _endless(s43[0]), _endless(s47[0]), _endless(s48[0]))
+    status = _refused(status, 4, s14[0] < 0.0, s6[0] < 0.0, s8[0] < 0.0, r10[0] < 0.0, r15[0] < 0.0, r23[0] < 0.0, parameters[6] < 0.0)
     status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]), _endless(parameters[3]), _endless(parameters[4]), _endless(parameters[5]), _endless(parameters[6]))
     return parameters, constants, status
 
@@ -295,7 +270,7 @@ def body_hot():
 
 
 def _body():
-    constants = ca.SX.sym("constants", 15)
+    constants = ca.SX.sym("constants", 13)
     w_x = ca.SX.sym("w_x", 1)
     w_y = ca.SX.sym("w_y", 1)
     w_z = ca.SX.sym("w_z", 1)
@@ -305,74 +280,59 @@ def _body():
     u_1 = ca.SX.sym("u_1", 1)
     u_2 = ca.SX.sym("u_2", 1)
     u_3 = ca.SX.sym("u_3", 1)
-    t0 = w_y[0] + s_2[0]
-    t1 = w_x[0] * constants[0]
-    t2 = t0 * t1
-    t3 = u_3[0] + t2
-    t4 = w_x[0] * constants[1]
-    t5 = w_z[0] * constants[2]
-    t6 = t4 + t5
-    t7 = w_x[0] * t6
-    t8 = w_x[0] * constants[3]
-    t9 = w_y[0] * constants[1]
-    t10 = t8 - t9
-    t11 = w_z[0] * constants[4]
-    t12 = t10 - t11
-    t13 = w_y[0] * t12
-    t14 = t7 + t13
-    t15 = t3 - t14
-    t16 = w_x[0] + s_1[0]
-    t17 = w_y[0] * constants[0]
-    t18 = t16 * t17
-    t19 = t15 - t18
-    t20 = t19 * constants[5]
-    t21 = w_z[0] * t12
-    t22 = w_z[0] * constants[6]
-    t23 = w_x[0] * constants[4]
-    t24 = t22 + t23
-    t25 = w_y[0] * constants[2]
-    t26 = t24 + t25
-    t27 = w_x[0] * t26
-    t28 = t21 + t27
-    t29 = u_2[0] + t28
-    t30 = w_z[0] * constants[0]
-    t31 = t16 * t30
-    t32 = t29 + t31
-    t33 = w_z[0] + s_3[0]
-    t34 = t33 * t1
-    t35 = t32 - t34
-    t36 = t35 * constants[7]
-    t37 = t20 + t36
-    t38 = t33 * t17
-    t39 = u_1[0] + t38
-    t40 = w_y[0] * t26
-    t41 = t6 * w_z[0]
-    t42 = t40 - t41
-    t43 = t39 - t42
-    t44 = t0 * t30
+    t0 = w_x[0] * constants[0]
+    t1 = w_y[0] * constants[1]
+    t2 = t0 + t1
+    t3 = w_z[0] * constants[2]
+    t4 = t2 + t3
+    t5 = s_3[0] * constants[3]
+    t6 = t4 - t5
+    t7 = w_y[0] * t6
+    t8 = t7 - u_1[0]
+    t9 = w_x[0] * constants[4]
+    t10 = w_z[0] * constants[1]
+    t11 = t9 + t10
+    t12 = s_2[0] * constants[3]
+    t13 = t11 - t12
+    t14 = w_z[0] * t13
+    t15 = t8 - t14
+    t16 = t15 * constants[5]
+    t17 = t6 * w_x[0]
+    t18 = u_2[0] + t17
+    t19 = w_y[0] * constants[4]
+    t20 = w_z[0] * constants[0]
+    t21 = t19 + t20
+    t22 = w_x[0] * constants[6]
+    t23 = t21 - t22
+    t24 = s_1[0] * constants[3]
+    t25 = t23 - t24
+    t26 = w_z[0] * t25
+    t27 = t18 - t26
+    t28 = t27 * constants[7]
+    t29 = t16 - t28
+    t30 = w_y[0] * t25
+    t31 = u_3[0] + t30
+    t32 = w_x[0] * t13
+    t33 = t31 - t32
+    t34 = t33 * constants[8]
+    t35 = t29 - t34
+    t36 = t15 * constants[7]
+    t37 = t27 * constants[9]
+    t38 = t36 - t37
+    t39 = t33 * constants[10]
+    t40 = t38 - t39
+    t41 = t15 * constants[8]
+    t42 = t27 * constants[10]
+    t43 = t41 - t42
+    t44 = t33 * constants[11]
     t45 = t43 - t44
-    t46 = t45 * constants[8]
-    t47 = t37 + t46
-    t48 = t47 * constants[9]
-    t49 = t19 * constants[10]
-    t50 = t35 * constants[11]
-    t51 = t49 + t50
-    t52 = t45 * constants[7]
-    t53 = t51 + t52
-    t54 = t53 * constants[9]
-    t55 = t19 * constants[12]
-    t56 = t35 * constants[10]
-    t57 = t55 + t56
-    t58 = t45 * constants[5]
-    t59 = t57 + t58
-    t60 = t59 * constants[9]
     return ca.Function(
         "reaction_wheel_satellite_body_hot",
         [constants, w_x, w_y, w_z, s_1, s_2, s_3, u_1, u_2, u_3],
         [
-            ca.vertcat(t48),
-            ca.vertcat(t54),
-            ca.vertcat(t60),
+            ca.vertcat(t35),
+            ca.vertcat(t40),
+            ca.vertcat(t45),
         ],
         ['constants', 'w_x', 'w_y', 'w_z', 's_1', 's_2', 's_3', 'u_1', 'u_2', 'u_3'],
         ['w_x_dot', 'w_y_dot', 'w_z_dot'],
@@ -391,7 +351,7 @@ def wheels_hot():
 
 
 def _wheels():
-    constants = ca.SX.sym("constants", 15)
+    constants = ca.SX.sym("constants", 13)
     w_x = ca.SX.sym("w_x", 1)
     w_y = ca.SX.sym("w_y", 1)
     w_z = ca.SX.sym("w_z", 1)
@@ -401,80 +361,65 @@ def _wheels():
     u_1 = ca.SX.sym("u_1", 1)
     u_2 = ca.SX.sym("u_2", 1)
     u_3 = ca.SX.sym("u_3", 1)
-    t0 = w_y[0] + s_2[0]
+    t0 = u_1[0] * constants[12]
     t1 = w_x[0] * constants[0]
-    t2 = t0 * t1
-    t3 = u_3[0] + t2
-    t4 = w_x[0] * constants[1]
-    t5 = w_z[0] * constants[2]
-    t6 = t4 + t5
-    t7 = w_x[0] * t6
-    t8 = w_x[0] * constants[3]
-    t9 = w_y[0] * constants[1]
-    t10 = t8 - t9
-    t11 = w_z[0] * constants[4]
-    t12 = t10 - t11
-    t13 = w_y[0] * t12
-    t14 = t7 + t13
-    t15 = t3 - t14
-    t16 = w_x[0] + s_1[0]
-    t17 = w_y[0] * constants[0]
-    t18 = t16 * t17
-    t19 = t15 - t18
-    t20 = t19 * constants[5]
-    t21 = w_z[0] * t12
-    t22 = w_z[0] * constants[6]
-    t23 = w_x[0] * constants[4]
-    t24 = t22 + t23
-    t25 = w_y[0] * constants[2]
-    t26 = t24 + t25
-    t27 = w_x[0] * t26
-    t28 = t21 + t27
-    t29 = u_2[0] + t28
-    t30 = w_z[0] * constants[0]
-    t31 = t16 * t30
-    t32 = t29 + t31
-    t33 = w_z[0] + s_3[0]
-    t34 = t33 * t1
-    t35 = t32 - t34
-    t36 = t35 * constants[7]
-    t37 = t20 + t36
-    t38 = t33 * t17
-    t39 = u_1[0] + t38
-    t40 = w_y[0] * t26
-    t41 = t6 * w_z[0]
-    t42 = t40 - t41
-    t43 = t39 - t42
-    t44 = t0 * t30
-    t45 = t43 - t44
-    t46 = t45 * constants[8]
-    t47 = t37 + t46
-    t48 = t47 * constants[13]
-    t49 = u_1[0] * constants[14]
-    t50 = t48 + t49
-    t51 = t19 * constants[10]
-    t52 = t35 * constants[11]
-    t53 = t51 + t52
-    t54 = t45 * constants[7]
-    t55 = t53 + t54
-    t56 = t55 * constants[13]
-    t57 = u_2[0] * constants[14]
-    t58 = t56 + t57
-    t59 = t19 * constants[12]
-    t60 = t35 * constants[10]
-    t61 = t59 + t60
-    t62 = t45 * constants[5]
-    t63 = t61 + t62
-    t64 = t63 * constants[13]
-    t65 = u_3[0] * constants[14]
-    t66 = t64 + t65
+    t2 = w_y[0] * constants[1]
+    t3 = t1 + t2
+    t4 = w_z[0] * constants[2]
+    t5 = t3 + t4
+    t6 = s_3[0] * constants[3]
+    t7 = t5 - t6
+    t8 = w_y[0] * t7
+    t9 = t8 - u_1[0]
+    t10 = w_x[0] * constants[4]
+    t11 = w_z[0] * constants[1]
+    t12 = t10 + t11
+    t13 = s_2[0] * constants[3]
+    t14 = t12 - t13
+    t15 = w_z[0] * t14
+    t16 = t9 - t15
+    t17 = t16 * constants[5]
+    t18 = t7 * w_x[0]
+    t19 = u_2[0] + t18
+    t20 = w_y[0] * constants[4]
+    t21 = w_z[0] * constants[0]
+    t22 = t20 + t21
+    t23 = w_x[0] * constants[6]
+    t24 = t22 - t23
+    t25 = s_1[0] * constants[3]
+    t26 = t24 - t25
+    t27 = w_z[0] * t26
+    t28 = t19 - t27
+    t29 = t28 * constants[7]
+    t30 = t17 - t29
+    t31 = w_y[0] * t26
+    t32 = u_3[0] + t31
+    t33 = w_x[0] * t14
+    t34 = t32 - t33
+    t35 = t34 * constants[8]
+    t36 = t30 - t35
+    t37 = t0 - t36
+    t38 = u_2[0] * constants[12]
+    t39 = t16 * constants[7]
+    t40 = t28 * constants[9]
+    t41 = t39 - t40
+    t42 = t34 * constants[10]
+    t43 = t41 - t42
+    t44 = t38 - t43
+    t45 = u_3[0] * constants[12]
+    t46 = t16 * constants[8]
+    t47 = t28 * constants[10]
+    t48 = t46 - t47
+    t49 = t34 * constants[11]
+    t50 = t48 - t49
+    t51 = t45 - t50
     return ca.Function(
         "reaction_wheel_satellite_wheels_hot",
         [constants, w_x, w_y, w_z, s_1, s_2, s_3, u_1, u_2, u_3],
         [
-            ca.vertcat(t50),
-            ca.vertcat(t58),
-            ca.vertcat(t66),
+            ca.vertcat(t37),
+            ca.vertcat(t44),
+            ca.vertcat(t51),
         ],
         ['constants', 'w_x', 'w_y', 'w_z', 's_1', 's_2', 's_3', 'u_1', 'u_2', 'u_3'],
         ['s_1_dot', 's_2_dot', 's_3_dot'],

@@ -252,7 +252,7 @@ def _tried():
     s29 = _mul((parameters[1], 0.0), s2)
     s30 = _mul(s29, (0.75, 0.0))
     s31 = _div((parameters[1], 0.0), s2)
-    s32 = _sub(s31, s30)
+    s32 = _sub(s30, s31)
     constants = ca.vertcat(s19[0], s28[0], s30[0], s32[0])
     status = ca.SX(0)
     status = _refused(status, 5, _endless(s19[0]), _endless(s28[0]), _endless(s30[0]), _endless(s32[0]))
@@ -352,7 +352,7 @@ def _steady():
     W = ca.SX.sym("W", 1)
     t0 = W[0] * W[0]
     t1 = t0 * constants[1]
-    t2 = t1 - constants[3]
+    t2 = t1 + constants[3]
     return ca.Function(
         "rolling_cone_steady_hot",
         [constants, W],

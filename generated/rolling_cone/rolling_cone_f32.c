@@ -173,7 +173,7 @@ int rolling_cone_setup_f32(float m, float h, float r, float a, float g,
     const rolling_cone_pair_f32 s29 = rolling_cone_mul_f32((rolling_cone_pair_f32){h, 0.0F}, s2);
     const rolling_cone_pair_f32 s30 = rolling_cone_mul_f32(s29, (rolling_cone_pair_f32){0.75F, 0.0F});
     const rolling_cone_pair_f32 s31 = rolling_cone_div_f32((rolling_cone_pair_f32){h, 0.0F}, s2);
-    const rolling_cone_pair_f32 s32 = rolling_cone_sub_f32(s31, s30);
+    const rolling_cone_pair_f32 s32 = rolling_cone_sub_f32(s30, s31);
     constants->k1 = s19.high;
     constants->k2 = s28.high;
     constants->k3 = s30.high;
@@ -236,6 +236,6 @@ void rolling_cone_steady_f32(const rolling_cone_constants_f32 *constants, float 
 {
     const float t0 = W * W;
     const float t1 = t0 * constants->k2;
-    const float t2 = t1 - constants->k4;
+    const float t2 = t1 + constants->k4;
     *steady = t2;
 }

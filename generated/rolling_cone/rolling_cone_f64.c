@@ -185,7 +185,7 @@ int rolling_cone_setup_f64(double m, double h, double r, double a, double g,
     const rolling_cone_pair_f64 s29 = rolling_cone_mul_f64((rolling_cone_pair_f64){h, 0.0}, s2);
     const rolling_cone_pair_f64 s30 = rolling_cone_mul_f64(s29, (rolling_cone_pair_f64){0.75, 0.0});
     const rolling_cone_pair_f64 s31 = rolling_cone_div_f64((rolling_cone_pair_f64){h, 0.0}, s2);
-    const rolling_cone_pair_f64 s32 = rolling_cone_sub_f64(s31, s30);
+    const rolling_cone_pair_f64 s32 = rolling_cone_sub_f64(s30, s31);
     constants->k1 = s19.high;
     constants->k2 = s28.high;
     constants->k3 = s30.high;
@@ -248,6 +248,6 @@ void rolling_cone_steady_f64(const rolling_cone_constants_f64 *constants, double
 {
     const double t0 = W * W;
     const double t1 = t0 * constants->k2;
-    const double t2 = t1 - constants->k4;
+    const double t2 = t1 + constants->k4;
     *steady = t2;
 }

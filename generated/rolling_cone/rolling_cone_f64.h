@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 5aacb0c9e7be66c3.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 04cfd425df00dd5d.
  */
 #ifndef ROLLING_CONE_F64_H
 #define ROLLING_CONE_F64_H
@@ -25,7 +25,7 @@ typedef struct {
     double k1; /* 9/32*m*h^2*cos(a)^2 + 1/2*cos(a)^2*(3/20*m*r^2 + 3/80*m*h^2) + 3/20*m*r^2*(sin(a) - 1/sin(a))^2 */
     double k2; /* (sin(a)*cos(a)*(3/20*r^2 + 3/5*h^2) - 3/10*r^2*cos(a)*(sin(a) - 1/sin(a)))/g */
     double k3; /* 3/4*h*cos(a) */
-    double k4; /* h/cos(a) - 3/4*h*cos(a) */
+    double k4; /* 3/4*h*cos(a) - h/cos(a) */
 } rolling_cone_constants_f64;
 
 /* Make the constants of this scene from its parameters; call it once.
@@ -97,7 +97,7 @@ void rolling_cone_x_N_f64(const rolling_cone_constants_f64 *constants, double W,
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.31, largest 3 u of the largest product or sum in the equation (of steady; 200000
  *            samples of the ranges, 65536 searched from the worst, 114 hard ones).
- * Cost: 1 sub, 2 mul.
+ * Cost: 1 add, 2 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

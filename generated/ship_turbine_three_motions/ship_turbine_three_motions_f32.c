@@ -86,27 +86,27 @@ static ship_turbine_three_motions_pair_f32 ship_turbine_three_motions_div_f32(sh
 int ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, float b, float g,
     float turn, float pitch, ship_turbine_three_motions_constants_f32 *constants)
 {
-    const ship_turbine_three_motions_pair_f32 s0 = ship_turbine_three_motions_add_f32((ship_turbine_three_motions_pair_f32){a, 0.0F}, (ship_turbine_three_motions_pair_f32){b, 0.0F});
-    const ship_turbine_three_motions_pair_f32 s1 = ship_turbine_three_motions_div_f32((ship_turbine_three_motions_pair_f32){1.0F, 0.0F}, s0);
-    const ship_turbine_three_motions_pair_f32 s2 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){m, 0.0F}, (ship_turbine_three_motions_pair_f32){g, 0.0F});
-    const ship_turbine_three_motions_pair_f32 s3 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){a, 0.0F}, s2);
-    const ship_turbine_three_motions_pair_f32 s4 = ship_turbine_three_motions_mul_f32(s1, s3);
-    const ship_turbine_three_motions_pair_f32 s5 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){b, 0.0F}, s2);
-    const ship_turbine_three_motions_pair_f32 s6 = ship_turbine_three_motions_mul_f32(s1, s5);
-    const ship_turbine_three_motions_pair_f32 s7 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){m, 0.0F}, (ship_turbine_three_motions_pair_f32){kz, 0.0F});
-    const ship_turbine_three_motions_pair_f32 s8 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){kz, 0.0F}, s7);
-    const ship_turbine_three_motions_pair_f32 s9 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){ws, 0.0F}, s8);
-    const ship_turbine_three_motions_pair_f32 s10 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){turn, 0.0F}, s9);
-    const ship_turbine_three_motions_pair_f32 s11 = ship_turbine_three_motions_sub_f32(s3, s10);
-    const ship_turbine_three_motions_pair_f32 s12 = ship_turbine_three_motions_mul_f32(s1, s11);
-    const ship_turbine_three_motions_pair_f32 s13 = ship_turbine_three_motions_add_f32(s5, s10);
-    const ship_turbine_three_motions_pair_f32 s14 = ship_turbine_three_motions_mul_f32(s1, s13);
-    const ship_turbine_three_motions_pair_f32 s15 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){pitch, 0.0F}, s9);
+    const ship_turbine_three_motions_pair_f32 s0 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){a, 0.0F}, (ship_turbine_three_motions_pair_f32){g, 0.0F});
+    const ship_turbine_three_motions_pair_f32 s1 = ship_turbine_three_motions_add_f32((ship_turbine_three_motions_pair_f32){a, 0.0F}, (ship_turbine_three_motions_pair_f32){b, 0.0F});
+    const ship_turbine_three_motions_pair_f32 s2 = ship_turbine_three_motions_div_f32((ship_turbine_three_motions_pair_f32){m, 0.0F}, s1);
+    const ship_turbine_three_motions_pair_f32 s3 = ship_turbine_three_motions_mul_f32(s0, s2);
+    const ship_turbine_three_motions_pair_f32 s4 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){g, 0.0F}, (ship_turbine_three_motions_pair_f32){b, 0.0F});
+    const ship_turbine_three_motions_pair_f32 s5 = ship_turbine_three_motions_mul_f32(s4, s2);
+    const ship_turbine_three_motions_pair_f32 s6 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){ws, 0.0F}, (ship_turbine_three_motions_pair_f32){turn, 0.0F});
+    const ship_turbine_three_motions_pair_f32 s7 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){kz, 0.0F}, (ship_turbine_three_motions_pair_f32){kz, 0.0F});
+    const ship_turbine_three_motions_pair_f32 s8 = ship_turbine_three_motions_mul_f32(s6, s7);
+    const ship_turbine_three_motions_pair_f32 s9 = ship_turbine_three_motions_sub_f32(s0, s8);
+    const ship_turbine_three_motions_pair_f32 s10 = ship_turbine_three_motions_mul_f32(s9, s2);
+    const ship_turbine_three_motions_pair_f32 s11 = ship_turbine_three_motions_add_f32(s4, s8);
+    const ship_turbine_three_motions_pair_f32 s12 = ship_turbine_three_motions_mul_f32(s11, s2);
+    const ship_turbine_three_motions_pair_f32 s13 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){ws, 0.0F}, (ship_turbine_three_motions_pair_f32){pitch, 0.0F});
+    const ship_turbine_three_motions_pair_f32 s14 = ship_turbine_three_motions_mul_f32((ship_turbine_three_motions_pair_f32){m, 0.0F}, s7);
+    const ship_turbine_three_motions_pair_f32 s15 = ship_turbine_three_motions_mul_f32(s13, s14);
     const ship_turbine_three_motions_pair_f32 s16 = ship_turbine_three_motions_neg_f32(s15);
-    constants->s0011 = s4.high;
-    constants->s0013 = s6.high;
-    constants->s0016 = s12.high;
-    constants->s0018 = s14.high;
+    constants->s0011 = s3.high;
+    constants->s0013 = s5.high;
+    constants->s0016 = s10.high;
+    constants->s0018 = s12.high;
     constants->s0020 = s16.high;
     if (!(m - m >= 0.0F)
         || !(kz - kz >= 0.0F)
@@ -121,14 +121,14 @@ int ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, f
     if (m <= 0.0F) {
         return 2;
     }
-    if (s8.high < 0.0F) {
+    if (s14.high < 0.0F) {
         return 4;
     }
-    if (!(s8.high - s8.high >= 0.0F)
-        || !(s4.high - s4.high >= 0.0F)
-        || !(s6.high - s6.high >= 0.0F)
+    if (!(s14.high - s14.high >= 0.0F)
+        || !(s3.high - s3.high >= 0.0F)
+        || !(s5.high - s5.high >= 0.0F)
+        || !(s10.high - s10.high >= 0.0F)
         || !(s12.high - s12.high >= 0.0F)
-        || !(s14.high - s14.high >= 0.0F)
         || !(s16.high - s16.high >= 0.0F)) {
         return 5;
     }

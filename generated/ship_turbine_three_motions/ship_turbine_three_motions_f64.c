@@ -86,27 +86,27 @@ static ship_turbine_three_motions_pair_f64 ship_turbine_three_motions_div_f64(sh
 int ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double a, double b,
     double g, double turn, double pitch, ship_turbine_three_motions_constants_f64 *constants)
 {
-    const ship_turbine_three_motions_pair_f64 s0 = ship_turbine_three_motions_add_f64((ship_turbine_three_motions_pair_f64){a, 0.0}, (ship_turbine_three_motions_pair_f64){b, 0.0});
-    const ship_turbine_three_motions_pair_f64 s1 = ship_turbine_three_motions_div_f64((ship_turbine_three_motions_pair_f64){1.0, 0.0}, s0);
-    const ship_turbine_three_motions_pair_f64 s2 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){m, 0.0}, (ship_turbine_three_motions_pair_f64){g, 0.0});
-    const ship_turbine_three_motions_pair_f64 s3 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){a, 0.0}, s2);
-    const ship_turbine_three_motions_pair_f64 s4 = ship_turbine_three_motions_mul_f64(s1, s3);
-    const ship_turbine_three_motions_pair_f64 s5 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){b, 0.0}, s2);
-    const ship_turbine_three_motions_pair_f64 s6 = ship_turbine_three_motions_mul_f64(s1, s5);
-    const ship_turbine_three_motions_pair_f64 s7 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){m, 0.0}, (ship_turbine_three_motions_pair_f64){kz, 0.0});
-    const ship_turbine_three_motions_pair_f64 s8 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){kz, 0.0}, s7);
-    const ship_turbine_three_motions_pair_f64 s9 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){ws, 0.0}, s8);
-    const ship_turbine_three_motions_pair_f64 s10 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){turn, 0.0}, s9);
-    const ship_turbine_three_motions_pair_f64 s11 = ship_turbine_three_motions_sub_f64(s3, s10);
-    const ship_turbine_three_motions_pair_f64 s12 = ship_turbine_three_motions_mul_f64(s1, s11);
-    const ship_turbine_three_motions_pair_f64 s13 = ship_turbine_three_motions_add_f64(s5, s10);
-    const ship_turbine_three_motions_pair_f64 s14 = ship_turbine_three_motions_mul_f64(s1, s13);
-    const ship_turbine_three_motions_pair_f64 s15 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){pitch, 0.0}, s9);
+    const ship_turbine_three_motions_pair_f64 s0 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){a, 0.0}, (ship_turbine_three_motions_pair_f64){g, 0.0});
+    const ship_turbine_three_motions_pair_f64 s1 = ship_turbine_three_motions_add_f64((ship_turbine_three_motions_pair_f64){a, 0.0}, (ship_turbine_three_motions_pair_f64){b, 0.0});
+    const ship_turbine_three_motions_pair_f64 s2 = ship_turbine_three_motions_div_f64((ship_turbine_three_motions_pair_f64){m, 0.0}, s1);
+    const ship_turbine_three_motions_pair_f64 s3 = ship_turbine_three_motions_mul_f64(s0, s2);
+    const ship_turbine_three_motions_pair_f64 s4 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){g, 0.0}, (ship_turbine_three_motions_pair_f64){b, 0.0});
+    const ship_turbine_three_motions_pair_f64 s5 = ship_turbine_three_motions_mul_f64(s4, s2);
+    const ship_turbine_three_motions_pair_f64 s6 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){ws, 0.0}, (ship_turbine_three_motions_pair_f64){turn, 0.0});
+    const ship_turbine_three_motions_pair_f64 s7 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){kz, 0.0}, (ship_turbine_three_motions_pair_f64){kz, 0.0});
+    const ship_turbine_three_motions_pair_f64 s8 = ship_turbine_three_motions_mul_f64(s6, s7);
+    const ship_turbine_three_motions_pair_f64 s9 = ship_turbine_three_motions_sub_f64(s0, s8);
+    const ship_turbine_three_motions_pair_f64 s10 = ship_turbine_three_motions_mul_f64(s9, s2);
+    const ship_turbine_three_motions_pair_f64 s11 = ship_turbine_three_motions_add_f64(s4, s8);
+    const ship_turbine_three_motions_pair_f64 s12 = ship_turbine_three_motions_mul_f64(s11, s2);
+    const ship_turbine_three_motions_pair_f64 s13 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){ws, 0.0}, (ship_turbine_three_motions_pair_f64){pitch, 0.0});
+    const ship_turbine_three_motions_pair_f64 s14 = ship_turbine_three_motions_mul_f64((ship_turbine_three_motions_pair_f64){m, 0.0}, s7);
+    const ship_turbine_three_motions_pair_f64 s15 = ship_turbine_three_motions_mul_f64(s13, s14);
     const ship_turbine_three_motions_pair_f64 s16 = ship_turbine_three_motions_neg_f64(s15);
-    constants->s0011 = s4.high;
-    constants->s0013 = s6.high;
-    constants->s0016 = s12.high;
-    constants->s0018 = s14.high;
+    constants->s0011 = s3.high;
+    constants->s0013 = s5.high;
+    constants->s0016 = s10.high;
+    constants->s0018 = s12.high;
     constants->s0020 = s16.high;
     if (!(m - m >= 0.0)
         || !(kz - kz >= 0.0)
@@ -121,14 +121,14 @@ int ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double 
     if (m <= 0.0) {
         return 2;
     }
-    if (s8.high < 0.0) {
+    if (s14.high < 0.0) {
         return 4;
     }
-    if (!(s8.high - s8.high >= 0.0)
-        || !(s4.high - s4.high >= 0.0)
-        || !(s6.high - s6.high >= 0.0)
+    if (!(s14.high - s14.high >= 0.0)
+        || !(s3.high - s3.high >= 0.0)
+        || !(s5.high - s5.high >= 0.0)
+        || !(s10.high - s10.high >= 0.0)
         || !(s12.high - s12.high >= 0.0)
-        || !(s14.high - s14.high >= 0.0)
         || !(s16.high - s16.high >= 0.0)) {
         return 5;
     }

@@ -86,23 +86,23 @@ static ship_turbine_turn_port_pair_f32 ship_turbine_turn_port_div_f32(ship_turbi
 int ship_turbine_turn_port_setup_f32(float m, float k, float p, float v, float R, float a, float b,
     float g, ship_turbine_turn_port_constants_f32 *constants)
 {
-    const ship_turbine_turn_port_pair_f32 s0 = ship_turbine_turn_port_add_f32((ship_turbine_turn_port_pair_f32){a, 0.0F}, (ship_turbine_turn_port_pair_f32){b, 0.0F});
-    const ship_turbine_turn_port_pair_f32 s1 = ship_turbine_turn_port_div_f32((ship_turbine_turn_port_pair_f32){1.0F, 0.0F}, s0);
-    const ship_turbine_turn_port_pair_f32 s2 = ship_turbine_turn_port_mul_f32((ship_turbine_turn_port_pair_f32){p, 0.0F}, (ship_turbine_turn_port_pair_f32){v, 0.0F});
-    const ship_turbine_turn_port_pair_f32 s3 = ship_turbine_turn_port_mul_f32((ship_turbine_turn_port_pair_f32){m, 0.0F}, (ship_turbine_turn_port_pair_f32){k, 0.0F});
-    const ship_turbine_turn_port_pair_f32 s4 = ship_turbine_turn_port_mul_f32((ship_turbine_turn_port_pair_f32){k, 0.0F}, s3);
-    const ship_turbine_turn_port_pair_f32 s5 = ship_turbine_turn_port_mul_f32(s2, s4);
-    const ship_turbine_turn_port_pair_f32 s6 = ship_turbine_turn_port_div_f32(s5, (ship_turbine_turn_port_pair_f32){R, 0.0F});
-    const ship_turbine_turn_port_pair_f32 s7 = ship_turbine_turn_port_mul_f32((ship_turbine_turn_port_pair_f32){m, 0.0F}, (ship_turbine_turn_port_pair_f32){g, 0.0F});
-    const ship_turbine_turn_port_pair_f32 s8 = ship_turbine_turn_port_mul_f32((ship_turbine_turn_port_pair_f32){b, 0.0F}, s7);
-    const ship_turbine_turn_port_pair_f32 s9 = ship_turbine_turn_port_add_f32(s6, s8);
-    const ship_turbine_turn_port_pair_f32 s10 = ship_turbine_turn_port_mul_f32(s1, s9);
-    const ship_turbine_turn_port_pair_f32 s11 = ship_turbine_turn_port_mul_f32((ship_turbine_turn_port_pair_f32){a, 0.0F}, s7);
-    const ship_turbine_turn_port_pair_f32 s12 = ship_turbine_turn_port_sub_f32(s11, s6);
-    const ship_turbine_turn_port_pair_f32 s13 = ship_turbine_turn_port_mul_f32(s1, s12);
-    constants->s0010 = s10.high;
-    constants->s0012 = s13.high;
-    constants->minus_s0012 = s6.high;
+    const ship_turbine_turn_port_pair_f32 s0 = ship_turbine_turn_port_mul_f32((ship_turbine_turn_port_pair_f32){k, 0.0F}, (ship_turbine_turn_port_pair_f32){k, 0.0F});
+    const ship_turbine_turn_port_pair_f32 s1 = ship_turbine_turn_port_mul_f32((ship_turbine_turn_port_pair_f32){p, 0.0F}, (ship_turbine_turn_port_pair_f32){v, 0.0F});
+    const ship_turbine_turn_port_pair_f32 s2 = ship_turbine_turn_port_div_f32(s1, (ship_turbine_turn_port_pair_f32){R, 0.0F});
+    const ship_turbine_turn_port_pair_f32 s3 = ship_turbine_turn_port_mul_f32(s0, s2);
+    const ship_turbine_turn_port_pair_f32 s4 = ship_turbine_turn_port_mul_f32((ship_turbine_turn_port_pair_f32){b, 0.0F}, (ship_turbine_turn_port_pair_f32){g, 0.0F});
+    const ship_turbine_turn_port_pair_f32 s5 = ship_turbine_turn_port_add_f32(s3, s4);
+    const ship_turbine_turn_port_pair_f32 s6 = ship_turbine_turn_port_add_f32((ship_turbine_turn_port_pair_f32){a, 0.0F}, (ship_turbine_turn_port_pair_f32){b, 0.0F});
+    const ship_turbine_turn_port_pair_f32 s7 = ship_turbine_turn_port_div_f32((ship_turbine_turn_port_pair_f32){m, 0.0F}, s6);
+    const ship_turbine_turn_port_pair_f32 s8 = ship_turbine_turn_port_mul_f32(s5, s7);
+    const ship_turbine_turn_port_pair_f32 s9 = ship_turbine_turn_port_mul_f32((ship_turbine_turn_port_pair_f32){a, 0.0F}, (ship_turbine_turn_port_pair_f32){g, 0.0F});
+    const ship_turbine_turn_port_pair_f32 s10 = ship_turbine_turn_port_sub_f32(s9, s3);
+    const ship_turbine_turn_port_pair_f32 s11 = ship_turbine_turn_port_mul_f32(s10, s7);
+    const ship_turbine_turn_port_pair_f32 s12 = ship_turbine_turn_port_mul_f32((ship_turbine_turn_port_pair_f32){m, 0.0F}, s0);
+    const ship_turbine_turn_port_pair_f32 s13 = ship_turbine_turn_port_mul_f32(s12, s2);
+    constants->s0010 = s8.high;
+    constants->s0012 = s11.high;
+    constants->minus_s0012 = s13.high;
     if (!(m - m >= 0.0F)
         || !(k - k >= 0.0F)
         || !(p - p >= 0.0F)
@@ -116,13 +116,13 @@ int ship_turbine_turn_port_setup_f32(float m, float k, float p, float v, float R
     if (m <= 0.0F) {
         return 2;
     }
-    if (s4.high < 0.0F) {
+    if (s12.high < 0.0F) {
         return 4;
     }
-    if (!(s4.high - s4.high >= 0.0F)
-        || !(s10.high - s10.high >= 0.0F)
-        || !(s13.high - s13.high >= 0.0F)
-        || !(s6.high - s6.high >= 0.0F)) {
+    if (!(s12.high - s12.high >= 0.0F)
+        || !(s8.high - s8.high >= 0.0F)
+        || !(s11.high - s11.high >= 0.0F)
+        || !(s13.high - s13.high >= 0.0F)) {
         return 5;
     }
     return 0;

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 3c7731ad97192ca1.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 123339d74c39f79e.
  */
 #ifndef SHIP_TURBINE_TURN_PORT_F32_H
 #define SHIP_TURBINE_TURN_PORT_F32_H

@@ -86,23 +86,23 @@ static ship_turbine_turn_port_pair_f64 ship_turbine_turn_port_div_f64(ship_turbi
 int ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, double R, double a,
     double b, double g, ship_turbine_turn_port_constants_f64 *constants)
 {
-    const ship_turbine_turn_port_pair_f64 s0 = ship_turbine_turn_port_add_f64((ship_turbine_turn_port_pair_f64){a, 0.0}, (ship_turbine_turn_port_pair_f64){b, 0.0});
-    const ship_turbine_turn_port_pair_f64 s1 = ship_turbine_turn_port_div_f64((ship_turbine_turn_port_pair_f64){1.0, 0.0}, s0);
-    const ship_turbine_turn_port_pair_f64 s2 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){p, 0.0}, (ship_turbine_turn_port_pair_f64){v, 0.0});
-    const ship_turbine_turn_port_pair_f64 s3 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){m, 0.0}, (ship_turbine_turn_port_pair_f64){k, 0.0});
-    const ship_turbine_turn_port_pair_f64 s4 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){k, 0.0}, s3);
-    const ship_turbine_turn_port_pair_f64 s5 = ship_turbine_turn_port_mul_f64(s2, s4);
-    const ship_turbine_turn_port_pair_f64 s6 = ship_turbine_turn_port_div_f64(s5, (ship_turbine_turn_port_pair_f64){R, 0.0});
-    const ship_turbine_turn_port_pair_f64 s7 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){m, 0.0}, (ship_turbine_turn_port_pair_f64){g, 0.0});
-    const ship_turbine_turn_port_pair_f64 s8 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){b, 0.0}, s7);
-    const ship_turbine_turn_port_pair_f64 s9 = ship_turbine_turn_port_add_f64(s6, s8);
-    const ship_turbine_turn_port_pair_f64 s10 = ship_turbine_turn_port_mul_f64(s1, s9);
-    const ship_turbine_turn_port_pair_f64 s11 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){a, 0.0}, s7);
-    const ship_turbine_turn_port_pair_f64 s12 = ship_turbine_turn_port_sub_f64(s11, s6);
-    const ship_turbine_turn_port_pair_f64 s13 = ship_turbine_turn_port_mul_f64(s1, s12);
-    constants->s0010 = s10.high;
-    constants->s0012 = s13.high;
-    constants->minus_s0012 = s6.high;
+    const ship_turbine_turn_port_pair_f64 s0 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){k, 0.0}, (ship_turbine_turn_port_pair_f64){k, 0.0});
+    const ship_turbine_turn_port_pair_f64 s1 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){p, 0.0}, (ship_turbine_turn_port_pair_f64){v, 0.0});
+    const ship_turbine_turn_port_pair_f64 s2 = ship_turbine_turn_port_div_f64(s1, (ship_turbine_turn_port_pair_f64){R, 0.0});
+    const ship_turbine_turn_port_pair_f64 s3 = ship_turbine_turn_port_mul_f64(s0, s2);
+    const ship_turbine_turn_port_pair_f64 s4 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){b, 0.0}, (ship_turbine_turn_port_pair_f64){g, 0.0});
+    const ship_turbine_turn_port_pair_f64 s5 = ship_turbine_turn_port_add_f64(s3, s4);
+    const ship_turbine_turn_port_pair_f64 s6 = ship_turbine_turn_port_add_f64((ship_turbine_turn_port_pair_f64){a, 0.0}, (ship_turbine_turn_port_pair_f64){b, 0.0});
+    const ship_turbine_turn_port_pair_f64 s7 = ship_turbine_turn_port_div_f64((ship_turbine_turn_port_pair_f64){m, 0.0}, s6);
+    const ship_turbine_turn_port_pair_f64 s8 = ship_turbine_turn_port_mul_f64(s5, s7);
+    const ship_turbine_turn_port_pair_f64 s9 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){a, 0.0}, (ship_turbine_turn_port_pair_f64){g, 0.0});
+    const ship_turbine_turn_port_pair_f64 s10 = ship_turbine_turn_port_sub_f64(s9, s3);
+    const ship_turbine_turn_port_pair_f64 s11 = ship_turbine_turn_port_mul_f64(s10, s7);
+    const ship_turbine_turn_port_pair_f64 s12 = ship_turbine_turn_port_mul_f64((ship_turbine_turn_port_pair_f64){m, 0.0}, s0);
+    const ship_turbine_turn_port_pair_f64 s13 = ship_turbine_turn_port_mul_f64(s12, s2);
+    constants->s0010 = s8.high;
+    constants->s0012 = s11.high;
+    constants->minus_s0012 = s13.high;
     if (!(m - m >= 0.0)
         || !(k - k >= 0.0)
         || !(p - p >= 0.0)
@@ -116,13 +116,13 @@ int ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, dou
     if (m <= 0.0) {
         return 2;
     }
-    if (s4.high < 0.0) {
+    if (s12.high < 0.0) {
         return 4;
     }
-    if (!(s4.high - s4.high >= 0.0)
-        || !(s10.high - s10.high >= 0.0)
-        || !(s13.high - s13.high >= 0.0)
-        || !(s6.high - s6.high >= 0.0)) {
+    if (!(s12.high - s12.high >= 0.0)
+        || !(s8.high - s8.high >= 0.0)
+        || !(s11.high - s11.high >= 0.0)
+        || !(s13.high - s13.high >= 0.0)) {
         return 5;
     }
     return 0;

@@ -70,7 +70,7 @@ def _equation(library: Library, program: Program) -> str:
     fact = library.truths.get(program.name.removesuffix(JACOBIAN))
     if fact is None:
         return ""  # a step is no equation of the lecture
-    (way,) = arrange(known, fact)
+    way, *_ = arrange(known, fact)
     values: dict[Expr, Expr] = {}
     for stage in way.stages:
         values[stage.symbol] = stage.value.xreplace(values)

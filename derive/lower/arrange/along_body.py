@@ -9,8 +9,8 @@ from typing import Any
 
 from sympy import Matrix, zeros
 
+from derive.lower.arrange.constant_tensor import inverse
 from derive.lower.arrange.draft import Draft
-from derive.lower.arrange.inverse import inverse
 from derive.lower.arrange.staging import staged
 from derive.mechanics.specialise import balance_step, law
 from derive.mechanics.turning import own_tensor, turn_matrix
@@ -85,7 +85,7 @@ def _forward(draft: Draft, bindings: Bindings) -> Bindings:
     inner = along_body(draft, bindings) | {"omega_dot": zeros(3, 1)}
     rest = staged(draft, law(balance_step(known.scene)), inner)
     tau = draft.column("let", "tau", into_body(draft, bindings["M"]) - rest)
-    own = draft.column("let", "a", inverse(draft, inner["I"]) * tau)
+    own = draft.column("let", "a", inverse(draft.named, inner["I"]) * tau)
     carried = bindings["Omega"].cross(bindings["omega"])
     return {"omega_dot": out_of_body(draft, own) - carried}
 

@@ -13,8 +13,8 @@ from sympy import zeros
 from derive.lecture.vectors import cross, vector
 from derive.lower.arrange.along_body import ALONG_BODY, Bindings, Way
 from derive.lower.arrange.attitude import centre_acceleration, coordinate_rates, quaternion_rate
+from derive.lower.arrange.constant_tensor import inverse
 from derive.lower.arrange.draft import Arrangement, Draft, symmetric
-from derive.lower.arrange.inverse import inverse
 from derive.lower.arrange.staging import staged, varying
 from derive.mechanics.specialise import Specialised, balance_step, law, stated, wheel_axes
 from derive.mechanics.truth import Truth
@@ -126,7 +126,7 @@ def _forward(draft: Draft, bindings: Bindings) -> Bindings:
         torques += a * u
         tensor = tensor - C * a * a.T
     tau = draft.column("let", "tau", bindings["M"] - torques - rest)
-    omega_dot = draft.column("let", "omega_dot", inverse(draft, tensor) * tau)
+    omega_dot = draft.column("let", "omega_dot", inverse(draft.named, tensor) * tau)
     wheels = [u / C - (a.T * omega_dot)[0] for a, C, u in zip(axes, axial, motors, strict=True)]
     return {"omega_dot": omega_dot, "wheel_accelerations": wheels}
 

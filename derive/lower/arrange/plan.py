@@ -1,98 +1,133 @@
-"""A machine's arrangement: named quantities, solved balances, answers, in this order."""
+"""A machine's arrangements: named quantities, solved balances, answers, in this order.
 
-from collections.abc import Mapping
-from dataclasses import replace
-from math import prod
+Beside the plain way stand those that rules find; which is the cheapest is found out afterwards, and
+the proof puts its program into the equations as they were.
+"""
 
-from sympy import Add, Expr, Mul, Pow, Symbol, sin
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 
+from sympy import Symbol
+
+from derive.lower.arrange.block import Rule, Solution
+from derive.lower.arrange.column import Known, in_answers, in_definitions, in_rows
+from derive.lower.arrange.column import Rule as ColumnRule
+from derive.lower.arrange.constant_coefficients import constant_coefficients
+from derive.lower.arrange.constant_tensor import constant_tensor
 from derive.lower.arrange.draft import Arrangement, Stage
-from derive.lower.arrange.solve import solved
+from derive.lower.arrange.quaternion import quaternion_rate, turned_by_quaternion
+from derive.lower.arrange.solve import solve
+from derive.lower.arrange.spherical_part import spherical_part
+from derive.lower.arrange.tidy import (
+    MANY_TERMS,
+    terms,
+    tidied,
+    with_like_terms,
+    without_constants,
+    without_squares,
+    written_out,
+)
+from derive.lower.arrange.turns import turns_one_by_one
 from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.pivots import Pivots
 from derive.mechanics.probe import point
-from derive.mechanics.question import Question, substituted
-from derive.mechanics.sheet import Sheet
+from derive.mechanics.question import Question
 from derive.mechanics.sweep import ranges
 from derive.mechanics.truth import Truth
-from derive.mechanics.turning import reduced
 from derive.mechanics.vocabulary import Vocabulary
 
-LONGEST_TIDIED = 150  # operations of a term in which squares of sines are looked for
+OF_COLUMNS: tuple[ColumnRule, ...] = (turns_one_by_one, turned_by_quaternion, spherical_part)
+OF_ANSWERS: tuple[ColumnRule, ...] = (quaternion_rate,)
+OF_ROWS: tuple[ColumnRule, ...] = (spherical_part,)
+OF_BLOCKS: tuple[Rule, ...] = (constant_tensor, constant_coefficients)
+MOST_TERMS = 60  # of a named quantity that rules have found; its users may multiply it out
 
 
-MANY_TERMS = 10  # a named quantity of more terms is not multiplied out by its users
+@dataclass(frozen=True)
+class Way:
+    """A question in some words, the rules its balances are solved by, what components share.
+
+    most : a named quantity of more terms is not multiplied out by its users
+    """
+
+    question: Question
+    rules: tuple[Rule, ...] = ()
+    families: Mapping[Symbol, str] = field(default_factory=dict)
+    most: int = MANY_TERMS
 
 
 def arrange(known: Mechanism, fact: Truth) -> tuple[Arrangement, ...]:
-    """Return the way to compute the outputs of ``fact``."""
-    return (plain_arrangement(known, known.lean(fact.name).question),)
+    """Return the ways to compute the outputs of ``fact``, the plain one first."""
+    question = prepared(known, known.lean(fact.name).question)
+    ways = (Way(question), _ruled(known, question), _written_out(known, question))
+    return tuple(dict.fromkeys(_arranged(known, way) for way in ways))
 
 
 def plain_arrangement(known: Mechanism, question: Question) -> Arrangement:
+    """Return the stages of a question by what serves every question."""
+    return _arranged(known, Way(prepared(known, question)))
+
+
+def prepared(known: Mechanism, question: Question) -> Question:
+    """Return a question without names of short constants, and no longer than it need be."""
+    question = without_constants(question, parameters(known.words))
+    return tidied(question, known.made.sheet, without_squares)
+
+
+def _ruled(known: Mechanism, question: Question) -> Way:
+    """Return a question with its columns rewritten by rules, then its like terms gathered."""
+    sheet, words = known.made.sheet, known.words
+    attitudes = [words.column(q.name) for q in words.states if q.is_quaternion]
+    own = Known(constants(question, words), attitudes)
+    for rule in OF_COLUMNS:
+        question = in_definitions(question, rule, own)
+    for rule in OF_ANSWERS:
+        question = in_answers(question, rule, own)
+    for rule in OF_ROWS:
+        question = in_rows(question, sheet, rule, own)
+    question = tidied(question, sheet, lambda e: with_like_terms(e, own.constant))
+    return Way(question, OF_BLOCKS, own.families, MOST_TERMS)
+
+
+def _written_out(known: Mechanism, question: Question) -> Way:
+    """Return a question without named quantities wherever its rows stay short."""
+    constant = constants(question, known.words)
+    return Way(written_out(question, known.made.sheet, constant), OF_BLOCKS)
+
+
+def _arranged(known: Mechanism, way: Way) -> Arrangement:
     """Return the stages of a question: named quantities, solved balances, answers."""
-    question = tidied(with_parameters_put_in(question, known.words), known.made.sheet)
-    named = dict(question.definitions)
+    question, of = way.question, way.families
+    stages = [Stage("let", s, value, of.get(s, "")) for s, value in question.definitions.items()]
     if question.rows:
         probe = point(known.made, 0)
         probe.define(question.definitions)
         pivots = Pivots(ranges(known.made), question.definitions, known.made.sheet.label)
-        found = solved(question.rows, question.unknowns, known.made.sheet.split, probe, pivots)
-        named |= {stage.symbol: stage.value for stage in found.stages}
-    outputs = tuple(question.answers.values())
-    return Arrangement(tuple(staged(named)), outputs)
+        found = Solution(constants(question, known.words), probe, pivots)
+        solve(found, question.rows, question.unknowns, known.made.sheet.split, way.rules)
+        stages += found.stages
+    return Arrangement(tuple(staged(stages, way.most)), tuple(question.answers.values()))
 
 
-def with_parameters_put_in(question: Question, words: Vocabulary) -> Question:
-    """Return the question without names for short sums of parameters: set-up finds them itself."""
-    fixed = {words.symbols[c] for q in words.parameters for c in q.components}
-    known: dict[Symbol, Expr] = {}
+def parameters(words: Vocabulary) -> frozenset[Symbol]:
+    """Return the symbols of all parameters."""
+    return frozenset(words.symbols[c] for q in words.parameters for c in q.components)
+
+
+def constants(question: Question, words: Vocabulary) -> frozenset[Symbol]:
+    """Return the symbols of a question that rest on parameters only."""
+    found = set(parameters(words))
     for symbol, value in question.definitions.items():
-        made = value.xreplace(known)
-        if made.free_symbols <= fixed and _terms(made, {}) <= MANY_TERMS:
-            known[symbol] = made
-    return substituted(question, known)
+        if value.free_symbols <= found:
+            found.add(symbol)
+    return frozenset(found)
 
 
-def tidied(question: Question, sheet: Sheet) -> Question:
-    """Return the question with sin^2 + cos^2 = 1 used wherever it makes a term shorter."""
-    rows = []
-    for row in question.rows:
-        rest, slopes = sheet.split(row)
-        rows.append(_shorter(rest) + sum(_shorter(c) * u for u, c in slopes.items()))
-    return replace(
-        question,
-        definitions={s: _shorter(e) for s, e in question.definitions.items()},
-        rows=tuple(rows),
-        answers={s: _shorter(e) for s, e in question.answers.items()},
-    )
-
-
-def _shorter(e: Expr) -> Expr:
-    squares = any(p.exp == 2 and isinstance(p.base, sin) for p in e.atoms(Pow))
-    if not squares or e.count_ops() > LONGEST_TIDIED:
-        return e
-    other = reduced(e)
-    return other if other.count_ops() < e.count_ops() else e
-
-
-def staged(named: Mapping[Symbol, Expr]) -> list[Stage]:
-    """Return the named quantities as stages; one that would multiply out to much is cut off."""
+def staged(stages: Iterable[Stage], most: int) -> Iterator[Stage]:
+    """Yield named quantities, those cut off that would multiply out to more than ``most`` terms."""
     sizes: dict[Symbol, int] = {}
-    stages = []
-    for symbol, value in named.items():
-        size = _terms(value, sizes)
-        sizes[symbol] = 1 if size > MANY_TERMS else size
-        stages.append(Stage("cut" if size > MANY_TERMS else "let", symbol, value))
-    return stages
-
-
-def _terms(e: Expr, sizes: Mapping[Symbol, int]) -> int:
-    """Return how many terms an expression has when it is multiplied out."""
-    if isinstance(e, Add):
-        return sum(_terms(part, sizes) for part in e.args)
-    if isinstance(e, Mul):
-        return int(prod(_terms(part, sizes) for part in e.args))
-    if isinstance(e, Pow) and e.exp.is_Integer and e.exp > 0:
-        return int(_terms(e.base, sizes) ** min(int(e.exp), 4))
-    return sizes.get(e, 1)
+    for stage in stages:
+        size = terms(stage.value, sizes)
+        kind = "cut" if size > most else stage.kind
+        sizes[stage.symbol] = 1 if kind == "cut" else size
+        yield replace(stage, kind=kind)

@@ -1,0 +1,99 @@
+"""Columns of a question: quantities that follow each other, and rules that rewrite them."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import combinations
+
+from sympy import Expr, Integer, Matrix, Symbol
+
+from derive.lower.arrange.block import fresh
+from derive.lower.arrange.tidy import in_what_is_given
+from derive.mechanics.question import Question, substituted
+from derive.mechanics.sheet import Sheet
+
+
+@dataclass
+class Known:
+    """What is known of symbols, and the columns that rules have named.
+
+    constant    : what rests on parameters only
+    quaternions : the components of each attitude
+    named       : what the rule at work has named, since this was last taken
+    families    : what components of one column share, in words of this program's own
+    """
+
+    constant: frozenset[Symbol]
+    quaternions: Sequence[Matrix]
+    named: dict[Symbol, Expr] = field(default_factory=dict)
+    families: dict[Symbol, str] = field(default_factory=dict)
+
+    def column(self, name: str, values: Matrix) -> Matrix:
+        """Return a column with every component named that is not plain."""
+        family = f"{name} {len(self.families)}"
+        return values.applyfunc(lambda value: self._name(name, value, family))
+
+    def _name(self, name: str, value: Expr, family: str) -> Expr:
+        if value.is_Symbol or value.is_Number or (-value).is_Symbol:
+            return value
+        symbol = fresh(name, self.families)
+        self.families[symbol] = family
+        self.named[symbol] = value
+        return symbol
+
+    def taken(self) -> dict[Symbol, Expr]:
+        """Return what was named, and forget it."""
+        found, self.named = self.named, {}
+        return found
+
+
+Rule = Callable[[Matrix, Known], Matrix | None]
+"""A column written in another way, with what is named on the way; None if there is no such way."""
+
+
+def in_definitions(question: Question, rule: Rule, known: Known) -> Question:
+    """Return the question with columns of named quantities rewritten wherever a rule applies."""
+    done: dict[Symbol, Expr] = {}
+    symbols = list(question.definitions)
+    while symbols:
+        own = symbols[:3]
+        made = _rewritten(Matrix([question.definitions[s] for s in own]), rule, known)
+        new = [question.definitions[own[0]]] if made is None else [*made]
+        done |= known.taken() | dict(zip(own, new, strict=False))
+        symbols = symbols[len(new) :]
+    return substituted(replace(question, definitions=done), {})
+
+
+def _rewritten(column: Matrix, rule: Rule, known: Known) -> Matrix | None:
+    """Return a column rewritten, its components taken as x, y, z or as z, y, x."""
+    orders = ((0, 1, 2), (2, 1, 0)) if column.rows == 3 else ()
+    for order in orders:
+        made = rule(column[list(order), :], known)
+        if made is not None:
+            return made[list(order), :]
+    return None
+
+
+def in_answers(question: Question, rule: Rule, known: Known) -> Question:
+    """Return the question with answers rewritten, four after another, wherever a rule applies."""
+    answers, symbols = dict(question.answers), list(question.answers)
+    for own in (symbols[k : k + 4] for k in range(len(symbols) - 3)):
+        made = rule(Matrix([answers[s] for s in own]), known)
+        answers |= {} if made is None else dict(zip(own, made, strict=True))
+    return replace(question, answers=answers, definitions={**question.definitions, **known.taken()})
+
+
+def in_rows(question: Question, sheet: Sheet, rule: Rule, known: Known) -> Question:
+    """Return the question with three of its rows rewritten, all that varies written out in them."""
+    parts = [sheet.split(row) for row in question.rows]
+    rests = [in_what_is_given(question, rest, known.constant) for rest, _ in parts]
+    short = [n for n, rest in enumerate(rests) if rest is not None and rest != 0]
+    for places in combinations(short, 3):
+        made = rule(Matrix([rests[n] for n in places]), known)
+        if made is None:
+            continue
+        rows = list(question.rows)
+        for n, e in zip(places, made, strict=True):
+            rows[n] = e + sum((c * u for u, c in parts[n][1].items()), Integer(0))
+        definitions = {**question.definitions, **known.taken()}
+        return substituted(replace(question, definitions=definitions, rows=tuple(rows)), {})
+    return question

@@ -1,0 +1,78 @@
+"""The spherical part of a tensor taken off: omega x (I omega) with I less a multiple of 1.
+
+Three components hold a cross product of omega with something linear where their products do no work
+on omega. What is linear follows by division, but for a multiple of omega itself, which is chosen so
+that the fewest terms are left (lecture step "spherical_part"). Near a sphere nothing is left to
+cancel, and on the way there are fewer operations.
+"""
+
+from collections.abc import Mapping, Sequence
+from itertools import permutations
+
+from sympy import Add, Expr, Integer, Matrix, Mul, Symbol, diag, eye, zeros
+
+from derive.lower.arrange.column import Known
+from derive.lower.arrange.like_terms import like_terms
+
+MOST = 8  # symbols of which three are tried as omega
+
+Products = Mapping[frozenset[Symbol], Expr]  # coefficients of products of two symbols
+
+
+def spherical_part(column: Matrix, known: Known) -> Matrix | None:
+    """Return a column with omega x l, and l named, for the products with omega that are in it."""
+    parts = [like_terms(e, known.constant) for e in column]
+    pairs = [{pair: c for p, c in own.items() if (pair := _pair(p))} for own in parts]
+    symbols = sorted({s for own in pairs for pair in own for s in pair}, key=str)
+    if not all(pairs) or len(symbols) > MOST:
+        return None
+    for omega in permutations(symbols, 3):
+        turning = [{pair: c for pair, c in own.items() if pair & {*omega}} for own in pairs]
+        inner = divided(turning, Matrix(omega))
+        if inner is not None:
+            cross = Matrix(omega).cross(known.column("l", inner))
+            rest = [[c * p for p, c in own.items() if _pair(p) not in t]
+                    for own, t in zip(parts, turning, strict=True)]  # fmt: skip
+            return cross + Matrix([Add(*terms) for terms in rest])
+    return None
+
+
+def _pair(product: Expr) -> frozenset[Symbol]:
+    """Return the symbols of a product of two, of one if it is a square; none of anything else."""
+    powers = [f.as_base_exp() for f in Mul.make_args(product)]
+    whole = all(base.is_Symbol for base, _ in powers) and sum(n for _, n in powers) == 2
+    return frozenset(base for base, _ in powers) if whole else frozenset()
+
+
+def divided(q: Sequence[Products], omega: Matrix) -> Matrix | None:
+    """Return l of q = omega x l, None if there is none."""
+    if not all(q) or any(frozenset([w]) in own for w, own in zip(omega, q, strict=True)):
+        return None
+    zero = Integer(0)
+    inner = zeros(3, 1)
+    for s in sorted({s for own in q for pair in own for s in pair}, key=str):
+        for k in (k for k in range(3) if s != omega[k]):
+            i, j = (k + 1) % 3, (k + 2) % 3
+            inner[k] += q[i].get(frozenset([omega[j], s]), zero) * s
+    a = q[0].get(frozenset([omega[1], omega[2]]), zero)
+    b = q[1].get(frozenset([omega[2], omega[0]]), zero)
+    inner += without_spherical_part(diag(a + b, 0, a)) * omega
+    given = Matrix([Add(*(c * _product(pair) for pair, c in own.items())) for own in q])
+    return inner if (omega.cross(inner) - given).expand() == zeros(3, 1) else None
+
+
+def _product(pair: frozenset[Symbol]) -> Expr:
+    """Return the product of two symbols, the square of one.
+
+    >>> x, y = Symbol("x"), Symbol("y")
+    >>> _product(frozenset([x])), _product(frozenset([x, y]))
+    (x**2, x*y)
+    """
+    return Mul(*pair) ** (3 - len(pair))
+
+
+def without_spherical_part(tensor: Matrix) -> Matrix:
+    """Return the tensor less the multiple of the identity that leaves the fewest moments."""
+    moments = [tensor[1, 1], tensor[0, 0], tensor[2, 2]]
+    best = max(moments, key=lambda c: sum((m - c).expand() == 0 for m in moments))
+    return tensor - best * eye(3)

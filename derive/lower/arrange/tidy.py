@@ -1,0 +1,97 @@
+"""A question in fewer words: like terms gathered, sin^2 + cos^2 = 1, constants without names."""
+
+from collections.abc import Callable, Mapping
+from collections.abc import Set as AbstractSet
+from dataclasses import replace
+from math import prod
+
+from sympy import Add, Expr, Integer, Mul, Pow, Symbol, factor_terms, sin
+
+from derive.lower.arrange.like_terms import gathered
+from derive.mechanics.question import Question, substituted
+from derive.mechanics.sheet import Sheet
+from derive.mechanics.turning import reduced
+
+LONGEST = 150  # operations of a term that is multiplied out
+MANY_TERMS = 10  # a named quantity of more terms is not multiplied out by its users
+
+
+def without_constants(question: Question, parameters: AbstractSet[Symbol]) -> Question:
+    """Return the question without names for short sums of parameters: set-up finds them itself."""
+    known: dict[Symbol, Expr] = {}
+    for symbol, value in question.definitions.items():
+        made = value.xreplace(known)
+        if made.free_symbols <= parameters and terms(made, {}) <= MANY_TERMS:
+            known[symbol] = min(made, factor_terms(made), key=lambda form: form.count_ops())
+    return substituted(question, known)
+
+
+def tidied(question: Question, sheet: Sheet, shorter: Callable[[Expr], Expr]) -> Question:
+    """Return the question with every term in shorter words."""
+    rows = []
+    for row in question.rows:
+        rest, slopes = sheet.split(row)
+        rows.append(shorter(rest) + sum(shorter(c) * u for u, c in slopes.items()))
+    return replace(
+        question,
+        definitions={s: shorter(e) for s, e in question.definitions.items()},
+        rows=tuple(rows),
+        answers={s: shorter(e) for s, e in question.answers.items()},
+    )
+
+
+def without_squares(e: Expr) -> Expr:
+    """Return a term with sin^2 = 1 - cos^2 if that is shorter."""
+    squares = any(p.exp == 2 and isinstance(p.base, sin) for p in e.atoms(Pow))
+    if not squares or e.count_ops() > LONGEST:
+        return e
+    other = reduced(e)
+    return other if other.count_ops() < e.count_ops() else e
+
+
+def with_like_terms(e: Expr, constant: AbstractSet[Symbol]) -> Expr:
+    """Return a sum with its like terms gathered if that takes fewer operations."""
+    if not isinstance(e, Add) or e.count_ops() > LONGEST:
+        return e
+    return min(e, gathered(e, constant), key=lambda form: _operations(form, constant))
+
+
+def written_out(question: Question, sheet: Sheet, constant: AbstractSet[Symbol]) -> Question:
+    """Return the question with rows in what is given, sin^2 = 1 - cos^2, like terms gathered."""
+    rows = []
+    for row in question.rows:
+        rest, slopes = sheet.split(row)
+        whole = in_what_is_given(question, rest, constant)
+        short = rest if whole is None else gathered(reduced(whole), constant)
+        rows.append(short + sum((c * u for u, c in slopes.items()), Integer(0)))
+    return substituted(replace(question, rows=tuple(rows)), {})
+
+
+def in_what_is_given(question: Question, e: Expr, constant: AbstractSet[Symbol]) -> Expr | None:
+    """Return an expression in what is given and constant, multiplied out; None if it is long."""
+    varying = {s: value for s, value in question.definitions.items() if s not in constant}
+    while e.free_symbols & varying.keys():
+        e = e.xreplace(varying)
+        if e.count_ops() > LONGEST:
+            return None
+    return e.expand()
+
+
+def _operations(e: Expr, constant: AbstractSet[Symbol]) -> int:
+    """Return how many operations of an expression are not on parameters alone."""
+    if e.is_Symbol or e.free_symbols <= constant:
+        return 0
+    varying = [a for a in e.args if not a.free_symbols <= constant]
+    between = len(varying) - (len(varying) == len(e.args))
+    return between + sum(_operations(a, constant) for a in varying)
+
+
+def terms(e: Expr, sizes: Mapping[Symbol, int]) -> int:
+    """Return how many terms an expression has when it is multiplied out."""
+    if isinstance(e, Add):
+        return sum(terms(part, sizes) for part in e.args)
+    if isinstance(e, Mul):
+        return int(prod(terms(part, sizes) for part in e.args))
+    if isinstance(e, Pow) and e.exp.is_Integer and e.exp > 0:
+        return int(terms(e.base, sizes) ** min(int(e.exp), 4))
+    return sizes.get(e, 1)
