@@ -13,7 +13,7 @@ from derive.scene import Input, Machine
 from derive.scene.declaration import Moving
 from derive.scene.formula import Formula
 from derive.scene.results import AXES, ENERGIES, groups
-from derive.scene.scalars import PER_SECOND
+from derive.scene.scopes import PER_SECOND
 
 QUATERNION = ("w", "x", "y", "z")
 MATRICES = {

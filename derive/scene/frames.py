@@ -14,7 +14,7 @@ from derive.scene.names import label
 from derive.scene.table import Table, nearest, table, text
 
 if TYPE_CHECKING:
-    from derive.scene.scalars import Scalars
+    from derive.scene.scopes import Scalars
 
 ORIGIN = ("origin", "rolls", "velocity", "acceleration")
 STILL = Frame(INERTIAL, "", (), None, False, (ZERO, ZERO, ZERO))  # noqa: FBT003

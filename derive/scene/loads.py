@@ -21,7 +21,7 @@ from derive.scene.machine import (
 )
 from derive.scene.names import identifier, label
 from derive.scene.numbers import check_unit
-from derive.scene.scalars import Scalars
+from derive.scene.scopes import Scalars
 from derive.scene.table import Scope, Table, formula, shown, table
 from derive.scene.unit import Dimension, dimension
 

@@ -24,7 +24,8 @@ from derive.scene.results import (
     read_results,
     written_out,
 )
-from derive.scene.scalars import PER_SECOND, Scalars, read_scalars
+from derive.scene.scalars import read_scalars
+from derive.scene.scopes import PER_SECOND, Scalars
 from derive.scene.table import Scope, Table, formula, keys, several, table, text
 from derive.scene.unit import BESIDE_SI, dimension, misnamed, spelled
 from derive.scene.wanted import read_emission, read_form

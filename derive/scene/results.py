@@ -12,7 +12,7 @@ from derive.scene.formula import substitute
 from derive.scene.loads import MARK, unknown_units
 from derive.scene.machine import Result
 from derive.scene.names import functions, identifier
-from derive.scene.scalars import unknown_rates
+from derive.scene.scopes import unknown_rates
 from derive.scene.table import Scope, Table, measured, shown, text
 from derive.scene.unit import BESIDE_SI, NONE, UnitError, dimension, spelled
 from derive.scene.wanted import JACOBIAN, OF_MACHINES, resembling
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from derive.scene.formula import Formula
     from derive.scene.machine import Unknown
-    from derive.scene.scalars import Scalars
+    from derive.scene.scopes import Scalars
     from derive.scene.unit import Dimension
 
 ENERGIES = ("kinetic_energy", "potential_energy", "energy")

@@ -36,7 +36,8 @@ from derive.scene.entry import AXES, Reading, entries_of
 from derive.scene.escape import brief
 from derive.scene.formula import ZERO
 from derive.scene.names import distinct
-from derive.scene.scalars import Scalars, of_one_body
+from derive.scene.scalars import of_one_body
+from derive.scene.scopes import Scalars
 from derive.scene.shape import SHAPES, moved
 from derive.scene.table import Scope, Table, keys, nearest, shown, table, text
 from derive.scene.unit import ANGULAR_VELOCITY, LENGTH, NONE, VELOCITY, Dimension
