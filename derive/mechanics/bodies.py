@@ -140,10 +140,12 @@ def centre_velocity(frames: Frames, body: str) -> Matrix:
 
 
 def kinetic_energy(frames: Frames, body: str) -> Expr:
-    """Return the kinetic energy of a body."""
+    """Return the kinetic energy of a body; along which axes v_G is does not matter to it."""
+    own, at = centre(frames, body)
+    v_G = frames.origin_velocity(own)[1] if at == ZERO else centre_velocity(frames, body)
     known = {
         "m": mass(frames, body),
-        "v_G": centre_velocity(frames, body),
+        "v_G": frames.sheet.column(f"{body}.v_G", v_G),
         "I": tensor(frames, body),
         "omega": frames.sheet.column(f"{body}.omega", frames.turning_of_body(body)),
     }

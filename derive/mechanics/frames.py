@@ -104,9 +104,17 @@ class Frames:
             return self.words.column(frame.velocity)
         if frame.rolls is not None:
             return self.sheet.column(f"{name}.v", self._rolling(frame))
+        along, here = self.origin_velocity(name)
+        return self.sheet.column(f"{name}.v", self.carried(here, along, name))
+
+    def origin_velocity(self, name: str) -> tuple[str, Matrix]:
+        """Return the velocity of a frame's origin along the axes of the frame that places it."""
+        frame = self.each[name]
+        if name == INERTIAL or not _has_place(frame):
+            return name, self.velocity(name)
         offset = self.words.column(frame.origin)
-        here = self.velocity(frame.parent) + self._velocity_seen(frame.parent, offset)
-        return self.sheet.column(f"{name}.v", self.carried(here, frame.parent, name))
+        seen = self._velocity_seen(frame.parent, offset)
+        return frame.parent, self.velocity(frame.parent) + seen
 
     def _velocity_seen(self, name: str, offset: Matrix) -> Matrix:
         known = {"rho_i": offset, "rho_i_dot": self.sheet.rate_of_column(offset)}

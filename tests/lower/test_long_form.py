@@ -24,6 +24,7 @@ ROWS = (
     ("free_body", "kinetic_energy"),
     ("heavy_top", "state_rate"),
     ("gyrostat", "acceleration"),
+    ("rigid_body", "kinetic_energy"),
     ("rigid_body", "state_rate"),
     ("rigid_body", "state_rate_jacobian"),
     ("unsymmetrical_rotor_in_carrier_axes", "moment"),
