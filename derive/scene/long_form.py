@@ -114,32 +114,31 @@ def _coordinate(scene: Scene, c: Moving) -> Moving:
 
 
 def angle_rates(scene: Scene) -> dict[str, Formula]:
-    """Return the rates of three free angles, from the components of omega along the axes."""
+    """Return the rates of three free angles, from the components of omega along the axes.
+
+    Along the axes after the second turn, that turn has its own axis, the third has its own, and
+    the first lies in the plane across the second.
+    """
     chain = (*scene.axes.turned, *scene.body.turned)
-    columns = [_line(scene, n) for n in range(len(chain))]
-    whole, omega = _determinant(columns), [symbol(f"omega_{a}") for a in AXES]
+    (first, second, third), turned = chain, len(scene.axes.turned)
+    omega = [symbol(f"omega_{a}") for a in AXES]
+    if turned == 3:
+        omega = _turned(omega, third)
+    elif turned == 1:
+        omega = _turned(omega, _back(second))
+    line = _turned([ONE if a == first.axis else ZERO for a in AXES], _back(second))
+    one, two, three = (AXES.index(turn.axis) for turn in chain)
+    across = 3 - one - two if three == one else one  # along which the third turn has no part
+    rate = omega[across] / line[across]
     return {
-        turn.coordinate: _determinant([*columns[:n], omega, *columns[n + 1 :]]) / whole
-        for n, turn in enumerate(chain)
+        first.coordinate: rate,
+        second.coordinate: omega[two],
+        third.coordinate: omega[three] - rate * line[three],
     }
 
 
-def _line(scene: Scene, n: int) -> list[Formula]:
-    """Return the unit vector along the axes that the n-th turn is about."""
-    before, after = scene.axes.turned, scene.body.turned
-    if n < len(before):
-        line, left = _unit(before[n].axis), before[n + 1 :]
-        for turn in left:
-            line = _turned(line, Turning(turn.axis, -turn.angle))
-        return line
-    line = _unit(after[n - len(before)].axis)
-    for turn in reversed(after[: n - len(before)]):
-        line = _turned(line, turn)
-    return line
-
-
-def _unit(axis: str) -> list[Formula]:
-    return [ONE if name == axis else ZERO for name in AXES]
+def _back(turn: Turning) -> Turning:
+    return Turning(turn.axis, -turn.angle)
 
 
 def _turned(v: Sequence[Formula], turn: Turning) -> list[Formula]:
@@ -150,15 +149,6 @@ def _turned(v: Sequence[Formula], turn: Turning) -> list[Formula]:
     found = list(v)
     found[i], found[j] = c * v[i] - s * v[j], s * v[i] + c * v[j]
     return found
-
-
-def _determinant(columns: Sequence[Sequence[Formula]]) -> Formula:
-    a, b, c = columns
-    each = ((k, (k + 1) % 3, (k + 2) % 3) for k in range(3))
-    total = ZERO
-    for i, j, k in each:
-        total = total + a[i] * (b[j] * c[k] - b[k] * c[j])
-    return total
 
 
 def _still() -> Frame:
