@@ -20,7 +20,8 @@ from flint import arb, ctx
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library
 from derive.program.largest import largest
-from derive.program.program import Program, Quantity, component_names, run
+from derive.program.program import Program, Quantity, component_names
+from derive.program.run import run
 from derive.verify.convergence import BITS
 from derive.verify.operators import LONG_FLOATS
 from derive.verify.sample import Sample

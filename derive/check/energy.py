@@ -16,7 +16,8 @@ from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library, library
 from derive.mechanics.mechanism import Mechanism
 from derive.program.largest import largest
-from derive.program.program import Program, component_names, run
+from derive.program.program import Program, component_names
+from derive.program.run import run
 from derive.scene import Machine, SceneError
 from derive.scene.results import ENERGIES
 from derive.verify.cloud import Answers, answers

@@ -16,15 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.program.arithmetic import Table, extended, paired, working
-from derive.program.program import (
-    Op,
-    Program,
-    Quantity,
-    Singular,
-    component_names,
-    operands_of,
-    run,
-)
+from derive.program.program import Op, Program, Quantity, Singular, component_names, operands_of
+from derive.program.run import run
 
 Columns = dict[str, NDArray[Any]]
 GENERIC = 32  # draws from the ranges, beside which a value is beyond measure

@@ -7,7 +7,6 @@ is the name of an earlier value or an exact number.
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from types import MappingProxyType
 from typing import Any, Literal
 
 from derive.program.arithmetic import FLOPS
@@ -18,7 +17,6 @@ from derive.program.indexed import (
     Loop,
     names_in,
     operators_in,
-    run_indexed,
 )
 
 Operand = str | Fraction
@@ -235,73 +233,6 @@ def component_names(program: Program) -> list[str]:
 def read_by(program: Program) -> set[str]:
     """Return the names that a program's operations and results refer to."""
     return operands_of(program.ops, program.results)
-
-
-def run(program: Program, arithmetic: Table, values: Sequence[Any]) -> list[Any]:
-    """Run ``program`` in an arithmetic: floats, exact fractions, intervals, CasADi.
-
-    ``values`` are the input components in declared order. The arithmetic maps each operator,
-    and "number" for constants, to a callable; loops need its "select" and "either".
-    """
-    names = [name for quantity in program.inputs for name in quantity.components]
-    known = dict(zip(names, values, strict=True)) | numbers_of(program, arithmetic)
-    run_lines(program.ops, arithmetic, known)
-    return values_of(program.results, arithmetic, known)
-
-
-def numbers_of(program: Program, arithmetic: Table) -> dict[str, Any]:
-    """Return the numbers of a program that rest on the precision of the arithmetic, by name."""
-    if not program.numbers:
-        return {}
-    unit = arithmetic["unit_roundoff"]()
-    bits = 24 if float(unit[0] if isinstance(unit, tuple) else unit) == 2.0**-24 else 53
-    return {name: arithmetic["number"](q[bits]) for name, q in program.numbers.items()}
-
-
-def run_lines(
-    lines: Sequence[Line],
-    arithmetic: Table,
-    known: dict[str, Any],
-    at: Mapping[str, int] = MappingProxyType({}),
-) -> None:
-    """Add the values that operations and loops give to what is known by name.
-
-    at : the counters of the loops over arrays that the lines stand in
-    """
-    for line in lines:
-        if isinstance(line, Op):
-            _operate((line,), arithmetic, known)
-        elif isinstance(line, Repeat):
-            _repeat(line, arithmetic, known)
-        else:
-            run_indexed(line, arithmetic, known, at, run_lines)
-
-
-def values_of(
-    operands: Sequence[Operand], arithmetic: Table, known: Mapping[str, Any]
-) -> list[Any]:
-    """Return the values of operands: known by name, or exact numbers."""
-    return [known[o] if isinstance(o, str) else arithmetic["number"](o) for o in operands]
-
-
-def _operate(ops: Sequence[Op], arithmetic: Table, known: dict[str, Any]) -> None:
-    for op in ops:
-        known[op.result] = arithmetic[op.operator](*values_of(op.operands, arithmetic, known))
-
-
-def _repeat(loop: Repeat, arithmetic: Table, known: dict[str, Any]) -> None:
-    known.update(zip(loop.carried, values_of(loop.start, arithmetic, known), strict=True))
-    done: Any = None
-    for _ in range(loop.passes):
-        _operate(loop.ops, arithmetic, known)
-        new = values_of(loop.then, arithmetic, known)
-        if done is not None:
-            old = [known[name] for name in loop.carried]
-            new = [arithmetic["select"](done, o, n) for o, n in zip(old, new, strict=True)]
-        known.update(zip(loop.carried, new, strict=True))
-        if loop.done is not None:
-            (now,) = values_of((loop.done,), arithmetic, known)
-            done = now if done is None else arithmetic["either"](done, now)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.program.arithmetic import extended, paired
-from derive.program.program import Operand, Program, run
+from derive.program.program import Operand, Program
+from derive.program.run import run
 from derive.scene.escape import at_place
 
 RIGHT, PARAMETER, MASS, LENGTH, INERTIA, CONSTANT = range(6)

@@ -14,17 +14,8 @@ from numpy.typing import NDArray
 
 from derive.program.arithmetic import LIBM, extended, working
 from derive.program.pairs import Pair
-from derive.program.program import (
-    Line,
-    Op,
-    Program,
-    Repeat,
-    component_names,
-    numbers_of,
-    operands_of,
-    run_lines,
-    values_of,
-)
+from derive.program.program import Line, Op, Program, Repeat, component_names, operands_of
+from derive.program.run import numbers_of, run_lines, values_of
 from derive.verify.operators import IN_DOUBLES, UNROUNDED, pair_sines
 
 Table = dict[str, Callable[..., Any]]

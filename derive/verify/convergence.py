@@ -16,7 +16,8 @@ from derive.library.library import Library
 from derive.mechanics.mechanism import single
 from derive.mechanics.truth import truth
 from derive.program.largest import largest
-from derive.program.program import Program, component_names, run
+from derive.program.program import Program, component_names
+from derive.program.run import run
 from derive.scene.wanted import SPLITTINGS, TAYLOR, step_of
 from derive.verify.equations import Equations, equations
 from derive.verify.operators import LONG_FLOATS

@@ -12,7 +12,8 @@ from flint import arb, ctx
 
 from derive.library.library import Library
 from derive.program.largest import largest
-from derive.program.program import Program, component_names, run
+from derive.program.program import Program, component_names
+from derive.program.run import run
 from derive.verify.convergence import BITS, unit_attitude
 from derive.verify.operators import LONG_FLOATS
 

@@ -19,7 +19,8 @@ from derive.library.library import Library
 from derive.program.arithmetic import Table, extended, paired
 from derive.program.largest import largest
 from derive.program.precision import Precision
-from derive.program.program import Program, component_names, run
+from derive.program.program import Program, component_names
+from derive.program.run import run
 from derive.verify.equations import equations
 from derive.verify.reference import BALLS, reference
 from derive.verify.sample import Sample

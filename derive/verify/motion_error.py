@@ -17,7 +17,8 @@ from derive.library.library import Library
 from derive.motion.runge_kutta.carried import REMAINDER
 from derive.program.arithmetic import working
 from derive.program.precision import Precision
-from derive.program.program import Program, Quantity, component_names, run
+from derive.program.program import Program, Quantity, component_names
+from derive.program.run import run
 from derive.verify.columns import arithmetics, known, planned
 from derive.verify.measure import Errors, replayed
 from derive.verify.operators import LONG_FLOATS

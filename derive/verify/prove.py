@@ -14,8 +14,9 @@ from typing import Any
 from flint import arb, ctx, fmpq, fmpq_mat
 
 from derive.library.library import Library
-from derive.program.program import Op, Program, component_names, read_by, run
+from derive.program.program import Op, Program, component_names, read_by
 from derive.program.recorded import needed
+from derive.program.run import run
 from derive.scene.wanted import JACOBIAN
 from derive.verify.equations import Equations, equations
 from derive.verify.operators import IN_FRACTIONS, IrrationalError

@@ -20,7 +20,8 @@ from derive.emit.casadi_text import casadi_file
 from derive.library.library import Library, library
 from derive.program.arithmetic import extended, paired
 from derive.program.precision import F32, F64, PRECISIONS, Precision
-from derive.program.program import Program, run
+from derive.program.program import Program
+from derive.program.run import run
 from derive.program.status import INERTIA, LENGTH, MASS, PARAMETER, RIGHT, possible
 from derive.program.status import refusal as why
 from derive.scene import catalogue, load, parse_scene

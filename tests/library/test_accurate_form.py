@@ -16,7 +16,8 @@ from derive.check.emitted import Files
 from derive.library.library import Library, library
 from derive.program.arithmetic import EXACT, extended, paired, working
 from derive.program.precision import F32
-from derive.program.program import Program, run
+from derive.program.program import Program
+from derive.program.run import run
 from derive.scene import SceneError, load, parse_scene
 from derive.scene.wanted import ATTITUDES, OF_MACHINES, WANTED, moves
 from derive.verify.measure import replayed

@@ -16,7 +16,8 @@ from derive.emit.manifest import manifest
 from derive.library.library import Library
 from derive.library.singular import with_singular
 from derive.program.arithmetic import extended, paired, working
-from derive.program.program import Op, Operand, Program, Quantity, component_names, run
+from derive.program.program import Op, Operand, Program, Quantity, component_names
+from derive.program.run import run
 from derive.scene import catalogue
 from tests.made import library_of, thinned
 

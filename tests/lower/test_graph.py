@@ -9,7 +9,8 @@ from derive.lower.expand import collected, factored, grouped, terms
 from derive.lower.graph import ONE, ZERO, Graph, Value
 from derive.lower.schedule import schedule
 from derive.program.arithmetic import EXACT
-from derive.program.program import Program, Quantity, run
+from derive.program.program import Program, Quantity
+from derive.program.run import run
 
 NAMES = ("p", "x", "y", "z")
 

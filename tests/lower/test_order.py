@@ -9,7 +9,8 @@ from derive.lower.order import with_values_read_soon
 from derive.lower.signs import with_signs_moved
 from derive.motion.runge_kutta.steps import step_rk4_jacobian
 from derive.program.arithmetic import working
-from derive.program.program import Op, Program, Repeat, run
+from derive.program.program import Op, Program, Repeat
+from derive.program.run import run
 from tests.motion.systems import start, system
 
 JACOBIAN = step_rk4_jacobian(system("principal"))

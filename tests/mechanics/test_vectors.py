@@ -6,7 +6,7 @@ import pytest
 
 from derive.library.library import Library, library
 from derive.program.arithmetic import EXACT
-from derive.program.program import run
+from derive.program.run import run
 from derive.scene import SceneError, parse_scene
 
 VECTORS = """

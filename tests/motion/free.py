@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from derive.motion.exact.exact import flow_exact
 from derive.motion.exact.inertia import Inertia
 from derive.program.arithmetic import MANTISSA, extended, paired, working
-from derive.program.program import Program, Quantity, run
+from derive.program.program import Program, Quantity
 from derive.program.recorded import needed
+from derive.program.run import run
 from derive.program.tape import Number, Tape, number
 
 Rows = NDArray[Any]

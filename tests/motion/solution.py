@@ -12,7 +12,8 @@ import flint
 
 from derive.motion.taylor.series import Series, in_loops
 from derive.motion.taylor.taylor import taylor_step
-from derive.program.program import Program, Quantity, run, run_lines
+from derive.program.program import Program, Quantity
+from derive.program.run import run, run_lines
 from tests.made import library_of
 from tests.motion.rates import BODY, body, everything, hanging, no_moment
 

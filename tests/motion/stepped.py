@@ -19,8 +19,9 @@ from derive.motion.exact.inertia import Inertia
 from derive.motion.moser_veselov.moser_veselov import plan_dmv, step_dmv
 from derive.motion.splitting.splitting import Start, step_split, step_split_compensated
 from derive.program.arithmetic import extended
-from derive.program.program import Program, Quantity, run
+from derive.program.program import Program, Quantity
 from derive.program.recorded import needed
+from derive.program.run import run
 from derive.program.tape import Number, Tape, number
 
 TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")

@@ -14,7 +14,8 @@ import mpmath
 
 from derive.library.library import Library, library
 from derive.motion.runge_kutta.system import System
-from derive.program.program import Program, run
+from derive.program.program import Program
+from derive.program.run import run
 from derive.scene import parse_scene
 from tests.made import library_of
 

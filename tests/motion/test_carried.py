@@ -12,7 +12,8 @@ from derive.motion.runge_kutta.steps import (
     step_rk4_compensated,
 )
 from derive.program.arithmetic import working
-from derive.program.program import Program, run
+from derive.program.program import Program
+from derive.program.run import run
 from tests.motion.systems import CONTEXT, EVERY, Values, at, mpf, start, system, without_slopes
 from tests.motion.test_step_jacobian import EXACTLY, case
 

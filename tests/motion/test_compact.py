@@ -24,7 +24,8 @@ from derive.motion.runge_kutta.steps import (
 from derive.motion.runge_kutta.system import System
 from derive.program.arithmetic import working
 from derive.program.precision import F32, F64, Precision
-from derive.program.program import Program, run
+from derive.program.program import Program
+from derive.program.run import run
 from tests.made import thinned
 from tests.motion.slopes import with_slopes
 from tests.motion.systems import EVERY, Values, at, mpf, start, system, without_slopes

@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from derive.motion.runge_kutta.compensated import compensated_add, two_product
 from derive.program.arithmetic import MANTISSA, working
 from derive.program.operations import splitter
-from derive.program.program import Program, Quantity, run
+from derive.program.program import Program, Quantity
 from derive.program.recorded import needed
+from derive.program.run import run
 from derive.program.tape import Tape, number
 
 PRECISIONS = (np.float64, np.float32)

@@ -12,8 +12,9 @@ import pytest
 from derive.motion.exact.elliptic import RUNGS, angle, functions, ladder
 from derive.program.arithmetic import working
 from derive.program.operations import cos, sin, sqrt
-from derive.program.program import Program, run
+from derive.program.program import Program
 from derive.program.recorded import needed
+from derive.program.run import run
 from derive.program.tape import Number, Tape
 from tests.made import thinned
 from tests.motion.free import quantity

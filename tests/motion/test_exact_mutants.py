@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from derive.program.arithmetic import working
-from derive.program.program import Op, Program, run
+from derive.program.program import Op, Program
+from derive.program.run import run
 from tests.motion.free import Rows, flow
 
 pytestmark = pytest.mark.long

@@ -6,7 +6,8 @@ import pytest
 from flint import arb, ctx
 
 from derive.library.library import Library, library
-from derive.program.program import component_names, run
+from derive.program.program import component_names
+from derive.program.run import run
 from derive.scene import parse_scene
 from derive.verify.operators import LONG_FLOATS
 from derive.verify.reference import BITS

@@ -8,7 +8,8 @@ import pytest
 
 from derive.motion.runge_kutta.steps import step_lie, step_lie_jacobian, step_rk4
 from derive.program.arithmetic import working
-from derive.program.program import Op, run
+from derive.program.program import Op
+from derive.program.run import run
 from tests.made import thinned
 from tests.motion.systems import at, mpf, start, system, without_slopes
 from tests.motion.test_runge_kutta import order

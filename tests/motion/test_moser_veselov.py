@@ -11,7 +11,8 @@ import pytest
 
 from derive.motion.moser_veselov import moser_veselov
 from derive.program.arithmetic import MANTISSA, working
-from derive.program.program import Op, Repeat, run
+from derive.program.program import Op, Repeat
+from derive.program.run import run
 from tests.motion.free import FACTOR, LEAST, Case, cases
 from tests.motion.published import series
 from tests.motion.stepped import (

@@ -10,8 +10,9 @@ import pytest
 from derive.motion.exact.inertia import Inertia
 from derive.motion.exact.principal_axes import principal_axes
 from derive.program.arithmetic import MANTISSA, extended, paired
-from derive.program.program import Program, run
+from derive.program.program import Program
 from derive.program.recorded import needed
+from derive.program.run import run
 from derive.program.tape import Tape, number
 from tests.motion.free import TENSOR, Rows, quantity
 

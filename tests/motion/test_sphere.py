@@ -9,8 +9,9 @@ import pytest
 from derive.motion.runge_kutta.steps import step_lie, step_rk4
 from derive.motion.runge_kutta.system import System
 from derive.program.arithmetic import working
-from derive.program.program import Program, Quantity, run
+from derive.program.program import Program, Quantity
 from derive.program.recorded import called, needed
+from derive.program.run import run
 from derive.program.tape import Tape
 from tests.motion.systems import Values, at, mpf, start, system, without_slopes
 

@@ -21,8 +21,9 @@ from derive.motion.runge_kutta.steps import (
 )
 from derive.motion.runge_kutta.system import System
 from derive.program.arithmetic import EXACT, working
-from derive.program.program import Op, Program, Quantity, run
+from derive.program.program import Op, Program, Quantity
 from derive.program.recorded import needed
+from derive.program.run import run
 from derive.program.tape import Tape
 from tests.made import thinned
 from tests.motion.rates import BODY, body, hanging

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from derive.library.library import Library, library
-from derive.program.program import run
+from derive.program.run import run
 from derive.scene import CATALOGUE, parse_scene
 from tests.motion.systems import PRINCIPAL, SIXTY_DIGITS, Values, at, start
 from tests.motion.test_step_jacobian import EXACTLY, SMALL, entries

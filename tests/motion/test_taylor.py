@@ -11,7 +11,8 @@ import pytest
 from derive.motion.taylor.series import Convolution, Series, in_loops
 from derive.motion.taylor.taylor import taylor_step
 from derive.program.arithmetic import EXACT
-from derive.program.program import Op, run
+from derive.program.program import Op
+from derive.program.run import run
 from tests.made import thinned
 from tests.motion.rates import BODY, quantity, rate
 from tests.motion.solution import (

@@ -7,7 +7,7 @@ import flint
 import numpy as np
 
 from derive.program.arithmetic import MANTISSA
-from derive.program.program import run
+from derive.program.run import run
 from derive.verify.operators import LONG_FLOATS
 from tests.motion.free import FACTOR, LEAST, Flow, Rows, apart, errors
 

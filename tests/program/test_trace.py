@@ -11,8 +11,9 @@ from derive.emit.casadi_text import plain_lines
 from derive.program.arithmetic import working
 from derive.program.operations import at_most, less, select
 from derive.program.precision import F32, F64
-from derive.program.program import Op, Program, Quantity, Repeat, run
+from derive.program.program import Op, Program, Quantity, Repeat
 from derive.program.recorded import called, needed, repeat
+from derive.program.run import run
 from derive.program.tape import Number, Tape, named, number, operation
 
 X = Quantity("x", ("x_0", "x_1"), (2,), "1", "", None, None, "two numbers")

@@ -15,7 +15,8 @@ from mpmath import mp, mpf
 from derive.check.particles import digits
 from derive.library.library import Library, library
 from derive.program.precision import PRECISIONS
-from derive.program.program import Quantity, component_names, run
+from derive.program.program import Quantity, component_names
+from derive.program.run import run
 from derive.scene import Machine, Scene, parse_scene
 from derive.verify.cloud import answers
 from derive.verify.convergence import unit_attitude

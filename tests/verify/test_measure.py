@@ -12,7 +12,8 @@ from derive.check.agreement import MEDIAN_BOUND
 from derive.library.library import Library
 from derive.program.arithmetic import extended, paired
 from derive.program.precision import F32, F64, PRECISIONS, Precision
-from derive.program.program import Measurement, component_names, run
+from derive.program.program import Measurement, component_names
+from derive.program.run import run
 from derive.scene import catalogue
 from derive.verify.kept import stated_figures
 from derive.verify.measure import Expected, error, upwards

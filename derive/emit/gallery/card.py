@@ -17,7 +17,8 @@ from derive.library.library import Library
 from derive.lower.arrange.plan import arrange
 from derive.mechanics.mechanism import Mechanism
 from derive.program.arithmetic import extended, paired, working
-from derive.program.program import Program, Quantity, run
+from derive.program.program import Program, Quantity
+from derive.program.run import run
 from derive.scene.machine import LEFT_OVER
 from derive.scene.unit import behind
 from derive.scene.wanted import JACOBIAN

@@ -8,8 +8,9 @@ from fractions import Fraction
 
 from derive.motion.runge_kutta.system import System
 from derive.program.arithmetic import EXACT
-from derive.program.program import Op, Operand, Program, run
+from derive.program.program import Op, Operand, Program
 from derive.program.recorded import needed
+from derive.program.run import run
 
 TRIALS = 3  # each in exact numbers: two bilinear forms that differ do not agree by chance
 

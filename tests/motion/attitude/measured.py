@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from derive.motion.attitude.functions import FUNCTIONS, attitude_program
 from derive.program.arithmetic import MANTISSA, working
-from derive.program.program import Program, run
+from derive.program.program import Program
+from derive.program.run import run
 from tests.motion.attitude.truth import BITS, Vector, plain
 
 SMALLEST = {np.float64: 2.0**-1074, np.float32: 2.0**-149}

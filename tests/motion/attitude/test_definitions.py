@@ -13,7 +13,8 @@ from derive.emit.files import scene_files
 from derive.library.library import library
 from derive.program.arithmetic import working
 from derive.program.precision import F64
-from derive.program.program import Op, Program, component_names, run
+from derive.program.program import Op, Program, component_names
+from derive.program.run import run
 from derive.scene import parse_scene
 from derive.scene.wanted import ATTITUDES
 from tests.made import thinned
