@@ -1,7 +1,7 @@
 """A function that the lecture states, from its truth to its program, with or without a Jacobian."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from sympy import Symbol
 
@@ -24,12 +24,16 @@ from derive.scene.wanted import JACOBIAN, SENSITIVITY, base_of
 
 @dataclass(frozen=True)
 class Graphed:
-    """A scene in a graph: its components' values, and the constants its functions asked for."""
+    """A scene in a graph: its components' values, and the constants its functions asked for.
+
+    best : the cheapest values of outputs, where they were looked for already
+    """
 
     known: Known
     graph: Graph
     leaves: Mapping[str, Value]
     constants: Constants
+    best: dict[tuple[tuple[Value, ...], ...], list[Value]] = field(default_factory=dict)
 
     def taken(self) -> frozenset[str]:
         """Return the names that no operation may have: those of all quantities and components."""
@@ -64,13 +68,13 @@ def arranged(scene: Graphed, base: str) -> Arranged:
     found = [_lowered(scene, fact, way) for way in ways(scene.known, fact)]
     if len(found) == 1:
         return found[0]
-    return min(found, key=lambda way: cost(scene.graph, _best(scene.graph, way)))
+    return min(found, key=lambda way: cost(scene.graph, _best(scene, way)))
 
 
 def function(scene: Graphed, wanted: Arranged, name: str) -> Program:
     """Return the program of a wanted function by its name, which says if a Jacobian is with it."""
     if name == base_of(name):
-        return _program(scene, wanted.fact, _best(scene.graph, wanted))
+        return _program(scene, wanted.fact, _best(scene, wanted))
     return _with_jacobian(scene, wanted, name)
 
 
@@ -88,10 +92,13 @@ def _lowered(scene: Graphed, fact: Truth, way: Arrangement) -> Arranged:
     return Arranged(fact, tuple(outputs))
 
 
-def _best(graph: Graph, wanted: Arranged) -> list[Value]:
-    found = best_values(graph, [Block(output, ()) for output in wanted.outputs])
-    stands = [value for output in wanted.outputs for value in output]
-    return min(found, stands, key=lambda values: cost(graph, values))
+def _best(scene: Graphed, wanted: Arranged) -> list[Value]:
+    if wanted.outputs not in scene.best:
+        found = best_values(scene.graph, [Block(output, ()) for output in wanted.outputs])
+        stands = [value for output in wanted.outputs for value in output]
+        each = (found, stands)
+        scene.best[wanted.outputs] = min(each, key=lambda values: cost(scene.graph, values))
+    return scene.best[wanted.outputs]
 
 
 def _with_jacobian(scene: Graphed, wanted: Arranged, name: str) -> Program:

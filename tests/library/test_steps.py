@@ -94,8 +94,13 @@ def test_steps_of_machines_have_their_orders_and_their_slopes(of: str) -> None:
     assert [v for v in verdicts if v.outcome != "holds"] == []
 
 
-@pytest.mark.parametrize("precision", [F32, F64])
-@pytest.mark.parametrize("name", ["step_rk4", "step_rk4_compensated"])
+OTHERS = (("step_rk4", F64), ("step_rk4_compensated", F32), ("step_rk4_compensated", F64))
+
+
+@pytest.mark.parametrize(
+    ("name", "precision"),
+    [("step_rk4", F32), *(pytest.param(*row, marks=pytest.mark.long) for row in OTHERS)],
+)
 def test_a_step_brings_every_quaternion_back_to_length_one(name: str, precision: Precision) -> None:
     made = two_hubs(name)
     each = drawn(made, precision, 8)

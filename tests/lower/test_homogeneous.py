@@ -77,6 +77,7 @@ def test_a_search_that_takes_too_many_steps_finds_nothing():
     assert powers(SIXTEEN["in a chain"], 8) is None
 
 
+@pytest.mark.long
 def test_a_body_of_thirteen_states_and_its_loads_has_a_cheap_jacobian():
     """Sixteen inputs move its rate: to try each with each power takes hours."""
     program = library_of("tests/data/long_form/rigid_body.toml")["state_rate_jacobian"]

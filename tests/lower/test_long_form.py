@@ -50,7 +50,14 @@ def operations(scene: Scene | Machine, name: str) -> int:
     return function(terms, arranged(terms, base_of(name)), name).flops()
 
 
-@pytest.mark.parametrize(("scene", "name"), ROWS, ids=str)
+AT_ONCE = ("free_body_principal", "free_body", "rotor_on_turning_axes", "heavy_top")
+
+
+@pytest.mark.parametrize(
+    ("scene", "name"),
+    [pytest.param(*row, marks=() if row[0] in AT_ONCE else pytest.mark.long) for row in ROWS],
+    ids=str,
+)
 def test_a_body_in_long_form_takes_no_more_operations_than_in_short(scene: str, name: str) -> None:
     long = operations(load(LONG / f"{scene}.toml"), name)
     assert 0 < long <= operations(in_short(scene), name)

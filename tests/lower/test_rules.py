@@ -29,7 +29,12 @@ CASES: dict[Any, tuple[Path, str]] = {
     turned_by_quaternion: (LONG / "rigid_body.toml", "state_rate"),
     quaternion_rate: (LONG / "rigid_body.toml", "state_rate"),
 }
-RULES = pytest.mark.parametrize("rule", CASES, ids=lambda rule: rule.__name__)
+AT_ONCE = (constant_tensor,)
+RULES = pytest.mark.parametrize(
+    "rule",
+    [rule if rule in AT_ONCE else pytest.param(rule, marks=pytest.mark.long) for rule in CASES],
+    ids=lambda rule: rule.__name__,
+)
 
 
 def shown_by(rule: Any) -> tuple[Machine, str]:

@@ -50,6 +50,7 @@ def test_gyroscopic_terms_of_uncoupled_masses_do_no_work(name: str) -> None:
     assert np.allclose(damping, -damping.T, atol=1e-12 * np.abs(damping).max())
 
 
+@pytest.mark.long
 def test_a_governor_in_balance_swings_as_its_energies_say() -> None:
     """Links whose pull changes direction stiffen it: T = m v^2 + M u^2/2, u = 2 l sin(theta) w."""
     m, sleeve, link, g, theta = 0.75, 7.5, 0.25, 9.8, 0.6

@@ -79,7 +79,13 @@ def ended(case: Mapping[str, Any], found: Sequence[float]) -> tuple[float, float
 
 @pytest.mark.parametrize(
     "name",
-    ["separatrix_exact", "tiny_scale_f32", "gyrostat_wheel", "const_body_torque", "nontriangle"],
+    [
+        "separatrix_exact",
+        "tiny_scale_f32",
+        "gyrostat_wheel",
+        "const_body_torque",
+        pytest.param("nontriangle", marks=pytest.mark.long),
+    ],
 )
 def test_a_reference_case_is_met_to_a_few_times_what_rounded_inputs_allow(name: str) -> None:
     case = CASES[name]

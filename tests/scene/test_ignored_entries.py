@@ -94,7 +94,7 @@ SHORT = {
 }
 
 
-@pytest.mark.parametrize("name", thinned(SHORT, 3))
+@pytest.mark.parametrize("name", thinned(SHORT, 4))
 def test_nothing_in_a_short_scene_is_ignored(name: str) -> None:
     assert ignored(SHORT[name], name) == []
 

@@ -58,6 +58,7 @@ masses = st.lists(
 )
 
 
+@pytest.mark.long
 @settings(max_examples=60)
 @given(masses)
 def test_the_axes_of_any_cloud_are_found(cloud: list[tuple[float, float, float, float]]) -> None:
