@@ -70,7 +70,7 @@ def positive(formula: Formula, label: str, parameters: tuple[Parameter, ...]) ->
 def _where(values: Mapping[str, float], formulas: Iterable[Formula]) -> str:
     """Return the parameter values behind a number, as an error shows them."""
     used = dict.fromkeys(name for formula in formulas for name in symbols(formula))
-    return at_place({name: values[name] for name in used})
+    return at_place({name: values[name] for name in used if name in values})
 
 
 def tensor(inertia: Sextuple, values: Mapping[str, float], label: str) -> Matrix:

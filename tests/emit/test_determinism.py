@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Iterable, Mapping
+from dataclasses import fields, is_dataclass
 from random import Random
 from typing import Any
 
@@ -16,7 +17,7 @@ from derive.library.library import library
 from derive.lower.arrange.draft import Draft
 from derive.lower.expand import family
 from derive.lower.graph import Graph
-from derive.program.program import Line, Op, Operand, Program
+from derive.program.program import Line, Op, Operand, Program, Repeat
 from derive.scene import catalogue, load, parse_scene
 from tests.made import library_of, thinned
 
@@ -158,8 +159,19 @@ def shape(program: Program) -> tuple[Any, ...]:
     def line(one: Line) -> tuple[Any, ...]:
         if isinstance(one, Op):
             return one.operator, at(one.operands), at([one.result])
+        if not isinstance(one, Repeat):
+            return tuple(of_arrays(one))
         start, carried = at(one.start), at(one.carried)
         return start, carried, [line(op) for op in one.ops], at([*one.then, one.done]), one.passes
+
+    def of_arrays(one: Any) -> list[Any]:
+        if isinstance(one, str):
+            return at([one])
+        if isinstance(one, tuple):
+            return [of_arrays(part) for part in one]
+        if not is_dataclass(one):
+            return [one]
+        return [type(one), *(of_arrays(getattr(one, f.name)) for f in fields(one))]
 
     inputs = [at(q.components) for q in program.inputs]
     ops = [line(one) for one in program.ops]

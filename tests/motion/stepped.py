@@ -19,6 +19,7 @@ from derive.motion.exact.inertia import Inertia
 from derive.motion.moser_veselov.moser_veselov import plan_dmv, step_dmv
 from derive.motion.splitting.splitting import Start, step_split, step_split_compensated
 from derive.program.arithmetic import extended
+from derive.program.precision import PRECISIONS, Precision
 from derive.program.program import Program, Quantity
 from derive.program.recorded import needed
 from derive.program.run import run
@@ -219,13 +220,13 @@ _LIBRARIES: dict[int, tuple[Stepper, ctypes.CDLL]] = {}
 def _library(stepper: Stepper) -> ctypes.CDLL:
     """Return a stepper's loops in both precisions, compiled once."""
     if id(stepper) not in _LIBRARIES:
-        text = "#include <math.h>\n" + "".join(_loop(stepper, p) for p in c_text.PRECISIONS)
+        text = "#include <math.h>\n" + "".join(_loop(stepper, p) for p in PRECISIONS)
         made = compiled({"many.c": text}, "many.c", Path(mkdtemp()), find_compiler())
         _LIBRARIES[id(stepper)] = stepper, ctypes.CDLL(str(made))
     return _LIBRARIES[id(stepper)][1]
 
 
-def _loop(stepper: Stepper, precision: c_text.Precision) -> str:
+def _loop(stepper: Stepper, precision: Precision) -> str:
     s, p = precision.scalar, precision.name
     names = [c for q in stepper.setup.outputs for c in q.components]
     fields = "".join(f"{s} {name}; " for name in (*names, "none"))
