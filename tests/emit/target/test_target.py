@@ -13,7 +13,7 @@ import pytest
 pytestmark = pytest.mark.target
 
 HERE = Path(__file__).parent
-GENERATED = HERE.parent.parent / "generated"
+GENERATED = HERE.parents[2] / "generated"
 MANIFESTS = sorted(GENERATED.glob("*/*.json"))
 WARNINGS = (
     *("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion"),
