@@ -19,7 +19,7 @@ from derive.program.tape import Tape, free_prefix
 from derive.scene import Machine, Scene, SceneError
 from derive.scene.wanted import EQUATIONS, IN_PAIRS, base_of, moves
 
-INVERSE = re.compile("J_[xyz][xyz]")
+INVERSE = re.compile("J_([xyz][xyz])'*")
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,8 @@ def _meanings(scene: Graphed) -> dict[str, str]:
 
 def _meaning(graph: Graph, value: Value) -> str:
     text = formula(graph, value)
-    return f"{text[2:]} of the inverse inertia tensor" if INVERSE.fullmatch(text) else text
+    inverse = INVERSE.fullmatch(graph.names.get(value[1], "")) if value[0] == 1 else None
+    return f"{inverse[1]} of the inverse inertia tensor" if inverse else text
 
 
 def _in_parameters(made: Program, functions: Sequence[Program]) -> tuple[Program, ...]:

@@ -147,6 +147,8 @@ class Graph:
         if node == ONE:
             return value
         number = self._node((kind, value), [node])
+        while ("input", name) in self._number:  # a scene may call what is given as we call a part
+            name += "'"
         self.names.setdefault(number, name)
         return Fraction(1), number
 

@@ -5,8 +5,10 @@ twice; then signs are turned so that few values must be negated. Ties go to what
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from itertools import combinations
+from typing import Any
 
 from derive.lower.graph import UNIT
 from derive.lower.table import Signed, Table, product
@@ -37,49 +39,68 @@ def _halves(table: Table, sign: int, addend: int) -> list[Signed]:
     return [(sign, table.keys[wanted])] * 2
 
 
+@dataclass
+class Pairs:
+    """How many groups each pair occurs in; only the groups that change are counted again."""
+
+    groups: dict[int, Any]
+    within: Callable[[Any], set[Any]]
+    own: dict[int, set[Any]] = field(default_factory=dict)
+    counts: Counter[Any] = field(default_factory=Counter)
+
+    def __post_init__(self) -> None:
+        """Count all groups."""
+        for key in self.groups:
+            self.changed(key)
+
+    def changed(self, key: int) -> None:
+        """Count the pairs of one group again."""
+        before, now = self.own.get(key, set()), self.within(self.groups[key])
+        self.own[key] = now
+        self.counts.update(now - before)
+        for pair in before - now:
+            self.counts[pair] -= 1
+
+    def most(self) -> Any:
+        """Return the pair that occurs in most groups, None if none does twice."""
+        most = max(self.counts.values(), default=0)
+        return min(pair for pair, n in self.counts.items() if n == most) if most > 1 else None
+
+
 def share_products(table: Table) -> None:
     """Compute every pair of factors that several products have in common once."""
-    while True:
-        counts: Counter[tuple[int, int]] = Counter()
-        for factors in table.factors.values():
-            counts.update({(a, b) for a, b in combinations(factors, 2) if _may_pair(table, a, b)})
-        best = _most(counts)
-        if best is None:
-            return
+    pairs = Pairs(
+        table.factors, lambda own: {p for p in combinations(own, 2) if _may_pair(table, *p)}
+    )
+    while (best := pairs.most()) is not None:
         key, _ = table.key("product", *best)
-        for whole, factors in table.factors.items():
-            while whole != key and not Counter(best) - Counter(factors):
+        for whole in [k for k, own in pairs.own.items() if best in own and k != key]:
+            factors = table.factors[whole]
+            while not Counter(best) - Counter(factors):
                 for factor in best:
                     factors.remove(factor)
                 factors.append(key)
                 factors.sort()
+            pairs.changed(whole)
         table.factors[key] = list(best)
+        pairs.changed(key)
 
 
 def _may_pair(table: Table, a: int, b: int) -> bool:
     return not (a in table.inverse and b in table.inverse)
 
 
-def _most(counts: Counter) -> tuple | None:  # type: ignore[type-arg]
-    most = max(counts.values(), default=0)
-    return min(pair for pair, n in counts.items() if n == most) if most > 1 else None
-
-
 def share_sums(table: Table) -> None:
     """Compute every signed pair of terms that several sums have in common once."""
-    while True:
-        counts: Counter[tuple[int, int, int]] = Counter()
-        for addends in table.addends.values():
-            counts.update({_pair(p, q) for p, q in combinations(addends, 2)})
-        best = _most(counts)
-        if best is None:
-            return
+    pairs = Pairs(table.addends, lambda own: {_pair(p, q) for p, q in combinations(own, 2)})
+    while (best := pairs.most()) is not None:
         first, second, relative = best
         key, _ = table.key("pair", *best)
-        for total, addends in table.addends.items():
-            if total != key:
-                _put_pair(addends, best, key)
+        for total in [k for k, own in pairs.own.items() if best in own and k != key]:
+            _put_pair(table.addends[total], best, key)
+            pairs.changed(total)
         table.addends[key] = [(1, first), (relative, second)]
+        pairs.changed(key)
 
 
 def _pair(p: Signed, q: Signed) -> tuple[int, int, int]:

@@ -7,6 +7,7 @@ of unknowns solved before, so that the size of each term can be told.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 from derive.lower.arrange.matching import blocks
@@ -46,6 +47,15 @@ class Equations:
     fixed: frozenset[int]  # atoms made of parameters only
     coefficients: tuple[Coefficient, ...]
     blocks: tuple[Block, ...]
+
+    @cached_property
+    def functions(self) -> dict[int, frozenset[int]]:
+        """Return the atoms that are functions, each with the atoms that it is made of."""
+        return {
+            place: frozenset(_made_of(atom))
+            for place, atom in enumerate(self.atoms)
+            if place not in self.names
+        }
 
 
 @dataclass
@@ -103,7 +113,10 @@ def _uses(atoms: Atoms, row: Polynomial, unknowns: Sequence[int]) -> frozenset[i
 def _fixed(atoms: Atoms, parameters: set[Any]) -> frozenset[int]:
     fixed: set[int] = set()
     for place, atom in enumerate(atoms.each):
-        inner = {a for monomial, _ in atom.inner for a, _ in monomial}
-        if atom.symbol in parameters if atom.kind == "symbol" else inner <= fixed:
+        if atom.symbol in parameters if atom.kind == "symbol" else _made_of(atom) <= fixed:
             fixed.add(place)
     return frozenset(fixed)
+
+
+def _made_of(atom: Atom) -> set[int]:
+    return {a for monomial, _ in atom.inner for a, _ in monomial}

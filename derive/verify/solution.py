@@ -85,10 +85,9 @@ def _given(
 
 def _apply(asked: Equations, known: dict[int, Known], arithmetic: Arithmetic) -> None:
     """Add the functions that are made of what is known by now."""
-    for place, atom in enumerate(asked.atoms):
-        made_of = {a for monomial, _ in atom.inner for a, _ in monomial}
-        if place not in known and place not in asked.names and made_of <= known.keys():
-            known[place] = _applied(atom, known, arithmetic)
+    for place, made_of in asked.functions.items():
+        if place not in known and made_of <= known.keys():
+            known[place] = _applied(asked.atoms[place], known, arithmetic)
 
 
 def _applied(atom: Atom, known: Mapping[int, Known], arithmetic: Arithmetic) -> Known:

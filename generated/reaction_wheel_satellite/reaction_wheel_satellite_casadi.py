@@ -12,7 +12,7 @@ where it cannot and a derivative exists, it gives NaN or an infinity.
 import casadi as ca
 
 PARAMETERS = ['J_xx', 'J_yy', 'J_zz', 'J_xy', 'J_xz', 'J_yz', 'I_w']
-CONSTANTS = ['J_xz', 'J_yz', 'J_yy_minus_J_zz', 'I_w', 'J_xy', 'J_xx', 'J_xx_minus_J_yy', 'k1', 'k2', 'J_yy', 'k3', 'J_zz', 'one_over_I_w']
+CONSTANTS = ['J_xz', 'J_yz', 'J_yy_minus_J_zz', 'I_w', 'J_xy', 'k1', 'J_xx_minus_J_yy', 'k2', 'k3', 'k4', 'k5', 'k6', 'one_over_I_w']
 SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 

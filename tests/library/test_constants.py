@@ -1,0 +1,27 @@
+"""What set-up makes is called as nothing else in its scene is: one name, one number."""
+
+import pytest
+
+from derive.scene import catalogue
+from tests.made import library_of
+
+
+@pytest.mark.parametrize("name", catalogue())
+def test_a_constant_with_the_name_of_a_parameter_is_that_parameter(name: str) -> None:
+    library = library_of(name)
+    made, words = library.setup, library.known.words
+    names = [c for q in made.outputs for c in q.components]
+    given = (*words.parameters, *(q for p in library.printed() for q in p.inputs))
+    of_scene = {c for q in given if q.role != "constants" for c in q.components}
+    made_of = dict(zip(names, made.results, strict=True))
+    assert len(made_of) == len(names)
+    assert {n: r for n, r in made_of.items() if n in of_scene and r != n} == {}
+
+
+def test_a_formula_of_a_constant_tells_a_parameter_from_an_entry_of_the_inverse() -> None:
+    """This scene calls entries of its inertia tensor as we call those of the inverse."""
+    says = {c.name: c.formula for c in library_of("reaction_wheel_satellite").constants}
+    assert says["J_xz"] == "J_xz"
+    assert sorted(x[:2] for x in says.values() if "inverse" in x) == [
+        "xx", "xy", "xz", "yy", "yz", "zz",
+    ]  # fmt: skip
