@@ -32,6 +32,30 @@ def ci() -> str:
     return (ROOT / ".ci" / "run").read_text()
 
 
+def test_every_link_of_a_page_leads_to_a_file_and_to_a_heading_in_it() -> None:
+    pages = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")]
+    dead = [(page.name, link) for page in pages for link in links(page) if not leads(page, link)]
+    assert dead == []
+    assert not leads(ROOT / "README.md", "docs/nowhere.md")
+    assert not leads(ROOT / "README.md", "docs/scenes.md#nowhere")
+
+
+def links(page: Path) -> list[str]:
+    """Return the links of a page that stay within the project."""
+    found: list[str] = re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8"))
+    return [link for link in found if "://" not in link]
+
+
+def leads(page: Path, link: str) -> bool:
+    """Tell whether a link of a page leads to a file and, behind a "#", to a heading of it."""
+    path, _, place = link.partition("#")
+    file = page.parent / path if path else page
+    if not file.is_file():
+        return False
+    headings = re.findall(r"^#+ (.*)$", file.read_text(encoding="utf-8"), re.MULTILINE)
+    return place in {"", *(re.sub(r"[^\w -]", "", h.lower()).replace(" ", "-") for h in headings)}
+
+
 def test_the_makefile_has_six_verbs() -> None:
     verbs = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
     assert verbs == ["generate", "test", "lint", "check", "bench", "report"]

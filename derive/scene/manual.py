@@ -13,7 +13,7 @@ HEAD = """\
 # Every entry of a scene file
 
 Made from the rows that the reader follows, by `python -m derive.scene.manual`; what they mean
-together is told in [scenes.md](scenes.md) and [machines.md](machines.md). Formulas are of
+together is told in [scenes.md](scenes.md). Formulas are of
 *constants* (parameters), *places* (and coordinates), *motions* (and their rates and speeds), what
 is *known* (and inputs, given accelerations), or *loads* (and the state). What has no default may be
 left out, unless it is required.

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from derive.scene.declaration import SceneError
 from derive.scene.doubtful import in_degrees
-from derive.scene.formula import ZERO, symbols
+from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.moving import check_moving
 from derive.scene.numbers import (
     carrier_doubts,
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from derive.scene.declaration import Scene, Turning
-    from derive.scene.formula import Formula
 
 FORWARD = ("acceleration", "state_rate")
 ROTATIONAL = ("angular_velocity", "angular_acceleration")
@@ -247,6 +246,8 @@ def _formulas(scene: Scene) -> Iterator[Formula]:
     yield from scene.axes.angular_velocity or ()
     for wheel in scene.wheels:
         yield from (*wheel.axis, wheel.axial)
+    for moving in (*scene.coordinates, *scene.speeds):
+        yield from (r for r in (moving.rate, moving.acceleration) if isinstance(r, Formula))
     for given in (*scene.known.values(), *([point.acceleration] if point.acceleration else [])):
         yield from given.formulas or ()
 

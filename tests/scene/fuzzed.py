@@ -50,7 +50,7 @@ def texts() -> dict[str, str]:
     files = [p for folder in FOLDERS for p in sorted(folder.glob("*.toml"))]
     found = {p.stem: p.read_text(encoding="utf-8") for p in files}
     found |= {f"long_{p.stem}": p.read_text(encoding="utf-8") for p in LONG_FORM}
-    for page in ("scenes", "motion", "machines"):
+    for page in ("scenes", "motion"):
         text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
         blocks = re.findall(r"^```toml\n(.*?)^```$", text, re.M | re.S)
         found |= {f"{page}_{k}": block for k, block in enumerate(blocks)}

@@ -32,7 +32,7 @@ TEXTS = {
 TEXTS |= {f"long_{path.stem}": path.read_text(encoding="utf-8") for path in LONG_FORM}
 BLOCKS = [
     text
-    for page in ("scenes", "motion", "machines")
+    for page in ("scenes", "motion")
     for text in re.findall(
         r"^```toml\n(.*?)^```$", (ROOT / "docs" / f"{page}.md").read_text(), re.M | re.S
     )

@@ -159,3 +159,19 @@ def test_a_thin_rod_may_lack_the_moment_about_its_axis_and_nothing_else_may() ->
         parse_scene(
             'wanted = ["acceleration"]\n[body]\nkind = "rod"\naxis = "y"\nmoment = 2', "rod"
         )
+
+
+def test_what_only_the_rate_of_an_angle_uses_is_used() -> None:
+    text = """
+    wanted = ["moment"]
+    parameters.k = { unit = "1", range = [1, 2] }
+    speeds.W = { unit = "rad/s", range = [1, 2], rate = 0 }
+    axes.angular_velocity = ["0", "0", "0"]
+    body = { kind = "principal", moments = [1, 2, 2.5], turned = ["x g"] }
+    [coordinates.g]
+    unit = "rad"
+    range = [0, 1]
+    motion = "prescribed"
+    rate = "k*W"
+    """
+    assert parse_scene(text, "example").warnings == ()
