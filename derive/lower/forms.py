@@ -155,10 +155,14 @@ def by_euler(
 def _contracted(
     graph: Graph, block: Block, row: Sequence[Value], starts: Sequence[int], degrees: dict[int, int]
 ) -> Value:
-    parts = []
+    leaves = Counter(k for q, k in degrees.items() for _ in block.inputs[q])
+    parts: dict[int, list[Value]] = {}
     for q, k in degrees.items():
+        outside = k if len(block.values) < leaves[k] else 1
         for i, leaf in enumerate(block.inputs[q]):
-            scaled = graph.cut("scaled", graph.mul([graph.number(Fraction(1, k)), leaf]))
+            scaled = graph.cut("scaled", graph.mul([graph.number(Fraction(outside, k)), leaf]))
             entry = graph.let("entry", row[starts[q] + i])
-            parts.append(graph.mul([entry, scaled]))
-    return graph.add(parts)
+            parts.setdefault(outside, []).append(graph.mul([entry, scaled]))
+    sums = {k: graph.add(own) for k, own in parts.items()}
+    whole = {k: own if k == 1 else graph.let("whole", own) for k, own in sums.items()}
+    return graph.add([graph.mul([graph.number(Fraction(1, k)), own]) for k, own in whole.items()])

@@ -12,7 +12,7 @@ where it cannot and a derivative exists, it gives NaN or an infinity.
 import casadi as ca
 
 PARAMETERS = ['A', 'C']
-CONSTANTS = ['C', 'A', 'k1']
+CONSTANTS = ['C_C', 'A_A', 'k1', 'A', 'C']
 SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
@@ -158,11 +158,13 @@ def _setup_status():
 
 def _tried():
     parameters = ca.SX.sym("parameters", 2)
-    s0 = _sub((parameters[0], 0.0), (parameters[1], 0.0))
-    s1 = _div(s0, (parameters[0], 0.0))
-    constants = ca.vertcat(parameters[1], parameters[0], s1[0])
+    s0 = _mul((parameters[1], 0.0), (parameters[1], 0.0))
+    s1 = _mul((parameters[0], 0.0), (parameters[0], 0.0))
+    s2 = _sub((parameters[0], 0.0), (parameters[1], 0.0))
+    s3 = _div(s2, (parameters[0], 0.0))
+    constants = ca.vertcat(s0[0], s1[0], s3[0], parameters[0], parameters[1])
     status = ca.SX(0)
-    status = _refused(status, 5, _endless(s1[0]))
+    status = _refused(status, 5, _endless(s0[0]), _endless(s1[0]), _endless(s3[0]))
     status = _refused(status, 4, parameters[0] < 0.0, parameters[1] < 0.0)
     status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]))
     return parameters, constants, status
@@ -203,7 +205,7 @@ def precession_hot():
 
 
 def _precession():
-    constants = ca.SX.sym("constants", 3)
+    constants = ca.SX.sym("constants", 5)
     w_x = ca.SX.sym("w_x", 1)
     w_y = ca.SX.sym("w_y", 1)
     w_z = ca.SX.sym("w_z", 1)
@@ -211,23 +213,21 @@ def _precession():
     t1 = w_y[0] * w_y[0]
     t2 = t0 + t1
     t3 = ca.sqrt(t2)
-    t4 = w_z[0] * constants[0]
-    t5 = t4 * t4
-    t6 = w_x[0] * constants[1]
-    t7 = t6 * t6
-    t8 = w_y[0] * constants[1]
-    t9 = t8 * t8
-    t10 = t7 + t9
-    t11 = t5 + t10
-    t12 = ca.sqrt(t11)
-    t13 = t3 * t12
-    t14 = ca.sqrt(t10)
-    t15 = t13 / t14
+    t4 = w_z[0] * w_z[0]
+    t5 = t4 * constants[0]
+    t6 = t0 * constants[1]
+    t7 = t1 * constants[1]
+    t8 = t6 + t7
+    t9 = t5 + t8
+    t10 = ca.sqrt(t9)
+    t11 = t3 * t10
+    t12 = ca.sqrt(t8)
+    t13 = t11 / t12
     return ca.Function(
         "torque_free_axisymmetric_precession_hot",
         [constants, w_x, w_y, w_z],
         [
-            ca.vertcat(t15),
+            ca.vertcat(t13),
         ],
         ['constants', 'w_x', 'w_y', 'w_z'],
         ['precession'],
@@ -246,7 +246,7 @@ def body_rate_hot():
 
 
 def _body_rate():
-    constants = ca.SX.sym("constants", 3)
+    constants = ca.SX.sym("constants", 5)
     w_z = ca.SX.sym("w_z", 1)
     t0 = w_z[0] * constants[2]
     return ca.Function(
@@ -276,17 +276,17 @@ def tan_theta_hot():
 
 
 def _tan_theta():
-    constants = ca.SX.sym("constants", 3)
+    constants = ca.SX.sym("constants", 5)
     w_x = ca.SX.sym("w_x", 1)
     w_y = ca.SX.sym("w_y", 1)
     w_z = ca.SX.sym("w_z", 1)
-    t0 = w_x[0] * constants[1]
+    t0 = w_x[0] * constants[3]
     t1 = t0 * t0
-    t2 = w_y[0] * constants[1]
+    t2 = w_y[0] * constants[3]
     t3 = t2 * t2
     t4 = t1 + t3
     t5 = ca.sqrt(t4)
-    t6 = w_z[0] * constants[0]
+    t6 = w_z[0] * constants[4]
     t7 = t5 / t6
     return ca.Function(
         "torque_free_axisymmetric_tan_theta_hot",
@@ -341,16 +341,16 @@ def L_hot():
 
 
 def _L():
-    constants = ca.SX.sym("constants", 3)
+    constants = ca.SX.sym("constants", 5)
     w_x = ca.SX.sym("w_x", 1)
     w_y = ca.SX.sym("w_y", 1)
     w_z = ca.SX.sym("w_z", 1)
-    t0 = w_x[0] * constants[1]
+    t0 = w_x[0] * constants[3]
     t1 = t0 * t0
-    t2 = w_y[0] * constants[1]
+    t2 = w_y[0] * constants[3]
     t3 = t2 * t2
     t4 = t1 + t3
-    t5 = w_z[0] * constants[0]
+    t5 = w_z[0] * constants[4]
     t6 = t5 * t5
     t7 = t4 + t6
     t8 = ca.sqrt(t7)

@@ -88,11 +88,15 @@ static torque_free_axisymmetric_pair_f32 torque_free_axisymmetric_div_f32(torque
 int torque_free_axisymmetric_setup_f32(float A, float C,
     torque_free_axisymmetric_constants_f32 *constants)
 {
-    const torque_free_axisymmetric_pair_f32 s0 = torque_free_axisymmetric_sub_f32((torque_free_axisymmetric_pair_f32){A, 0.0F}, (torque_free_axisymmetric_pair_f32){C, 0.0F});
-    const torque_free_axisymmetric_pair_f32 s1 = torque_free_axisymmetric_div_f32(s0, (torque_free_axisymmetric_pair_f32){A, 0.0F});
-    constants->C = C;
+    const torque_free_axisymmetric_pair_f32 s0 = torque_free_axisymmetric_mul_f32((torque_free_axisymmetric_pair_f32){C, 0.0F}, (torque_free_axisymmetric_pair_f32){C, 0.0F});
+    const torque_free_axisymmetric_pair_f32 s1 = torque_free_axisymmetric_mul_f32((torque_free_axisymmetric_pair_f32){A, 0.0F}, (torque_free_axisymmetric_pair_f32){A, 0.0F});
+    const torque_free_axisymmetric_pair_f32 s2 = torque_free_axisymmetric_sub_f32((torque_free_axisymmetric_pair_f32){A, 0.0F}, (torque_free_axisymmetric_pair_f32){C, 0.0F});
+    const torque_free_axisymmetric_pair_f32 s3 = torque_free_axisymmetric_div_f32(s2, (torque_free_axisymmetric_pair_f32){A, 0.0F});
+    constants->C_C = s0.high;
+    constants->A_A = s1.high;
+    constants->k1 = s3.high;
     constants->A = A;
-    constants->k1 = s1.high;
+    constants->C = C;
     if (!(A - A >= 0.0F)
         || !(C - C >= 0.0F)) {
         return 1;
@@ -101,7 +105,9 @@ int torque_free_axisymmetric_setup_f32(float A, float C,
         || C < 0.0F) {
         return 4;
     }
-    if (!(s1.high - s1.high >= 0.0F)) {
+    if (!(s0.high - s0.high >= 0.0F)
+        || !(s1.high - s1.high >= 0.0F)
+        || !(s3.high - s3.high >= 0.0F)) {
         return 5;
     }
     return 0;
@@ -127,19 +133,17 @@ void torque_free_axisymmetric_precession_f32(const torque_free_axisymmetric_cons
     const float t1 = w_y * w_y;
     const float t2 = t0 + t1;
     const float t3 = sqrtf(t2);
-    const float t4 = w_z * constants->C;
-    const float t5 = t4 * t4;
-    const float t6 = w_x * constants->A;
-    const float t7 = t6 * t6;
-    const float t8 = w_y * constants->A;
-    const float t9 = t8 * t8;
-    const float t10 = t7 + t9;
-    const float t11 = t5 + t10;
-    const float t12 = sqrtf(t11);
-    const float t13 = t3 * t12;
-    const float t14 = sqrtf(t10);
-    const float t15 = t13 / t14;
-    *precession = t15;
+    const float t4 = w_z * w_z;
+    const float t5 = t4 * constants->C_C;
+    const float t6 = t0 * constants->A_A;
+    const float t7 = t1 * constants->A_A;
+    const float t8 = t6 + t7;
+    const float t9 = t5 + t8;
+    const float t10 = sqrtf(t9);
+    const float t11 = t3 * t10;
+    const float t12 = sqrtf(t8);
+    const float t13 = t11 / t12;
+    *precession = t13;
 }
 
 /* Rate of omega in the body. */

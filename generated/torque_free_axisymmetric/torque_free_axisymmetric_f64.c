@@ -88,11 +88,15 @@ static torque_free_axisymmetric_pair_f64 torque_free_axisymmetric_div_f64(torque
 int torque_free_axisymmetric_setup_f64(double A, double C,
     torque_free_axisymmetric_constants_f64 *constants)
 {
-    const torque_free_axisymmetric_pair_f64 s0 = torque_free_axisymmetric_sub_f64((torque_free_axisymmetric_pair_f64){A, 0.0}, (torque_free_axisymmetric_pair_f64){C, 0.0});
-    const torque_free_axisymmetric_pair_f64 s1 = torque_free_axisymmetric_div_f64(s0, (torque_free_axisymmetric_pair_f64){A, 0.0});
-    constants->C = C;
+    const torque_free_axisymmetric_pair_f64 s0 = torque_free_axisymmetric_mul_f64((torque_free_axisymmetric_pair_f64){C, 0.0}, (torque_free_axisymmetric_pair_f64){C, 0.0});
+    const torque_free_axisymmetric_pair_f64 s1 = torque_free_axisymmetric_mul_f64((torque_free_axisymmetric_pair_f64){A, 0.0}, (torque_free_axisymmetric_pair_f64){A, 0.0});
+    const torque_free_axisymmetric_pair_f64 s2 = torque_free_axisymmetric_sub_f64((torque_free_axisymmetric_pair_f64){A, 0.0}, (torque_free_axisymmetric_pair_f64){C, 0.0});
+    const torque_free_axisymmetric_pair_f64 s3 = torque_free_axisymmetric_div_f64(s2, (torque_free_axisymmetric_pair_f64){A, 0.0});
+    constants->C_C = s0.high;
+    constants->A_A = s1.high;
+    constants->k1 = s3.high;
     constants->A = A;
-    constants->k1 = s1.high;
+    constants->C = C;
     if (!(A - A >= 0.0)
         || !(C - C >= 0.0)) {
         return 1;
@@ -101,7 +105,9 @@ int torque_free_axisymmetric_setup_f64(double A, double C,
         || C < 0.0) {
         return 4;
     }
-    if (!(s1.high - s1.high >= 0.0)) {
+    if (!(s0.high - s0.high >= 0.0)
+        || !(s1.high - s1.high >= 0.0)
+        || !(s3.high - s3.high >= 0.0)) {
         return 5;
     }
     return 0;
@@ -127,19 +133,17 @@ void torque_free_axisymmetric_precession_f64(const torque_free_axisymmetric_cons
     const double t1 = w_y * w_y;
     const double t2 = t0 + t1;
     const double t3 = sqrt(t2);
-    const double t4 = w_z * constants->C;
-    const double t5 = t4 * t4;
-    const double t6 = w_x * constants->A;
-    const double t7 = t6 * t6;
-    const double t8 = w_y * constants->A;
-    const double t9 = t8 * t8;
-    const double t10 = t7 + t9;
-    const double t11 = t5 + t10;
-    const double t12 = sqrt(t11);
-    const double t13 = t3 * t12;
-    const double t14 = sqrt(t10);
-    const double t15 = t13 / t14;
-    *precession = t15;
+    const double t4 = w_z * w_z;
+    const double t5 = t4 * constants->C_C;
+    const double t6 = t0 * constants->A_A;
+    const double t7 = t1 * constants->A_A;
+    const double t8 = t6 + t7;
+    const double t9 = t5 + t8;
+    const double t10 = sqrt(t9);
+    const double t11 = t3 * t10;
+    const double t12 = sqrt(t8);
+    const double t13 = t11 / t12;
+    *precession = t13;
 }
 
 /* Rate of omega in the body. */

@@ -5,6 +5,7 @@ apart.
 """
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ import pytest
 from derive.library.function import arranged, function, graphed
 from derive.mechanics.mechanism import in_terms
 from derive.scene import Machine, Scene, load, parse_scene
+from derive.scene.long_form import long_form
 from derive.scene.wanted import base_of
 
 LONG = Path(__file__).parent.parent / "data" / "long_form"
@@ -61,3 +63,42 @@ AT_ONCE = ("free_body_principal", "free_body", "rotor_on_turning_axes", "heavy_t
 def test_a_body_in_long_form_takes_no_more_operations_than_in_short(scene: str, name: str) -> None:
     long = operations(load(LONG / f"{scene}.toml"), name)
     assert 0 < long <= operations(in_short(scene), name)
+
+
+WRITTEN_OUT = {
+    "free_body_principal": {"acceleration": 12, "acceleration_jacobian": 15, "moment": 12,
+                            "angular_momentum": 3, "kinetic_energy": 8},
+    "free_body": {"acceleration": 40, "acceleration_jacobian": 81, "moment": 40,
+                  "angular_momentum": 15, "kinetic_energy": 14},
+    "gyrostat": {"state_rate": 64, "state_rate_jacobian": 167, "kinetic_energy": 28,
+                 "angular_momentum": 21},
+    "heavy_body": {"state_rate": 39, "state_rate_jacobian": 52, "kinetic_energy": 8},
+    "heavy_top": {"state_rate": 9, "state_rate_jacobian": 22, "kinetic_energy": 7,
+                  "angular_momentum": 3},
+    "rigid_body": {"state_rate": 96, "state_rate_jacobian": 171, "kinetic_energy": 21,
+                   "moment": 40},
+    "rotor_on_turning_axes": {"moment": 11, "angular_momentum": 4, "kinetic_energy": 8},
+    "satellite": {"state_rate": 35, "state_rate_jacobian": 42},
+    "tumbling_disc": {"state_rate": 26},
+    "unsymmetrical_rotor_in_carrier_axes": {"moment": 20, "moment_jacobian": 40,
+                                            "angular_momentum": 7, "kinetic_energy": 9},
+}  # fmt: skip
+SLOW = ("free_body", "gyrostat", "heavy_body", "rigid_body", "satellite")
+
+
+def machine_of(name: str, base: str) -> Machine:
+    """Return a scene of the catalogue with frames and bodies, asked for one function."""
+    scene = load(CATALOGUE / f"{name}.toml")
+    assert isinstance(scene, Scene)
+    machine = long_form(scene, "sought" if base in ("acceleration", "state_rate") else "given")
+    rates = tuple(dict.fromkeys(speed.answer for speed in machine.speeds if speed.free))
+    asked = {"acceleration": rates, "moment": ("moment_x", "moment_y", "moment_z")}
+    return replace(machine, asked={base: asked.get(base, (base,))}, wanted=(base,))
+
+
+@pytest.mark.parametrize(
+    "scene", [pytest.param(n, marks=pytest.mark.long) if n in SLOW else n for n in WRITTEN_OUT]
+)
+def test_a_body_written_out_takes_as_many_operations_as_before(scene: str) -> None:
+    wanted = WRITTEN_OUT[scene]
+    assert {n: operations(machine_of(scene, base_of(n)), n) for n in wanted} == wanted

@@ -5,6 +5,7 @@ the proof puts its program into the equations as they were.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field, replace
 
 from sympy import Symbol
@@ -20,6 +21,7 @@ from derive.lower.arrange.solve import solve
 from derive.lower.arrange.spherical_part import spherical_part
 from derive.lower.arrange.tidy import (
     MANY_TERMS,
+    sums_in_common,
     terms,
     tidied,
     with_like_terms,
@@ -106,7 +108,13 @@ def _arranged(known: Mechanism, way: Way) -> Arrangement:
         found = Solution(constants(question, known.words), probe, pivots)
         solve(found, question.rows, question.unknowns, known.made.sheet.split, way.rules)
         stages += found.stages
-    return Arrangement(tuple(staged(stages, way.most)), tuple(question.answers.values()))
+    sums = sums_in_common(question.answers.values(), constants(question, known.words))
+    stages += [Stage("cut", s, value) for s, value in sums.items()]
+    names = {value: s for s, value in sums.items()}
+    answers = tuple(e.xreplace(names) for e in question.answers.values())
+    used = [stage.value for stage in stages] + [e for e in answers if not e.is_Symbol]
+    done = {s for e in used for s in e.free_symbols if s in answers}
+    return Arrangement(tuple(staged(stages, way.most, done)), answers)
 
 
 def parameters(words: Vocabulary) -> frozenset[Symbol]:
@@ -123,11 +131,14 @@ def constants(question: Question, words: Vocabulary) -> frozenset[Symbol]:
     return frozenset(found)
 
 
-def staged(stages: Iterable[Stage], most: int) -> Iterator[Stage]:
-    """Yield named quantities, those cut off that would multiply out to more than ``most`` terms."""
+def staged(stages: Iterable[Stage], most: int, done: AbstractSet[Symbol]) -> Iterator[Stage]:
+    """Yield named quantities, those cut off that would multiply out to more than ``most`` terms.
+
+    done : what is computed in any case, and so is cut off too
+    """
     sizes: dict[Symbol, int] = {}
     for stage in stages:
         size = terms(stage.value, sizes)
-        kind = "cut" if size > most else stage.kind
+        kind = "cut" if size > most or stage.symbol in done else stage.kind
         sizes[stage.symbol] = 1 if kind == "cut" else size
         yield replace(stage, kind=kind)

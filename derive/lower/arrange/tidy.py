@@ -1,12 +1,14 @@
 """A question in fewer words: like terms gathered, sin^2 + cos^2 = 1, constants without names."""
 
-from collections.abc import Callable, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from math import prod
 
 from sympy import Add, Expr, Integer, Mul, Pow, Symbol, factor_terms, sin
 
+from derive.lower.arrange.block import fresh
 from derive.lower.arrange.like_terms import gathered
 from derive.mechanics.question import Question, substituted
 from derive.mechanics.sheet import Sheet
@@ -32,18 +34,18 @@ def tidied(question: Question, sheet: Sheet, shorter: Callable[[Expr], Expr]) ->
     for row in question.rows:
         rest, slopes = sheet.split(row)
         rows.append(shorter(rest) + sum(shorter(c) * u for u, c in slopes.items()))
-    return replace(
+    made = replace(
         question,
         definitions={s: shorter(e) for s, e in question.definitions.items()},
         rows=tuple(rows),
         answers={s: shorter(e) for s, e in question.answers.items()},
     )
+    return substituted(made, {})
 
 
 def without_squares(e: Expr) -> Expr:
     """Return a term with sin^2 = 1 - cos^2 if that is shorter."""
-    squares = any(p.exp == 2 and isinstance(p.base, sin) for p in e.atoms(Pow))
-    if not squares or e.count_ops() > LONGEST:
+    if not e.has(sin) or e.count_ops() > LONGEST:
         return e
     other = reduced(e)
     return other if other.count_ops() < e.count_ops() else e
@@ -58,13 +60,16 @@ def with_like_terms(e: Expr, constant: AbstractSet[Symbol]) -> Expr:
 
 def written_out(question: Question, sheet: Sheet, constant: AbstractSet[Symbol]) -> Question:
     """Return the question with rows in what is given, sin^2 = 1 - cos^2, like terms gathered."""
-    rows = []
-    for row in question.rows:
-        rest, slopes = sheet.split(row)
-        whole = in_what_is_given(question, rest, constant)
-        short = rest if whole is None else gathered(reduced(whole), constant)
-        rows.append(short + sum((c * u for u, c in slopes.items()), Integer(0)))
-    return substituted(replace(question, rows=tuple(rows)), {})
+
+    def short(e: Expr) -> Expr:
+        whole = in_what_is_given(question, e, constant)
+        return e if whole is None else gathered(reduced(whole), constant)
+
+    parts = [sheet.split(row) for row in question.rows]
+    rows = [short(rest) + sum((c * u for u, c in slopes.items()), Integer(0))
+            for rest, slopes in parts]  # fmt: skip
+    answers = {s: short(e) for s, e in question.answers.items()}
+    return substituted(replace(question, rows=tuple(rows), answers=answers), {})
 
 
 def in_what_is_given(question: Question, e: Expr, constant: AbstractSet[Symbol]) -> Expr | None:
@@ -84,6 +89,24 @@ def _operations(e: Expr, constant: AbstractSet[Symbol]) -> int:
     varying = [a for a in e.args if not a.free_symbols <= constant]
     between = len(varying) - (len(varying) == len(e.args))
     return between + sum(_operations(a, constant) for a in varying)
+
+
+def sums_in_common(answers: Iterable[Expr], constant: AbstractSet[Symbol]) -> dict[Symbol, Expr]:
+    """Return names for the sums that are factors in several answers, the shortest first.
+
+    Rates of angles hold such sums: w_y sin(phi) + w_z cos(phi) stands in two of three.
+
+    >>> from sympy import symbols
+    >>> a, b, x, y = symbols("a b x y")
+    >>> sums_in_common([(a + b) * x, (a + b) / y, a - b], {x, y})
+    {sum: a + b}
+    """
+    each = [{f for part in e.atoms(Mul) for f in part.args if f.is_Add} for e in answers]
+    uses = Counter(f for own in each for f in own if not f.free_symbols <= constant)
+    named: dict[Symbol, Expr] = {}
+    for e in sorted((e for e, n in uses.items() if n > 1), key=lambda e: (e.count_ops(), str(e))):
+        named[fresh("sum", named)] = e.xreplace({value: s for s, value in named.items()})
+    return named
 
 
 def terms(e: Expr, sizes: Mapping[Symbol, int]) -> int:
