@@ -4,7 +4,7 @@ Formulas stand in ``flows`` and ``rotations``; here they are given the scene's b
 rates, and become programs. What rests on parameters only is on the tape of set-up.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from derive.lecture.chapters import LECTURE
@@ -12,16 +12,16 @@ from derive.library.setting import Setting
 from derive.lower.stage import used_inputs
 from derive.mechanics.mechanism import single
 from derive.mechanics.vocabulary import Vocabulary
+from derive.motion import runge_kutta
 from derive.motion.attitude.functions import attitude_program
-from derive.motion.exact.exact import flow_exact, principal, turned
-from derive.motion.moser_veselov.moser_veselov import plan_dmv, plan_slopes, step_dmv
-from derive.motion.runge_kutta import steps
-from derive.motion.runge_kutta.carried import remainder
+from derive.motion.compensated import remainder
+from derive.motion.exact import flow_exact, principal, turned
+from derive.motion.moser_veselov import plan_dmv, plan_slopes, step_dmv
 from derive.motion.runge_kutta.compact import compact
 from derive.motion.runge_kutta.system import System, next_of
-from derive.motion.splitting.splitting import Start, step_split, step_split_compensated
+from derive.motion.splitting import Start, step_split
+from derive.motion.taylor import taylor_step
 from derive.motion.taylor.series import in_loops
-from derive.motion.taylor.taylor import taylor_step
 from derive.program.program import Operand, Program, Quantity
 from derive.program.recorded import called, needed
 from derive.program.tape import Number, Tape, number, seen_from
@@ -90,26 +90,13 @@ def _taylor(setting: Setting, order: int) -> Program:
     return replace(in_loops(series), assumptions=rate.assumptions)
 
 
-_STEP_PROGRAMS: Mapping[str, Callable[[System], Program]] = {
-    "step_rk4": steps.step_rk4,
-    "step_rk4_compensated": steps.step_rk4_compensated,
-    "step_rk4_jacobian": steps.step_rk4_jacobian,
-    "step_rk4_tangent": steps.step_rk4_tangent,
-    "step_rk4_sensitivity": steps.step_rk4_sensitivity,
-    "step_lie": steps.step_lie,
-    "step_lie_compensated": steps.step_lie_compensated,
-    "step_lie_jacobian": steps.step_lie_jacobian,
-    "step_lie_tangent": steps.step_lie_tangent,
-}
-
-
 def _runge_kutta(setting: Setting, name: str) -> Program:
     rates, step = setting.rates, _time_step(setting)
     slopes = rates[SLOPES[name.rpartition("_")[2]]] if name in STEP_DERIVATIVES else None
     states, taken = setting.known.words.states, setting.scene.taken()
     system = System(states, rates["state_rate"], slopes, step, taken)
     _check_quaternions(setting, name, len(system.quaternions))
-    program = _STEP_PROGRAMS[name](system)
+    program = runge_kutta.step(system, name)
     if program.sparsity and not any(pattern.row for pattern in program.sparsity.values()):
         rule = "must have entries, but nothing that it is a derivative by changes the step"
         raise SceneError(f"wanted '{name}' {rule}")
@@ -179,7 +166,7 @@ def _flow_exact(setting: Setting) -> Program:
     time = _seconds("time", given, "time from the given to the new state")
     (t,) = _inputs(tape, time)
     body, rates = setting.inertia(), _inputs(tape, omega)
-    q, w = flow_exact(tape, body, _inputs(tape, attitude), rates, t)
+    q, w = flow_exact(body, _inputs(tape, attitude), rates, t)
     outputs = (next_of(attitude), next_of(omega))
     says = "Attitude and angular velocity after any time without torque (exact solution)."
     made = Recorded((attitude, omega, time), outputs, (*map(number, q), *map(number, w)))
@@ -213,39 +200,28 @@ def _dmv_step(setting: Setting, plan: Quantity, names: Sequence[str]) -> Program
     tape, (attitude, omega) = setting.function(), _rotation(setting.known.words)
     rest = remainder((attitude, omega))
     planned = dict(zip(names, _inputs(tape, plan), strict=True))
-    q, w, left = step_dmv(
-        tape,
-        setting.inertia(),
-        planned,
-        _inputs(tape, attitude),
-        _inputs(tape, omega),
-        _inputs(tape, rest),
-    )
+    state = (_inputs(tape, q) for q in (attitude, omega, rest))
+    after = step_dmv(tape, setting.inertia(), planned, *state)
     outputs = (next_of(attitude), next_of(omega), next_of(rest))
     says = "One step of a torque-free rotation, as plan_dmv laid it out (order 10)."
-    made = Recorded((plan, attitude, omega, rest), outputs, tuple(map(number, (*q, *w, *left))))
+    made = Recorded((plan, attitude, omega, rest), outputs, tuple(map(number, after)))
     return _program("step_dmv", says, tape, made)
 
 
 def _split(setting: Setting, name: str) -> Program:
     tape, step = setting.function(), _time_step(setting)
     attitude, omega = _rotation(setting.known.words)
-    order, body, rest = SPLITTINGS[step_of(name)], setting.inertia(), remainder((attitude, omega))
+    order, carries = SPLITTINGS[step_of(name)], name.endswith(COMPENSATION)
+    rest = (remainder((attitude, omega)),) if carries else ()
     (h,) = _inputs(tape, step)
-    start = Start(_inputs(tape, attitude), _inputs(tape, omega), _moment(setting, tape), h)
-    inputs = (attitude, omega, *_outside(setting), step)
-    outputs = [next_of(attitude), next_of(omega)]
-    says = "One step of the rotation by splitting it into turns about two axes"
-    if name.endswith(COMPENSATION):
-        moved: tuple[list[Number], ...] = step_split_compensated(
-            tape, body, order, start, _inputs(tape, rest)
-        )
-        inputs, outputs = (*inputs, rest), [*outputs, next_of(rest)]
-        says += f" (order {order}), carrying what rounding leaves."
-    else:
-        moved = step_split(tape, body, order, start)
-        says += f" (order {order})."
-    made = Recorded(inputs, tuple(outputs), tuple(number(n) for part in moved for n in part))
+    state, left = (_inputs(tape, attitude), _inputs(tape, omega)), [_inputs(tape, q) for q in rest]
+    start = Start(*state, _moment(setting, tape), h, *left)
+    after = step_split(tape, setting.inertia(), order, start)
+    inputs = (attitude, omega, *_outside(setting), step, *rest)
+    says = f"One step of the rotation by splitting it into turns about two axes (order {order})"
+    says += ", carrying what rounding leaves." if carries else "."
+    outputs = tuple(map(next_of, (attitude, omega, *rest)))
+    made = Recorded(inputs, outputs, tuple(map(number, after)))
     return _program(name, says, tape, made)
 
 

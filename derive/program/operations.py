@@ -1,5 +1,6 @@
 """The operations of a program beside + - * /, by names that formulas over numbers read like."""
 
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import partial
 
@@ -32,3 +33,11 @@ def select(condition: Number, yes: Number | int | Fraction, no: Number | int | F
     if number(yes) == number(no):
         return number(yes)
     return operation("select", condition, yes, no)
+
+
+def horner(terms: Sequence[Number], x: Number) -> Number:
+    """Return the sum of ``terms[k]`` x^k."""
+    total = terms[-1]
+    for term in reversed(terms[:-1]):
+        total = total * x + term
+    return total

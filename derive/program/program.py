@@ -137,7 +137,7 @@ class Program:
     of an output that holds the nonzeros of a matrix; ``rules`` are what ``ops`` find out about
     the inputs of set-up. ``singular`` are the places that comments warn of. In ``arithmetic``
     "pairs" every operation works on pairs of floats, and results are rounded once. ``free`` is what
-    the slopes of an exact flow rest on (``flows.exact``), ``slopes`` a program with the same
+    the slopes of an exact flow rest on (``motion.exact``), ``slopes`` a program with the same
     values, by operations that may be differentiated; ``unrolled`` one without loops over arrays.
     ``numbers`` are those that rest on the precision, by its bits: of a float, and of all else.
     """

@@ -14,7 +14,7 @@ import numpy as np
 
 from derive.library.library import Library
 from derive.mechanics.mechanism import Mechanism
-from derive.motion.runge_kutta.carried import REMAINDER
+from derive.motion.compensated import REMAINDER
 from derive.program.precision import Precision
 from derive.program.program import Quantity, component_names
 from derive.scene import SceneError

@@ -14,7 +14,7 @@ import numpy as np
 from flint import arb, ctx
 
 from derive.library.library import Library
-from derive.motion.runge_kutta.carried import REMAINDER
+from derive.motion.compensated import REMAINDER
 from derive.program.arithmetic import working
 from derive.program.precision import Precision
 from derive.program.program import Program, Quantity, component_names

@@ -60,7 +60,7 @@ WHOLE = {
     "check/derivatives.py: _differentiated": "whole numbers",
     "command/lecture.py: _verified": "seconds of this run",
     "lower/expand.py: degree": "powers",
-    "motion/runge_kutta/carried.py: on_the_sphere": "values that are recorded",
+    "motion/compensated.py: on_the_sphere": "values that are recorded",
     "motion/exact/tumbling.py: _turn": "values that are recorded",
     "lower/homogeneous.py: _fewest": "degrees, which are whole",
     "lower/arrange/tidy.py: terms": "terms counted",

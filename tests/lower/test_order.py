@@ -7,13 +7,13 @@ import pytest
 
 from derive.lower.order import with_values_read_soon
 from derive.lower.signs import with_signs_moved
-from derive.motion.runge_kutta.steps import step_rk4_jacobian
+from derive.motion.runge_kutta import step
 from derive.program.arithmetic import working
 from derive.program.program import Op, Program, Repeat
 from derive.program.run import run
 from tests.motion.systems import start, system
 
-JACOBIAN = step_rk4_jacobian(system("principal"))
+JACOBIAN = step(system("principal"), "step_rk4_jacobian")
 # names of operations tell in which order they were recorded
 RECORDED = replace(JACOBIAN, ops=tuple(sorted(JACOBIAN.ops, key=lambda op: int(op.result[1:]))))
 

@@ -11,7 +11,7 @@ import flint
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.motion.exact.exact import flow_exact
+from derive.motion.exact import flow_exact
 from derive.motion.exact.inertia import Inertia
 from derive.program.arithmetic import MANTISSA, extended, paired, working
 from derive.program.program import Program, Quantity
@@ -59,7 +59,7 @@ def recorded(body: Callable[[list[Number]], Inertia]) -> Flow:
     tape = Tape("t", below=setup)
     given = [tape.input(name) for name in STATE]
     inertia = body([setup.input(name) for name in TENSOR])
-    attitude, omega = flow_exact(tape, inertia, given[:4], given[4:7], given[7])
+    attitude, omega = flow_exact(inertia, given[:4], given[4:7], given[7])
     results = tuple(x.operand for x in (*attitude, *omega))
     sources, names = list(setup.names), [name for name, _ in setup.names.values()]
     constants = replace(quantity("constants", names), role="constants")

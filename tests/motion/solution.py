@@ -10,8 +10,8 @@ from typing import Any
 
 import flint
 
+from derive.motion.taylor import taylor_step
 from derive.motion.taylor.series import Series, in_loops
-from derive.motion.taylor.taylor import taylor_step
 from derive.program.program import Program, Quantity
 from derive.program.run import run, run_lines
 from tests.made import library_of

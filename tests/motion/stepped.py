@@ -16,8 +16,8 @@ import numpy as np
 from derive.check.compiler import compiled, find_compiler
 from derive.emit.c import text as c_text
 from derive.motion.exact.inertia import Inertia
-from derive.motion.moser_veselov.moser_veselov import plan_dmv, step_dmv
-from derive.motion.splitting.splitting import Start, step_split, step_split_compensated
+from derive.motion.moser_veselov import plan_dmv, step_dmv
+from derive.motion.splitting import Start, step_split
 from derive.program.arithmetic import extended
 from derive.program.precision import PRECISIONS, Precision
 from derive.program.program import Program, Quantity
@@ -143,8 +143,8 @@ def dmv(kind: str) -> Stepper:
     names = [name for name, _, _ in planned]
     plan = {name: second.input(f"plan_{name}") for name in names}
     state = [second.input(f"s{i}") for i in range(14)]
-    q, w, r = step_dmv(second, inertia, plan, state[:4], state[4:7], state[7:])
-    ends = [value for _, value, _ in planned], [*q, *w, *r]
+    after = step_dmv(second, inertia, plan, state[:4], state[4:7], state[7:])
+    ends = [value for _, value, _ in planned], after
     return _stepper(setup, (first, second), [f"plan_{n}" for n in names], ends)
 
 
@@ -154,25 +154,22 @@ Moment = Callable[[list[Number]], Sequence[Number]]
 @cache
 def split(kind: str, order: int, moment: Moment | None = None) -> Stepper:
     """Return the splitting of an order, for a body of a kind."""
-    setup = Tape("p")
-    inertia = body(kind, [setup.input(name) for name in TENSOR])
-    first, second = Tape("t", below=setup), Tape("t", below=setup)
-    state = [second.input(f"s{i}") for i in range(7)]
-    h = second.input("h")
-    q, w = step_split(second, inertia, order, Start(state[:4], state[4:], moment, h))
-    return _stepper(setup, (first, second), [], ([], [*q, *w]))
+    return _split(kind, order, moment, 7)
 
 
 @cache
 def split_compensated(kind: str, order: int) -> Stepper:
     """Return the splitting with remainders."""
+    return _split(kind, order, None, 14)
+
+
+def _split(kind: str, order: int, moment: Moment | None, width: int) -> Stepper:
     setup = Tape("p")
     inertia = body(kind, [setup.input(name) for name in TENSOR])
     first, second = Tape("t", below=setup), Tape("t", below=setup)
-    s = [second.input(f"s{i}") for i in range(14)]
-    h = second.input("h")
-    q, w, r = step_split_compensated(second, inertia, order, Start(s[:4], s[4:7], None, h), s[7:])
-    return _stepper(setup, (first, second), [], ([], [*q, *w, *r]))
+    s, h = [second.input(f"s{i}") for i in range(width)], second.input("h")
+    after = step_split(second, inertia, order, Start(s[:4], s[4:7], moment, h, s[7:]))
+    return _stepper(setup, (first, second), [], ([], after))
 
 
 def _stepper(

@@ -14,13 +14,8 @@ from derive.check.compiler import CompilerError, compiled, find_compiler
 from derive.emit.c.signature import Names, prototype
 from derive.emit.c.source import CONTRACTION_OFF
 from derive.emit.c.text import body
+from derive.motion.runge_kutta import step
 from derive.motion.runge_kutta.compact import compact
-from derive.motion.runge_kutta.steps import (
-    step_rk4,
-    step_rk4_jacobian,
-    step_rk4_sensitivity,
-    step_rk4_tangent,
-)
 from derive.motion.runge_kutta.system import System
 from derive.program.arithmetic import working
 from derive.program.precision import F32, F64, Precision
@@ -32,7 +27,7 @@ from tests.motion.systems import EVERY, Values, at, mpf, start, system, without_
 from tests.motion.test_step_jacobian import EXACTLY, rounding
 
 TEXT_OF_CORTEX_M4F = 3 * 1024  # bytes, tables and rates included
-KINDS = {"step": step_rk4, "jacobian": step_rk4_jacobian}
+KINDS = {"step": "step_rk4", "jacobian": "step_rk4_jacobian"}
 CORTEX_M4F = (
     *("arm-none-eabi-gcc", "-std=c99", "-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16"),
     *("-mfloat-abi=hard", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Werror"),
@@ -42,7 +37,7 @@ CORTEX_M4F = (
 def pair(name: str, kind: str) -> tuple[Program, Program]:
     """Return a step as it is fast, and in loops."""
     given = system(name) if kind == "jacobian" else without_slopes(system(name))
-    fast = KINDS[kind](given)
+    fast = step(given, KINDS[kind])
     return fast, compact(given, fast)
 
 
@@ -60,13 +55,13 @@ def test_derivatives_by_parameters_are_the_same_in_loops() -> None:
     sensitive = System(
         given.states, given.rate, with_slopes(given.rate, [*given.names, *constants])
     )
-    fast = step_rk4_sensitivity(sensitive)
+    fast = step(sensitive, "step_rk4_sensitivity")
     found, expected = at(compact(sensitive, fast), start("principal")), at(fast, start("principal"))
     assert max(abs(a - b) for a, b in zip(found, expected, strict=True)) < EXACTLY
 
 
 def test_a_tangent_space_has_no_loops_yet() -> None:
-    fast = step_rk4_tangent(system("principal"))
+    fast = step(system("principal"), "step_rk4_tangent")
     assert compact(system("principal"), fast) == fast
 
 

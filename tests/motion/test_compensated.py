@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.motion.runge_kutta.compensated import compensated_add, two_product
+from derive.motion.compensated import compensated_add
 from derive.program.arithmetic import MANTISSA, working
 from derive.program.operations import splitter
+from derive.program.pairs import two_product
 from derive.program.program import Program, Quantity
 from derive.program.recorded import needed
 from derive.program.run import run

@@ -6,12 +6,12 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from derive.motion.runge_kutta.steps import step_lie, step_lie_jacobian, step_rk4
+from derive.motion.runge_kutta import step
 from derive.program.arithmetic import working
 from derive.program.program import Op
 from derive.program.run import run
 from tests.made import thinned
-from tests.motion.systems import at, mpf, start, system, without_slopes
+from tests.motion.systems import at, mpf, start, system
 from tests.motion.test_runge_kutta import order
 from tests.motion.test_step_jacobian import EXACTLY, case, rounding, worst
 
@@ -22,18 +22,18 @@ QUATERNIONS = ("principal", "rigid_body", "hung")
 def test_the_order_is_four(name: str) -> None:
     given, values = case(name)
     # an order is a limit: at h = T/16 the next power still has a few per cent
-    assert order(step_lie(given), given, values) == pytest.approx(4, abs=0.15)
+    assert order(step(given, "step_lie"), given, values) == pytest.approx(4, abs=0.15)
 
 
 def test_the_order_is_four_without_torque() -> None:
     given, still = system("principal"), dict(start("principal"))
     still |= {f"moment_{axis}": mpf(0) for axis in "xyz"}
-    assert order(step_lie(given), given, still) == pytest.approx(4, abs=0.15)
+    assert order(step(given, "step_lie"), given, still) == pytest.approx(4, abs=0.15)
 
 
 def test_exponentials_in_the_wrong_order_are_found() -> None:
     given, values = case("principal")
-    program = step_lie(given)
+    program = step(given, "step_lie")
     quarter, twelfth = Fraction(1, 4), Fraction(-1, 12)
     swapped = {quarter: twelfth, twelfth: quarter, Fraction(1, 12): quarter}
     ops = tuple(
@@ -51,16 +51,16 @@ def test_a_steady_turn_is_exact_however_long_the_step() -> None:
     values |= {f"moment_{axis}": mpf(0) for axis in "xyz"} | {"time_step": mpf(3)}
     values |= {"omega_x": mpf(2), "omega_y": mpf(0), "omega_z": mpf(0)}
     values |= dict(zip((f"attitude_{k}" for k in "wxyz"), map(mpf, (1, 0, 0, 0)), strict=True))
-    after = at(step_lie(given), values)
+    after = at(step(given, "step_lie"), values)
     cos, sin = values["time_step"].context.cos(3), values["time_step"].context.sin(3)
     assert max(abs(a - b) for a, b in zip(after, (cos, sin, 0, 0), strict=False)) < mpf(10) ** -50
-    coarse = at(step_rk4(without_slopes(given)), values)
+    coarse = at(step(given, "step_rk4"), values)
     assert abs(coarse[0] - cos) > 0.1
 
 
 def test_a_body_at_rest_stays_at_rest() -> None:
     given, values = case("principal")
-    program = step_lie(given)
+    program = step(given, "step_lie")
     floats = {c: 0.0 if c[:3] in ("ome", "mom") else float(v) for c, v in values.items()}
     names = [c for q in program.inputs for c in q.components]
     after = run(program, working(np.float64), [np.float64(floats[c]) for c in names])
@@ -70,13 +70,13 @@ def test_a_body_at_rest_stays_at_rest() -> None:
 
 def test_a_motion_without_a_quaternion_has_no_such_step() -> None:
     with pytest.raises(ValueError, match="needs an attitude quaternion"):
-        step_lie(system("heavy_top"))
+        step(system("heavy_top"), "step_lie")
 
 
 @pytest.mark.parametrize("name", thinned(QUATERNIONS, 2))
 def test_the_jacobian_is_the_slope_of_the_step(name: str) -> None:
     given, values = case(name)
-    assert worst(step_lie_jacobian(given), step_lie(given), values) < EXACTLY
+    assert worst(step(given, "step_lie_jacobian"), step(given, "step_lie"), values) < EXACTLY
 
 
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
@@ -85,14 +85,16 @@ def test_rounding_leaves_a_few_u_also_where_a_body_hardly_turns(speed: str, dtyp
     given, values = case("principal")
     slow = {c: v * mpf(speed) if c[:2] in ("om", "mo") else v for c, v in values.items()}
     # a few hundred roundings, most of them of terms that the step's length makes small
-    assert rounding(step_lie_jacobian(given), slow, dtype) <= 8
+    assert rounding(step(given, "step_lie_jacobian"), slow, dtype) <= 8
 
 
 def test_a_mutant_of_the_jacobian_is_found() -> None:
     given, values = case("principal")
-    made = step_lie_jacobian(given)
+    made = step(given, "step_lie_jacobian")
     for place, op in list(enumerate(made.ops))[-300::37]:
         if isinstance(op, Op) and op.operator in ("add", "sub"):
             flipped = replace(op, operator="sub" if op.operator == "add" else "add")
             ops = (*made.ops[:place], flipped, *made.ops[place + 1 :])
-            assert worst(replace(made, ops=ops), step_lie(given), values) > mpf(10) ** -9, op
+            assert worst(replace(made, ops=ops), step(given, "step_lie"), values) > mpf(10) ** -9, (
+                op
+            )

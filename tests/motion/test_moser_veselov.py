@@ -9,7 +9,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from derive.motion.moser_veselov import moser_veselov
+from derive.motion import moser_veselov
 from derive.program.arithmetic import MANTISSA, working
 from derive.program.program import Op, Repeat
 from derive.program.run import run

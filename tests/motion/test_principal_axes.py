@@ -7,8 +7,8 @@ import flint
 import numpy as np
 import pytest
 
+from derive.motion.exact.diagonal import principal_axes
 from derive.motion.exact.inertia import Inertia
-from derive.motion.exact.principal_axes import principal_axes
 from derive.program.arithmetic import MANTISSA, extended, paired
 from derive.program.program import Program
 from derive.program.recorded import needed
@@ -54,7 +54,7 @@ def turned(dtype: type) -> Rows:
 
 
 def test_too_few_turns_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("derive.motion.exact.principal_axes.PASSES", 3)
+    monkeypatch.setattr("derive.motion.exact.diagonal.PASSES", 3)
     with pytest.raises(AssertionError):
         test_axes_are_right_handed_and_turn_the_tensor_to_its_moments(np.float64)
 

@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from derive.motion.runge_kutta.steps import step_rk4
+from derive.motion.runge_kutta import step
 from derive.motion.runge_kutta.system import System
 from derive.program.program import Op, Program
 from tests.made import thinned
@@ -44,18 +44,18 @@ def order(program: Program, given: System, values: Values) -> float:
 def test_the_order_is_four(name: str) -> None:
     given = without_slopes(system(name))
     # an order is a limit: at h = T/16 the next power still has a few per cent
-    assert order(step_rk4(given), given, start(name)) == pytest.approx(4, abs=0.15)
+    assert order(step(given, "step_rk4"), given, start(name)) == pytest.approx(4, abs=0.15)
 
 
 def test_the_order_is_four_without_torque() -> None:
     given, still = without_slopes(system("principal")), dict(start("principal"))
     still |= {f"moment_{axis}": mpf(0) for axis in "xyz"}
-    assert order(step_rk4(given), given, still) == pytest.approx(4, abs=0.15)
+    assert order(step(given, "step_rk4"), given, still) == pytest.approx(4, abs=0.15)
 
 
 def test_a_step_with_a_wrong_weight_is_found() -> None:
     given = without_slopes(system("principal"))
-    program = step_rk4(given)
+    program = step(given, "step_rk4")
     thirds = [op for op in program.ops if isinstance(op, Op) and Fraction(1, 3) in op.operands]
     assert thirds
     wrong = replace(

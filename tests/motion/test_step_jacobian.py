@@ -1,6 +1,6 @@
 """Derivatives of a step are its slopes, keep its structure, and cost what they were given for."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -10,15 +10,8 @@ import numpy as np
 import pytest
 
 from derive.lower.signs import with_signs_moved
+from derive.motion.runge_kutta import step
 from derive.motion.runge_kutta.dependence import free_omega
-from derive.motion.runge_kutta.steps import (
-    step_lie,
-    step_lie_tangent,
-    step_rk4,
-    step_rk4_jacobian,
-    step_rk4_sensitivity,
-    step_rk4_tangent,
-)
 from derive.motion.runge_kutta.system import System
 from derive.program.arithmetic import EXACT, working
 from derive.program.program import Op, Program, Quantity
@@ -95,19 +88,19 @@ def worst(made: Program, plain: Program, values: Values) -> Any:
 @pytest.mark.parametrize("name", thinned(CASES, 6))
 def test_the_jacobian_is_the_slope_of_the_step(name: str) -> None:
     given, values = case(name)
-    assert worst(step_rk4_jacobian(given), step_rk4(without_slopes(given)), values) < EXACTLY
+    assert worst(step(given, "step_rk4_jacobian"), step(given, "step_rk4"), values) < EXACTLY
 
 
 def test_the_jacobian_is_the_slope_where_the_attitude_is_off_the_sphere_too() -> None:
     given, values = case("principal")
     off = dict(values) | {"attitude_x": values["attitude_x"] + mpf("0.01")}
-    assert worst(step_rk4_jacobian(given), step_rk4(without_slopes(given)), off) < EXACTLY
+    assert worst(step(given, "step_rk4_jacobian"), step(given, "step_rk4"), off) < EXACTLY
 
 
 @pytest.mark.parametrize("name", thinned(CASES, 6))
 def test_the_step_is_the_same_with_its_jacobian(name: str) -> None:
     given, values = case(name)
-    alone, with_jacobian = step_rk4(without_slopes(given)), step_rk4_jacobian(given)
+    alone, with_jacobian = step(given, "step_rk4"), step(given, "step_rk4_jacobian")
     count = len(given.names)
     pairs = zip(at(alone, values), at(with_jacobian, values)[:count], strict=True)
     assert max(abs(a - b) for a, b in pairs) < EXACTLY
@@ -119,7 +112,7 @@ def test_the_sensitivity_is_the_slope_by_what_the_rates_are_made_of(name: str) -
     constants = [c for q in given.rate.inputs if q.role == "constants" for c in q.components]
     used = [c for c in constants if any(c in op.operands for op in given.rate.ops)]
     sensitive = replace(given, slopes=with_slopes(given.rate, [*given.names, *used]))
-    assert worst(step_rk4_sensitivity(sensitive), step_rk4(without_slopes(given)), values) < EXACTLY
+    assert worst(step(sensitive, "step_rk4_sensitivity"), step(given, "step_rk4"), values) < EXACTLY
 
 
 def exponential(delta: list[Any]) -> list[Any]:
@@ -159,14 +152,13 @@ def errors(given: System, after: list[Any], reference: list[Any]) -> list[Any]:
     return [*apart[: place.start], *(2 * x for x in turn[1:]), *apart[place.stop :]]
 
 
-@pytest.mark.parametrize("made", [step_rk4_tangent, step_lie_tangent], ids=["rk4", "lie"])
+@pytest.mark.parametrize("method", ["rk4", "lie"])
 @pytest.mark.parametrize("name", thinned(["principal", "rigid_body", "hung"], 2))
 def test_the_tangent_jacobian_is_the_slope_through_the_exponential_map(
-    name: str, made: Callable[[System], Program]
+    name: str, method: str
 ) -> None:
     given, values = case(name)
-    tangent = made(given)
-    plain = (step_rk4 if made is step_rk4_tangent else step_lie)(without_slopes(given))
+    plain, tangent = (step(given, f"step_{method}{kind}") for kind in ("", "_tangent"))
     reference, found = at(plain, values), entries(tangent, values)
     pattern = (tangent.sparsity or {})["jacobian"]
     for column in pattern.columns:
@@ -181,19 +173,19 @@ def test_the_tangent_jacobian_is_the_slope_through_the_exponential_map(
 
 
 def test_the_tangent_jacobian_has_three_columns_for_the_attitude() -> None:
-    pattern = (step_rk4_tangent(system("rigid_body")).sparsity or {})["jacobian"]
+    pattern = (step(system("rigid_body"), "step_rk4_tangent").sparsity or {})["jacobian"]
     assert len(pattern.rows) == 12
     assert len(pattern.columns) == 12 + 6
 
 
 def test_a_motion_without_a_quaternion_has_no_tangent_space() -> None:
     with pytest.raises(ValueError, match="needs one attitude quaternion"):
-        step_rk4_tangent(system("heavy_top"))
+        step(system("heavy_top"), "step_rk4_tangent")
 
 
 def test_derivatives_of_a_step_need_those_of_its_rates() -> None:
     with pytest.raises(ValueError, match="need the Jacobian of 'state_rate'"):
-        step_rk4_jacobian(without_slopes(system("principal")))
+        step(without_slopes(system("principal")), "step_rk4_jacobian")
 
 
 def by_states(program: Program, count: int) -> Program:
@@ -205,17 +197,17 @@ def by_states(program: Program, count: int) -> Program:
 
 
 def test_the_step_of_a_principal_body_with_its_jacobian_costs_at_most_840_operations() -> None:
-    program = step_rk4_jacobian(system("principal"))
+    program = step(system("principal"), "step_rk4_jacobian")
     assert by_states(program, 7).flops() <= 781  # SymForce: 1626; 840 were asked for
     assert program.flops() <= 898  # with the columns of the moment
 
 
 def test_the_step_of_thirteen_states_with_its_sensitivities_costs_at_most_2949_operations() -> None:
-    assert step_rk4_jacobian(system("rigid_body")).flops() <= 2947  # CasADi: 5898
+    assert step(system("rigid_body"), "step_rk4_jacobian").flops() <= 2947  # CasADi: 5898
 
 
 def test_known_zeros_are_not_stored() -> None:
-    pattern = (step_rk4_jacobian(system("principal")).sparsity or {})["jacobian"]
+    pattern = (step(system("principal"), "step_rk4_jacobian").sparsity or {})["jacobian"]
     places = {(pattern.rows[i], pattern.columns[k]) for i, k in pattern.places()}
     assert not {p for p in places if p[0].startswith("omega") and p[1].startswith("attitude")}
     assert len(places) == 16 + 12 + 9 + 12 + 9
@@ -235,7 +227,7 @@ def test_an_attitude_with_other_kinematics_is_not_taken_for_one_that_turns_freel
 
 def test_a_mutant_of_the_jacobian_is_found() -> None:
     given, values = case("principal")
-    made, plain = step_rk4_jacobian(given), step_rk4(without_slopes(given))
+    made, plain = step(given, "step_rk4_jacobian"), step(given, "step_rk4")
     for place, op in list(enumerate(made.ops))[-400::29]:
         if isinstance(op, Op) and op.operator in ("add", "sub"):
             flipped = replace(op, operator="sub" if op.operator == "add" else "add")
@@ -260,7 +252,7 @@ def rounding(program: Program, values: Values, dtype: type) -> float:
 def test_rounding_leaves_a_few_u(name: str, dtype: type) -> None:
     given, values = case(name)
     # some hundred roundings, most of them of terms that the step's length makes small
-    assert rounding(step_rk4_jacobian(given), values, dtype) <= 16
+    assert rounding(step(given, "step_rk4_jacobian"), values, dtype) <= 16
 
 
 def test_moving_signs_changes_no_bit() -> None:
@@ -281,7 +273,7 @@ def test_operations_are_never_called_as_a_constant_is() -> None:
     given = without_slopes(system("principal"))
     awkward = replace(given, rate=_renamed(given.rate, {"one_over_I_xx": "t7"}))
     values = dict(start("principal")) | {"t7": start("principal")["one_over_I_xx"]}
-    assert at(step_rk4(awkward), values) == at(step_rk4(given), values)
+    assert at(step(awkward, "step_rk4"), values) == at(step(given, "step_rk4"), values)
 
 
 def _renamed(rate: Program, names: Mapping[str, str]) -> Program:

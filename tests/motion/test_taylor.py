@@ -8,8 +8,8 @@ from typing import Any
 import flint
 import pytest
 
+from derive.motion.taylor import taylor_step
 from derive.motion.taylor.series import Convolution, Series, in_loops
-from derive.motion.taylor.taylor import taylor_step
 from derive.program.arithmetic import EXACT
 from derive.program.program import Op
 from derive.program.run import run

@@ -12,8 +12,8 @@ import flint
 import numpy as np
 import pytest
 
+from derive.motion.taylor import taylor_step
 from derive.motion.taylor.series import Series
-from derive.motion.taylor.taylor import taylor_step
 from derive.program.arithmetic import working
 from derive.program.program import Op, Program
 from tests.motion.rates import BODY, body, constant

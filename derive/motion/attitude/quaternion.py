@@ -5,6 +5,8 @@ component of the result. Sources: Sola, "Quaternion kinematics for the error-sta
 (2017), eqs. 13, 101, 105; the forms here are those among equals that do not cancel.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from fractions import Fraction
 
@@ -122,3 +124,8 @@ def cross(a: Sequence[Number], b: Sequence[Number]) -> list[Number]:
         a[2] * b[0] - a[0] * b[2],
         a[0] * b[1] - a[1] * b[0],
     ]
+
+
+def norm_squared(q: Sequence[Number]) -> Number:
+    """Return |q|^2."""
+    return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]

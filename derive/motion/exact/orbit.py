@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from derive.motion.attitude.lengths import hypotenuse, length_of
-from derive.motion.exact.principal_axes import Three, quotient, root
+from derive.motion.exact.diagonal import Three, quotient, root
 from derive.program.operations import absolute, at_most, both, less, select, sqrt
 from derive.program.tape import Number, named, number
 

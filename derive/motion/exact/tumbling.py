@@ -10,6 +10,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from derive.motion.attitude.lengths import largest
+from derive.motion.exact.diagonal import Three
 from derive.motion.exact.elliptic import (
     HALF,
     Angle,
@@ -21,7 +22,6 @@ from derive.motion.exact.elliptic import (
     ladder,
 )
 from derive.motion.exact.orbit import Orbit, orbit, role_of_a
-from derive.motion.exact.principal_axes import Three
 from derive.program.operations import absolute, cos, less, power_of_two, select, sin, sqrt
 from derive.program.tape import Number
 

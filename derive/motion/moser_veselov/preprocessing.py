@@ -12,6 +12,7 @@ and 1 for every body that keeps the triangle inequality.
 from collections.abc import Sequence
 from fractions import Fraction
 
+from derive.program.operations import horner
 from derive.program.tape import Number, number
 
 Polynomial = tuple[tuple[int, ...], ...]
@@ -69,14 +70,6 @@ def coefficients(series: Sequence[Row], tau: Number, pi: Number) -> list[list[Nu
         ]
         for row in series
     ]
-
-
-def horner(terms: Sequence[Number], x: Number) -> Number:
-    """Return the sum of ``terms[k]`` x^k."""
-    total = terms[-1]
-    for term in reversed(terms[:-1]):
-        total = total * x + term
-    return total
 
 
 def summed(rows: Sequence[Sequence[Number]], delta: Number, H: Number) -> Number:

@@ -8,18 +8,26 @@ axes, so exponentials multiply from the right and come in the opposite order to 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
 from derive.motion.attitude.quaternion import conjugate
 from derive.motion.attitude.quaternion import product as hamilton
-from derive.motion.runge_kutta.attitude_stages import between, tangent_matrix
+from derive.motion.runge_kutta.classic import THIRD
 from derive.motion.runge_kutta.dependence import attitude_turns
-from derive.motion.runge_kutta.matrices import Matrix, beside, identity, plus, product, times, zeros
-from derive.motion.runge_kutta.runge_kutta import THIRD
+from derive.motion.runge_kutta.matrices import (
+    Matrix,
+    Row,
+    beside,
+    between,
+    identity,
+    lifted,
+    plus,
+    product,
+    zeros,
+)
 from derive.motion.runge_kutta.system import System, rates_at, slopes_at
 from derive.motion.runge_kutta.varying import (
-    Row,
     Varying,
     added,
     finished,
@@ -41,49 +49,45 @@ class Gain:
     vectors: list[Varying]
 
 
-def lie_step(tape: Tape, system: System) -> Varying:
-    """Return the state after a step of order four, with slopes if the system has them.
+def step_slopes(tape: Tape, system: System) -> tuple[Row, Matrix]:
+    """Return the state after a step of order four, and its slopes if the system has them.
 
     Raises ValueError if the state has no quaternion that follows an angular velocity in it.
     """
     attitude, _ = _places(system)
     start = _start(tape, system)
     gain = _gain(tape, system, start)
-    after = finished(start[attitude], whole_turn(tape, gain.vectors))
-    return added(start, gain.state).replaced(attitude, after)
+    turned = finished(start[attitude], whole_turn(tape, gain.vectors))
+    found = added(start, gain.state).replaced(attitude, turned)
+    return found.values, found.slopes
 
 
-def lie_errors(tape: Tape, system: System) -> tuple[Row, Matrix]:
-    """Return the state after a step and its slopes with three errors of attitude for its parts.
+def after(tape: Tape, system: System) -> Row:
+    """Return the state after a step."""
+    return step_slopes(tape, system)[0]
 
-    An error delta stands for the attitude q exp(delta / 2), before the step and after it.
-    """
+
+def by_errors(tape: Tape, system: System) -> tuple[Row, Matrix]:
+    """Return the state after a step and its slopes with three errors of attitude for its parts."""
     attitude, _ = _places(system)
     begin = _start(tape, system)
-    lift = times(Fraction(1, 2), tangent_matrix(begin.values[attitude]))
-    start = Varying(
-        begin.values,
-        [
-            [*row[: attitude.start], *product([row[attitude]], lift)[0], *row[attitude.stop :]]
-            for row in begin.slopes
-        ],
-    )
+    start = Varying(begin.values, lifted(begin.values[attitude], attitude, begin.slopes))
     gain = _gain(tape, system, start)
     turn = whole_turn(tape, gain.vectors)
-    after = added(start, gain.state).replaced(attitude, finished(start[attitude], turn))
+    found = added(start, gain.state).replaced(attitude, finished(start[attitude], turn))
     errors = [list(row) for row in turn.slopes]
     for row, entries in zip(errors, between(conjugate(turn.values), turn.values), strict=True):
         for k, entry in enumerate(entries, attitude.start):
             row[k] = row[k] + entry
-    rows = [*after.slopes[: attitude.start], *errors, *after.slopes[attitude.stop :]]
-    return after.values, rows
+    rows = [*found.slopes[: attitude.start], *errors, *found.slopes[attitude.stop :]]
+    return found.values, rows
 
 
-def lie_increments(tape: Tape, system: System) -> tuple[Row, Row]:
+def increments(tape: Tape, system: System) -> tuple[Row, Row]:
     """Return the state at the start of a step, and what it adds, an attitude not yet normalised."""
     attitude, _ = _places(system)
-    start = _start(tape, replace(system, slopes=None))
-    gain = _gain(tape, replace(system, slopes=None), start)
+    start = _start(tape, system)
+    gain = _gain(tape, system, start)
     w, *vector = whole_turn(tape, gain.vectors).values
     found = gain.state.values
     found[attitude] = hamilton(start.values[attitude], [w - 1, *vector])

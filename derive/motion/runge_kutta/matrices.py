@@ -1,4 +1,7 @@
-"""Small matrices of numbers: exact zeros and ones fold away, so sparse ones cost what they hold."""
+"""Small matrices of numbers: exact zeros and ones fold away, so sparse ones cost what they hold.
+
+Those of quaternions are among them.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,8 @@ from fractions import Fraction
 
 from derive.program.tape import Number, number
 
-Matrix = list[list[Number]]
+Row = list[Number]
+Matrix = list[Row]
 
 
 def zeros(rows: int, columns: int) -> Matrix:
@@ -58,3 +62,41 @@ def transposed(a: Matrix) -> Matrix:
 def beside(*parts: Matrix) -> Matrix:
     """Return matrices side by side."""
     return [[x for row in rows for x in row] for rows in zip(*parts, strict=True)]
+
+
+def between(c: Sequence[Number], r: Sequence[Number]) -> Matrix:
+    """Return the matrix (3, 3) of v -> Im(c v r)."""
+    c0, (cx, cy, cz) = c[0], c[1:]
+    r0, (rx, ry, rz) = r[0], r[1:]
+    tx, ty, tz, t0 = cx * rx, cy * ry, cz * rz, c0 * r0
+    first, less = t0 + tx, t0 - tx
+    x, y, z = (r0 * u - c0 * v for u, v in zip(c[1:], r[1:], strict=True))
+    xy, xz, yz = cx * ry + cy * rx, cx * rz + cz * rx, cy * rz + cz * ry
+    return [
+        [less + (ty + tz), -z - xy, y - xz],
+        [z - xy, first - (ty - tz), -x - yz],
+        [-y - xz, x - yz, first + (ty - tz)],
+    ]
+
+
+def right_matrix(p: Sequence[Number]) -> Matrix:
+    """Return the matrix (4, 4) of q -> q p."""
+    w, x, y, z = p
+    return [[w, -x, -y, -z], [x, w, z, -y], [y, -z, w, x], [z, y, -x, w]]
+
+
+def tangent_matrix(q: Sequence[Number]) -> Matrix:
+    """Return the matrix (4, 3) of v -> q (0, v)."""
+    w, x, y, z = q
+    return [[-x, -y, -z], [w, -z, y], [z, w, -x], [-y, x, w]]
+
+
+def lifted(q: Sequence[Number], place: slice, rows: Matrix) -> Matrix:
+    """Return derivatives by three errors of the attitude q at ``place`` for those by its parts.
+
+    An error delta stands for the attitude q exp(delta / 2): it is in rad, along body axes.
+    """
+    lift = times(Fraction(1, 2), tangent_matrix(q))
+    return [
+        [*row[: place.start], *product([row[place]], lift)[0], *row[place.stop :]] for row in rows
+    ]

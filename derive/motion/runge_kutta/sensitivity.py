@@ -15,31 +15,36 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from derive.motion.attitude.quaternion import conjugate
-from derive.motion.runge_kutta.attitude_stages import (
+from derive.motion.attitude.quaternion import conjugate, norm_squared
+from derive.motion.runge_kutta.classic import (
+    THIRD,
+    Stages,
     Turning,
-    between,
-    norm_squared,
+    normalised,
     one_and,
-    right_matrix,
-    tangent_matrix,
+    stages,
     turn_slopes,
 )
 from derive.motion.runge_kutta.matrices import (
     Matrix,
+    Row,
+    beside,
+    between,
     identity,
+    lifted,
     minus,
     plus,
     product,
+    right_matrix,
+    tangent_matrix,
     times,
     transposed,
     zeros,
 )
-from derive.motion.runge_kutta.runge_kutta import THIRD, Row, Stages, Step
 from derive.motion.runge_kutta.system import System
 from derive.program.operations import sqrt
 from derive.program.program import Operand
-from derive.program.tape import Number, number
+from derive.program.tape import Number, Tape, number
 
 
 @dataclass(frozen=True)
@@ -98,53 +103,48 @@ def _grouped(pairs: Sequence[tuple[Number, Number]]) -> list[tuple[Number, Numbe
     return list(found.values())
 
 
-def step_slopes(system: System, stages: Stages, step: Step) -> Back:
-    """Return the derivatives (n, n) and (n, m) of the state after a step."""
-    made = _unconstrained(stages)
-    scales = [1 / sqrt(squared) for squared in step.lengths_squared]
-    if stages.turn is None:
+def step_slopes(tape: Tape, system: System) -> tuple[Row, Matrix]:
+    """Return the state after a step and its derivatives (n, n + m) by the state and the rest."""
+    at = stages(tape, system)
+    after, squares = normalised(system, at)
+    made, scales = _unconstrained(at), [1 / sqrt(squared) for squared in squares]
+    if at.turn is None:
         for place, scale in zip(system.quaternions, scales, strict=True):
             for part in (made.state, made.rest):
-                part[place] = _on_the_sphere(step.after[place], times(scale, part[place]))
-        return made
+                part[place] = _on_the_sphere(after[place], times(scale, part[place]))
+        return after, beside(made.state, made.rest)
     (attitude,), (scale,) = system.quaternions, scales
-    q = step.after[attitude]
-    turned = _turned(system, stages, stages.turn)
+    q, turned = after[attitude], _turned(system, at, at.turn)
     made.rest[attitude] = product(tangent_matrix(q), turned.rest)
     made.state[attitude] = product(tangent_matrix(q), turned.state)
-    own = _attitude_by_itself(one_and(stages.turn.increment), scale, stages.start[attitude], q)
+    own = _attitude_by_itself(one_and(at.turn.increment), scale, at.start[attitude], q)
     _put(made.state[attitude], attitude, own)
-    return made
+    return after, beside(made.state, made.rest)
 
 
-def by_errors(system: System, stages: Stages, step: Step) -> Back:
-    """Return the derivatives with three errors of attitude, before and after, for its four parts.
-
-    An error delta stands for the attitude q exp(delta / 2): it is in rad, along body axes.
-    """
-    made, attitude = _unconstrained(stages), system.quaternion
+def by_errors(tape: Tape, system: System) -> tuple[Row, Matrix]:
+    """Return the same with three errors of attitude, before and after, for its four parts."""
+    attitude = system.quaternion
     if attitude is None:
         raise ValueError("a tangent space needs one attitude quaternion among the states")
-    if stages.turn is None:
-        twice = 2 / sqrt(step.lengths_squared[0])
-        drop = times(twice, transposed(tangent_matrix(step.after[attitude])))
+    at = stages(tape, system)
+    after, squares = normalised(system, at)
+    made = _unconstrained(at)
+    if at.turn is None:
+        drop = times(2 / sqrt(squares[0]), transposed(tangent_matrix(after[attitude])))
         rows = Back(product(drop, made.state[attitude]), product(drop, made.rest[attitude]))
     else:
-        turned = _turned(system, stages, stages.turn)
+        turned = _turned(system, at, at.turn)
         rows = Back(times(2, turned.state), times(2, turned.rest))
     made.state[attitude] = rows.state
     made.rest[attitude] = rows.rest
-    lift = times(Fraction(1, 2), tangent_matrix(stages.start[attitude]))
-    state = [
-        [*row[: attitude.start], *product([row[attitude]], lift)[0], *row[attitude.stop :]]
-        for row in made.state
-    ]
-    if stages.turn is not None:
-        whole = one_and(stages.turn.increment)
+    state = lifted(at.start[attitude], attitude, made.state)
+    if at.turn is not None:
+        whole = one_and(at.turn.increment)
         inverse = [x / norm_squared(whole) for x in conjugate(whole)]
         errors = slice(attitude.start, attitude.start + 3)
         _put(state[errors], errors, between(inverse, whole))
-    return Back(state, made.rest)
+    return after, beside(state, made.rest)
 
 
 def _unconstrained(stages: Stages) -> Back:

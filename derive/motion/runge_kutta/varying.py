@@ -6,19 +6,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from derive.motion.attitude.quaternion import conjugate, exponential
+from derive.motion.attitude.quaternion import conjugate, exponential, norm_squared
 from derive.motion.attitude.quaternion import product as hamilton
-from derive.motion.runge_kutta.attitude_stages import (
+from derive.motion.runge_kutta.matrices import (
+    Matrix,
+    Row,
     between,
-    norm_squared,
+    minus,
+    plus,
+    product,
     right_matrix,
     tangent_matrix,
+    times,
+    zeros,
 )
-from derive.motion.runge_kutta.matrices import Matrix, minus, plus, product, times, zeros
 from derive.program.operations import less, select, sqrt
 from derive.program.tape import Number, Tape, number
 
-Row = list[Number]
 TINY = Fraction(1, 2**40)
 """Below, the squared angle of a turn leaves nothing of what is multiplied by it."""
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from derive.motion.moser_veselov.preprocessing import horner
+from derive.program.operations import horner
 from derive.program.tape import Number, number
 
 CYCLIC = ((0, 1, 2), (1, 2, 0), (2, 0, 1))

@@ -29,7 +29,7 @@ LARGEST = 4  # the next step is within a factor of this one
 BITS = 9  # of 1/order, of which the root is made
 
 
-def proposal(order: int, groups: Sequence[Sequence[str]]) -> tuple[list[Op], str]:
+def next_length(order: int, groups: Sequence[Sequence[str]]) -> tuple[list[Op], str]:
     """Return the operations, and the name, of the step proposed.
 
     groups : the components of each state that moves; each state is judged by its own size

@@ -4,9 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from derive.motion.exact.diagonal import principal_axes
 from derive.motion.exact.inertia import Inertia
-from derive.motion.exact.principal_axes import principal_axes
-from derive.program.operations import at_most, both, either, select
+from derive.program.operations import at_most, both, either, select, splitter
+from derive.program.pairs import two_product, two_sum
 from derive.program.tape import Number, Tape, named, number
 
 Vector = Sequence[Number]
@@ -14,7 +15,7 @@ Change = Callable[[Vector], list[Number]]
 
 
 @dataclass(frozen=True)
-class Frame:
+class Axes:
     """Moments about a, b, c, and how a vector goes from the axes x, y, z to these and back.
 
     unit : kg m^2, what the moments are measured in
@@ -28,11 +29,11 @@ class Frame:
     rows: tuple[Vector, ...] = ()
 
 
-def frame(tape: Tape, body: Inertia) -> Frame:
+def axes_of(tape: Tape, body: Inertia) -> Axes:
     """Return the axes of a body; ``tape`` is that of the function in which vectors change."""
     match body.kind:
         case "general":
-            return principal_frame(body)
+            return principal(body)
         case "spherical":
             return _counted_from(0, body)
         case "axisymmetric":
@@ -43,12 +44,12 @@ def frame(tape: Tape, body: Inertia) -> Frame:
     return _chosen(tape, body)
 
 
-def own_frame(body: Inertia) -> Frame:
+def own_axes(body: Inertia) -> Axes:
     """Return the axes x, y, z as they are."""
     return _counted_from(0, body)
 
 
-def _counted_from(first: int, body: Inertia) -> Frame:
+def _counted_from(first: int, body: Inertia) -> Axes:
     """Return the axes x, y, z counted round from the one that is a; c is then a body's own."""
 
     def along(v: Vector) -> list[Number]:
@@ -57,10 +58,10 @@ def _counted_from(first: int, body: Inertia) -> Frame:
     def back(v: Vector) -> list[Number]:
         return [v[(i - first) % 3] for i in range(3)]
 
-    return Frame(along(body.tensor[:3]), number(1), along, back)
+    return Axes(along(body.tensor[:3]), number(1), along, back)
 
 
-def _chosen(tape: Tape, body: Inertia) -> Frame:
+def _chosen(tape: Tape, body: Inertia) -> Axes:
     """Return the axes where parameters decide which is which: two flags of set-up."""
     x, y, z = body.tensor[:3]
     tests = []
@@ -73,7 +74,7 @@ def _chosen(tape: Tape, body: Inertia) -> Frame:
         cases = [[v[(i + step * first) % 3] for i in range(3)] for first in range(3)]
         return [select(is_x, p, select(is_y, q, r)) for p, q, r in zip(*cases, strict=True)]
 
-    return Frame(
+    return Axes(
         choice(at_x, at_y, body.tensor[:3], 1),
         number(1),
         lambda v: choice(hot_x, hot_y, v, 1),
@@ -95,7 +96,7 @@ def _between(p: Number, q: Number, r: Number) -> Number:
     return either(both(at_most(p, q), at_most(q, r)), both(at_most(r, q), at_most(q, p)))
 
 
-def principal_frame(body: Inertia) -> Frame:
+def principal(body: Inertia) -> Axes:
     """Return the principal axes of any tensor, the smallest moment first."""
     found = principal_axes(body)
     rows = [
@@ -108,7 +109,7 @@ def principal_frame(body: Inertia) -> Frame:
     xx, yy, zz = body.tensor[:3]
     unit = (xx + yy + zz) / (found.moments[0] + found.moments[1] + found.moments[2])
     columns = [[row[i] for row in rows] for i in range(3)]
-    return Frame(
+    return Axes(
         list(found.moments),
         unit,
         lambda v: times(rows, v),
@@ -120,3 +121,30 @@ def principal_frame(body: Inertia) -> Frame:
 def times(rows: Sequence[Vector], v: Vector) -> list[Number]:
     """Return the product of a matrix and a vector."""
     return [row[0] * v[0] + row[1] * v[1] + row[2] * v[2] for row in rows]
+
+
+def lacking(tape: Tape, rows: Sequence[Vector]) -> list[list[Number]]:
+    """Return (3, 3) what the inverse of A has that its transpose has not: -A^T (A A^T - 1).
+
+    A vector that goes over by A of rounded entries and comes back by its transpose is changed by
+    A A^T - 1, by a rounding and always alike: over a million steps lengths drift. What is lacking
+    from the way back is added where nothing rounds it away.
+    rows : A as a function reads it, three unit vectors but for their rounding
+    """
+    one = splitter(tape) / splitter(tape)  # an exact entry times one is that entry, rounded
+    held = [[one * entry for entry in row] for row in rows]
+    left = [[_left(tape, p, q, int(p is q)) for q in held] for p in held]
+    return [
+        [-(column[0] * e[0] + column[1] * e[1] + column[2] * e[2]) for e in left]
+        for column in zip(*held, strict=True)
+    ]
+
+
+def _left(tape: Tape, p: Sequence[Number], q: Sequence[Number], whole: int) -> Number:
+    """Return p . q less a whole number, to twice the digits (Ogita, Rump and Oishi 2005)."""
+    total, errors = number(-whole), number(0)
+    for a, b in zip(p, q, strict=True):
+        product, error = two_product(a, b, splitter(tape))
+        total, lost = two_sum(total, product)
+        errors = errors + (error + lost)
+    return total + errors

@@ -11,9 +11,21 @@ gives what the attitude gains. A momentum that is turned gains the sum of its sh
 
 from collections.abc import Sequence
 
+from derive.motion.attitude.quaternion import norm_squared
+from derive.program.operations import sqrt
+from derive.program.program import Quantity
 from derive.program.tape import Number
 
 Vector = Sequence[Number]
+REMAINDER = "remainder"
+"""The quantity that carries what rounding left; it has no range but that of rounding."""
+
+
+def remainder(states: Sequence[Quantity]) -> Quantity:
+    """Return the quantity that carries what rounding left of earlier steps: zeros at the start."""
+    parts = tuple(f"remainder_{c}" for q in states for c in q.components)
+    says = "what rounding left of earlier steps, zeros at the start"
+    return Quantity(REMAINDER, parts, (len(parts),), "", "", None, None, says, "remainder")
 
 
 def compensated_add(state: Number, increment: Number, remainder: Number) -> tuple[Number, Number]:
@@ -31,7 +43,7 @@ def compensated_add(state: Number, increment: Number, remainder: Number) -> tupl
 
 
 def closely_added(
-    state: Number, increment: Number, low: Number, remainder: Number
+    state: Number, increment: Number, remainder: Number, low: Number
 ) -> tuple[Number, Number]:
     """Return the same for an increment with a low part, of which nothing is dropped on the way.
 
@@ -43,31 +55,21 @@ def closely_added(
     return after, (wanted - (after - state)) + (short + low)
 
 
-def compensated_sums(
-    attitude: Vector, omega: Vector, turn: Vector, change: Vector, remainder: Vector
-) -> tuple[list[Number], list[Number], list[Number]]:
-    """Return attitude and omega after their increments, and the remainder of the seven sums."""
-    state, increments = [*attitude, *omega], [*turn, *change]
+def compensated_sums(state: Vector, increments: Vector, remainder: Vector) -> list[Number]:
+    """Return a state after its increments, and then what rounding kept from each."""
     sums = [compensated_add(*each) for each in zip(state, increments, remainder, strict=True)]
-    after = [x for x, _ in sums]
-    return after[:4], after[4:], [r for _, r in sums]
+    return [part for parts in zip(*sums, strict=True) for part in parts]
 
 
-def two_sum(a: Number, b: Number) -> tuple[Number, Number]:
-    """Return s and e with s + e = a + b exactly and s the rounded sum (Knuth)."""
-    s = a + b
-    t = s - a
-    return s, (a - (s - t)) + (b - t)
+def on_the_sphere(q: Vector, increment: Vector) -> list[Number]:
+    """Return an increment of a quaternion (4) after which it is of length one.
 
-
-def two_product(a: Number, b: Number, factor: Number) -> tuple[Number, Number]:
-    """Return p and e with p + e = a b exactly and p the rounded product (Veltkamp and Dekker)."""
-    p = a * b
-    (a1, a2), (b1, b2) = _halves(a, factor), _halves(b, factor)
-    return p, a1 * b1 - p + a1 * b2 + a2 * b1 + a2 * b2
-
-
-def _halves(a: Number, factor: Number) -> tuple[Number, Number]:
-    c = factor * a
-    high = c - (c - a)
-    return high, a - high
+    d + (q + d) (s - 1),  s = 1 / |q + d|: s - 1 from e = |q + d|^2 - 1 without cancellation. What
+    rounding does to that part is along the quaternion: it changes its length, which the next step
+    mends, and never its direction.
+    """
+    along = sum((x * d for x, d in zip(q[1:], increment[1:], strict=True)), q[0] * increment[0])
+    excess = (norm_squared(q) - 1) + (2 * along + norm_squared(increment))
+    length = sqrt(1 + excess)
+    less = -excess / (length * (1 + length))
+    return [d + (x + d) * less for x, d in zip(q, increment, strict=True)]
