@@ -29,6 +29,7 @@ from derive.check.motion import orders, step_slopes
 from derive.check.particles import clouds
 from derive.check.refusals import casadi_status, refusal
 from derive.check.sphere import near_a_sphere
+from derive.check.turned import turned_axes as turned_axes_of_machine
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library, library
 from derive.mechanics.mechanism import Mechanism
@@ -155,6 +156,7 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
         yield from clouds(one.library, plain[:FEW])
         if isinstance(one.library.known, Mechanism):
             yield from energy_balance(one.library, plain[:TWO])
+            yield from turned_axes_of_machine(one, few, stated)
         else:
             yield from power_balance(one, plain)
             yield from turned_axes(one, plain)

@@ -14,7 +14,7 @@ from sympy import Expr, Integer, Matrix, Symbol, zeros
 
 from derive.mechanics.balances import Balances, Row
 from derive.mechanics.choice import chosen
-from derive.mechanics.probe import DIGITS, Probe, at_rest, independent, point, small
+from derive.mechanics.probe import DIGITS, Probe, at_rest, independent, point, small, solved
 from derive.mechanics.valued import Valued
 from derive.mechanics.words import Words
 from derive.scene import Input, Machine, SceneError
@@ -128,8 +128,7 @@ def _accelerations(
         probe.define(sheet.definitions)
         valued = Valued(balances.sides, probe)
         table = [balances.at(row, valued) for row in rows]
-        return list(mp.lu_solve([[row[1 + k] for k in places] for row in table],
-                                [-row[0] for row in table]))  # fmt: skip
+        return solved([[row[1 + k] for k in places] for row in table], [-row[0] for row in table])
 
 
 def _middle(words: Words) -> Probe:

@@ -109,6 +109,32 @@ def small(value: Any, size: Any) -> bool:
     return bool(abs(value) <= NOTHING * abs(size))
 
 
+def solved(rows: Sequence[Sequence[Any]], right: Sequence[Any]) -> list[Any]:
+    """Return the solution of linear equations, by Gauss and Jordan.
+
+    Raises ZeroDivisionError where they do not determine it, if only by what rounding leaves.
+
+    >>> [float(x) for x in solved([[mpf(0), mpf(2)], [mpf(1), mpf(1)]], [mpf(4), mpf(5)])]
+    [3.0, 2.0]
+    """
+    with mp.workdps(DIGITS):
+        sizes = [max(map(abs, row)) for row in rows]
+        if not all(sizes):
+            raise ZeroDivisionError
+        table = [[x / s for x in (*row, b)] for row, b, s in zip(rows, right, sizes, strict=True)]
+        for k in range(len(table)):
+            best = max(range(k, len(table)), key=lambda n: abs(table[n][k]))
+            table[k], table[best] = table[best], table[k]
+            pivot = table[k]
+            if small(pivot[k], 1):
+                raise ZeroDivisionError
+            pivot[:] = [x / pivot[k] for x in pivot]
+            for row in table:
+                if row is not pivot and row[k]:
+                    row[:] = [x - row[k] * p for x, p in zip(row, pivot, strict=True)]
+        return [row[-1] for row in table]
+
+
 def independent(rows: Iterable[Mapping[int, Any]], wanted: int) -> list[int]:
     """Return the places of the first rows that are independent of those before, at most so many."""
     return independent_at_all([rows], wanted)

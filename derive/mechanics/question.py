@@ -8,7 +8,7 @@ from mpmath import mp, mpf
 from sympy import Expr, Symbol
 
 from derive.mechanics.balances import Balance
-from derive.mechanics.probe import DIGITS, Probe
+from derive.mechanics.probe import DIGITS, Probe, solved
 from derive.mechanics.sheet import Sheet
 from derive.program.program import Quantity
 
@@ -48,10 +48,10 @@ def answered(question: Question, sheet: Sheet, probe: Probe) -> list[Any]:
         found = dict(probe.values)
         if question.rows:
             parts = [sheet.split(row) for row in question.rows]
-            matrix = mp.matrix([[probe.value(slopes[u]) if u in slopes else mpf(0)
-                                 for u in question.unknowns] for _, slopes in parts])  # fmt: skip
-            right = mp.matrix([-probe.value(rest) for rest, _ in parts])
-            found |= dict(zip(question.unknowns, mp.lu_solve(matrix, right), strict=True))
+            matrix = [[probe.value(slopes[u]) if u in slopes else mpf(0)
+                       for u in question.unknowns] for _, slopes in parts]  # fmt: skip
+            right = [-probe.value(rest) for rest, _ in parts]
+            found |= dict(zip(question.unknowns, solved(matrix, right), strict=True))
         there = Probe(found)
         return [there.value(e) for e in question.answers.values()]
 

@@ -108,7 +108,7 @@ def transposed(program: Program) -> Program:
 def scalar_last(program: Program) -> Program:
     """Return the program that reads its quaternion's scalar part last."""
     inputs = tuple(
-        replace(q, components=(*q.components[1:], q.components[0])) if q.name == "attitude" else q
+        replace(q, components=(*q.components[1:], q.components[0])) if q.is_quaternion else q
         for q in program.inputs
     )
     return replace(program, inputs=inputs)

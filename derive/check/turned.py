@@ -1,0 +1,118 @@
+"""The emitted C beside the same machine described along other axes, derived anew.
+
+Frames, bodies and loads are told along other axes before the lecture's equations are written, and
+what these give is told back: an error of one axis, of the order of turns, of a sign is seen.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx
+
+from derive.check.agreement import ABSURD, LARGEST_BOUND, MORE
+from derive.check.description import Description, relabelled, turned
+from derive.check.emitted import Emitted
+from derive.check.verdict import JUDGED, Outcome, Verdict
+from derive.mechanics.mechanism import Mechanism, mechanism, truth
+from derive.mechanics.words import MATRICES
+from derive.program.largest import largest
+from derive.program.program import Program
+from derive.scene import Machine
+from derive.scene.formula import symbols
+from derive.scene.results import written_out
+from derive.verify.equations import Equations, equations
+from derive.verify.measure import True_, errors, references
+from derive.verify.reference import BITS, reference
+from derive.verify.sample import Sample
+from derive.verify.scale import base_of
+
+Stated = Mapping[str, Mapping[str, Mapping[str, Mapping[str, Any]]]]
+
+
+def turned_axes(one: Emitted, each: Sequence[Sample], stated: Stated) -> Iterator[Verdict]:
+    """Yield whether every function is what the machine told along other axes gives."""
+    scene = one.library.known.scene
+    assert isinstance(scene, Machine)  # noqa: S101
+    told = {"cyclic relabelling": relabelled(scene), "rotation of axes": turned(scene)}
+    for check, description in told.items():
+        if description is None:
+            says = "no frame with an angular velocity of its own holds bodies of any axes"
+            yield _verdict(one, "all", check, "skipped", says)
+            continue
+        anew = mechanism(description.told())
+        asked = {
+            base: None if _free_to_choose(anew, base) else equations(anew, truth(anew, base))
+            for base in one.library.truths
+        }
+        for program, true in references(one.library, each):
+            question = asked[base_of(program)]
+            if question is None:
+                says = "rows of small motion and what vanishes if steady may be told otherwise"
+                yield _verdict(one, program.name, check, "skipped", says)
+            elif not program.sparsity:
+                rows = [
+                    _told_back(description, question, program, s, own)
+                    for s, own in zip(each, true, strict=True)
+                ]
+                yield _judged(one, check, program, (each, rows), stated)
+
+
+def _free_to_choose(known: Mechanism, base: str) -> bool:
+    """Tell whether a function's rows may be multiplied or combined, and mean the same."""
+    steady = known.scene.steady
+    if base == "steady":
+        return steady is None or steady.vanishes is None
+    names = known.scene.asked.get(base, (base,))
+    results = [r for r in known.scene.results if r.name in names]
+    used = {s for r in results for s in symbols(written_out(r.formula, known.scene.results))}
+    matrices = tuple(MATRICES)
+    return "linearised" in names or any(s.startswith(matrices) for s in (*names, *used))
+
+
+def _told_back(
+    description: Description, question: Equations, program: Program, sample: Sample, own: True_
+) -> True_:
+    """Return what the other description gives, with the scales of the scene's own.
+
+    What vanishes for the scene is a ball around zero where it is a sum along other axes.
+    """
+    with ctx.workprec(BITS):
+        given = description.given({c: arb(x) for c, x in sample.values.items()})
+        solved = reference(question, given, ())
+        names = [c for q in program.outputs for c in q.components]
+        values = description.told_back({c: solved[c].value for c in names})
+        zero = arb(0)
+        found = {c: zero if values[c].contains(zero) else values[c] for c in names}
+        return {c: replace(own[c], value=found[c]) for c in names}
+
+
+def _judged(
+    one: Emitted,
+    check: str,
+    program: Program,
+    at: tuple[Sequence[Sample], Sequence[True_]],
+    stated: Stated,
+) -> Verdict:
+    """Return a verdict on C, which may differ by the stated error and that of its quaternions.
+
+    These are of length 1 to a rounding only, and each description shows that in another way.
+    """
+    each, true = at
+    rows = [one.results(program, s) for s in each]
+    columns = [np.array(column) for column in zip(*rows, strict=True)]
+    worst, allowed = 0.0, 0.0
+    for found in errors(program, columns, true, one.precision):
+        figures = stated.get(program.name, {}).get(one.precision.name, {}).get(found.output, {})
+        most = min(ABSURD, LARGEST_BOUND + MORE * float(figures.get("largest_ulp", 0.0)))
+        gap = largest(found.largest())
+        if not gap / most <= worst / (allowed or 1.0):
+            worst, allowed = gap, most
+    says = f"{len(each)} samples, largest gap {worst:.2g} u; allowed {allowed:.2g} u"
+    return _verdict(one, program.name, check, JUDGED[worst <= allowed], says)
+
+
+def _verdict(one: Emitted, function: str, check: str, outcome: Outcome, says: str) -> Verdict:
+    name = one.library.known.scene.name
+    return Verdict(name, function, one.precision.name, check, outcome, says)

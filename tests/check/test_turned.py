@@ -1,0 +1,77 @@
+"""A machine told along other axes gives the answers of the machine, and wrong code does not."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from derive.check.description import CYCLE, TURN, Description
+from derive.check.turned import turned_axes
+from derive.library.library import Library, library
+from derive.program.arithmetic import working
+from derive.program.precision import F64, Precision
+from derive.program.program import Program
+from derive.scene import Machine, catalogue, load
+from derive.verify.measure import replayed
+from derive.verify.sample import Sample, samples
+from tests.check.mutants import first_sign_flipped
+from tests.made import library_of, scene_of
+
+LONG_FORM = Path(__file__).parents[1] / "data" / "long_form"
+MACHINES = [n for n in catalogue() if isinstance(scene_of(n), Machine)]
+BODIES = sorted(path.stem for path in LONG_FORM.glob("*.toml"))
+AT_ONCE = ("edge_runner_flat", "skewed_disc", "free_body_principal")
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """Functions as C computes them, by a replay of their programs: what is emitted, or a mutant."""
+
+    library: Library
+    emitted: Library
+    precision: Precision = F64
+
+    def results(self, program: Program, sample: Sample) -> list[float]:
+        emitted = replace(self.emitted, motions=())
+        found = replayed(emitted, [sample], F64, working(np.float64))[program.name]
+        return [float(np.ravel(column)[0]) for column in found]
+
+
+def outcomes(made: Library, emitted: Library) -> dict[tuple[str, str], str]:
+    one = cast("Any", Replayed(made, emitted))
+    found = turned_axes(one, samples(made.known, F64, 3, 0).each, {})
+    return {(row.check, row.function): row.outcome for row in found}
+
+
+def quick(names: list[str]) -> list[Any]:
+    return [n if n in AT_ONCE else pytest.param(n, marks=pytest.mark.long) for n in names]
+
+
+@pytest.mark.parametrize("name", quick(MACHINES))
+def test_a_machine_of_the_catalogue_is_the_same_along_other_axes(name: str) -> None:
+    found = outcomes(library_of(name), library_of(name))
+    assert set(found.values()) <= {"holds", "skipped"}
+    assert {check for check, _ in found} == {"cyclic relabelling", "rotation of axes"}
+
+
+@pytest.mark.parametrize("name", quick(BODIES))
+def test_a_body_in_long_form_is_the_same_along_other_axes(name: str) -> None:
+    made = library(load(LONG_FORM / f"{name}.toml"))
+    assert "FAILS" not in outcomes(made, made).values()
+
+
+def test_a_flipped_sign_is_seen_along_other_axes() -> None:
+    made = library(load(LONG_FORM / "free_body_principal.toml"))
+    wrong = replace(made, functions=tuple(map(first_sign_flipped, made.functions[:1])))
+    found = outcomes(replace(made, functions=made.functions[:1]), wrong)
+    assert set(found.values()) == {"FAILS"}
+    assert len(found) == 2
+
+
+@pytest.mark.parametrize("turn", [CYCLE, TURN])
+def test_the_rows_of_a_turn_are_orthonormal_and_right_handed(turn: Any) -> None:
+    rows = np.array(Description(cast("Machine", scene_of("skewed_disc")), turn, frozenset()).rows)
+    assert (rows @ rows.T == np.eye(3)).all()
+    assert (np.cross(rows[0], rows[1]) == rows[2]).all()
