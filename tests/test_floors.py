@@ -16,7 +16,8 @@ ROOMS = (
 )
 MODULES = ("__init__", "__main__", "cli")
 WITHOUT_SYMPY = (
-    *("scene", "program", "motion", "emit/c", "emit/casadi_text", "emit/casadi_module"),
+    *("scene", "program", "motion", "emit/c", "emit/lines"),
+    *("emit/casadi_text", "emit/casadi_module"),
     *("lower/graph", "lower/expand", "lower/table", "lower/share", "lower/write"),
     *("lower/schedule", "lower/derivative", "lower/forms", "lower/stage"),
 )

@@ -1,6 +1,6 @@
 """The scene's functions as CasADi: Python that builds them, operation by operation as the C."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -9,11 +9,12 @@ from derive.emit.c.comment import told
 from derive.emit.c.scope import declared_in_python, require_free
 from derive.emit.c.source import first_line
 from derive.emit.c.text import pair_functions
-from derive.emit.casadi_loops import loops_python
-from derive.emit.operators import in_casadi
+from derive.emit.lines import SIGNS, Language, operation, written
+from derive.emit.operators import WRITTEN, patterns
 from derive.emit.templates import TEMPLATES
 from derive.library.library import Library
 from derive.program.arithmetic import pair_of, rounded
+from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, Row
 from derive.program.pair_sine import quarter_turn, series
 from derive.program.precision import F64
 from derive.program.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
@@ -47,6 +48,9 @@ def casadi_file(library: Library) -> str:
     )
 
 
+OWN = {name: row.casadi for name, row in WRITTEN.items() if row.casadi}
+
+
 def _pairs(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
     """Return the lines of a program in pairs, and how to read a result rounded."""
 
@@ -56,52 +60,79 @@ def _pairs(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
         return f"({place[operand]}, 0.0)" if operand in place else operand
 
     def stored(operand: Operand) -> str:
-        if isinstance(operand, Fraction):
-            return repr(float(rounded(operand, F64.dtype)))
-        return place.get(operand, f"{operand}[0]")
+        return (
+            _literal(operand)
+            if isinstance(operand, Fraction)
+            else place.get(operand, f"{operand}[0]")
+        )
 
-    def one(op: Op) -> str:
-        operands = [text(operand) for operand in op.operands]
-        if op.operator in ("both", "either"):
-            return f"{op.result} = {in_casadi(op.operator, operands)}"
-        return f"{op.result} = _{op.operator}({', '.join(operands)})"
-
-    return _written(program.ops, one, text, "_select"), stored
+    own = {name: OWN[name] for name in ("both", "either")}
+    return written(_language(text, own, "_", ()), program.ops), stored
 
 
-def _written(lines: Sequence[Line], one: Callable[[Op], str], text: Text, select: str) -> list[str]:
-    """Return the Python lines of operations and loops; a loop is unrolled where it is built."""
-
-    def inner(body: Sequence[Line]) -> list[str]:
-        return _written(body, one, text, select)
-
-    found: list[str] = []
-    for line in lines:
-        if isinstance(line, Op):
-            found.append(one(line))
-        elif isinstance(line, Repeat):
-            found += _loop(line, one, text, select)
-        else:
-            found += loops_python(line, text, inner)
-    return found
+def _literal(q: Fraction) -> str:
+    return repr(float(rounded(q, F64.dtype)))
 
 
-def _loop(loop: Repeat, one: Callable[[Op], str], text: Text, select: str) -> list[str]:
-    carried = ", ".join(loop.carried)
-    done = f"done_{loop.carried[0]}"
+def _language(text: Text, own: Mapping[str, str], before: str, kept: Collection[str]) -> Language:
+    """Return how Python builds CasADi; a loop over passes is unrolled where it is built.
+
+    before : what stands before the name of an operator that is called
+    kept   : the results whose rounding is worked out
+    """
+
+    def line(op: Op, value: str) -> str:
+        return f"{op.result} = {KEPT}{value})" if op.result in kept else f"{op.result} = {value}"
+
+    def assign(line: Assign, value: str) -> str:
+        return f"{line.target} {SIGNS[line.adds]} {value}"
+
+    def called(operator: str) -> str:
+        return f"{before}{operator}"
+
+    same = "float({0} == {1})"
+    return Language(
+        text, own, called, line, _repeat, _declared, assign, _head, (), "float({})".format, same
+    )
+
+
+def _repeat(of: Language, loop: Repeat, inner: list[str]) -> list[str]:
+    text, carried, done = of.text, ", ".join(loop.carried), f"done_{loop.carried[0]}"
     begin = [f"{carried} = {', '.join(map(text, loop.start))}"]
-    then = ", ".join(map(text, loop.then))
+    then, end = [*map(text, loop.then)], []
     if loop.done is not None:
         begin.append(f"{done} = ca.SX(0)")
-        then = ", ".join(
-            f"{select}({done}, {c}, {text(t)})"
-            for c, t in zip(loop.carried, loop.then, strict=True)
-        )
-    end = [f"{carried} = {then}"]
-    if loop.done is not None:
-        end.append(f"{done} = ca.logic_or({done}, {text(loop.done)})")
-    inner = [*map(one, loop.ops), *end]
+        then = [
+            operation(of, "select", (done, c, t)) for c, t in zip(loop.carried, then, strict=True)
+        ]
+        end = [f"{done} = {operation(of, 'either', (done, text(loop.done)))}"]
+    inner = [*inner, f"{carried} = {', '.join(then)}", *end]
     return [*begin, f"for _ in range({loop.passes}):", *(f"    {line}" for line in inner)]
+
+
+def _declared(of: Language, line: Arrays | Integers | Row) -> list[str]:
+    if isinstance(line, Arrays):
+        return [f"{name} = {_list(sizes)}" for name, sizes in line.sizes]
+    if isinstance(line, Integers):
+        return [f"{line.name} = {list(line.values)}"]
+    return [f"{line.name} = [{', '.join(map(of.text, line.values))}]"]
+
+
+def _list(sizes: Sequence[int]) -> str:
+    first, *rest = sizes
+    return f"[{_list(rest)} for _ in range({first})]" if rest else f"[None] * {first}"
+
+
+def _head(line: Loop | Even) -> list[str]:
+    if isinstance(line, Even):
+        return [f"if {line.counter} % 2 == 0:", f"    {line.half} = {line.counter} // 2"]
+    i, m, first, last = line.counter, line.mirror, line.first, line.last
+    if not m:
+        step = "" if line.step > 0 else ", -1"
+        return [f"for {i} in range({first}, {last}{step}):"]
+    below = Index(last.counter, last.plus - 1)
+    end = f"({last} + 1) // 2" if line.meets else f"{last}"  # they meet there if first is 1
+    return [f"for {i}, {m} in zip(range({first}, {end}), range({below}, 0, -1)):"]
 
 
 def _setup(program: Program, scene: str) -> dict[str, object]:
@@ -144,14 +175,13 @@ def _components(quantities: tuple[Quantity, ...]) -> list[str]:
 def plain_lines(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
     """Return the lines of a program in the working precision, and how to read a result."""
 
-    numbers = {n: repr(float(q[F64.bits])) for n, q in program.numbers.items()}
-    text, kept = _read(place | numbers), _to_keep(program.ops)
+    known = place | {n: _literal(q[F64.bits]) for n, q in program.numbers.items()}
 
-    def one(op: Op) -> str:
-        value = _operation(op, text)
-        return f"{op.result} = {KEPT}{value})" if op.result in kept else f"{op.result} = {value}"
+    def text(operand: Operand) -> str:
+        return _literal(operand) if isinstance(operand, Fraction) else known.get(operand, operand)
 
-    return _written(program.ops, one, text, "ca.if_else"), text
+    own = patterns(OWN, _literal, F64.bits)
+    return written(_language(text, own, "ca.", _to_keep(program.ops)), program.ops), text
 
 
 def _to_keep(lines: Sequence[Line]) -> frozenset[str]:
@@ -163,15 +193,6 @@ def _to_keep(lines: Sequence[Line]) -> frozenset[str]:
         for operand, other in (op.operands, op.operands[::-1])
         if isinstance(operand, str) and operand in made and other in made[operand].operands
     )
-
-
-def _read(place: dict[str, str]) -> Text:
-    def text(operand: Operand) -> str:
-        if isinstance(operand, Fraction):
-            return repr(float(rounded(operand, F64.dtype)))
-        return place.get(operand, operand)
-
-    return text
 
 
 def _function(program: Program, scene: str) -> dict[str, object]:
@@ -214,10 +235,6 @@ def _with_slope(program: Program, text: Text) -> Iterator[str]:
     yield f"free = [{free}]"
     given = ", ".join(q.name for q in program.inputs if q.role != "constants")
     yield f"ends = _with_slope(ca.vertcat({results}), free, {given})"
-
-
-def _operation(op: Op, text: Text) -> str:
-    return in_casadi(op.operator, [text(operand) for operand in op.operands])
 
 
 def _outputs(program: Program, ends: Sequence[str]) -> list[dict[str, object]]:

@@ -1,6 +1,6 @@
 """How operators are written: one table, a row an operator that is no plain call of its function."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -10,33 +10,30 @@ from derive.program.precision import F64, Precision
 
 @dataclass(frozen=True)
 class Written:
-    """The patterns of an operator in C and in CasADi, and what it rests on in pairs of floats.
+    """The patterns of an operator, and what it rests on in pairs of floats.
 
-    c, casadi : {0}, {1} stand for operands, {top} and {u} for 2^(p - 1) and 2^-p; "" for a call
-    rests     : the functions that the one of pairs calls; None if it has none of its own
+    sign, c, casadi : {0}, {1} stand for operands, {top} and {u} for 2^(p - 1) and 2^-p; "" for a
+                      call. The sign serves every language that has no pattern of its own.
+    rests           : the functions that the one of pairs calls; None if it has none of its own
     """
 
+    sign: str = ""
     c: str = ""
     casadi: str = ""
     rests: tuple[str, ...] | None = None
-
-
-def _sign(sign: str, *rests: str) -> Written:
-    both = f"{{0}} {sign} {{1}}"
-    return Written(both, both, rests)
 
 
 _TOP = "({top} * {0} + {0})"
 _TOP_PYTHON = "4503599627370497.0 * {0}"
 _WIDE = ("neg", "add", "two_product", "mul")
 WRITTEN: Mapping[str, Written] = {
-    "neg": Written("-{0}", "-{0}", ()),
+    "neg": Written("-{0}", rests=()),
     "low": Written(rests=()),
-    "add": _sign("+"),
-    "sub": _sign("-", "neg", "add"),
+    "add": Written("{0} + {1}", rests=()),
+    "sub": Written("{0} - {1}", rests=("neg", "add")),
     "two_product": Written(rests=()),
-    "mul": _sign("*", "two_product"),
-    "div": _sign("/", *_WIDE),
+    "mul": Written("{0} * {1}", rests=("two_product",)),
+    "div": Written("{0} / {1}", rests=_WIDE),
     "sqrt": Written(rests=("neg", "add", "two_product")),
     "sine": Written(rests=_WIDE),
     "sin": Written(rests=(*_WIDE, "sine")),
@@ -44,20 +41,35 @@ WRITTEN: Mapping[str, Written] = {
     # Every product is one with a power of two (Rump): fused operations give the same.
     "power_of_two": Written(
         f"{_TOP} - ({_TOP} - {{u}} * {_TOP})",
-        f"{_TOP_PYTHON} - 0.9999999999999999 * ({_TOP_PYTHON})",
-        (),
+        casadi=f"{_TOP_PYTHON} - 0.9999999999999999 * ({_TOP_PYTHON})",
+        rests=(),
     ),
     "pi": Written(rests=()),
     "unit_roundoff": Written(rests=()),
     "splitter": Written(rests=()),
     # CasADi's fabs has the derivative 0 at 0, and |x|^2 then no second one.
-    "abs": Written("", "ca.if_else({0} < 0.0, -1.0, 1.0) * {0}", ("neg",)),
-    "less": _sign("<"),
-    "at_most": _sign("<="),
-    "both": Written("{0} & {1}", "ca.logic_and({0}, {1})"),
-    "either": Written("{0} | {1}", "ca.logic_or({0}, {1})"),
-    "select": Written("{0} ? {1} : {2}", "ca.if_else({0}, {1}, {2})"),
+    "abs": Written(casadi="ca.if_else({0} < 0.0, -1.0, 1.0) * {0}", rests=("neg",)),
+    "less": Written("{0} < {1}", rests=()),
+    "at_most": Written("{0} <= {1}", rests=()),
+    "both": Written("{0} & {1}", casadi="ca.logic_and({0}, {1})"),
+    "either": Written("{0} | {1}", casadi="ca.logic_or({0}, {1})"),
+    "select": Written(c="{0} ? {1} : {2}", casadi="ca.if_else({0}, {1}, {2})"),
 }
+SUMS = ("add", "sub")
+
+
+def patterns(
+    own: Mapping[str, str], literal: Callable[[Fraction], str], bits: int
+) -> dict[str, str]:
+    """Return the operators on floats that a language writes by patterns, numbers among them.
+
+    own : those that it writes in its own way       bits : the precision of its floats, p
+    """
+    signs = {name: row.sign for name, row in WRITTEN.items() if row.sign}
+    numbers = {n: literal(row.number(bits)) for n, row in OPERATORS.items() if row.number}
+    top, u = (literal(Fraction(2) ** power) for power in (bits - 1, -bits))
+    found = {**signs, **own}
+    return {n: p.replace("{top}", top).replace("{u}", u) for n, p in found.items()} | numbers
 
 
 def literal(q: Fraction, precision: Precision) -> str:
@@ -73,24 +85,3 @@ def literal(q: Fraction, precision: Precision) -> str:
     if not any(mark in text for mark in ".en"):
         text += ".0"
     return f"({text}{precision.suffix})" if q < 0 else text + precision.suffix
-
-
-def in_c(operator: str, operands: Sequence[str], precision: Precision) -> str:
-    """Return an operation on floats in C."""
-    number = OPERATORS[operator].number
-    if number is not None:
-        return literal(number(precision.bits), precision)
-    pattern = WRITTEN[operator].c if operator in WRITTEN else ""
-    if not pattern:
-        return f"{precision.functions[operator]}({', '.join(operands)})"
-    top, u = (Fraction(2) ** power for power in (precision.bits - 1, -precision.bits))
-    return pattern.format(*operands, top=literal(top, precision), u=literal(u, precision))
-
-
-def in_casadi(operator: str, operands: Sequence[str]) -> str:
-    """Return an operation on doubles in CasADi."""
-    number = OPERATORS[operator].number
-    if number is not None:
-        return repr(float(rounded(number(F64.bits), F64.dtype)))
-    pattern = WRITTEN[operator].casadi if operator in WRITTEN else ""
-    return pattern.format(*operands) if pattern else f"ca.{operator}({', '.join(operands)})"

@@ -6,13 +6,11 @@ from fractions import Fraction
 
 from derive import __version__
 from derive.emit.c.comment import comment
-from derive.emit.c.definition import definition
 from derive.emit.c.example import example
-from derive.emit.c.loops import table
 from derive.emit.c.scope import declared_in_c, require_free, require_no_symbol
 from derive.emit.c.signature import Names, dense_prototype, dense_size, prototype
 from derive.emit.c.status import status
-from derive.emit.c.text import pair_body, pair_functions
+from derive.emit.c.text import definition, pair_body, pair_functions, table
 from derive.emit.operators import literal
 from derive.emit.templates import TEMPLATES
 from derive.library.library import Library

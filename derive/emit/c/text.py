@@ -1,13 +1,26 @@
 """A program as C99 text: one line an operation, everything computed before anything is stored."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 
-from derive.emit.c.loops import loops_c
-from derive.emit.operators import WRITTEN, in_c, literal
+from derive.emit.lines import SIGNS, Language, written
+from derive.emit.operators import WRITTEN, literal, patterns
 from derive.program.arithmetic import TRUTHS, pair_of
+from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, Row
 from derive.program.precision import Precision
-from derive.program.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
+from derive.program.program import Op, Operand, Program, Quantity, Repeat, every_op
+
+Text = Callable[[Operand], str]
+UNSIGNED_CHAR = 255
+OWN = {name: row.c for name, row in WRITTEN.items() if row.c}
+
+
+def definition(program: Program, scene: str, precision: Precision) -> list[str]:
+    """Return the lines between the braces of any function but set-up."""
+    if program.arithmetic == "pairs":
+        return pair_body(program, scene, precision)
+    return body(program, precision)
 
 
 def places(quantities: tuple[Quantity, ...]) -> dict[str, str]:
@@ -32,60 +45,116 @@ def body(program: Program, precision: Precision) -> list[str]:
             return literal(operand, precision)
         return place.get(operand, operand)
 
-    def one(op: Op) -> str:
-        kind = "int" if op.operator in TRUTHS else precision.scalar
-        return (
-            f"const {kind} {op.result} = {in_c(op.operator, [*map(text, op.operands)], precision)};"
-        )
-
-    return [*written(program.ops, one, text, precision), *_stores(program, text, precision)]
+    own = patterns(OWN, partial(literal, precision=precision), precision.bits)
+    of = _language(text, own, precision.functions.__getitem__, precision.scalar, precision)
+    return [*written(of, program.ops), *_stores(program, text, precision)]
 
 
-def written(
-    lines: Sequence[Line],
-    one: Callable[[Op], str],
-    text: Callable[[Operand], str],
+def pair_body(program: Program, scene: str, precision: Precision) -> list[str]:
+    """Return the lines of a program in pairs of floats: rounded once, at the end."""
+    by_value = {c: c for q in program.inputs for c in q.components}
+    place = by_value if program.makes("constants") else places(program.inputs)
+    pair = f"{scene}_pair_{precision.name}"
+
+    def text(operand: Operand) -> str:
+        if isinstance(operand, Fraction):
+            high, low = (literal(part, precision) for part in pair_of(operand, precision.dtype))
+            return f"({pair}){{{high}, {low}}}"
+        if operand in place:
+            return f"({pair}){{{place[operand]}, {literal(Fraction(0), precision)}}}"
+        return operand
+
+    def stored(operand: Operand) -> str:
+        if isinstance(operand, str) and operand not in place:
+            return f"{operand}.high"
+        return literal(operand, precision) if isinstance(operand, Fraction) else place[operand]
+
+    def call(operator: str) -> str:
+        return f"{scene}_{operator}_{precision.name}"
+
+    # Of truths, or a choice between two structs.
+    own = {n: row.c or row.sign for n, row in WRITTEN.items() if row.rests is None}
+    of = _language(text, own, call, pair, precision)
+    return written(of, program.ops) + _stores(program, stored, precision)
+
+
+def _language(
+    text: Text,
+    own: Mapping[str, str],
+    call: Callable[[str], str],
+    kind: str,
     precision: Precision,
-    kind: str = "",
-) -> list[str]:
-    """Return the C lines of operations and loops; ``one`` writes an operation.
+) -> Language:
+    """Return how C is written; ``kind`` is the type of what operations give and loops carry."""
+    scalar = precision.scalar
 
-    kind : the type of what a loop carries, if it is not the precision's
-    """
+    def line(op: Op, value: str) -> str:
+        return f"const {'int' if op.operator in TRUTHS else kind} {op.result} = {value};"
 
-    def inner(body: Sequence[Line]) -> list[str]:
-        return written(body, one, text, precision, kind)
+    def assign(line: Assign, value: str) -> str:
+        makes = {"": "", "constant": f"const {scalar} ", "variable": f"{scalar} "}[line.makes]
+        return f"{makes}{line.target} {SIGNS[line.adds]} {value};"
 
-    found: list[str] = []
-    for line in lines:
-        if isinstance(line, Op):
-            found.append(one(line))
-        elif isinstance(line, Repeat):
-            found += _loop(line, one, text, kind or precision.scalar)
-        else:
-            found += loops_c(line, text, precision, inner)
-    return found
+    def whole(index: Index) -> str:
+        return f"({scalar})({index})" if index.plus else f"({scalar}){index}"
+
+    one, zero = (literal(Fraction(n), precision) for n in (1, 0))
+    same = f"({{0}} == {{1}}) ? {one} : {zero}"
+    repeat, declared = partial(_repeat, kind), partial(_declared, scalar)
+    return Language(text, own, call, line, repeat, declared, assign, _head, ("}",), whole, same)
 
 
-def _loop(
-    loop: Repeat, one: Callable[[Op], str], text: Callable[[Operand], str], kind: str
-) -> list[str]:
-    begin = [f"{kind} {c} = {text(s)};" for c, s in zip(loop.carried, loop.start, strict=True)]
+def _repeat(kind: str, of: Language, loop: Repeat, inner: list[str]) -> list[str]:
+    begin = [f"{kind} {c} = {of.text(s)};" for c, s in zip(loop.carried, loop.start, strict=True)]
     kept = {c: f"{c}_then" for c in loop.carried if c in loop.then}
     after = [f"const {kind} {name} = {c};" for c, name in kept.items()]
     after += [
-        f"{c} = {kept.get(t, text(t)) if isinstance(t, str) else text(t)};"
+        f"{c} = {kept.get(t, of.text(t)) if isinstance(t, str) else of.text(t)};"
         for c, t in zip(loop.carried, loop.then, strict=True)
         if c != t
     ]
-    end = [] if loop.done is None else [f"if ({text(loop.done)}) {{", "    break;", "}"]
-    inner = [*map(one, loop.ops), *after, *end]
+    end = [] if loop.done is None else [f"if ({of.text(loop.done)}) {{", "    break;", "}"]
     name = f"pass_{loop.carried[0]}"
     head = f"for (int {name} = 0; {name} < {loop.passes}; ++{name}) {{"
-    return [*begin, head, *(f"    {line}" for line in inner), "}"]
+    return [*begin, head, *(f"    {line}" for line in (*inner, *after, *end)), "}"]
 
 
-def _stores(program: Program, text: Callable[[Operand], str], precision: Precision) -> list[str]:
+def _declared(scalar: str, of: Language, line: Arrays | Integers | Row) -> list[str]:
+    if isinstance(line, Arrays):
+        every = (f"{name}{''.join(f'[{n}]' for n in sizes)}" for name, sizes in line.sizes)
+        return [f"{scalar} {', '.join(every)};"]
+    if isinstance(line, Integers):
+        return table(line.name, line.values)
+    fixed = "" if any(isinstance(v, str) for v in line.values) else "static "
+    values = ", ".join(map(of.text, line.values))
+    return [f"{fixed}const {scalar} {line.name}[{len(line.values)}] = {{{values}}};"]
+
+
+def table(name: str, values: Sequence[int]) -> list[str]:
+    """Return the lines of a constant table, in the smallest type that holds its numbers."""
+    kind = "unsigned char" if max(values) <= UNSIGNED_CHAR else "unsigned short"
+    lines, line = [f"static const {kind} {name}[{len(values)}] = {{"], ""
+    for value in values:
+        if len(line) > 80:
+            lines.append(f"    {line.rstrip()}")
+            line = ""
+        line += f"{value}, "
+    return [*lines, f"    {line.rstrip(', ')}", "};"]
+
+
+def _head(line: Loop | Even) -> list[str]:
+    if isinstance(line, Even):
+        i = line.counter
+        return [f"if ({i} % 2 == 0) {{", f"    const int {line.half} = {i} / 2;"]
+    i, sign, below = line.counter, "++" if line.step > 0 else "--", "<" if line.step > 0 else ">"
+    if not line.mirror:
+        return [f"for (int {i} = {line.first}; {i} {below} {line.last}; {sign}{i}) {{"]
+    m, end = line.mirror, line.mirror if line.meets else line.last
+    start = Index(line.last.counter, line.last.plus - 1)
+    return [f"for (int {i} = {line.first}, {m} = {start}; {i} < {end}; ++{i}, --{m}) {{"]
+
+
+def _stores(program: Program, text: Text, precision: Precision) -> list[str]:
     """Return the stores; an input that is also a result is read first: outputs may lie over it."""
     slots = [slot for q in program.outputs for slot in _slots(q)]
     arrays = {c for q in program.inputs if q.shape and q.role != "constants" for c in q.components}
@@ -100,45 +169,6 @@ def _slots(q: Quantity) -> list[str]:
     if q.role == "constants":
         return [f"constants->{name}" for name in q.components]
     return [f"{q.name}[{i}]" for i in range(len(q.components))] if q.shape else [f"*{q.name}"]
-
-
-def pair_body(program: Program, scene: str, precision: Precision) -> list[str]:
-    """Return the lines of a program in pairs of floats: rounded once, at the end."""
-    place = places(program.inputs) if not program.makes("constants") else _by_value(program)
-    pair = f"{scene}_pair_{precision.name}"
-
-    def text(operand: Operand) -> str:
-        if isinstance(operand, Fraction):
-            return _pair_literal(operand, pair, precision)
-        if operand in place:
-            return f"({pair}){{{place[operand]}, {literal(Fraction(0), precision)}}}"
-        return operand
-
-    def one(op: Op) -> str:
-        kind = "int" if op.operator in TRUTHS else pair
-        operands = [text(operand) for operand in op.operands]
-        if WRITTEN[op.operator].rests is None:  # of truths, or a choice between two structs
-            return f"const {kind} {op.result} = {in_c(op.operator, operands, precision)};"
-        symbol = f"{scene}_{op.operator}_{precision.name}"
-        return f"const {kind} {op.result} = {symbol}({', '.join(operands)});"
-
-    lines = written(program.ops, one, text, precision, pair)
-
-    def stored(operand: Operand) -> str:
-        if isinstance(operand, str) and operand not in place:
-            return f"{operand}.high"
-        return literal(operand, precision) if isinstance(operand, Fraction) else place[operand]
-
-    return lines + _stores(program, stored, precision)
-
-
-def _by_value(program: Program) -> dict[str, str]:
-    return {c: c for q in program.inputs for c in q.components}
-
-
-def _pair_literal(q: Fraction, pair: str, precision: Precision) -> str:
-    high, low = pair_of(q, precision.dtype)
-    return f"({pair}){{{literal(high, precision)}, {literal(low, precision)}}}"
 
 
 def pair_functions(programs: Iterable[Program]) -> list[str]:

@@ -6,8 +6,8 @@ from html import escape
 
 from markupsafe import Markup
 
-from derive.emit.c.definition import definition
 from derive.emit.c.signature import Names, prototype
+from derive.emit.c.text import definition
 from derive.program.precision import F64
 from derive.program.program import Program
 

@@ -1,0 +1,99 @@
+"""The lines of a program in any language: what all printers do alike, told what each one writes.
+
+A new language is a ``Language``, a template, and whatever it calls pairs of floats by.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from derive.emit.operators import SUMS
+from derive.program.indexed import (
+    Arrays,
+    Assign,
+    Even,
+    Index,
+    Integers,
+    Loop,
+    Row,
+    Same,
+    Term,
+    Value,
+    Whole,
+)
+from derive.program.program import Line, Op, Operand, Repeat
+
+SIGNS = {"": "=", "add": "+=", "sub": "-="}
+
+
+@dataclass(frozen=True)
+class Language:
+    """How a language writes what a program is made of.
+
+    text, patterns, call : an operand; operators by pattern, all others by what they are called
+    line, repeat         : an operation, its value given; a loop, the lines of its operations given
+    declared, assign     : arrays, tables and rows; an assignment, its value given
+    head, end            : what opens a loop over places or a choice, and what closes it
+    whole, same          : a counter as a value; the pattern of one where two counters are the same
+    """
+
+    text: Callable[[Operand], str]
+    patterns: Mapping[str, str]
+    call: Callable[[str], str]
+    line: Callable[[Op, str], str]
+    repeat: Callable[[Language, Repeat, list[str]], list[str]]
+    declared: Callable[[Language, Arrays | Integers | Row], list[str]]
+    assign: Callable[[Assign, str], str]
+    head: Callable[[Loop | Even], list[str]]
+    end: tuple[str, ...]
+    whole: Callable[[Index], str]
+    same: str
+
+
+def operation(of: Language, operator: str, operands: Sequence[str]) -> str:
+    """Return an operator on operands that are written already."""
+    if operator in of.patterns:
+        return of.patterns[operator].format(*operands)
+    return f"{of.call(operator)}({', '.join(operands)})"
+
+
+def written(of: Language, lines: Sequence[Line]) -> list[str]:
+    """Return the lines of operations and loops."""
+    return [text for line in lines for text in _written(of, line)]
+
+
+def _written(of: Language, line: Line) -> Iterator[str]:
+    match line:
+        case Op():
+            yield of.line(line, operation(of, line.operator, [*map(of.text, line.operands)]))
+        case Repeat():
+            yield from of.repeat(of, line, written(of, line.ops))
+        case Assign():
+            yield of.assign(line, _value(of, line.value))
+        case Loop() | Even():
+            inner = written(of, line.body)
+            yield from (*of.head(line), *(f"    {one}" for one in inner), *of.end)
+        case _:
+            yield from of.declared(of, line)
+
+
+def _value(of: Language, value: Value) -> str:
+    match value:
+        case str() | Fraction():
+            return of.text(value)
+        case Whole():
+            return of.whole(value.index)
+        case Same():
+            return of.same.format(value.one, value.other)
+        case Term():
+            return operation(of, value.operator, [*_bracketed(of, value)])
+    return str(value)
+
+
+def _bracketed(of: Language, term: Term) -> Iterator[str]:
+    """Yield operands, in parentheses where they bind less than the operator, or come second."""
+    for place, o in enumerate(term.operands):
+        sums = isinstance(o, Term) and o.operator in SUMS and (place or term.operator not in SUMS)
+        yield f"({_value(of, o)})" if sums or isinstance(o, Same) else _value(of, o)
