@@ -29,6 +29,11 @@ def derivative(graph: Graph, value: Value, leaf: Value) -> Value:
     >>> derivative(g, g.power(x, 3), x) == g.mul([g.number(3), g.power(x, 2)])
     True
     """
+    return slopes_by(graph, leaf)(value)
+
+
+def slopes_by(graph: Graph, leaf: Value) -> Callable[[Value], Value]:
+    """Return what differentiates values by a leaf, each node of the graph once."""
     memory: dict[int, Value] = {leaf[1]: (Fraction(1), ONE)}
     varies = not graph.fixed[leaf[1]]
 
@@ -38,7 +43,7 @@ def derivative(graph: Graph, value: Value, leaf: Value) -> Value:
             memory[node] = ZERO if constant else _by_rule(graph, node, visit)
         return memory[node]
 
-    return graph.mul([(value[0], ONE), visit(value[1])])
+    return lambda value: graph.mul([(value[0], ONE), visit(value[1])])
 
 
 def _by_rule(graph: Graph, node: int, visit: Callable[[int], Value]) -> Value:

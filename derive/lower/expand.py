@@ -5,7 +5,7 @@ once in set-up; differences such as I_yy - I_zz then lose nothing to cancellatio
 """
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from derive.lower.graph import ONE, UNIT, Graph, Value
 
@@ -15,8 +15,8 @@ Visit = Callable[[int], Terms]
 Family = str | int
 
 
-def terms(graph: Graph, value: Value, kept: frozenset[Family] = frozenset()) -> Terms:
-    """Return the coefficient, made of parameters, of every monomial in the variables.
+def terms(graph: Graph, values: Iterable[Value], kept: frozenset[Family]) -> list[Terms]:
+    """Return for each value the coefficient, made of parameters, of every monomial in variables.
 
     Calls, cuts and denominators that vary count as variables of their own, and so do the lets
     whose family is ``kept``; what these stand for is multiplied out in itself.
@@ -31,7 +31,7 @@ def terms(graph: Graph, value: Value, kept: frozenset[Family] = frozenset()) -> 
                 memory[node] = _terms(graph, node, visit)
         return memory[node]
 
-    return _scaled(graph, visit(value[1]), (value[0], ONE))
+    return [_scaled(graph, visit(node), (coefficient, ONE)) for coefficient, node in values]
 
 
 def family(graph: Graph, node: int) -> Family:

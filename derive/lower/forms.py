@@ -13,7 +13,7 @@ from fractions import Fraction
 from itertools import product
 from math import prod
 
-from derive.lower.derivative import derivative
+from derive.lower.derivative import slopes_by
 from derive.lower.expand import Family, Terms, collected, degree, factored, families, terms
 from derive.lower.graph import Graph, Value
 from derive.lower.homogeneous import powers
@@ -37,8 +37,11 @@ class Block:
 
 def cost(graph: Graph, outputs: Sequence[Value]) -> tuple[int, int]:
     """Return the number of + - * /, then of all operations and loads, that ``outputs`` take."""
-    ops = draft(graph, outputs, lambda node: graph.fixed[node])
-    return sum(op.operator in FLOPS for op in ops), len(ops) + _loads(ops)
+    values = tuple(outputs)
+    if values not in graph.costs:
+        ops = draft(graph, values, lambda node: graph.fixed[node])
+        graph.costs[values] = sum(op.operator in FLOPS for op in ops), len(ops) + _loads(ops)
+    return graph.costs[values]
 
 
 def _loads(ops: Sequence[Op]) -> int:
@@ -65,7 +68,7 @@ def value_forms(graph: Graph, block: Block) -> list[tuple[Value, ...]]:
 
 
 def _expanded(graph: Graph, block: Block, kept: frozenset[Family]) -> list[Terms] | None:
-    expanded = [terms(graph, value, kept) for value in block.values]
+    expanded = terms(graph, block.values, kept)
     return None if any(len(t) > MANY_TERMS for t in expanded) else expanded
 
 
@@ -84,7 +87,8 @@ def _choices(forms: Sequence[Sequence[tuple[Value, ...]]]) -> Iterable[list[Valu
 
 def jacobian(graph: Graph, values: Iterable[Value], leaves: Sequence[Value]) -> list[list[Value]]:
     """Return the rows of partial derivatives of ``values`` by ``leaves``."""
-    return [[derivative(graph, value, leaf) for leaf in leaves] for value in values]
+    each = [slopes_by(graph, leaf) for leaf in leaves]
+    return [[slope(value) for slope in each] for value in values]
 
 
 def best_with_jacobian(

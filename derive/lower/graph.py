@@ -20,14 +20,25 @@ ZERO: Value = (Fraction(0), ONE)
 UNIT: Value = (Fraction(1), ONE)
 
 
+def _times(a: Fraction, b: Fraction) -> Fraction:
+    """Return a product: what a factor of one leaves is not made anew."""
+    if b == 1:
+        return a
+    return b if a == 1 else a * b
+
+
 class Graph:
-    """An arena of nodes; node numbers order the arena and never depend on names."""
+    """An arena of nodes; node numbers order the arena and never depend on names.
+
+    ``costs`` keeps what outputs were found to cost: nodes do not change.
+    """
 
     def __init__(self) -> None:
         self.nodes: list[Node] = [("one",)]
         self.fixed: list[bool] = [True]
         self.names: dict[int, str] = {}
         self.families: dict[int, str] = {}
+        self.costs: dict[tuple[Value, ...], tuple[int, int]] = {}
         self._number: dict[Node, int] = {("one",): ONE}
 
     def _node(self, node: Node, parts: Iterable[int]) -> int:
@@ -56,9 +67,10 @@ class Graph:
         """Return the sum of ``values``, flat, like terms collected."""
         terms: dict[int, Fraction] = {}
         for coefficient, node in values:
-            inner = self.nodes[node][1] if self.nodes[node][0] == "sum" else ((Fraction(1), node),)
+            inner = self.nodes[node][1] if self.nodes[node][0] == "sum" else ((UNIT[0], node),)
             for factor, term in inner:
-                terms[term] = terms.get(term, Fraction(0)) + coefficient * factor
+                scaled = _times(coefficient, factor)
+                terms[term] = terms[term] + scaled if term in terms else scaled
         flat = sorted((node, c) for node, c in terms.items() if c)
         if not flat:
             return ZERO
@@ -66,15 +78,15 @@ class Graph:
             return flat[0][1], flat[0][0]
         sign = 1 if flat[0][1] > 0 else -1
         alike = len({abs(c) for _, c in flat}) == 1
-        content = sign * (abs(flat[0][1]) if alike else Fraction(1))
-        made = ("sum", tuple((c / content, n) for n, c in flat))
-        return content, self._node(made, [n for n, _ in flat])
+        content = sign * (abs(flat[0][1]) if alike else UNIT[0])
+        own = flat if content == 1 else [(n, c / content) for n, c in flat]
+        return content, self._node(("sum", tuple((c, n) for n, c in own)), [n for n, _ in flat])
 
     def mul(self, values: Iterable[Value]) -> Value:
         """Return the product of ``values``, flat, powers collected."""
-        coefficient, powers = Fraction(1), dict[int, int]()
+        coefficient, powers = UNIT[0], dict[int, int]()
         for factor, node in values:
-            coefficient *= factor
+            coefficient = _times(coefficient, factor)
             inner = self.nodes[node][1] if self.nodes[node][0] == "product" else ((node, 1),)
             for base, power in inner:
                 powers[base] = powers.get(base, 0) + power
@@ -106,21 +118,18 @@ class Graph:
         """Return ``value`` to an integer power, negative for a division."""
         coefficient, node = value
         inner = self.nodes[node][1] if self.nodes[node][0] == "product" else ((node, 1),)
-        factors = [
-            (Fraction(1), base) for base, power in inner for _ in range(abs(power * exponent))
-        ]
-        signs = [
-            1 if power * exponent > 0 else -1
-            for _, power in inner
+        raised = [
+            self._raised(base, 1 if power * exponent > 0 else -1)
+            for base, power in inner
             for _ in range(abs(power * exponent))
         ]
-        raised = [self._raised(base, sign) for (_, base), sign in zip(factors, signs, strict=True)]
-        return self.mul([(coefficient**exponent, ONE), *raised])
+        scale = coefficient if coefficient == 1 else coefficient**exponent
+        return self.mul([(scale, ONE), *raised])
 
     def _raised(self, base: int, sign: int) -> Value:
         if sign > 0 or base == ONE:
-            return Fraction(1), base
-        return Fraction(1), self._node(("product", ((base, -1),)), [base])
+            return UNIT[0], base
+        return UNIT[0], self._node(("product", ((base, -1),)), [base])
 
     def call(self, function: str, *values: Value) -> Value:
         """Return ``function`` of ``values``: sin, cos, sqrt or power_of_two."""

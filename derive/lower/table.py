@@ -26,6 +26,7 @@ class Table:
     calls: dict[int, tuple[str, list[Signed]]] = field(default_factory=dict)
     leaves: dict[int, str] = field(default_factory=dict)
     inverse: dict[int, int] = field(default_factory=dict)
+    entered: dict[Value, Signed] = field(default_factory=dict)
 
     def key(self, *identity: object) -> tuple[int, bool]:
         """Return the number of an identity and whether it is new."""
@@ -35,6 +36,12 @@ class Table:
 
 def enter(table: Table, value: Value) -> Signed:
     """Enter a value that is not constant; return its sign and key."""
+    if value not in table.entered:
+        table.entered[value] = _entered(table, value)
+    return table.entered[value]
+
+
+def _entered(table: Table, value: Value) -> Signed:
     graph = table.graph
     coefficient, node = value
     sign = 1 if coefficient > 0 else -1

@@ -71,7 +71,7 @@ def test_scheduled_operations_compute_what_was_built(trees, point):
 @given(expressions, points)
 def test_multiplying_out_changes_no_value(tree, point):
     g, leaves = graph_with_leaves()
-    expanded = terms(g, built(g, leaves, tree))
+    expanded = terms(g, [built(g, leaves, tree)], frozenset())[0]
     forms = [way(g, expanded) for way in (collected, grouped, factored)]
     assert value_at(g, forms, point) == [plain(tree, point)] * 3
 
@@ -101,8 +101,8 @@ def test_a_let_is_looked_through_and_a_cut_is_not():
     g, leaves = graph_with_leaves()
     x, y = leaves["x"], leaves["y"]
     total = g.add([x, y])
-    through = terms(g, g.mul([x, g.let("a", total)]))
-    stopped = terms(g, g.mul([x, g.cut("b", total)]))
+    through = terms(g, [g.mul([x, g.let("a", total)])], frozenset())[0]
+    stopped = terms(g, [g.mul([x, g.cut("b", total)])], frozenset())[0]
     assert (len(through), len(stopped)) == (2, 1)
 
 
