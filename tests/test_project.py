@@ -56,6 +56,32 @@ def leads(page: Path, link: str) -> bool:
     return place in {"", *(re.sub(r"[^\w -]", "", h.lower()).replace(" ", "-") for h in headings)}
 
 
+def test_what_the_recipes_name_stands_where_they_say() -> None:
+    recipes = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    assert astray(recipes) == []
+    assert astray(recipes.replace("`FUNCTIONS`", "`MISLAID`")) == ["MISLAID"]
+    assert astray("| `derive/scene/gone.py` | a row | |") == ["derive/scene/gone.py"]
+
+
+def astray(recipes: str) -> list[str]:
+    """Return the files and, row by row, the tables and functions that are not where recipes say."""
+    made = r"midpoint|julia|finite"  # by whoever follows the recipes
+    paths = re.findall(r"`((?:derive|tests|docs|bench|templates)/[\w/]*[\w.]*)`", recipes)
+    lost = [p for p in paths if not (ROOT / p).exists() and not re.search(made, p)]
+    for row in re.findall(r"^\| `.*$", recipes, re.MULTILINE):
+        where, what = row.split("|")[1:3]
+        files = [
+            ROOT / "derive" / p for p in re.findall(r"`(?:derive/)?([\w/]+\.py)`", where + what)
+        ]
+        texts = [file.read_text(encoding="utf-8") for file in files if file.is_file()]
+        texts += [
+            f.read_text(encoding="utf-8") for file in files[:1] for f in file.parent.glob("*.py")
+        ]
+        names = re.findall(r"`(_\w+|[A-Z][A-Z_]+)`", what)
+        lost += [n for n in names if not any(re.search(rf"\b{n}\b", text) for text in texts)]
+    return lost
+
+
 def test_the_makefile_has_six_verbs() -> None:
     verbs = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
     assert verbs == ["generate", "test", "lint", "check", "bench", "report"]

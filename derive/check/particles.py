@@ -31,14 +31,6 @@ AGREE = mpf(10) ** -25
 SECANTS = 60
 SAME = 1e-60
 """Two guesses of a root that are one: half of the digits that it is computed in."""
-PLAIN = (
-    "kinetic_energy",
-    "potential_energy",
-    "energy",
-    "angular_momentum_x",
-    "angular_momentum_y",
-    "angular_momentum_z",
-)
 
 
 def clouds(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
@@ -148,7 +140,7 @@ def _of_cloud(machine: Machine, cloud: Answers, function: str, name: str) -> Any
         return cloud.rate(name.removesuffix("_rate"))
     if name in cloud.unknowns:
         return cloud.unknowns[name]
-    if name in PLAIN:
+    if name in cloud.momenta:
         return cloud.momenta[name]
     result = next((r for r in machine.results if r.name == name), None)
     if result is None:
