@@ -21,7 +21,7 @@ from derive.check.attitudes import definitions
 from derive.check.compiler import Compiler, CompilerError, find_compiler
 from derive.check.derivatives import derivatives
 from derive.check.emitted import Emitted, Files, casadi_module, files, is_double, loaded
-from derive.check.energy import energy_balance
+from derive.check.energy import emitted_balance, energy_balance
 from derive.check.fresh import fresh
 from derive.check.inlined import inlined
 from derive.check.invariants import power_balance, turned_axes
@@ -156,6 +156,7 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
         yield from clouds(one.library, plain[:FEW])
         if isinstance(one.library.known, Mechanism):
             yield from energy_balance(one.library, plain[:TWO])
+            yield from emitted_balance(one, plain[:TWO])
             yield from turned_axes_of_machine(one, few, stated)
         else:
             yield from power_balance(one, plain)

@@ -1,16 +1,18 @@
 """Energy beside power: along a motion, a machine's energy grows by what its loads put in.
 
-Energy and rates are those of the scene's own programs, replayed in long floats; powers are those of
-a cloud of particles. So what both the derivation and the cloud leave out of an energy is seen.
+Energy and rates are those of the scene's own programs, replayed in long floats, and rates once more
+those of the emitted C; powers are those of a cloud of particles. So what both the derivation and
+the cloud leave out of an energy is seen, and what C leaves out of a rate.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from flint import arb, ctx
 from mpmath import mp, mpf
 
+from derive.check.emitted import Emitted
 from derive.check.particles import AGREE, digits
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library, library
@@ -18,7 +20,7 @@ from derive.mechanics.mechanism import Mechanism
 from derive.program.largest import largest
 from derive.program.program import Program, component_names
 from derive.program.run import run
-from derive.scene import Machine, SceneError
+from derive.scene import Input, Machine, SceneError
 from derive.scene.results import ENERGIES
 from derive.verify.cloud import Answers, answers
 from derive.verify.cloud.power import Powers, powers
@@ -26,39 +28,75 @@ from derive.verify.cloud.series import DIGITS
 from derive.verify.convergence import unit_attitude
 from derive.verify.operators import LONG_FLOATS
 from derive.verify.sample import Sample
+from derive.verify.scale import base_of
 
 BITS = 600
 STEP_BITS = 150  # a central difference leaves out the square of the step: 90 digits agree
 RATES = "state_rate"
+ROUNDED = 2.0**-40
+"""Of the largest term: C's rates are right to a few roundings of theirs, which may be larger."""
+Rates = Callable[[Sample, Mapping[str, Any]], Mapping[str, Any]]
 
 
 def energy_balance(made: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether every energy of a machine changes by the power of the loads that change it."""
     if not isinstance(made.known, Mechanism):
         return
+    for program, names in _energies(made):
+        row = (made.known.scene.name, program.name, "exact", "power balance")
+        try:
+            rates = rates_of(made)
+        except SceneError as error:
+            yield Verdict(*row, "skipped", f"no rates to move it by: {error}")
+            continue
+        yield _verdict(row, names, _gaps(made, _exactly(rates), program, each), float(AGREE))
+
+
+def emitted_balance(one: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
+    """Yield whether every energy changes by these powers along the rates that C gives."""
+    made = one.library
+    forward = [f for f in made.functions if base_of(f) == RATES or _finds_accelerations(made, f)]
+    for program, names in _energies(made):
+        row = (made.known.scene.name, program.name, one.precision.name, "power balance")
+        if not forward:
+            yield Verdict(*row, "skipped", "no function that is wanted finds accelerations")
+            continue
+        rates = _emitted(one, forward[0], _exactly(rates_of(made)))
+        yield _verdict(row, names, _gaps(made, rates, program, each), ROUNDED)
+
+
+def _finds_accelerations(made: Library, program: Program) -> bool:
+    return bool(_highest(made).keys() & {*component_names(program)})
+
+
+def _highest(made: Library) -> dict[str, str]:
+    """Return of which quantity each acceleration that may be found is the rate."""
+    scene = made.known.scene
+    return {
+        m.unknown: m.rate.name if isinstance(m.rate, Input) else m.name
+        for m in (*scene.coordinates, *scene.speeds)
+    }
+
+
+def _energies(made: Library) -> Iterator[tuple[Program, list[str]]]:
     for program in made.functions:
         names = [n for n in component_names(program) if n in ENERGIES]
         if names and not program.sparsity:
-            yield _verdict(made, program, names, each)
+            yield program, names
+
+
+def _gaps(made: Library, rates: Rates, program: Program, each: Sequence[Sample]) -> list[Any]:
+    return [gap for s in each for gap in power_gaps(made, rates, program, s)]
 
 
 def _verdict(
-    made: Library, program: Program, names: Sequence[str], each: Sequence[Sample]
+    row: tuple[str, str, str, str], names: Sequence[str], gaps: Sequence[Any], allowed: float
 ) -> Verdict:
-    scene, says = made.known.scene, "power balance"
-    try:
-        rates = rates_of(made)
-    except SceneError as error:
-        reason = f"no rates to move it by: {error}"
-        return Verdict(scene.name, program.name, "exact", says, "skipped", reason)
-    gaps = [gap for s in each for gap in power_gaps(made, rates, program, s)]
     if not gaps:
-        reason = "the loads contradict each other at these points"
-        return Verdict(scene.name, program.name, "exact", says, "skipped", reason)
+        return Verdict(*row, "skipped", "the loads contradict each other at these points")
     worst = largest(gaps)
     found = f"{len(gaps)} rates of {', '.join(names)}, {worst:.1g} apart, relative to the largest"
-    outcome = JUDGED[bool(worst < AGREE)]
-    return Verdict(scene.name, program.name, "exact", says, outcome, found)
+    return Verdict(*row, JUDGED[bool(worst < allowed)], found)
 
 
 def rates_of(made: Library) -> Library | None:
@@ -72,7 +110,31 @@ def rates_of(made: Library) -> Library | None:
     return library(replace(scene, wanted=(RATES,), asked={RATES: (RATES,)}))
 
 
-def power_gaps(made: Library, rates: Library | None, program: Program, sample: Sample) -> list[Any]:
+def _exactly(rates: Library | None) -> Rates:
+    """Return the rates of the state as programs give them in long floats."""
+    if rates is None:
+        return lambda _, __: {}
+    program = next(p for p in (*rates.functions, *rates.rates) if base_of(p) == RATES)
+    states = [c for q in rates.known.words.states for c in q.components]
+    return lambda _, at: dict(zip(states, _results(rates, program, at).values(), strict=False))
+
+
+def _emitted(one: Emitted, program: Program, others: Rates) -> Rates:
+    """Return the rates that a function of C gives at a sample, and what others give besides."""
+    highest = _highest(one.library)
+    states = [c for q in one.library.known.words.states for c in q.components]
+
+    def rates(sample: Sample, at: Mapping[str, Any]) -> Mapping[str, Any]:
+        names, found = component_names(program), map(arb, one.results(program, sample))
+        if base_of(program) == RATES:
+            return dict(zip(states, found, strict=False))
+        own = dict(zip(names, found, strict=True))
+        return {**others(sample, at), **{highest[n]: x for n, x in own.items() if n in highest}}
+
+    return rates
+
+
+def power_gaps(made: Library, rates: Rates, program: Program, sample: Sample) -> list[Any]:
     """Return how far the rates of a program's energies are from powers, beside their terms."""
     scene = made.known.scene
     assert isinstance(scene, Machine)  # noqa: S101
@@ -82,25 +144,23 @@ def power_gaps(made: Library, rates: Library | None, program: Program, sample: S
             cloud = answers(scene, {name: digits(x) for name, x in at.items()})
         if cloud.contradiction > AGREE:
             return []
-        velocity = _velocities(cloud, at) | (_rates(rates, at) if rates is not None else {})
+        velocity = {**_velocities(cloud, at), **rates(sample, at)}
         found = _slopes(made, program, at, velocity)
     acting = powers(cloud)
     with mp.workdps(DIGITS):
         return [
-            abs(digits(found[name]) - total) / size
+            abs(mp.fsum(terms)) / (max(map(abs, terms)) or 1)
             for name in component_names(program)
             if name in ENERGIES
-            for total, size in (_expected(acting, name, found[name]),)
+            for terms in ([*_negative(acting, name), *map(digits, found[name])],)
         ]
 
 
-def _expected(acting: Powers, name: str, found: Any) -> tuple[Any, Any]:
-    """Return the rate that an energy should have, and the largest term of it."""
+def _negative(acting: Powers, name: str) -> list[Any]:
+    """Return the terms of the rate that an energy should have, all with the other sign."""
     loads = () if name == "potential_energy" else acting.every
     weights = () if name == "kinetic_energy" else acting.conservative
-    terms = [*loads, *(-p for p in weights)]
-    size = max([abs(p) for p in terms] + [abs(digits(found))], default=mpf(0))
-    return mp.fsum(terms), size or mpf(1)
+    return [mpf(0), *(-p for p in loads), *weights]
 
 
 def _velocities(cloud: Answers, at: Mapping[str, Any]) -> dict[str, Any]:
@@ -111,22 +171,23 @@ def _velocities(cloud: Answers, at: Mapping[str, Any]) -> dict[str, Any]:
         return {name: arb(mp.nstr(v, DIGITS)) for name, v in own.items() if v}
 
 
-def _rates(rates: Library, at: Mapping[str, Any]) -> dict[str, Any]:
-    program = next(p for p in (*rates.functions, *rates.rates) if p.name == RATES)
-    found = _results(rates, program, at)
-    return {name.removesuffix("_rate"): value for name, value in found.items()}
-
-
 def _slopes(
     made: Library, program: Program, at: Mapping[str, Any], velocity: Mapping[str, Any]
-) -> dict[str, Any]:
-    """Return the rates of a program's results, by central differences along the motion."""
+) -> dict[str, list[Any]]:
+    """Return the rates of a program's results, a term for each of what moves.
+
+    They are central differences along the motion of one quantity at a time.
+    """
     h = arb(2) ** -STEP_BITS
-    ahead, behind = (
-        _results(made, program, {n: x + s * h * velocity.get(n, 0) for n, x in at.items()})
-        for s in (1, -1)
-    )
-    return {name: (ahead[name] - behind[name]) / (2 * h) for name in ahead}
+    terms: dict[str, list[Any]] = {name: [] for name in component_names(program)}
+    for moving, v in velocity.items():
+        if moving in at:
+            ahead, behind = (
+                _results(made, program, {**at, moving: at[moving] + s * h * v}) for s in (1, -1)
+            )
+            for name, own in terms.items():
+                own.append((ahead[name] - behind[name]) / (2 * h))
+    return terms
 
 
 def _results(made: Library, program: Program, at: Mapping[str, Any]) -> dict[str, Any]:

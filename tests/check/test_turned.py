@@ -1,6 +1,6 @@
 """A machine told along other axes gives the answers of the machine, and wrong code does not."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
@@ -10,33 +10,17 @@ import pytest
 from derive.check.description import CYCLE, TURN, Description
 from derive.check.turned import turned_axes
 from derive.library.library import Library, library
-from derive.program.arithmetic import working
-from derive.program.precision import F64, Precision
-from derive.program.program import Program
+from derive.program.precision import F64
 from derive.scene import Machine, catalogue, load
-from derive.verify.measure import replayed
-from derive.verify.sample import Sample, samples
+from derive.verify.sample import samples
 from tests.check.mutants import first_sign_flipped
+from tests.check.replayed import Replayed
 from tests.made import library_of, scene_of
 
 LONG_FORM = Path(__file__).parents[1] / "data" / "long_form"
 MACHINES = [n for n in catalogue() if isinstance(scene_of(n), Machine)]
 BODIES = sorted(path.stem for path in LONG_FORM.glob("*.toml"))
 AT_ONCE = ("edge_runner_flat", "skewed_disc", "free_body_principal")
-
-
-@dataclass(frozen=True)
-class Replayed:
-    """Functions as C computes them, by a replay of their programs: what is emitted, or a mutant."""
-
-    library: Library
-    emitted: Library
-    precision: Precision = F64
-
-    def results(self, program: Program, sample: Sample) -> list[float]:
-        emitted = replace(self.emitted, motions=())
-        found = replayed(emitted, [sample], F64, working(np.float64))[program.name]
-        return [float(np.ravel(column)[0]) for column in found]
 
 
 def outcomes(made: Library, emitted: Library) -> dict[tuple[str, str], str]:

@@ -2,19 +2,26 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any, cast
 
 import pytest
 
-from derive.check.energy import energy_balance
+from derive.check.energy import emitted_balance, energy_balance
 from derive.library.library import Library, library
 from derive.mechanics import loads
 from derive.program.precision import F64
 from derive.scene import Machine, SceneError, load, parse_scene
 from derive.verify.sample import Sample, samples
+from tests.check.mutants import first_sign_flipped
+from tests.check.replayed import Replayed
 from tests.made import thinned
 
 SCENES = Path(__file__).parent / "scenes"
 TRIALS = Path(__file__).parents[1] / "data" / "trials"
+LONG_FORM = Path(__file__).parents[1] / "data" / "long_form"
+BODY = (LONG_FORM / "free_body_principal.toml").read_text(encoding="utf-8")
+BODY = BODY.replace('"acceleration_jacobian: W_x_dot, W_y_dot, W_z_dot"', '"kinetic_energy"')
+BODY = BODY.replace('\nacceleration = ["0", "0", "0"]', '\nvelocity = ["0", "0", "0"]')
 ROLLING = (TRIALS / "rolling_disc_energy.toml").read_text(encoding="utf-8")
 WITH_ENERGY = ("spring_pendulums", "hoop_pole", "top_on_lift", "rolling_coin", "rolling_ball")
 
@@ -53,6 +60,14 @@ def test_an_energy_of_other_loads_is_noticed(row: tuple[str, str, str, str]) -> 
     assert old in right.text
     made = library(parse_scene(right.text.replace(old, new), name))
     assert outcomes(replace(made, known=replace(made.known, scene=right))) == {"FAILS"}
+
+
+@pytest.mark.parametrize(("flipped", "outcome"), [(0, "holds"), (1, "FAILS")])
+def test_a_flipped_sign_in_emitted_accelerations_is_noticed(flipped: int, outcome: str) -> None:
+    made = library(parse_scene(BODY, "body"))
+    wrong = [first_sign_flipped(f) for f in made.functions[:flipped]] + [*made.functions[flipped:]]
+    emitted = cast("Any", Replayed(made, replace(made, functions=tuple(wrong))))
+    assert {v.outcome for v in emitted_balance(emitted, one(made))} == {outcome}
 
 
 def test_the_energy_of_a_disc_whose_height_is_not_known_is_refused() -> None:
