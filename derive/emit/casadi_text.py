@@ -18,10 +18,11 @@ from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, 
 from derive.program.pair_sine import quarter_turn, series
 from derive.program.precision import F64
 from derive.program.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
-from derive.program.status import CONSTANT, PARAMETER, computed, possible
+from derive.program.status import possible, tried
 
 Text = Callable[[Operand], str]
 KEPT = "_kept("
+BROKEN = {"finite": "_endless({})", "positive": "{} <= 0.0", "not negative": "{} < 0.0"}
 
 
 def casadi_file(library: Library) -> str:
@@ -152,19 +153,8 @@ def _setup(program: Program, scene: str) -> dict[str, object]:
 
 def _status(program: Program, stored: Text) -> Iterator[str]:
     """Yield the lines that find the status; the rule that counts most is tried last."""
-    rules, names = program.rules, _components(program.inputs)
-    made = dict.fromkeys((*(rule.value for rule in rules), *computed(program)))
-    yield from _refused(CONSTANT, [f"_endless({stored(r)})" for r in made if r not in names])
-    for number in sorted({rule.status for rule in rules}, reverse=True):
-        own = [rule for rule in rules if rule.status == number]
-        signs = ["<=" if rule.relation == "positive" else "<" for rule in own]
-        tests = [f"{stored(rule.value)} {sign} 0.0" for rule, sign in zip(own, signs, strict=True)]
-        yield from _refused(number, tests)
-    yield from _refused(PARAMETER, [f"_endless({stored(name)})" for name in names])
-
-
-def _refused(number: int, tests: Sequence[str]) -> Iterator[str]:
-    if tests:
+    for number, kept in reversed(tried(program)):
+        tests = (BROKEN[relation].format(stored(value)) for relation, value in kept)
         yield f"status = _refused(status, {number}, {', '.join(tests)})"
 
 

@@ -8,6 +8,7 @@ import os
 import stat
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from difflib import unified_diff
 from pathlib import Path
@@ -60,25 +61,31 @@ def write(folder: Path, texts: Mapping[str, str]) -> None:
     """
     staged: list[tuple[Path, Path]] = []
     try:
-        for temporary in abandoned(folder, texts):
-            temporary.unlink(missing_ok=True)
-        for name, text in texts.items():
-            target = folder / name
-            _require_own(folder, target.parent)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            staged.append((_temporary(target, text), target))
-        before = unfinished(folder)
-        _mark(folder, [*before, *texts])
-        for temporary, target in staged:
-            os.replace(temporary, target)
-        _mark(folder, [name for name in before if name not in texts])
-    except OSError as error:
-        raise OutputError(
-            f"output folder '{folder}' must be writable, but: {error.strerror or error}"
-        ) from error
+        with _told(f"output folder '{folder}' must be writable"):
+            for temporary in abandoned(folder, texts):
+                temporary.unlink(missing_ok=True)
+            for name, text in texts.items():
+                target = folder / name
+                _require_own(folder, target.parent)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                staged.append((_temporary(target, text), target))
+            before = unfinished(folder)
+            _mark(folder, [*before, *texts])
+            for temporary, target in staged:
+                os.replace(temporary, target)
+            _mark(folder, [name for name in before if name not in texts])
     finally:
         for temporary, _ in staged:
             temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def _told(rule: str) -> Iterator[None]:
+    """Say which rule is broken where the system refuses something."""
+    try:
+        yield
+    except OSError as error:
+        raise OutputError(f"{rule}, but: {error.strerror or error}") from error
 
 
 def unfinished(folder: Path) -> tuple[str, ...]:
@@ -128,35 +135,21 @@ def _require_own(folder: Path, place: Path) -> None:
 
 
 def _read(file: Path) -> str:
-    try:
+    with _told(f"output file '{file}' must be readable"):
         return file.read_bytes().decode(errors="replace")
-    except OSError as error:
-        raise OutputError(
-            f"output file '{file}' must be readable, but: {error.strerror or error}"
-        ) from error
 
 
 def require_folder(folder: Path) -> None:
     """Raise OutputError if what lies at ``folder`` is no folder, or nothing can lie there."""
-    try:
+    with _told(f"output folder '{folder}' must be writable"), suppress(FileNotFoundError):
         if not stat.S_ISDIR(os.stat(folder).st_mode):
             raise NotADirectoryError(0, "it is no folder")
-    except FileNotFoundError:
-        return
-    except OSError as error:
-        raise OutputError(
-            f"output folder '{folder}' must be writable, but: {error.strerror or error}"
-        ) from error
 
 
 def require_writable(file: Path) -> None:
     """Raise OutputError unless ``file`` can be written; leave it as it is."""
-    try:
+    with _told(f"output file '{file}' must be writable"):
         _temporary(file, "").unlink()
-    except OSError as error:
-        raise OutputError(
-            f"output file '{file}' must be writable, but: {error.strerror or error}"
-        ) from error
 
 
 def _temporary(target: Path, text: str) -> Path:

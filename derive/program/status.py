@@ -1,8 +1,8 @@
 """What set-up returns: 0, or which rule the parameters break, the same number in every language."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from derive.program.program import Operand, Program
 from derive.program.run import run
 from derive.scene.escape import at_place
 
+Kept = Literal["finite", "positive", "not negative"]
 RIGHT, PARAMETER, MASS, LENGTH, INERTIA, CONSTANT = range(6)
 SAYS = {
     RIGHT: "all is right",
@@ -43,31 +44,43 @@ def computed(program: Program) -> tuple[Operand, ...]:
     return tuple(own)
 
 
+def tried(program: Program) -> list[tuple[int, list[tuple[Kept, Operand]]]]:
+    """Return each status but the first with what must be kept for it not to be; what counts first.
+
+    What set-up makes is tried last, and the values that rules speak of with it.
+    """
+    names = [c for q in program.inputs for c in q.components]
+    made = dict.fromkeys((*(rule.value for rule in program.rules), *computed(program)))
+    found: dict[int, list[tuple[Kept, Operand]]] = {PARAMETER: [("finite", c) for c in names]}
+    for rule in sorted(program.rules, key=lambda rule: rule.status):
+        found.setdefault(rule.status, []).append((rule.relation, rule.value))
+    found[CONSTANT] = [("finite", value) for value in made if value not in names]
+    return [(number, kept) for number, kept in found.items() if kept]
+
+
+_BROKEN: Mapping[Kept, Callable[[NDArray[Any]], NDArray[Any]]] = {
+    "finite": lambda x: ~np.isfinite(x),
+    "positive": lambda x: x <= 0,
+    "not negative": lambda x: x < 0,
+}
+
+
 def statuses(program: Program, given: Sequence[NDArray[Any]], dtype: type) -> NDArray[Any]:
     """Return what set-up says of columns of parameters: its status, row by row, as C gives it.
 
     given : a column of each component of the program's inputs, in order
     """
-    asked = (*(rule.value for rule in program.rules), *computed(program))
+    every = tried(program)
+    asked = tuple(dict.fromkeys(value for _, kept in every for _, value in kept))
     columns = np.array([np.asarray(column, dtype) for column in given])
+    status = np.zeros(columns.shape[1] if len(columns) else 1, int)
     with np.errstate(all="ignore"):
         found = run(replace(program, results=asked), extended(dtype), paired(columns))
-        count = columns.shape[1] if len(columns) else 1
-        every = [np.broadcast_to(pair[0], count) for pair in found]
-        broken = [(PARAMETER, ~_finite(columns, count))]
-        for rule, value in zip(program.rules, every, strict=False):
-            broken.append((rule.status, value <= 0 if rule.relation == "positive" else value < 0))
-        broken.append((CONSTANT, ~_finite(every, count)))
-    status = np.zeros(count, int)
-    for number, where in reversed(broken):
-        status = np.where(where, number, status)
+        values = {value: pair[0] for value, pair in zip(asked, found, strict=True)}
+        for number, kept in reversed(every):
+            for relation, value in kept:
+                status = np.where(_BROKEN[relation](values[value]), number, status)
     return status
-
-
-def _finite(columns: Sequence[NDArray[Any]] | NDArray[Any], count: int) -> NDArray[Any]:
-    every = [np.isfinite(column) for column in columns] or [np.ones(count, bool)]
-    found: NDArray[Any] = np.logical_and.reduce(every)
-    return found
 
 
 def refusal(program: Program, given: Sequence[float]) -> str:

@@ -51,10 +51,10 @@ def _setup(program: Program) -> list[str]:
 def _arguments(program: Program) -> list[str]:
     given = [_line(q, _range(q)) for q in program.inputs]
     returned = [_line(q, "") for q in program.outputs]
-    pad = " " * 11
-    lines = [("Given:".ljust(11) if i == 0 else pad) + text for i, text in enumerate(given)]
-    return lines + [
-        ("Returned:".ljust(11) if i == 0 else pad) + text for i, text in enumerate(returned)
+    return [
+        f"{label if place == 0 else '':11}{text}"
+        for label, texts in (("Given:", given), ("Returned:", returned))
+        for place, text in enumerate(texts)
     ]
 
 

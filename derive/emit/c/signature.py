@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import prod
 
 from derive.program.precision import Precision
 from derive.program.program import Program, Quantity
@@ -31,7 +32,7 @@ def parameters(program: Program, scene: str, precision: Precision) -> list[str]:
         outputs = [f"{scene}_constants_{precision.name} *constants" for _ in program.outputs]
         return inputs + outputs
     return [_given(q, scene, precision) for q in program.inputs] + [
-        f"{precision.scalar} {q.name}[{len(q.components)}]"
+        f"{precision.scalar} {q.name}[{prod(q.shape)}]"
         if q.shape
         else f"{precision.scalar} *{q.name}"
         for q in program.outputs
@@ -42,7 +43,7 @@ def _given(q: Quantity, scene: str, precision: Precision) -> str:
     if q.role == "constants":
         return f"const {scene}_constants_{precision.name} *constants"
     return (
-        f"const {precision.scalar} {q.name}[{len(q.components)}]"
+        f"const {precision.scalar} {q.name}[{prod(q.shape)}]"
         if q.shape
         else f"{precision.scalar} {q.name}"
     )
@@ -67,36 +68,15 @@ def declaration(name: str, arguments: Sequence[str]) -> str:
     return "\n".join(lines) + ")"
 
 
-def dense_size(program: Program) -> int:
-    """Return the number of entries of a function's whole Jacobian."""
-    pattern = next(iter((program.sparsity or {}).values()))
-    return len(pattern.rows) * len(pattern.columns)
-
-
 def dense(program: Program) -> Program:
     """Return the description of the dense convenience: the same, with the whole matrix last."""
-    whole = Quantity(
-        "jacobian",
-        (),
-        (dense_size(program),),
-        "",
-        "",
-        None,
-        None,
-        "the whole Jacobian, column by column",
-    )
-    return Program(
-        f"{program.name}_dense",
-        program.says,
-        program.inputs,
-        (*program.outputs[:-1], whole),
-        (),
-        (),
-    )
+    pattern = next(iter((program.sparsity or {}).values()))
+    size, says = len(pattern.rows) * len(pattern.columns), "the whole Jacobian, column by column"
+    whole = Quantity("jacobian", (), (size,), "", "", None, None, says)
+    outputs = (*program.outputs[:-1], whole)
+    return Program(f"{program.name}_dense", program.says, program.inputs, outputs, (), ())
 
 
-def dense_prototype(program: Program, names: Names, precision: Precision) -> str:
-    """Return the declaration of the dense convenience without its semicolon."""
-    arguments = parameters(program, names.scene, precision)
-    arguments[-1] = f"{precision.scalar} jacobian[{dense_size(program)}]"
-    return declaration(f"void {names.symbol(f'{program.name}_dense', precision)}", arguments)
+def dense_size(program: Program) -> int:
+    """Return the number of entries of a function's whole Jacobian."""
+    return dense(program).outputs[-1].shape[0]

@@ -8,7 +8,7 @@ from derive import __version__
 from derive.emit.c.comment import comment
 from derive.emit.c.example import example
 from derive.emit.c.scope import declared_in_c, require_free, require_no_symbol
-from derive.emit.c.signature import Names, dense_prototype, dense_size, prototype
+from derive.emit.c.signature import Names, dense, dense_size, prototype
 from derive.emit.c.status import status
 from derive.emit.c.text import definition, pair_body, pair_functions, table
 from derive.emit.operators import literal
@@ -90,19 +90,10 @@ def _header(
     functions = ([library.setup] if has_setup else []) + list(library.printed())
     described = []
     for program in functions:
-        described.append(
-            {
-                "comment": comment(program, figures),
-                "prototype": prototype(program, names, precision),
-            }
-        )
+        described.append((comment(program, figures), prototype(program, names, precision)))
         if program.sparsity:
-            described.append(
-                {
-                    "comment": f"/* The same, the whole matrix: {dense_size(program)} entries. */",
-                    "prototype": dense_prototype(program, names, precision),
-                }
-            )
+            says = f"/* The same, the whole matrix: {dense_size(program)} entries. */"
+            described.append((says, prototype(dense(program), names, precision)))
     return TEMPLATES.get_template("header.h.jinja").render(
         first_line=f"/* {first_line(library)}",
         title=library.known.scene.title,
@@ -243,4 +234,4 @@ def _dense_definition(program: Program, names: Names, precision: Precision) -> s
     whole = f"{program.name}_dense"
     require_free(names.scene, whole, passed[:-1], declared_in_c(lines))
     text = "\n".join(f"    {line}" for line in lines)
-    return f"{dense_prototype(program, names, precision)}\n{{\n{text}\n}}"
+    return f"{prototype(dense(program), names, precision)}\n{{\n{text}\n}}"
