@@ -176,7 +176,7 @@ def plain_lines(program: Program, place: dict[str, str]) -> tuple[list[str], Tex
 
 def _to_keep(lines: Sequence[Line]) -> frozenset[str]:
     """Return the sums whose rounding is worked out: CasADi would make b of (a + b) - a."""
-    made = {op.result: op for op, _ in every_op(lines) if op.operator in ("add", "sub")}
+    made = {op.result: op for op in every_op(lines) if op.operator in ("add", "sub")}
     return frozenset(
         operand
         for op in made.values()

@@ -141,7 +141,7 @@ def in_pairs(program: Program, constants: set[str]) -> Program:
 def with_low_parts(made: Program) -> Program:
     """Return set-up that also gives what rounding each constant left."""
     (constants,) = made.outputs
-    computed = {op.result for op, _ in every_op(made.ops)}
+    computed = {op.result for op in every_op(made.ops)}
     rounded = [r for r in dict.fromkeys(made.results) if isinstance(r, str) and r in computed]
     lows = tuple(Op(f"{r}low", "low", (r,)) for r in rounded)
     low_of: dict[Operand, str] = {r: op.result for r, op in zip(rounded, lows, strict=True)}

@@ -6,7 +6,7 @@ place by place, under the name that C has for it: ``after[3]``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Literal
@@ -153,7 +153,6 @@ class Even:
             yield {self.half: now // 2}
 
 
-Block = Loop | Even
 Indexed = Arrays | Integers | Row | Assign | Loop | Even
 
 
@@ -173,29 +172,6 @@ def value_at(value: Value, arithmetic: Tables, known: Mapping[str, Any], at: Cou
             same = value.one.at(at, known) == value.other.at(at, known)
             return arithmetic["number"](Fraction(int(same)))
     return arithmetic["number"](value)
-
-
-def run_indexed(
-    line: Indexed,
-    arithmetic: Mapping[str, Callable[..., Any]],
-    known: dict[str, Any],
-    at: Counters,
-    inner: Callable[..., None],
-) -> None:
-    """Add what a statement gives to what is known; ``inner`` runs the body of a loop."""
-    match line:
-        case Integers():
-            known[line.name] = line.values
-        case Row():
-            for k, value in enumerate(line.values):
-                known[f"{line.name}[{k}]"] = value_at(value, arithmetic, known, at)
-        case Assign():
-            name = line.target if isinstance(line.target, str) else line.target.at(at, known)
-            found = value_at(line.value, arithmetic, known, at)
-            known[name] = arithmetic[line.adds](known[name], found) if line.adds else found
-        case Loop() | Even():
-            for turn in line.turns(at, known):
-                inner(line.body, arithmetic, known, {**at, **turn})
 
 
 def operators_in(line: Indexed) -> Iterator[str]:

@@ -4,20 +4,14 @@ This is the only thing the derivation hands to the printers. SymPy stops before 
 is the name of an earlier value or an exact number.
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Literal
 
 from derive.program.arithmetic import FLOPS
-from derive.program.indexed import (
-    Even,
-    Indexed,
-    Integers,
-    Loop,
-    names_in,
-    operators_in,
-)
+from derive.program.indexed import Even, Indexed, Integers, Loop, names_in, operators_in
 
 Operand = str | Fraction
 
@@ -165,10 +159,7 @@ class Program:
 
     def count(self) -> dict[str, int]:
         """Return how often each operator is used at most, every pass of a loop counted."""
-        found: dict[str, int] = {}
-        for operator, times in _uses(self.ops, {}, {}):
-            found[operator] = found.get(operator, 0) + times
-        return dict(sorted(found.items()))
+        return dict(sorted(Counter(_uses(self.ops, {}, {})).items()))
 
     def flops(self) -> int:
         """Return the number of + - * / in the operations, every pass of a loop counted."""
@@ -180,44 +171,43 @@ class Program:
         return any(isinstance(line, Loop) for line in self.ops)
 
 
-def _uses(
-    lines: Sequence[Line], at: Mapping[str, int], tables: dict[str, Any]
-) -> Iterator[tuple[str, int]]:
-    """Yield each use of an operator with how often it is made at most."""
+def _uses(lines: Sequence[Line], at: Mapping[str, int], tables: dict[str, Any]) -> Iterator[str]:
+    """Yield the operator of each use that is made at most."""
     for line in lines:
         match line:
-            case Op() | Repeat():
-                yield from ((op.operator, times) for op, times in every_op((line,)))
+            case Op():
+                yield line.operator
+            case Repeat():
+                yield from _uses(line.ops * line.passes, at, tables)
             case Loop() | Even():
                 for turn in line.turns(at, tables):
                     yield from _uses(line.body, {**at, **turn}, tables)
             case Integers():
                 tables[line.name] = line.values
             case _:
-                yield from ((operator, 1) for operator in operators_in(line))
+                yield from operators_in(line)
 
 
-def every_op(lines: Sequence[Line]) -> Iterator[tuple[Op, int]]:
-    """Yield each operation with how often it is run at most; of a loop over arrays, in a turn."""
+def every_op(lines: Sequence[Line]) -> Iterator[Op]:
+    """Yield each operation, of a loop once."""
     for line in lines:
-        if isinstance(line, Repeat):
-            yield from ((op, line.passes) for op in line.ops)
-        elif isinstance(line, Op):
-            yield line, 1
+        if isinstance(line, Op):
+            yield line
+        elif isinstance(line, Repeat):
+            yield from line.ops
         elif isinstance(line, Loop | Even):
             yield from every_op(line.body)
 
 
-def operands_of(lines: Sequence[Line], results: Sequence[Operand] = ()) -> set[str]:
+def operands_of(lines: Sequence[Line], results: Sequence[Operand | None] = ()) -> set[str]:
     """Return the names that operations, loops and results refer to."""
-    found: set[Operand] = set(results)
+    found = set(results)
     for line in lines:
         match line:
             case Op():
                 found |= {*line.operands}
             case Repeat():
-                found |= {*line.start, *line.then, *operands_of(line.ops)}
-                found |= set() if line.done is None else {line.done}
+                found |= operands_of(line.ops, (*line.start, *line.then, line.done))
             case Loop() | Even():
                 found |= operands_of(line.body)
             case _:

@@ -3,13 +3,14 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 from derive.program.indexed import Assign, Even, Loop, Row, Term
-from derive.program.program import Line, Op, Operand, Program, Repeat
+from derive.program.program import Line, Op, Operand, Program, Repeat, operands_of
 from derive.program.tape import Number, Tape, number, operation, seen_from
 from derive.scene.functions import PLAIN
 
+OneLine = TypeVar("OneLine", bound=Line)
 Body = Callable[[list[Number]], tuple[Sequence[Number], Number | None]]
 
 
@@ -38,38 +39,24 @@ def repeat(tape: Tape, passes: int, start: Sequence[Number], body: Body) -> list
 def _without_names(loop: Repeat) -> tuple[object, ...]:
     """Return what a loop does, its own values called by their places."""
     own = (*loop.carried, *(op.result for op in loop.ops))
-    places = {name: ("place", i) for i, name in enumerate(own)}
-
-    def placed(operand: Operand | None) -> object:
-        return places.get(operand, operand) if isinstance(operand, str) else operand
-
-    steps = ((op.operator, *map(placed, op.operands)) for op in loop.ops)
-    ends = (*map(placed, loop.then), placed(loop.done))
-    return ("repeat", loop.passes, *loop.start, *steps, *ends)
+    (same,) = renamed((loop,), {name: f" {place}" for place, name in enumerate(own)})
+    steps = ((op.operator, op.operands) for op in same.ops)
+    return ("repeat", same.passes, same.start, *steps, same.then, same.done)
 
 
-def needed(ops: Sequence[Line], results: Sequence[Operand]) -> tuple[Line, ...]:
+def needed(ops: Sequence[OneLine], results: Sequence[Operand | None]) -> tuple[OneLine, ...]:
     """Return the operations without those that no result rests on."""
     wanted = {r for r in results if isinstance(r, str)}
-    kept: list[Line] = []
+    kept: list[OneLine] = []
     for line in reversed(ops):
-        if isinstance(line, Op):
-            if line.result in wanted:
-                kept.append(line)
-                wanted |= {o for o in line.operands if isinstance(o, str)}
+        if isinstance(line, Op) and line.result in wanted:
+            kept.append(line)
         elif isinstance(line, Repeat) and wanted & set(line.carried):
-            loop = _needed_loop(line)
-            kept.append(loop)
-            every = [*loop.start, *loop.then, *(o for op in loop.ops for o in op.operands)]
-            every += [] if loop.done is None else [loop.done]
-            wanted |= {o for o in every if isinstance(o, str)}
+            kept.append(replace(line, ops=needed(line.ops, (*line.then, line.done))))
+        else:
+            continue
+        wanted |= operands_of(kept[-1:])
     return tuple(reversed(kept))
-
-
-def _needed_loop(loop: Repeat) -> Repeat:
-    ends = loop.then if loop.done is None else (*loop.then, loop.done)
-    inner = tuple(op for op in needed(loop.ops, ends) if isinstance(op, Op))
-    return Repeat(loop.carried, loop.start, inner, loop.then, loop.done, loop.passes)
 
 
 def called(tape: Tape, program: Program, values: Mapping[str, Number]) -> list[Number]:
@@ -95,30 +82,26 @@ def called(tape: Tape, program: Program, values: Mapping[str, Number]) -> list[N
     return [value(result) for result in program.results]
 
 
-def renamed(lines: Sequence[Line], names: Mapping[str, Operand]) -> tuple[Line, ...]:
+def renamed(lines: Sequence[OneLine], names: Mapping[str, Operand]) -> tuple[OneLine, ...]:
     """Return the lines with operands called by their new ``names``; results keep theirs."""
-
-    def new(operands: Sequence[Operand]) -> tuple[Operand, ...]:
-        return tuple(names.get(o, o) if isinstance(o, str) else o for o in operands)
 
     def one(line: Any) -> Any:
         match line:
-            case Op():
-                return Op(line.result, line.operator, new(line.operands))
+            case str():
+                return names.get(line, line)
+            case tuple():
+                return tuple(map(one, line))
+            case Op() | Term():
+                return replace(line, operands=one(line.operands))
             case Repeat():
-                done = None if line.done is None else new((line.done,))[0]
-                start, then, ops = new(line.start), new(line.then), tuple(map(one, line.ops))
-                return replace(line, start=start, ops=ops, then=then, done=done)
+                ends = {name: one(getattr(line, name)) for name in ("start", "ops", "then", "done")}
+                return replace(line, **ends)
             case Loop() | Even():
-                return replace(line, body=tuple(map(one, line.body)))
+                return replace(line, body=one(line.body))
             case Assign():
                 return replace(line, value=one(line.value))
             case Row():
-                return replace(line, values=new(line.values))
-            case Term():
-                return replace(line, operands=tuple(map(one, line.operands)))
-            case str():
-                return names.get(line, line)
+                return replace(line, values=one(line.values))
         return line
 
     return tuple(map(one, lines))

@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from derive.program.indexed import (
-    run_indexed,
-)
+from derive.program.indexed import Assign, Even, Integers, Loop, Row, value_at
 from derive.program.program import Line, Op, Operand, Program, Repeat, Table
+
+NOWHERE: Mapping[str, int] = MappingProxyType({})
 
 
 def run(program: Program, arithmetic: Table, values: Sequence[Any]) -> list[Any]:
@@ -31,25 +31,6 @@ def numbers_of(program: Program, arithmetic: Table) -> dict[str, Any]:
     return {name: arithmetic["number"](q[bits]) for name, q in program.numbers.items()}
 
 
-def run_lines(
-    lines: Sequence[Line],
-    arithmetic: Table,
-    known: dict[str, Any],
-    at: Mapping[str, int] = MappingProxyType({}),
-) -> None:
-    """Add the values that operations and loops give to what is known by name.
-
-    at : the counters of the loops over arrays that the lines stand in
-    """
-    for line in lines:
-        if isinstance(line, Op):
-            _operate((line,), arithmetic, known)
-        elif isinstance(line, Repeat):
-            _repeat(line, arithmetic, known)
-        else:
-            run_indexed(line, arithmetic, known, at, run_lines)
-
-
 def values_of(
     operands: Sequence[Operand], arithmetic: Table, known: Mapping[str, Any]
 ) -> list[Any]:
@@ -57,16 +38,42 @@ def values_of(
     return [known[o] if isinstance(o, str) else arithmetic["number"](o) for o in operands]
 
 
-def _operate(ops: Sequence[Op], arithmetic: Table, known: dict[str, Any]) -> None:
-    for op in ops:
-        known[op.result] = arithmetic[op.operator](*values_of(op.operands, arithmetic, known))
+def run_lines(
+    lines: Sequence[Line],
+    arithmetic: Table,
+    known: dict[str, Any],
+    at: Mapping[str, int] = NOWHERE,
+) -> None:
+    """Add the values that operations and loops give to what is known by name.
+
+    at : the counters of the loops that the lines stand in
+    """
+    for line in lines:
+        match line:
+            case Op():
+                operands = values_of(line.operands, arithmetic, known)
+                known[line.result] = arithmetic[line.operator](*operands)
+            case Integers():
+                known[line.name] = line.values
+            case Row():
+                for k, value in enumerate(values_of(line.values, arithmetic, known)):
+                    known[f"{line.name}[{k}]"] = value
+            case Assign():
+                name = line.target if isinstance(line.target, str) else line.target.at(at, known)
+                found = value_at(line.value, arithmetic, known, at)
+                known[name] = arithmetic[line.adds](known[name], found) if line.adds else found
+            case Loop() | Even():
+                for turn in line.turns(at, known):
+                    run_lines(line.body, arithmetic, known, {**at, **turn})
+            case Repeat():
+                _repeat(line, arithmetic, known)
 
 
 def _repeat(loop: Repeat, arithmetic: Table, known: dict[str, Any]) -> None:
     known.update(zip(loop.carried, values_of(loop.start, arithmetic, known), strict=True))
     done: Any = None
     for _ in range(loop.passes):
-        _operate(loop.ops, arithmetic, known)
+        run_lines(loop.ops, arithmetic, known)
         new = values_of(loop.then, arithmetic, known)
         if done is not None:
             old = [known[name] for name in loop.carried]

@@ -1,6 +1,7 @@
-"""The order of operations lets values be read soon, and changes nothing else."""
+"""The order of operations lets values be read soon, moved signs cost nothing; all else stays."""
 
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -8,9 +9,10 @@ import pytest
 from derive.lower.order import with_values_read_soon
 from derive.lower.signs import with_signs_moved
 from derive.motion.runge_kutta import step
-from derive.program.arithmetic import working
-from derive.program.program import Op, Program, Repeat
+from derive.program.arithmetic import EXACT, working
+from derive.program.program import Op, Program, Quantity, Repeat
 from derive.program.run import run
+from derive.program.tape import Tape
 from tests.motion.systems import start, system
 
 JACOBIAN = step(system("principal"), "step_rk4_jacobian")
@@ -54,3 +56,16 @@ def test_a_program_with_a_loop_is_refused(change) -> None:
     loop = Repeat(("x",), ("attitude_w",), body, ("a",), None, 3)
     with pytest.raises(TypeError, match="'step_rk4_jacobian' has a loop"):
         change(replace(JACOBIAN, ops=(loop,)))
+
+
+def test_what_differs_by_its_sign_only_is_computed_once() -> None:
+    tape = Tape("t")
+    x, y = tape.input("x"), tape.input("y")
+    results = tuple(n.operand for n in (x * y, (-x) * y, x - y, y - x, -x - y, x + y))
+    inputs = tuple(Quantity(n, (n,), (), "", "", None, None, "") for n in "xy")
+    turned = with_signs_moved(Program("f", "", inputs, (), tuple(tape.ops), results), "t")
+    assert turned.count() == {"add": 1, "mul": 1, "neg": 3, "sub": 1}
+    values = [Fraction(3, 7), Fraction(-5, 2)]
+    x_, y_ = values
+    expected = [x_ * y_, -x_ * y_, x_ - y_, y_ - x_, -x_ - y_, x_ + y_]
+    assert run(turned, EXACT, values) == expected

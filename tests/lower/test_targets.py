@@ -44,7 +44,7 @@ def test_no_operation_works_on_parameters_only(scene, function):
     library_ = library_of(scene)
     program = library_[function]
     fixed = {c for q in program.inputs if q.role == "constants" for c in q.components}
-    for op, _ in every_op(program.ops):
+    for op in every_op(program.ops):
         if op.operator in TRUTHS:
             continue  # a truth is no constant: it is told from one where it is needed
         known = [not isinstance(o, str) or o in fixed for o in op.operands]
@@ -57,7 +57,7 @@ def test_no_operation_is_done_twice_and_none_is_idle(scene, function):
     loops = [line.ops for line in program.ops if isinstance(line, Repeat)]
     for ops in ([line for line in program.ops if isinstance(line, Op)], *loops):
         assert len({(op.operator, op.operands) for op in ops}) == len(ops)
-    assert {op.result for op, _ in every_op(program.ops)} <= read_by(program)
+    assert {op.result for op in every_op(program.ops)} <= read_by(program)
 
 
 @pytest.mark.parametrize(("scene", "function"), EVERY)

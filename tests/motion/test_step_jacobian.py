@@ -14,10 +14,9 @@ from derive.motion.runge_kutta import step
 from derive.motion.runge_kutta.dependence import free_omega
 from derive.motion.runge_kutta.system import System
 from derive.program.arithmetic import EXACT, working
-from derive.program.program import Op, Program, Quantity
+from derive.program.program import Op, Program
 from derive.program.recorded import needed
 from derive.program.run import run
-from derive.program.tape import Tape
 from tests.made import thinned
 from tests.motion.rates import BODY, body, hanging
 from tests.motion.slopes import with_slopes
@@ -288,16 +287,3 @@ def _renamed(rate: Program, names: Mapping[str, str]) -> Program:
     )
     results = tuple(made.get(r, r) for r in rate.results)
     return replace(rate, ops=ops, results=results, inputs=inputs)
-
-
-def test_what_differs_by_its_sign_only_is_computed_once() -> None:
-    tape = Tape("t")
-    x, y = tape.input("x"), tape.input("y")
-    results = tuple(n.operand for n in (x * y, (-x) * y, x - y, y - x, -x - y, x + y))
-    inputs = tuple(Quantity(n, (n,), (), "", "", None, None, "") for n in "xy")
-    turned = with_signs_moved(Program("f", "", inputs, (), tuple(tape.ops), results), "t")
-    assert turned.count() == {"add": 1, "mul": 1, "neg": 3, "sub": 1}
-    values = [Fraction(3, 7), Fraction(-5, 2)]
-    x_, y_ = values
-    expected = [x_ * y_, -x_ * y_, x_ - y_, y_ - x_, -x_ - y_, x_ + y_]
-    assert run(turned, EXACT, values) == expected

@@ -173,6 +173,6 @@ def _slots(q: Quantity) -> list[str]:
 
 def pair_functions(programs: Iterable[Program]) -> list[str]:
     """Return the pair operations that programs in pairs need, each after those it rests on."""
-    used = {op.operator for program in programs for op, _ in every_op(program.ops)}
+    used = {op.operator for program in programs for op in every_op(program.ops)}
     wanted = used | {name for kind in used for name in WRITTEN[kind].rests or ()}
     return [name for name, row in WRITTEN.items() if name in wanted and row.rests is not None]

@@ -93,7 +93,7 @@ def tape_for(system: System) -> Tape:
     programs = (system.rate, *([system.slopes] if system.slopes is not None else []))
     taken = {c for q in (*system.states, system.step) for c in q.components} | system.taken
     for program in programs:
-        made = {op.result for op, _ in every_op(program.ops)}
+        made = {op.result for op in every_op(program.ops)}
         taken |= operands_of(program.ops, program.results) - made
     return Tape(free_prefix("t", taken))
 
