@@ -32,9 +32,7 @@ COORDINATE = (
     Entry("unit", "text", "`rad` or `m`", default=REQUIRED),
     *SPEED[1:4],
     Entry(
-        "rate",
-        "any",
-        "`{ range }`, an input `psi_dot` or the range of a free one; 0; a formula",
+        "rate", "any", "`{ range }`, an input `psi_dot` or the range of a free one; 0; a formula"
     ),
     Entry("acceleration", "any", "prescribed: `{ range }`, an input `psi_ddot`, or 0"),
     COMPONENTS,
@@ -140,11 +138,7 @@ FORCE = (
     Entry("along", "frame", "along whose axes both are given; `frame` if left out"),
     AGAINST,
 )
-WEIGHT = (
-    Entry("gravity", "three formulas", "free fall", "m/s^2", "known", REQUIRED),
-    ALONG,
-    ALL,
-)
+WEIGHT = (Entry("gravity", "three formulas", "free fall", "m/s^2", "known", REQUIRED), ALONG, ALL)
 SPRING = (
     ON,
     Entry("spring", "formula", "stiffness", "N/m", "known", 0),

@@ -148,20 +148,10 @@ def substitute(formula: Formula, values: Mapping[str, Formula]) -> Formula:
 def _build(formula: Formula, parts: list[Formula]) -> Formula:
     if formula.operator in FUNCTIONS:
         return apply(formula.operator, parts[0])
-    match formula.operator:
-        case "number":
-            return formula
-        case "neg":
-            return -parts[0]
-        case "power":
-            return parts[0] ** int(formula.number)
-        case "add":
-            return parts[0] + parts[1]
-        case "sub":
-            return parts[0] - parts[1]
-        case "mul":
-            return parts[0] * parts[1]
-    return parts[0] / parts[1]
+    if formula.operator == "power":
+        return parts[0] ** int(formula.number)
+    made: Formula = PLAIN[formula.operator](*parts) if parts else formula
+    return made
 
 
 def evaluate(formula: Formula, values: Mapping[str, Any], arithmetic: Arithmetic) -> Any:

@@ -8,17 +8,8 @@ from dataclasses import dataclass, field
 
 from derive.scene.declaration import SceneError, Triple
 from derive.scene.entries import FORCE, GRADIENT, SPRING, WEIGHT
-from derive.scene.entry import Entry, Reading, entries_of
-from derive.scene.machine import (
-    Force,
-    Frame,
-    Gradient,
-    Load,
-    Member,
-    Spring,
-    Unknown,
-    Weight,
-)
+from derive.scene.entry import AXES, Entry, Reading, entries_of
+from derive.scene.machine import Force, Frame, Gradient, Load, Member, Spring, Unknown, Weight
 from derive.scene.names import identifier, label
 from derive.scene.numbers import check_unit
 from derive.scene.scopes import Scalars
@@ -26,7 +17,6 @@ from derive.scene.table import Scope, Table, formula, shown, table
 from derive.scene.unit import Dimension, dimension
 
 MARK = re.compile(r"\?([A-Za-z][A-Za-z0-9_]*)")
-AXES = ("x", "y", "z")
 UNKNOWNS = {"force": "N", "couple": "N m"}
 """Entries that may hold unknowns, and their unit."""
 MAIN: Mapping[str, tuple[Entry, ...]] = {

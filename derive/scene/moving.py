@@ -6,13 +6,7 @@ from typing import TYPE_CHECKING
 
 from derive.scene.declaration import SceneError
 from derive.scene.formula import ZERO, symbols
-from derive.scene.wanted import (
-    ROTATIONAL,
-    SPLITTINGS,
-    TORQUE_FREE,
-    moves,
-    step_of,
-)
+from derive.scene.wanted import ROTATIONAL, SPLITTINGS, TORQUE_FREE, moves, step_of
 
 if TYPE_CHECKING:
     from derive.scene.declaration import Scene

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 from itertools import islice, product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from derive.scene.declaration import SceneError
 from derive.scene.escape import at_place, brief
@@ -17,7 +17,7 @@ from derive.scene.formula import FLOATS, ONE, ZERO, Formula, evaluate, symbols
 from derive.scene.shape import moved
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from derive.scene.declaration import Body, Moving, Parameter, Sextuple, Triple, Wheel
     from derive.scene.machine import Entries
@@ -117,6 +117,10 @@ def semidefinite(matrix: Matrix, size: Fraction) -> bool:
     )
 
 
+def _not_negative(matrix: Matrix) -> bool:
+    return semidefinite(matrix, abs(_trace(matrix)))
+
+
 def _trace(matrix: Matrix) -> Fraction:
     return matrix[0][0] + matrix[1][1] + matrix[2][2]
 
@@ -139,17 +143,27 @@ def _possible(body: Body, matrix: Matrix) -> bool:
 
 
 def doubts(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str]:
+    """Yield what is doubtful about an inertia, and about what it leaves about the mass centre."""
+    yield from _doubts("body inertia", body.inertia, parameters, lambda m: _possible(body, m))
+    yield from _central_doubts(body, parameters)
+
+
+def _doubts(
+    label: str,
+    inertia: Sextuple,
+    parameters: tuple[Parameter, ...],
+    possible: Callable[[Matrix], bool],
+) -> Iterator[str]:
     """Yield a sentence on the first inertia that is not definite, and one on the first triangle."""
-    used = [name for part in body.inertia for name in symbols(part)]
+    used = [name for part in inertia for name in symbols(part)]
     points = (middle(parameters), *ends(parameters, used))
-    tensors = [(values, tensor(body.inertia, values, "body inertia")) for values in points]
-    indefinite = [values for values, matrix in tensors if not _possible(body, matrix)]
+    tensors = [(values, tensor(inertia, values, label)) for values in points]
+    indefinite = [values for values, matrix in tensors if not possible(matrix)]
     broken = [v for v, matrix in tensors if v not in indefinite and not triangle(matrix)]
     for values in indefinite[:1]:
-        yield f"body inertia is not positive definite{_where(values, body.inertia)}"
+        yield f"{label} is not positive definite{_where(values, inertia)}"
     for values in broken[:1]:
-        yield f"body inertia breaks the triangle inequality{_where(values, body.inertia)}"
-    yield from _central_doubts(body, parameters)
+        yield f"{label} breaks the triangle inequality{_where(values, inertia)}"
 
 
 def _central_doubts(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str]:
@@ -180,8 +194,7 @@ def check_member(label: str, inertia: Entries, parameters: tuple[Parameter, ...]
     possible = all(x is None or x >= 0 for x in found[:3])
     whole = _whole(inertia)
     if possible and whole is not None:
-        matrix = tensor(whole, values, f"{label} inertia")
-        possible = semidefinite(matrix, abs(_trace(matrix)))
+        possible = _not_negative(tensor(whole, values, f"{label} inertia"))
     if not possible:
         moments, products = (
             ", ".join("unknown" if x is None else f"{x:g}" for x in part)
@@ -195,10 +208,7 @@ def check_member(label: str, inertia: Entries, parameters: tuple[Parameter, ...]
 
 def _whole(inertia: Entries) -> Sextuple | None:
     """Return an inertia of which everything is known, None for any other."""
-    xx, yy, zz, xy, xz, yz = inertia
-    if xx is None or yy is None or zz is None or xy is None or xz is None or yz is None:
-        return None
-    return xx, yy, zz, xy, xz, yz
+    return None if None in inertia else cast("Sextuple", inertia)
 
 
 def member_doubts(label: str, inertia: Entries, parameters: tuple[Parameter, ...]) -> Iterator[str]:
@@ -209,15 +219,7 @@ def member_doubts(label: str, inertia: Entries, parameters: tuple[Parameter, ...
     whole = _whole(inertia)
     if whole is None or [part == ZERO for part in whole[:3]].count(True) == 2:
         return
-    used = [name for part in whole for name in symbols(part)]
-    points = (middle(parameters), *ends(parameters, used))
-    tensors = [(values, tensor(whole, values, f"{label} inertia")) for values in points]
-    indefinite = [v for v, matrix in tensors if not semidefinite(matrix, abs(_trace(matrix)))]
-    broken = [v for v, matrix in tensors if v not in indefinite and not triangle(matrix)]
-    for values in indefinite[:1]:
-        yield f"{label} inertia is not positive definite{_where(values, whole)}"
-    for values in broken[:1]:
-        yield f"{label} inertia breaks the triangle inequality{_where(values, whole)}"
+    yield from _doubts(f"{label} inertia", whole, parameters, _not_negative)
 
 
 def check_axis(wheel: Wheel, parameters: tuple[Parameter, ...]) -> None:

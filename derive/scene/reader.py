@@ -10,7 +10,7 @@ from derive.scene.bodies import read_member
 from derive.scene.declaration import Input, SceneError
 from derive.scene.entries import MOMENTUM, STEADY, TIME_STEP
 from derive.scene.entry import Reading, entries_of
-from derive.scene.formula import ZERO, Formula
+from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.frames import read_frames
 from derive.scene.loads import read_loads
 from derive.scene.machine import Frame, Machine, Member, Place, Result, Steady, Unknown
@@ -19,6 +19,7 @@ from derive.scene.numbers import member_doubts
 from derive.scene.results import (
     answer_units,
     groups,
+    matrix_entries,
     of_any_unit,
     read_asked,
     read_results,
@@ -28,7 +29,7 @@ from derive.scene.scalars import read_scalars
 from derive.scene.scopes import PER_SECOND, Scalars
 from derive.scene.table import Scope, Table, formula, keys, several, table, text
 from derive.scene.unit import BESIDE_SI, dimension, misnamed, spelled
-from derive.scene.wanted import read_emission, read_form
+from derive.scene.wanted import moves, read_emission, read_form
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -56,6 +57,9 @@ def read_machine(document: Mapping[str, object], name: str, source: str) -> Mach
     distinct(_declared(scalars, unknowns, results))
     asked = read_asked(document["wanted"], scalars, unknowns, results)
     distinct([*_declared(scalars, (), ()), *_vectors(unknowns, asked)])
+    steady = _steady(part["steady"], scalars, unknowns, results, asked)
+    made = _made(scalars, frames, results, asked, steady)
+    distinct([*_declared(scalars, unknowns, ()), *made])
     return Machine(
         name=name, title=text(document.get("title", name), "title"),
         source=text(document.get("source", "own"), "source"), text=source,
@@ -64,8 +68,7 @@ def read_machine(document: Mapping[str, object], name: str, source: str) -> Mach
         frames=frames, bodies=bodies, loads=loads, unknowns=unknowns, results=results,
         momentum=_momentum(part["angular_momentum"], frames, bodies, scalars),
         about=_about(part["linearised"], scalars),
-        steady=_steady(part["steady"], scalars, unknowns, results, asked),
-        asked=asked, wanted=tuple(asked), form=read_form(document),
+        steady=steady, asked=asked, wanted=tuple(asked), form=read_form(document),
         emission=read_emission(document), **entries_of(part["motion"], (TIME_STEP,), Reading()),
         warnings=(*_unused(scalars, source), *_doubts(bodies, scalars),
                   *_misnamed(scalars, results)),
@@ -118,6 +121,37 @@ def _vectors(
     for name in groups(unknowns):
         if name in answers:
             yield name, f"the vector of the unknowns '{name}_x' to '{name}_z'"
+
+
+def _made(
+    scalars: Scalars,
+    frames: tuple[Frame, ...],
+    results: tuple[Result, ...],
+    asked: Mapping[str, tuple[str, ...]],
+    steady: Steady | None,
+) -> Iterator[tuple[str, str]]:
+    """Yield the quantities that functions have by themselves, with what each is."""
+    answers = {name for each in asked.values() for name in each}
+    moved = [m for m in scalars.moving if m.state]
+    parts = [(m, name) for m in moved for name in (m.name, *(rate.name for rate in m.given))]
+    states = [name for m, own in parts for name in (own, m.of_vector(own))]
+    for frame in frames:
+        if frame.quaternion:
+            own = [f"attitude_{frame.name}{part}" for part in ("", "_w", "_x", "_y", "_z")]
+            yield from ((name, f"the attitude of frame '{frame.name}'") for name in own)
+            states += own
+    steps = any(map(moves, answers))
+    for state in dict.fromkeys(states):
+        if steps or "state_rate" in answers:
+            yield f"{state}_rate", f"the rate of the state '{state}'"
+        if steps:
+            yield f"{state}_next", f"the next value of the state '{state}'"
+    used = {name for result in results for name in symbols(result.formula)}
+    for name in matrix_entries(scalars):
+        if "linearised" in answers or name in used:
+            yield name, "an entry of a matrix of small motion"
+    if "steady" in answers and steady is not None:
+        yield from ((f"steady_{n + 1}", "what vanishes") for n in range(len(steady.unknown)))
 
 
 def _unused(scalars: Scalars, source: str) -> tuple[str, ...]:

@@ -131,11 +131,11 @@ def answer_units(scalars: Scalars, unknowns: tuple[Unknown, ...]) -> dict[str, D
     found = dict(unknown_units(unknowns)) | unknown_rates(scalars)
     found |= dict.fromkeys(ENERGIES, dimension("J"))
     momentum = dimension("kg m^2/s")
-    found |= _entries(scalars)
+    found |= matrix_entries(scalars)
     return found | {f"angular_momentum_{axis}": momentum for axis in AXES}
 
 
-def _entries(scalars: Scalars) -> dict[str, Dimension]:
+def matrix_entries(scalars: Scalars) -> dict[str, Dimension]:
     """Return the entries of the matrices of small motion, each with its dimension.
 
     Entries stand for forces or moments; of one kind alone they are told apart by nothing else.

@@ -11,22 +11,9 @@ from derive.scene.entry import Reading, entries_of
 from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.names import identifier
 from derive.scene.scopes import ARTICLE, PER_SECOND, Scalars
-from derive.scene.table import (
-    Scope,
-    Table,
-    formula,
-    shown,
-    table,
-)
+from derive.scene.table import Scope, Table, formula, shown, table
 from derive.scene.table import unit as unit_of
-from derive.scene.unit import (
-    ANGULAR_VELOCITY,
-    LENGTH,
-    NONE,
-    VELOCITY,
-    dimension,
-    spelled,
-)
+from derive.scene.unit import ANGULAR_VELOCITY, LENGTH, NONE, VELOCITY, dimension, spelled
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -145,11 +132,13 @@ def _coordinate(
             raise SceneError(
                 f"{given.label} needs rate = {{ range = [low, high] }}, 0 or a formula"
             )
-        made = _rate(name, given, rate, scope, own)
-        if isinstance(made, Input):
-            second = _second(name, given, PER_SECOND[own])
-        elif said["acceleration"] not in (None, 0):
-            raise SceneError(f"{given.label}: its acceleration follows from the rate '{made}'")
+        if isinstance(rate, dict):
+            made = _given_rate(name, given, "rate", rate, "dot", own)
+            second = _input_or_zero(name, given, "acceleration", "0", PER_SECOND[own])
+        else:
+            made = formula(rate, f"{given.label}: rate", scope, dimension(own))
+            if said["acceleration"] not in (None, 0):
+                raise SceneError(f"{given.label}: its acceleration follows from the rate '{made}'")
     by_moved = isinstance(made, Formula) and not moved.isdisjoint(symbols(made))
     state = free or (said["motion"] or ("free" if by_moved else "")) == "free"
     return _moving(name, vector, spelling, said, "coordinate", (free, state), (made, second))
@@ -169,20 +158,19 @@ def _moving(
     return Moving(name, unit, low, high, says, kind, *free_and_state, *rates_, vector)
 
 
-def _rate(name: str, given: Table, value: object, scope: Scope, unit: str) -> Input | Formula:
-    if isinstance(value, dict):
-        return _given_rate(name, given, "rate", value, "dot", unit)
-    return formula(value, f"{given.label}: rate", scope, dimension(unit))
+def _input_or_zero(name: str, given: Table, key: str, zero: str, unit: str) -> Input | Formula:
+    """Return what prescribes a motion last: an input of a range, or nothing that changes.
 
-
-def _second(name: str, given: Table, unit: str) -> Input | Formula:
-    value = given.entries.get("acceleration")
+    zero : how a file says so
+    """
+    value = given.entries.get(key)
     if isinstance(value, dict):
-        return _given_rate(name, given, "acceleration", value, "ddot", unit)
+        dots = "ddot" if key == "acceleration" else "dot"
+        return _given_rate(name, given, key, value, dots, unit)
     if value == 0 and value is not None:
         return ZERO
-    rule = "needs acceleration = { range = [low, high] } or 0"
-    raise SceneError(f"{given.label} {rule}" + ("" if value is None else f", not {shown(value)}"))
+    found = "" if value is None else f", not {shown(value)}"
+    raise SceneError(f"{given.label} needs {key} = {{ range = [low, high] }} or {zero}{found}")
 
 
 def _given_rate(name: str, given: Table, key: str, value: object, dots: str, unit: str) -> Input:
@@ -199,14 +187,7 @@ def _speed(name: str, given: Table, vector: str) -> Moving:
     if free and value is not None:
         raise SceneError(f"{given.label} is free, so its rate is found, not given")
     if not free:
-        if isinstance(value, dict):
-            rate = _given_rate(name, given, "rate", value, "dot", PER_SECOND[spelling])
-        elif value == 0 and value is not None:
-            rate = ZERO
-        else:
-            found = "" if value is None else f", not {shown(value)}"
-            rule = "needs rate = { range = [low, high] } or rate = 0"
-            raise SceneError(f"{given.label} {rule}{found}")
+        rate = _input_or_zero(name, given, "rate", "rate = 0", PER_SECOND[spelling])
     return _moving(name, vector, spelling, said, "speed", (free, free), (rate, None))
 
 

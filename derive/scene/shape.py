@@ -25,9 +25,13 @@ class Round:
     """A shape with an axis, or a sphere: its moments along the axis and across it."""
 
     kind: str
-    lengths: tuple[str, ...]
     axial: Terms
     transverse: Terms
+
+    @property
+    def lengths(self) -> tuple[str, ...]:
+        """Return the names of the lengths that its moments are made of."""
+        return tuple(dict.fromkeys(name for _, name in (*self.transverse, *self.axial)))
 
     @property
     def sphere(self) -> bool:
@@ -35,36 +39,22 @@ class Round:
         return self.kind == "spherical"
 
 
-def _terms(*rows: tuple[int, int, str]) -> Terms:
-    return tuple((Fraction(above, below), length) for above, below, length in rows)
+def _round(kind: str, axial: str, transverse: str) -> Round:
+    """Return the shape whose moments are sums such as "1/4 radius + 1/12 length"."""
+    both = ([term.split() for term in text.split(" + ") if term] for text in (axial, transverse))
+    along, across = (tuple((Fraction(q), name) for q, name in terms) for terms in both)
+    return Round(kind, along, across)
 
 
 ROUND: Mapping[str, Round] = {
-    "cylinder": Round(
-        "axisymmetric",
-        ("radius", "length"),
-        _terms((1, 2, "radius")),
-        _terms((1, 4, "radius"), (1, 12, "length")),
-    ),
-    "disc": Round("axisymmetric", ("radius",), _terms((1, 2, "radius")), _terms((1, 4, "radius"))),
-    "hoop": Round("axisymmetric", ("radius",), _terms((1, 1, "radius")), _terms((1, 2, "radius"))),
-    "cone": Round(
-        "axisymmetric",
-        ("radius", "height"),
-        _terms((3, 10, "radius")),
-        _terms((3, 20, "radius"), (3, 80, "height")),
-    ),
-    "rod": Round("rod", ("length",), (), _terms((1, 12, "length"))),
-    "sphere": Round("spherical", ("radius",), _terms((2, 5, "radius")), _terms((2, 5, "radius"))),
-    "hollow_sphere": Round(
-        "spherical", ("radius",), _terms((2, 3, "radius")), _terms((2, 3, "radius"))
-    ),
-    "tube": Round(
-        "axisymmetric",
-        ("inner", "outer", "length"),
-        _terms((1, 2, "inner"), (1, 2, "outer")),
-        _terms((1, 4, "inner"), (1, 4, "outer"), (1, 12, "length")),
-    ),
+    "cylinder": _round("axisymmetric", "1/2 radius", "1/4 radius + 1/12 length"),
+    "disc": _round("axisymmetric", "1/2 radius", "1/4 radius"),
+    "hoop": _round("axisymmetric", "1 radius", "1/2 radius"),
+    "cone": _round("axisymmetric", "3/10 radius", "3/20 radius + 3/80 height"),
+    "rod": _round("rod", "", "1/12 length"),
+    "sphere": _round("spherical", "2/5 radius", "2/5 radius"),
+    "hollow_sphere": _round("spherical", "2/3 radius", "2/3 radius"),
+    "tube": _round("axisymmetric", "1/2 inner + 1/2 outer", "1/4 inner + 1/4 outer + 1/12 length"),
 }
 SHAPES = (*(name for name in ROUND if name != "tube"), "box")
 """Shapes that a single body may have."""
