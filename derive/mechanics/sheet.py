@@ -24,6 +24,7 @@ class Sheet:
     rateless: Mapping[Symbol, str]
     definitions: dict[Symbol, Expr] = field(default_factory=dict)
     labels: dict[Expr, Symbol] = field(default_factory=dict)
+    parts: dict[Expr, tuple[Expr, Mapping[Symbol, Expr]]] = field(default_factory=dict)
 
     def symbol(self, name: str) -> Symbol:
         """Return the symbol of a name, a new one if there is none yet."""
@@ -59,8 +60,13 @@ class Sheet:
         """Return the name of a symbol."""
         return next(name for name, own in self.symbols.items() if own == symbol)
 
-    def split(self, value: Expr) -> tuple[Expr, dict[Symbol, Expr]]:
+    def split(self, value: Expr) -> tuple[Expr, Mapping[Symbol, Expr]]:
         """Return the part of ``value`` without unknowns, and each unknown's coefficient."""
+        if value not in self.parts:
+            self.parts[value] = self._split(value)
+        return self.parts[value]
+
+    def _split(self, value: Expr) -> tuple[Expr, Mapping[Symbol, Expr]]:
         found = sorted(value.free_symbols & self.unknowns, key=str)
         slopes = {u: value.diff(u) for u in found}
         if any(slope.free_symbols & self.unknowns for slope in slopes.values()):

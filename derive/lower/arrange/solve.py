@@ -11,7 +11,7 @@ from derive.mechanics.probe import DIGITS, Probe
 
 SMALL = 3  # blocks up to this size are solved by determinants
 
-Split = Callable[[Expr], tuple[Expr, dict[Symbol, Expr]]]
+Split = Callable[[Expr], tuple[Expr, Mapping[Symbol, Expr]]]
 
 
 def solve(
