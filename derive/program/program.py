@@ -15,7 +15,7 @@ from derive.program.indexed import Even, Indexed, Integers, Loop, names_in, oper
 
 Operand = str | Fraction
 
-Table = Mapping[str, Callable[..., Any]]  # an arithmetic: what each operator does
+Arithmetic = Mapping[str, Callable[..., Any]]  # what each operator does
 
 Role = Literal["value", "constants", "plan", "remainder"]
 """What a quantity is for: a value of its own, or what one function makes for others to read."""

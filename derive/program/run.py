@@ -5,12 +5,12 @@ from types import MappingProxyType
 from typing import Any
 
 from derive.program.indexed import Assign, Even, Integers, Loop, Row, value_at
-from derive.program.program import Line, Op, Operand, Program, Repeat, Table
+from derive.program.program import Arithmetic, Line, Op, Operand, Program, Repeat
 
 NOWHERE: Mapping[str, int] = MappingProxyType({})
 
 
-def run(program: Program, arithmetic: Table, values: Sequence[Any]) -> list[Any]:
+def run(program: Program, arithmetic: Arithmetic, values: Sequence[Any]) -> list[Any]:
     """Run ``program`` in an arithmetic: floats, exact fractions, intervals, CasADi.
 
     ``values`` are the input components in declared order. The arithmetic maps each operator,
@@ -22,7 +22,7 @@ def run(program: Program, arithmetic: Table, values: Sequence[Any]) -> list[Any]
     return values_of(program.results, arithmetic, known)
 
 
-def numbers_of(program: Program, arithmetic: Table) -> dict[str, Any]:
+def numbers_of(program: Program, arithmetic: Arithmetic) -> dict[str, Any]:
     """Return the numbers of a program that rest on the precision of the arithmetic, by name."""
     if not program.numbers:
         return {}
@@ -32,7 +32,7 @@ def numbers_of(program: Program, arithmetic: Table) -> dict[str, Any]:
 
 
 def values_of(
-    operands: Sequence[Operand], arithmetic: Table, known: Mapping[str, Any]
+    operands: Sequence[Operand], arithmetic: Arithmetic, known: Mapping[str, Any]
 ) -> list[Any]:
     """Return the values of operands: known by name, or exact numbers."""
     return [known[o] if isinstance(o, str) else arithmetic["number"](o) for o in operands]
@@ -40,7 +40,7 @@ def values_of(
 
 def run_lines(
     lines: Sequence[Line],
-    arithmetic: Table,
+    arithmetic: Arithmetic,
     known: dict[str, Any],
     at: Mapping[str, int] = NOWHERE,
 ) -> None:
@@ -69,7 +69,7 @@ def run_lines(
                 _repeat(line, arithmetic, known)
 
 
-def _repeat(loop: Repeat, arithmetic: Table, known: dict[str, Any]) -> None:
+def _repeat(loop: Repeat, arithmetic: Arithmetic, known: dict[str, Any]) -> None:
     known.update(zip(loop.carried, values_of(loop.start, arithmetic, known), strict=True))
     done: Any = None
     for _ in range(loop.passes):

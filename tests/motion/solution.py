@@ -11,7 +11,7 @@ from typing import Any
 import flint
 
 from derive.motion.taylor import taylor_step
-from derive.motion.taylor.series import Series, in_loops
+from derive.motion.taylor.series import TaylorStep, in_loops
 from derive.program.program import Program, Quantity
 from derive.program.run import run, run_lines
 from tests.made import library_of
@@ -44,7 +44,7 @@ STATE = [Fraction(n, 16) for n in (12, 7, -5, 6, 9, -7, 20)]
 
 
 @cache
-def catalogued(name: str) -> tuple[Series, Program, list[Fraction]]:
+def catalogued(name: str) -> tuple[TaylorStep, Program, list[Fraction]]:
     """Return a scene's step, its rate, and values for constants, states and inputs."""
     made = library_of(name)
     rate, words = made["state_rate"], made.known.words
@@ -78,14 +78,14 @@ def picard(
 
 
 def run_series(
-    step: Series, table: Mapping[str, Callable[..., Any]], values: Sequence[Any], bits: int
+    step: TaylorStep, table: Mapping[str, Callable[..., Any]], values: Sequence[Any], bits: int
 ) -> list[Any]:
     """Return what a step gives in an arithmetic, its length proposed for a precision."""
     return run(in_loops(step), {**table, "unit_roundoff": lambda: 2.0**-bits}, values)
 
 
 def series_terms(
-    step: Series, table: Mapping[str, Callable[..., Any]], values: Sequence[Any]
+    step: TaylorStep, table: Mapping[str, Callable[..., Any]], values: Sequence[Any]
 ) -> dict[str, list[Any]]:
     """Return the terms of the states that move; place k is order k."""
     names = [c for q in step.inputs for c in q.components]
@@ -95,11 +95,11 @@ def series_terms(
     return {x: [known[x], *(known[f"{x}_terms[{k}]"] for k in orders)] for x in step.rates}
 
 
-def state_names(step: Series) -> list[str]:
+def state_names(step: TaylorStep) -> list[str]:
     return [c.removesuffix("_next") for q in step.outputs[:-1] for c in q.components]
 
 
-def faults(step: Series, rate: Program, values: Sequence[Fraction]) -> list[str]:
+def faults(step: TaylorStep, rate: Program, values: Sequence[Fraction]) -> list[str]:
     """Return the terms of a step of length 1 that are not the solution's."""
     with flint.ctx.workprec(400):
         flint.ctx.cap = step.order + 1
@@ -114,7 +114,7 @@ def faults(step: Series, rate: Program, values: Sequence[Fraction]) -> list[str]
         ]
 
 
-def handmade(name: str) -> tuple[Series, Program, list[Fraction]]:
+def handmade(name: str) -> tuple[TaylorStep, Program, list[Fraction]]:
     """Return the step, the rate and a state of a rate that is written by hand."""
     if name == "everything":
         states, rate = everything()
@@ -123,7 +123,7 @@ def handmade(name: str) -> tuple[Series, Program, list[Fraction]]:
     return taylor_step(rate, BODY, (), 20), rate, STATE
 
 
-def one_step(step: Series, values: Sequence[Fraction], h: Fraction) -> list[flint.arb]:
+def one_step(step: TaylorStep, values: Sequence[Fraction], h: Fraction) -> list[flint.arb]:
     with flint.ctx.workprec(1000):
         return run_series(step, BALLS | CHOICES, [*map(ball, values), ball(h)], 53)
 
@@ -135,7 +135,7 @@ CHOICES = {
 
 
 def truncation(
-    step: Series, rate: Program, values: Sequence[Fraction], h: Fraction
+    step: TaylorStep, rate: Program, values: Sequence[Fraction], h: Fraction
 ) -> dict[str, flint.arb]:
     """Return what a step leaves out of each state: against 24 more terms of the solution."""
     with flint.ctx.workprec(1000):

@@ -9,7 +9,7 @@ import flint
 import pytest
 
 from derive.motion.taylor import taylor_step
-from derive.motion.taylor.series import Convolution, Series, in_loops
+from derive.motion.taylor.series import Convolution, TaylorStep, in_loops
 from derive.program.arithmetic import EXACT
 from derive.program.program import Op
 from derive.program.run import run
@@ -59,9 +59,9 @@ def test_the_terms_of_a_free_body_are_exact_in_fractions() -> None:
         ]
 
 
-def mutants(step: Series) -> dict[str, Series]:
+def mutants(step: TaylorStep) -> dict[str, TaylorStep]:
     """Return steps with one thing wrong each."""
-    found: dict[str, Series] = {}
+    found: dict[str, TaylorStep] = {}
     swapped = {"add": "sub", "sub": "add", "mul": "add"}
     for i, op in enumerate(step.each):
         if op.operator in swapped:

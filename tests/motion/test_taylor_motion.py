@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from derive.motion.taylor import taylor_step
-from derive.motion.taylor.series import Series
+from derive.motion.taylor.series import TaylorStep
 from derive.program.arithmetic import working
 from derive.program.program import Op, Program
 from tests.motion.rates import BODY, body, constant
@@ -40,7 +40,7 @@ CASES = {
 }
 
 
-def driven(step: Series, state: Sequence[float], time: float) -> list[float]:
+def driven(step: TaylorStep, state: Sequence[float], time: float) -> list[float]:
     """Return the state after a time, every step as long as the one before proposes."""
     now, passed, h = list(state), 0.0, time / 256
     while passed < time:

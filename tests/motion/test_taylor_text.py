@@ -14,7 +14,7 @@ from derive.emit.c.signature import Names, prototype
 from derive.emit.c.source import CONTRACTION_OFF
 from derive.emit.c.text import body
 from derive.emit.casadi_text import plain_lines
-from derive.motion.taylor.series import Series, in_loops
+from derive.motion.taylor.series import TaylorStep, in_loops
 from derive.program.arithmetic import working
 from derive.program.precision import F32, F64, Precision
 from tests.made import thinned
@@ -24,7 +24,7 @@ from tests.motion.solution import (
 )
 
 
-def c_source(step: Series, precision: Precision) -> str:
+def c_source(step: TaylorStep, precision: Precision) -> str:
     head = prototype(in_loops(step), Names("body"), precision)
     lines = "\n".join(f"    {line}" for line in body(in_loops(step), precision))
     return f"{CONTRACTION_OFF}\n#include <math.h>\n{head};\n{head}\n{{\n{lines}\n}}\n"

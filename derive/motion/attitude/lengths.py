@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from derive.program.operations import absolute, less, power_of_two, select, splitter, sqrt
+from derive.program.pairs import two_sum
 from derive.program.tape import Number, Tape
 
 FAR = Fraction(2**60)
@@ -75,8 +76,8 @@ def length_and_rest(
     """
     shift = splitter(tape) - 1
     (x, x_low), (y, y_low), (z, z_low) = (_halves(c, shift) for c in v)
-    partial, first = _exact_sum(x * x, y * y)
-    total, second = _exact_sum(partial, z * z)
+    partial, first = two_sum(x * x, y * y)
+    total, second = two_sum(partial, z * z)
     beside = (v[0] + x) * x_low + (v[1] + y) * y_low + ((v[2] + z) * z_low + (first + second))
     h = select(vanishing, 1, sqrt(total + beside))
     high, low = _halves(h, shift)
@@ -88,10 +89,3 @@ def _halves(a: Number, shift: Number) -> tuple[Number, Number]:
     c = shift * a
     high = (c + a) - c
     return high, a - high
-
-
-def _exact_sum(a: Number, b: Number) -> tuple[Number, Number]:
-    """Return s and e with s + e = a + b exactly and s the rounded sum."""
-    s = a + b
-    t = s - a
-    return s, (a - (s - t)) + (b - t)

@@ -38,7 +38,7 @@ def turned(
     moves = less(0, size)
     scaled = [w / select(moves, size, 1) for w in omega]
     scaled[0] = select(moves, scaled[0], 1)
-    turn, after = _moved(body, (scaled[0], scaled[1], scaled[2]), time * size)
+    turn, after = _along_body(body, (scaled[0], scaled[1], scaled[2]), time * size)
     return turn, after, size
 
 
@@ -60,7 +60,7 @@ def principal(body: Inertia) -> tuple[Three, tuple[Row, Row, Row]]:
     return (one / two, number(1), three / two), found.axes
 
 
-def _moved(body: Inertia, omega: Three, time: Number) -> Motion:
+def _along_body(body: Inertia, omega: Three, time: Number) -> Motion:
     """Return the turn and the angular velocity along body axes."""
     if body.kind == "spherical":
         return spun(omega, time), list(omega)
@@ -71,12 +71,12 @@ def _moved(body: Inertia, omega: Three, time: Number) -> Motion:
     found = principal_axes(body)
     rows = [_named(k, row) for k, row in enumerate(found.axes, start=1)]
     a, b, c = (_dot(row, omega) for row in rows)
-    (scalar, *vector), after = _along_axes(found.moments, (a, b, c), time)
+    (scalar, *vector), after = _along_principal(found.moments, (a, b, c), time)
     columns = list(zip(*rows, strict=True))
     return [scalar, *(_dot(n, vector) for n in columns)], [_dot(n, after) for n in columns]
 
 
-def _along_axes(moments: Three, omega: Three, time: Number) -> Motion:
+def _along_principal(moments: Three, omega: Three, time: Number) -> Motion:
     """Return the motion along principal axes; moments that are numbers may be simpler than told."""
     one, two, three = moments
     if one.exact is not None and one.exact == three.exact:

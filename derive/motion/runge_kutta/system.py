@@ -1,6 +1,6 @@
 """The motion of a scene as a step sees it: states, inputs that are held, and their rates.
 
-A step is traced over the program of the rates. What it needs of them, the rates and the nonzeros
+A step is recorded over the program of the rates. What it needs of them, the rates and the nonzeros
 of their Jacobian, is asked for times a part of the step's length: that factor is pushed down to
 the constants, which all stages share, so that it costs a few operations a step and none a stage.
 """

@@ -90,8 +90,8 @@ def turn_with(quarter: Number, state: State) -> State:
     f = quarter * ((t + t) / (1 + across))
     less, turn = (across + across) / (1 + across), [f * m for m in mu]
     change = quaternion_change([1 - state.less, *state.turn], less, turn)
-    moved = [v + d for v, d in zip(state.turn, change[1:], strict=True)]
-    return State(state.less - change[0], moved, mu, state.gain)
+    vector = [v + d for v, d in zip(state.turn, change[1:], strict=True)]
+    return State(state.less - change[0], vector, mu, state.gain)
 
 
 def kicked(push: Vector, state: State) -> State:

@@ -6,7 +6,7 @@ from fractions import Fraction
 from derive.motion.runge_kutta.system import TIME_STEP, next_of
 from derive.motion.taylor.proposal import PROPOSED, next_length
 from derive.motion.taylor.recurrences import Draft, record
-from derive.motion.taylor.series import Series
+from derive.motion.taylor.series import TaylorStep
 from derive.program.program import Op, Operand, Program, Quantity
 
 
@@ -16,7 +16,7 @@ def taylor_step(
     inputs: tuple[Quantity, ...],
     order: int,
     time_step: Quantity = TIME_STEP,
-) -> Series:
+) -> TaylorStep:
     """Return the step of ``order`` terms of a state whose rate is ``rate``.
 
     rate : its outputs' components are the rates of the states' components, in their order
@@ -28,7 +28,7 @@ def taylor_step(
     draft = _drafted(rate, set(rates))
     moving = {x: (r, draft.term(r) if draft.moves(r) else Fraction(0)) for x, r in rates.items()}
     close, proposed = _close(order, states, tuple(moving))
-    series = Series(
+    step = TaylorStep(
         name="step_taylor" if order == 20 else f"step_taylor{order}",
         says=f"One step by a Taylor series of order {order}.",
         inputs=(*_read(rate, states, inputs), time_step),
@@ -43,8 +43,8 @@ def taylor_step(
         close=close,
         results=(*(_after(x) if x in moving else x for x in names), proposed),
     )
-    _refuse_clashes(series)
-    return series
+    _refuse_clashes(step)
+    return step
 
 
 def _drafted(rate: Program, moving: set[str]) -> Draft:
@@ -90,11 +90,11 @@ def _joining(rate: Program) -> frozenset[str]:
     return frozenset(str(value) for value, kinds in readers.items() if kinds == ["add"])
 
 
-def _refuse_clashes(series: Series) -> None:
+def _refuse_clashes(step: TaylorStep) -> None:
     """Refuse a state or an input that is called as something of ours is."""
-    given = {c for q in series.inputs for c in q.components}
-    ours = [op.result for op in (*series.start, *series.each, *series.close)]
-    ours += [c.result for c in (*series.products, *series.squares)]
+    given = {c for q in step.inputs for c in q.components}
+    ours = [op.result for op in (*step.start, *step.each, *step.close)]
+    ours += [c.result for c in (*step.products, *step.squares)]
     twice = given.intersection(ours) | {name for name in ours if ours.count(name) > 1}
     if twice:
         raise ValueError(f"'{min(twice)}' is also the name of a value of the Taylor step")

@@ -69,7 +69,7 @@ class Draft:
             self.write(str(value), self.sums.pop(str(value)))
         return f"{self.same.get(str(value), value)}_k"
 
-    def series(self, value: Operand) -> str:
+    def kept_terms(self, value: Operand) -> str:
         """Return the name under which the terms of a moving value are kept."""
         name = self.term(value).removesuffix("_k")
         self.kept[name] = None
@@ -151,7 +151,7 @@ def _product(draft: Draft, op: Op) -> None:
     ends: tuple[tuple[int, Operand, str], ...] = ((1, a, draft.term(b)), (1, b, draft.term(a)))
     if a == b:
         ends = ((1, draft.once(f"{a}_twice", "add", a, a), draft.term(a)),)
-    draft.sums[op.result] = Sum(((1, draft.series(a), draft.series(b)),), ends)
+    draft.sums[op.result] = Sum(((1, draft.kept_terms(a), draft.kept_terms(b)),), ends)
 
 
 def _quotient(draft: Draft, op: Op) -> None:
@@ -164,7 +164,7 @@ def _quotient(draft: Draft, op: Op) -> None:
         return
     total = draft.summed(a) if draft.moves(a) else Sum()
     draft.kept[op.result] = None
-    unknown = Sum(((1, draft.series(b), op.result),), ((1, op.result, draft.term(b)),))
+    unknown = Sum(((1, draft.kept_terms(b), op.result),), ((1, op.result, draft.term(b)),))
     if not draft.moves(a):
         taken = draft.write(f"{op.result}_taken", unknown)
         numerator = draft.at_k(f"{op.result}_numerator", "neg", taken)

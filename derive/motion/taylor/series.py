@@ -31,7 +31,7 @@ class Convolution:
     """``result`` = sum of left_j right_(k-j) over ``plus`` less the same over ``minus``, 0 < j < k.
 
     The ends j = 0 and j = k are not in it: so it needs nothing of order k, and all of them run in
-    one loop. In ``Series.squares`` left is right, and equal products are worked out once.
+    one loop. In ``TaylorStep.squares`` left is right, and equal products are worked out once.
     """
 
     result: str
@@ -40,7 +40,7 @@ class Convolution:
 
 
 @dataclass(frozen=True)
-class Series:
+class TaylorStep:
     """One step of ``order`` terms.
 
     start : operations at order 0          products, squares : the sums over j at order k
@@ -76,16 +76,16 @@ def precision_values(order: int, bits: int) -> dict[str, Fraction]:
     return {REACH: reach, OVER_AIM: 1 / (SAFETY * reach) ** order, TINY: tiny}
 
 
-def in_loops(series: Series) -> Program:
+def in_loops(step: TaylorStep) -> Program:
     """Return the step as a program."""
-    last, names = series.order, list(series.rates)
+    last, names = step.order, list(step.rates)
     by_bits = {bits: precision_values(last, bits) for bits in (24, 53)}
     lines: list[Line] = [
         *(Arrays(((f"{x}_terms", (last + 1,)),)) for x in names),
-        *(Arrays(((f"{name}_terms", (last,)),)) for name in series.kept_only()),
-        *series.start,
-        *(Assign(f"{x}_terms[1]", _times("time_step", r)) for x, (r, _) in series.rates.items()),
-        Loop(K, Index(plus=1), Index(plus=last), tuple(_order(series))),
+        *(Arrays(((f"{name}_terms", (last,)),)) for name in step.kept_only()),
+        *step.start,
+        *(Assign(f"{x}_terms[1]", _times("time_step", r)) for x, (r, _) in step.rates.items()),
+        Loop(K, Index(plus=1), Index(plus=last), tuple(_order(step))),
         *(Assign(f"{x}_sum", f"{x}_terms[{last}]", makes="variable") for x in names),
         Loop(
             K,
@@ -94,16 +94,16 @@ def in_loops(series: Series) -> Program:
             tuple(Assign(f"{x}_sum", _term(x, K), "add") for x in names),
             step=-1,
         ),
-        *_ends(series),
-        *series.close,
+        *_ends(step),
+        *step.close,
     ]
     return Program(
-        series.name,
-        series.says,
-        series.inputs,
-        series.outputs,
+        step.name,
+        step.says,
+        step.inputs,
+        step.outputs,
         tuple(lines),
-        series.results,
+        step.results,
         numbers={n: {bits: q[n] for bits, q in by_bits.items()} for n in by_bits[24]},
     )
 
@@ -119,34 +119,34 @@ def _times(a: Value, b: Value) -> Term:
     return Term("mul", (a, b))
 
 
-def _order(series: Series) -> Iterator[Line]:
+def _order(step: TaylorStep) -> Iterator[Line]:
     """Yield the body of the loop over k: terms of order k, those of the states of order k + 1."""
     given: dict[str, Value] = {
         SHARE: Term("div", ("time_step", Whole(Index(K, 1)))),
         ORDER: Whole(Index(K)),
         INVERSE: Term("div", (Fraction(1), Whole(Index(K)))),
-        **{f"{x}_k": _term(x, K) for x in series.rates},
+        **{f"{x}_k": _term(x, K) for x in step.rates},
     }
-    rates = {x: rate for x, (_, rate) in series.rates.items()}
-    read = {SHARE, *rates.values()}.union(*(op.operands for op in series.each))
+    rates = {x: rate for x, (_, rate) in step.rates.items()}
+    read = {SHARE, *rates.values()}.union(*(op.operands for op in step.each))
     yield from (Assign(n, v, makes="constant") for n, v in given.items() if n in read)
-    yield from _sums(series)
-    yield from series.each
-    yield from (Assign(_term(name, K), f"{name}_k") for name in series.kept_only())
+    yield from _sums(step)
+    yield from step.each
+    yield from (Assign(_term(name, K), f"{name}_k") for name in step.kept_only())
     for x, rate in rates.items():
         yield Assign(_term(x, K, 1), _times(SHARE, rate) if rate != 0 else Fraction(0))
 
 
-def _sums(series: Series) -> Iterator[Line]:
-    every = (*series.products, *series.squares)
+def _sums(step: TaylorStep) -> Iterator[Line]:
+    every = (*step.products, *step.squares)
     yield from (Assign(c.result, Fraction(0), makes="variable") for c in every)
-    for sums, meets in ((series.products, False), (series.squares, True)):
+    for sums, meets in ((step.products, False), (step.squares, True)):
         if sums:
             body = tuple(_added(c, "j", "m") for c in sums)
             yield Loop("j", Index(plus=1), Index(K), body, mirror="m", meets=meets)
-    if series.squares:
-        yield from (Assign(c.result, c.result, "add") for c in series.squares)
-        yield Even(K, "m", tuple(_added(c, "m", "m") for c in series.squares))
+    if step.squares:
+        yield from (Assign(c.result, c.result, "add") for c in step.squares)
+        yield Even(K, "m", tuple(_added(c, "m", "m") for c in step.squares))
 
 
 def _added(c: Convolution, j: str, m: str) -> Assign:
@@ -161,11 +161,11 @@ def _added(c: Convolution, j: str, m: str) -> Assign:
     return Assign(c.result, reduce(lambda a, b: Term("sub", (a, b)), minus, total), "add")
 
 
-def _ends(series: Series) -> Iterator[Line]:
+def _ends(step: TaylorStep) -> Iterator[Line]:
     """Yield the names that the end of a step gives to single terms."""
-    read = {operand for op in series.close for operand in op.operands}
-    ends = {"first": 1, "before": series.order - 1, "last": series.order}
-    for x in series.rates:
+    read = {operand for op in step.close for operand in op.operands}
+    ends = {"first": 1, "before": step.order - 1, "last": step.order}
+    for x in step.rates:
         for end, k in ends.items():
             if f"{x}_{end}" in read:
                 yield Assign(f"{x}_{end}", f"{x}_terms[{k}]", makes="constant")
