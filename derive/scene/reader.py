@@ -59,7 +59,7 @@ def read_machine(document: Mapping[str, object], name: str, source: str) -> Mach
     distinct([*_declared(scalars, (), ()), *_vectors(unknowns, asked)])
     steady = _steady(part["steady"], scalars, unknowns, results, asked)
     made = _made(scalars, frames, results, asked, steady)
-    distinct([*_declared(scalars, unknowns, ()), *made])
+    distinct([*_declared(scalars, unknowns, results), *made])
     return Machine(
         name=name, title=text(document.get("title", name), "title"),
         source=text(document.get("source", "own"), "source"), text=source,

@@ -88,6 +88,7 @@ def read_asked(
         if result.name in groups(unknowns):
             rule = f"is the vector of the unknowns '{result.name}_x' to '{result.name}_z' already"
             raise SceneError(f"result '{result.name}' needs another name: '{result.name}' {rule}")
+    parts = _parts(scalars, unknowns)
     vectors = (m.answer for m in scalars.moving if m.free and m.vector)
     known_ = [*FUNCTIONS, *OF_MACHINES, *groups(unknowns), *(u.name for u in unknowns),
               *(r.name for r in results), *unknown_rates(scalars), *vectors]  # fmt: skip
@@ -96,9 +97,22 @@ def read_asked(
         name, answers = _entry(entry, known_)
         if name in asked:
             raise SceneError(f"wanted has '{brief(name)}' twice")
+        twice = [(p, a) for a in answers for p in parts.get(a, ()) if p in answers]
+        if twice:
+            part, whole = twice[0]
+            raise SceneError(f"wanted '{name}' gives '{part}' twice: by '{whole}' and alone")
         asked[identifier(name, "a wanted function")] = answers
     functions(asked)
     return asked
+
+
+def _parts(scalars: Scalars, unknowns: tuple[Unknown, ...]) -> Mapping[str, tuple[str, ...]]:
+    """Return the unknowns that each answer gives as components of a vector."""
+    parts = {group: tuple(f"{group}_{axis}" for axis in AXES) for group in groups(unknowns)}
+    for m in (m for m in scalars.moving if m.free and m.vector):
+        for answer in (m.answer, "accelerations"):
+            parts[answer] = (*parts.get(answer, ()), m.unknown)
+    return parts
 
 
 def _entry(entry: object, known_: Sequence[str]) -> tuple[str, tuple[str, ...]]:

@@ -32,14 +32,32 @@ TAKEN = {
 }
 
 
-def parsed(name: str, wanted: str) -> str:
-    return parse_scene(SCENE.format(name=name, wanted=wanted), "odd").name
+RESULT = """
+[results]
+{name} = {{ formula = "2*phi", unit = "deg" }}
+"""
+
+
+def parsed(name: str, wanted: str, more: str = "") -> str:
+    return parse_scene(SCENE.format(name=name, wanted=wanted) + more, "odd").name
 
 
 @pytest.mark.parametrize(("name", "wanted"), [(n, w) for w, names in TAKEN.items() for n in names])
 def test_what_a_function_gives_by_itself_is_declared_by_nobody_else(name: str, wanted: str) -> None:
     with pytest.raises(SceneError, match=f"'{name}' is declared twice: input '{name}' and "):
         parsed(name, wanted)
+
+
+def test_a_result_has_no_name_of_a_rate_beside_it() -> None:
+    more = RESULT.format(name="phi_rate")
+    with pytest.raises(SceneError, match="'phi_rate' is declared twice: the result"):
+        parsed("k", '"state_rate", "phi_rate"', more)
+
+
+@pytest.mark.parametrize("both", ["pin, pin_x", "w_y_dot, w_dot", "accelerations, w_z_dot"])
+def test_no_function_gives_an_unknown_in_a_vector_and_alone(both: str) -> None:
+    with pytest.raises(SceneError, match=r"wanted 'both' gives '.*' twice: by '.*' and alone"):
+        parsed("k", f'"both: {both}"')
 
 
 def test_what_no_wanted_function_gives_may_be_a_name() -> None:
