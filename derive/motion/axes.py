@@ -35,21 +35,16 @@ def axes_of(tape: Tape, body: Inertia) -> Axes:
         case "general":
             return principal(body)
         case "spherical":
-            return _counted_from(0, body)
+            return counted_from(0, body)
         case "axisymmetric":
-            return _counted_from(("xyz".index(body.axis or "z") + 1) % 3, body)
+            return counted_from(("xyz".index(body.axis or "z") + 1) % 3, body)
     exact = [m.exact for m in body.tensor[:3] if m.exact is not None]
     if len(exact) == 3:
-        return _counted_from((exact.index(sorted(exact)[1]) - 1) % 3, body)
+        return counted_from((exact.index(sorted(exact)[1]) - 1) % 3, body)
     return _chosen(tape, body)
 
 
-def own_axes(body: Inertia) -> Axes:
-    """Return the axes x, y, z as they are."""
-    return _counted_from(0, body)
-
-
-def _counted_from(first: int, body: Inertia) -> Axes:
+def counted_from(first: int, body: Inertia) -> Axes:
     """Return the axes x, y, z counted round from the one that is a; c is then a body's own."""
 
     def along(v: Vector) -> list[Number]:

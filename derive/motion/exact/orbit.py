@@ -130,11 +130,5 @@ def orbit(one: Role, three: Role, omega: Three) -> Orbit:
 
 
 def _chosen(condition: Number, yes: Role, no: Role) -> Role:
-    return Role(
-        select(condition, yes.moment, no.moment),
-        select(condition, yes.inverse, no.inverse),
-        select(condition, yes.part, no.part),
-        select(condition, yes.root, no.root),
-        select(condition, yes.inverse_root, no.inverse_root),
-        select(condition, yes.speed, no.speed),
-    )
+    pairs = zip(vars(yes).values(), vars(no).values(), strict=True)
+    return Role(*(select(condition, a, b) for a, b in pairs))

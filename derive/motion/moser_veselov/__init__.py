@@ -9,7 +9,7 @@ out once, by ``plan_dmv``; the sums carry their rounding remainder from call to 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from derive.motion.axes import Axes, lacking, own_axes, principal, times
+from derive.motion.axes import Axes, counted_from, lacking, principal, times
 from derive.motion.compensated import closely_added, compensated_add, compensated_sums
 from derive.motion.exact.inertia import Inertia, in_order
 from derive.motion.moser_veselov.closed_steps import (
@@ -110,7 +110,7 @@ def _back(tape: Tape, axes: Axes) -> Plan:
 
 
 def _axes(body: Inertia) -> Axes:
-    return principal(body) if body.kind == "general" else own_axes(body)
+    return principal(body) if body.kind == "general" else counted_from(0, body)
 
 
 def _modified(given: Sequence[Number], turned: Vector) -> tuple[Number, Number, list[Number]]:

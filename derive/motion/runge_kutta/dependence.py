@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
+from derive.motion.attitude.quaternion import product
 from derive.motion.runge_kutta.system import System
 from derive.program.arithmetic import EXACT
 from derive.program.program import Op, Operand, Program
@@ -62,7 +63,9 @@ def attitude_turns(system: System) -> bool:
 
 def _agrees(program: Program, trial: int) -> bool:
     names = [c for q in program.inputs for c in q.components]
-    values = {n: Fraction(7 * k * k + 5 * trial, 3 * k + trial + 1) for k, n in enumerate(names)}
+    values: dict[str, Any] = {
+        n: Fraction(7 * k * k + 5 * trial, 3 * k + trial + 1) for k, n in enumerate(names)
+    }
     parts = {q.name: [values[c] for c in q.components] for q in program.inputs}
     if not {"attitude", "omega"} <= parts.keys():
         return False
@@ -70,15 +73,5 @@ def _agrees(program: Program, trial: int) -> bool:
         found = run(program, EXACT, list(values.values()))
     except KeyError:  # a sine or a root: no such kinematics
         return False
-    return found == _kinematics(parts["attitude"], parts["omega"])
-
-
-def _kinematics(q: Sequence[Fraction], omega: Sequence[Fraction]) -> list[Fraction]:
-    w, x, y, z = (part / 2 for part in q)
-    a, b, c = omega
-    return [
-        -x * a - y * b - z * c,
-        w * a + y * c - z * b,
-        w * b + z * a - x * c,
-        w * c + x * b - y * a,
-    ]
+    turns: list[Any] = [0, *parts["omega"]]
+    return found == product([q / 2 for q in parts["attitude"]], turns)
