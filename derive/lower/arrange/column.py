@@ -73,10 +73,10 @@ def _rewritten(column: Matrix, rule: Rule, known: Known) -> Matrix | None:
     return None
 
 
-def in_answers(question: Question, rule: Rule, known: Known) -> Question:
-    """Return the question with answers rewritten, four after another, wherever a rule applies."""
+def in_answers(question: Question, rule: Rule, known: Known, size: int) -> Question:
+    """Return the question with answers rewritten, ``size`` one after another, by a rule."""
     answers, symbols = dict(question.answers), list(question.answers)
-    for own in (symbols[k : k + 4] for k in range(len(symbols) - 3)):
+    for own in (symbols[k : k + size] for k in range(len(symbols) - size + 1)):
         made = rule(Matrix([answers[s] for s in own]), known)
         answers |= {} if made is None else dict(zip(own, made, strict=True))
     return replace(question, answers=answers, definitions={**question.definitions, **known.taken()})

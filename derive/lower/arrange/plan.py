@@ -84,9 +84,10 @@ def _ruled(known: Mechanism, question: Question) -> Way:
     for rule in OF_COLUMNS:
         question = in_definitions(question, rule, own)
     for rule in OF_ANSWERS:
-        question = in_answers(question, rule, own)
+        question = in_answers(question, rule, own, 4)
     for rule in OF_ROWS:
         question = in_rows(question, sheet, rule, own)
+        question = in_answers(question, rule, own, 3)
     question = tidied(question, sheet, lambda e: with_like_terms(e, own.constant))
     return Way(question, OF_BLOCKS, own.families, MOST_TERMS)
 
