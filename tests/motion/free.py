@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 from derive.motion.exact import flow_exact
 from derive.motion.exact.inertia import Inertia
 from derive.program.arithmetic import MANTISSA, extended, paired, working
-from derive.program.program import Program, Quantity
+from derive.program.program import Program
 from derive.program.recorded import needed
 from derive.program.run import run
-from derive.program.tape import Number, Tape, number
+from derive.program.tape import Number, Tape
+from tests.motion.stepped import TENSOR, body, quantity
 
 Rows = NDArray[Any]
-TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
 STATE = ("q0", "q1", "q2", "q3", "wx", "wy", "wz", "t")
 DATA = Path(__file__).parent.parent / "data" / "rotations.json"
 DIGITS = 220  # bits: reference values have 40 digits
@@ -49,16 +49,12 @@ class Flow:
         return np.stack([np.broadcast_to(x, len(states)) for x in found], axis=1)
 
 
-def quantity(name: str, components: Sequence[str]) -> Quantity:
-    return Quantity(name, tuple(components), (len(components),), "", "", None, None, "")
-
-
-def recorded(body: Callable[[list[Number]], Inertia]) -> Flow:
+def recorded(made: Callable[[list[Number]], Inertia]) -> Flow:
     """Return the motion of a body that is made of the six entries of its tensor."""
     setup = Tape("p")
     tape = Tape("t", below=setup)
     given = [tape.input(name) for name in STATE]
-    inertia = body([setup.input(name) for name in TENSOR])
+    inertia = made([setup.input(name) for name in TENSOR])
     attitude, omega = flow_exact(inertia, given[:4], given[4:7], given[7])
     results = tuple(x.operand for x in (*attitude, *omega))
     sources, names = list(setup.names), [name for name, _ in setup.names.values()]
@@ -78,17 +74,7 @@ def recorded(body: Callable[[list[Number]], Inertia]) -> Flow:
 @cache
 def flow(kind: str) -> Flow:
     """Return the motion of a body of a kind; a body of revolution has its axis along z."""
-    none = number(0)
-    return recorded(
-        {
-            "general": lambda t: Inertia((t[0], t[1], t[2], t[3], t[4], t[5]), "general", None),
-            "principal": lambda t: Inertia((*t[:3], none, none, none), "principal", None),
-            "axisymmetric": lambda t: Inertia(
-                (t[0], t[0], t[2], none, none, none), "axisymmetric", "z"
-            ),
-            "spherical": lambda t: Inertia((t[0], t[0], t[0], none, none, none), "spherical", None),
-        }[kind]
-    )
+    return recorded(partial(body, kind))
 
 
 @dataclass(frozen=True)

@@ -179,15 +179,15 @@ def _stepper(
     ends: tuple[Sequence[Number], Sequence[Number]],
 ) -> Stepper:
     sources = tuple(setup.names)
-    constants = _quantity("constants", [setup.names[x][0] for x in sources])
+    constants = quantity("constants", [setup.names[x][0] for x in sources])
     constants = replace(constants, role="constants")
-    planned, state = _quantity("plan", plan), _quantity("state", _named("s", len(ends[1])))
+    planned, state = quantity("plan", plan), quantity("state", _named("s", len(ends[1])))
     step = Quantity("h", ("h",), (), "", "", None, None, "")
-    omega = _quantity("omega", ["w0", "w1", "w2"])
+    omega = quantity("omega", ["w0", "w1", "w2"])
     first, second = (tuple(number(x).operand for x in end) for end in ends)
     return Stepper(
         Program(
-            "setup", "", (_quantity("inertia", TENSOR),), (constants,),
+            "setup", "", (quantity("inertia", TENSOR),), (constants,),
             needed(setup.ops, sources), sources, arithmetic="pairs",
         ),
         Program(
@@ -195,14 +195,14 @@ def _stepper(
             needed(tapes[0].ops, first), first,
         ),
         Program(
-            "step", "", (constants, planned, step, state), (_quantity("next", state.components),),
+            "step", "", (constants, planned, step, state), (quantity("next", state.components),),
             needed(tapes[1].ops, second), second,
         ),
         len(ends[1]),
     )  # fmt: skip
 
 
-def _quantity(name: str, components: Sequence[str]) -> Quantity:
+def quantity(name: str, components: Sequence[str]) -> Quantity:
     return Quantity(name, tuple(components), (len(components),), "", "", None, None, "")
 
 

@@ -17,7 +17,7 @@ from derive.program.recorded import needed
 from derive.program.run import run
 from derive.program.tape import Number, Tape
 from tests.made import thinned
-from tests.motion.free import quantity
+from tests.motion.stepped import quantity
 
 MANY: dict[str, Callable[..., Any]] = {
     "number": lambda q: mpmath.mpf(q.numerator) / q.denominator,

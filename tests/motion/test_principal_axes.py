@@ -14,7 +14,8 @@ from derive.program.program import Program
 from derive.program.recorded import needed
 from derive.program.run import run
 from derive.program.tape import Tape, number
-from tests.motion.free import TENSOR, Rows, quantity
+from tests.motion.free import Rows
+from tests.motion.stepped import TENSOR, quantity
 
 MOMENTS = (
     (1.0, 2.0, 3.0),
