@@ -61,13 +61,17 @@ def test_what_the_recipes_name_stands_where_they_say() -> None:
     assert astray(recipes) == []
     assert astray(recipes.replace("`FUNCTIONS`", "`MISLAID`")) == ["MISLAID"]
     assert astray("| `derive/scene/gone.py` | a row | |") == ["derive/scene/gone.py"]
+    assert astray("as `scene/gone.py` has it") == ["derive/scene/gone.py"]
 
 
 def astray(recipes: str) -> list[str]:
     """Return the files and, row by row, the tables and functions that are not where recipes say."""
     made = r"midpoint|julia|finite"  # by whoever follows the recipes
     paths = re.findall(r"`((?:derive|tests|docs|bench|templates)/[\w/]*[\w.]*)`", recipes)
-    lost = [p for p in paths if not (ROOT / p).exists() and not re.search(made, p)]
+    every = [
+        f"derive/{p}" for p in re.findall(r"`((?!derive|tests|bench)\w+/[\w/]+\.py)`", recipes)
+    ]
+    lost = [p for p in paths + every if not (ROOT / p).exists() and not re.search(made, p)]
     for row in re.findall(r"^\| `.*$", recipes, re.MULTILINE):
         where, what = row.split("|")[1:3]
         files = [
