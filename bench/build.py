@@ -3,6 +3,7 @@
 import struct
 import subprocess
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -11,6 +12,7 @@ from bench.candidate import Candidate
 
 Row = tuple[float, ...]
 
+TOOLS = ("gcc", "valgrind")
 SHARED = ("-fno-lto", "-w")
 DRIVER = ("-O2", *SHARED)
 # Valgrind 3.19 knows no AVX-512; without it both compilers use AVX2 and FMA.
@@ -44,6 +46,15 @@ def run(command: Sequence[str], given: bytes = b"") -> bytes:
         said = done.stderr.decode(errors="replace")[-2000:]
         raise BuildError(f"`{' '.join(command)}` ended with {done.returncode}: {said}")
     return done.stdout
+
+
+def versions() -> dict[str, str | None]:
+    """Return what each of ``TOOLS`` says that it is; None for one that is not there."""
+    found: dict[str, str | None] = dict.fromkeys(TOOLS)
+    for tool in TOOLS:
+        with suppress(BuildError):
+            found[tool] = run((tool, "--version")).decode().splitlines()[0]
+    return found
 
 
 def build(candidate: Candidate, column: Column, folder: Path) -> Path:

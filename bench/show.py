@@ -1,17 +1,17 @@
 """What `make bench` prints and writes: one row an author and problem, and the same as JSON."""
 
 import json
-import subprocess
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
-from bench.build import O2, O3_CONTRACTED, O3_NATIVE
+from bench.build import O2, O3_CONTRACTED, O3_NATIVE, versions
 from bench.contest import Entry, authors, contest, overhead
 from bench.problem import PROBLEMS, Problem
 from bench.sample import SETS
@@ -20,7 +20,6 @@ from derive.emit.files import write
 
 SAMPLES_IN_A_SET = 1000
 COLUMNS = (O2.name, O3_NATIVE.name, O3_CONTRACTED.name)
-TOOLS = ("gcc", "valgrind")
 
 
 def bench(generated: Path, out: Path | None, console: Console, progress: Progress) -> int:
@@ -96,23 +95,16 @@ def figures(entries: Sequence[Entry], loop: float | None) -> str:
     """Return the JSON of a run."""
     whole = {
         "generator": f"derive {__version__}",
-        "tools": {tool: _version(tool) for tool in TOOLS},
+        "tools": versions(),
         "loop_instructions": loop,
         "samples_in_a_set": SAMPLES_IN_A_SET,
         "unit_of_error": "2^-53 of the norm of the output",
-        "entries": [_entry(entry) for entry in entries],
+        "entries": [as_data(entry) for entry in entries],
     }
     return json.dumps(whole, indent=1) + "\n"
 
 
-def _entry(entry: Entry) -> dict[str, object]:
+def as_data(entry: Any) -> dict[str, Any]:
+    """Return an entry of any contest as plain values, the total of its operations first."""
     flops = None if entry.flops is None else {"total": entry.flops.total, **asdict(entry.flops)}
     return {**asdict(entry), "flops": flops}
-
-
-def _version(tool: str) -> str | None:
-    try:
-        done = subprocess.run([tool, "--version"], capture_output=True, text=True, check=True)
-    except (FileNotFoundError, subprocess.CalledProcessError):
-        return None
-    return done.stdout.splitlines()[0]

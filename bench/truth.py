@@ -44,7 +44,8 @@ def _slope(value: Ball) -> Ball:
     return value[1] if isinstance(value, arb_series) else arb(0)
 
 
-def _cross(a: Column, b: Column) -> Column:
+def cross(a: Column, b: Column) -> Column:
+    """Return a x b."""
     return [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -52,7 +53,8 @@ def _cross(a: Column, b: Column) -> Column:
     ]
 
 
-def _dot(a: Column, b: Column) -> Ball:
+def dot(a: Column, b: Column) -> Ball:
+    """Return a . b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
@@ -69,21 +71,22 @@ def _tensor(p: Column) -> list[Column]:
     return [[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]
 
 
-def _applied(rows: list[Column], a: Column) -> Column:
-    return [_dot(row, a) for row in rows]
+def applied(rows: list[Column], a: Column) -> Column:
+    """Return a matrix, given by its rows, times a column."""
+    return [dot(row, a) for row in rows]
 
 
 def _solved(rows: list[Column], b: Column) -> Column:
     """Return the solution of a symmetric system, by cofactors."""
-    cofactors = [_cross(rows[1], rows[2]), _cross(rows[2], rows[0]), _cross(rows[0], rows[1])]
-    determinant = _dot(rows[0], cofactors[0])
-    return [value / determinant for value in _applied(cofactors, b)]
+    cofactors = [cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])]
+    determinant = dot(rows[0], cofactors[0])
+    return [value / determinant for value in applied(cofactors, b)]
 
 
 def _spin_rate(inertia: list[Column], w: Column, moment: Column, wheels: Column) -> Column:
     """Return I^-1 (M - omega x (I omega + h)) for the tensor and momentum given."""
-    momentum = _add(_applied(inertia, w), wheels)
-    return _solved(inertia, _add(moment, _cross(momentum, w)))
+    momentum = _add(applied(inertia, w), wheels)
+    return _solved(inertia, _add(moment, cross(momentum, w)))
 
 
 def _free_body(p: Column, x: Column, _: str) -> Column:
@@ -101,7 +104,7 @@ def _heavy_top(p: Column, x: Column, _: str) -> Column:
     axes = [w[0], w[1], precession * theta.cos()]
     momentum = [A * w[0], A * w[1], C * w[2]]
     moment = [m * g * length * theta.sin(), arb(0), arb(0)]
-    rate = _add(moment, _cross(momentum, axes))
+    rate = _add(moment, cross(momentum, axes))
     return [precession, w[0], w[2] - axes[2], rate[0] / A, rate[1] / A, rate[2] / C]
 
 
@@ -110,8 +113,8 @@ def _gyrostat(p: Column, x: Column, _: str) -> Column:
     axial = p[6:9]
     inertia = _tensor(p[:6])
     carrier = [[e - axial[i] * (i == j) for j, e in enumerate(r)] for i, r in enumerate(inertia)]
-    momentum = _add(_applied(inertia, w), [c * v for c, v in zip(axial, s, strict=True)])
-    load = _add(moment, _scaled(arb(-1), u), _cross(momentum, w))
+    momentum = _add(applied(inertia, w), [c * v for c, v in zip(axial, s, strict=True)])
+    load = _add(moment, _scaled(arb(-1), u), cross(momentum, w))
     w_dot = _solved(carrier, load)
     s_dot = [torque / c - a for torque, c, a in zip(u, axial, w_dot, strict=True)]
     across = phi.sin() * w[1] + phi.cos() * w[2]
@@ -123,8 +126,8 @@ def _gyrostat(p: Column, x: Column, _: str) -> Column:
 def _turned(q: Column, a: Column, rotation: str) -> Column:
     """Return R a by quaternion products; "unit" adds what |q|^2 lacks to one."""
     w, v = q[0], q[1:]
-    both = _add(_scaled(w, _cross(v, a)), _cross(v, _cross(v, a)))
-    size = arb(1) if rotation == "unit" else w * w + _dot(v, v)
+    both = _add(_scaled(w, cross(v, a)), cross(v, cross(v, a)))
+    size = arb(1) if rotation == "unit" else w * w + dot(v, v)
     return _add(_scaled(size, a), _scaled(arb(2), both))
 
 
@@ -132,8 +135,8 @@ def _rigid_body(p: Column, x: Column, rotation: str) -> Column:
     q, v, w, force, moment = x[3:7], x[7:10], x[10:13], x[13:16], x[16:19]
     v_dot = [value / p[0] for value in _turned(q, force, rotation)]
     w_dot = _spin_rate(_tensor(p[1:]), w, moment, [arb(0)] * 3)
-    vector = _add(_scaled(q[0], w), _cross(q[1:], w))
-    q_dot = [-_dot(q[1:], w) / 2, *(value / 2 for value in vector)]
+    vector = _add(_scaled(q[0], w), cross(q[1:], w))
+    q_dot = [-dot(q[1:], w) / 2, *(value / 2 for value in vector)]
     return v + q_dot + v_dot + w_dot
 
 

@@ -13,6 +13,7 @@ from typing import Any
 from flint import arb, arb_series, ctx, fmpq
 
 from bench.motion.case import Case, case
+from bench.truth import applied, cross, dot
 from derive.program.added import added
 
 BITS, TERMS, DIGITS = 420, 60, 40
@@ -126,16 +127,15 @@ def _cut(series: Any, terms: int) -> Any:
 
 def _rates(case: Case, inverse: list[Row], state: Row) -> Row:
     q, w = state[:4], state[4:]
-    momentum = [a + _arb(b) for a, b in zip(_applied(_tensor(case), w), case.wheel, strict=True)]
-    turning = _cross(momentum, w)
+    momentum = [a + _arb(b) for a, b in zip(applied(_tensor(case), w), case.wheel, strict=True)]
+    turning = cross(momentum, w)
     load = [a + _arb(b) for a, b in zip(turning, case.moment, strict=True)]
     if any(case.weight):
-        down = _cross(_third_row(q), [_arb(x) for x in case.weight])
+        down = cross(_third_row(q), [_arb(x) for x in case.weight])
         load = [a + b for a, b in zip(load, down, strict=True)]
     half = arb(1) / 2
-    vector = [q[0] * a + b for a, b in zip(w, _cross(q[1:], w), strict=True)]
-    scalar = -(q[1] * w[0] + q[2] * w[1] + q[3] * w[2])
-    return [scalar * half, *(x * half for x in vector), *_applied(inverse, load)]
+    vector = [q[0] * a + b for a, b in zip(w, cross(q[1:], w), strict=True)]
+    return [-dot(q[1:], w) * half, *(x * half for x in vector), *applied(inverse, load)]
 
 
 def _third_row(q: Row) -> Row:
@@ -151,21 +151,9 @@ def _tensor(case: Case) -> list[Row]:
 
 def _inverse(case: Case) -> list[Row]:
     rows = _tensor(case)
-    cofactors = [_cross(rows[1], rows[2]), _cross(rows[2], rows[0]), _cross(rows[0], rows[1])]
-    determinant = sum((a * b for a, b in zip(rows[0], cofactors[0], strict=True)), arb(0))
+    cofactors = [cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])]
+    determinant = dot(rows[0], cofactors[0])
     return [[x / determinant for x in row] for row in cofactors]
-
-
-def _applied(rows: list[Row], a: Row) -> Row:
-    return [r[0] * a[0] + r[1] * a[1] + r[2] * a[2] for r in rows]
-
-
-def _cross(a: Row, b: Row) -> Row:
-    return [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 
 
 def _norm(a: Row) -> Any:

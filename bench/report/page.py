@@ -9,12 +9,13 @@ from typing import Any
 
 from markupsafe import Markup
 
+from bench.build import TOOLS
 from bench.report.case_run import PRECISIONS, Found, attainable
 from bench.report.look import look
 from bench.report.plots import panels, svg
 from bench.report.proposals import proposal_says
 from bench.report.recommend import ERRORS, advice, choice, overall, says, sentence
-from bench.report.record import PACKAGES, RULES, TOOLS, Report, best, data, kinds
+from bench.report.record import PACKAGES, RULES, Report, best, data, kinds
 from derive import __version__
 from derive.emit.templates import templates_of
 

@@ -4,12 +4,12 @@ import json
 import math
 import platform
 import re
-import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
+from bench.build import versions
 from bench.motion.peers import PEERS
 from bench.motion.step_jacobian import Entry
 from bench.report.case_run import PRECISIONS, Found, attainable
@@ -22,6 +22,7 @@ from bench.report.point import Point
 from bench.report.proposals import Proposal, proposal_says
 from bench.report.recommend import ERRORS, advice, overall, says, sentence
 from bench.report.targets import Target
+from bench.show import as_data
 from derive import __version__
 
 RULES = {
@@ -35,7 +36,6 @@ RULES = {
     "time": "fastest of several runs of the whole motion, without set-up or compilation",
 }
 FLAT = re.compile(r"\{[^{}\[\]]*\}")  # what holds only numbers and words goes on one line
-TOOLS = ("gcc", "valgrind")
 PACKAGES = ("numpy", *(peer.package for peer in PEERS), "symforce", "sympy")
 
 
@@ -71,7 +71,7 @@ def data(report: Report) -> dict[str, Any]:
         "cases": [_case(f) for f in report.found],
         "hard_cases": [_hard(h) for h in report.hard],
         "orders": [asdict(o) | {"agrees": o.agrees} for o in report.orders],
-        "step_and_jacobian": [_entry(e) for e in report.tools],
+        "step_and_jacobian": [as_data(e) for e in report.tools],
         "gyroscopic_term": [asdict(g) for g in report.gyroscopic],
         "functions": [asdict(f) for f in report.functions],
         "counts": [asdict(c) for c in report.counts],
@@ -165,11 +165,6 @@ def _hard(row: Hard) -> dict[str, Any]:
     return asdict(row) | verdicts | {"command": "derive report --only hard"}
 
 
-def _entry(entry: Entry) -> dict[str, Any]:
-    flops = None if entry.flops is None else {"total": entry.flops.total, **asdict(entry.flops)}
-    return asdict(entry) | {"flops": flops}
-
-
 def _plain(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {str(k): _plain(v) for k, v in value.items()}
@@ -180,19 +175,8 @@ def _plain(value: Any) -> Any:
 
 def machine() -> dict[str, str | None]:
     """Return what a run is made with, by name; None for what is not there."""
-    return {"processor": platform.machine(), **_versions()}
-
-
-def _versions() -> dict[str, str | None]:
-    return {tool: _said(tool) for tool in TOOLS} | {name: _installed(name) for name in PACKAGES}
-
-
-def _said(tool: str) -> str | None:
-    try:
-        done = subprocess.run([tool, "--version"], capture_output=True, text=True, check=True)
-    except (FileNotFoundError, subprocess.CalledProcessError):
-        return None
-    return done.stdout.splitlines()[0]
+    packages = {name: _installed(name) for name in PACKAGES}
+    return {"processor": platform.machine(), **versions(), **packages}
 
 
 def _installed(name: str) -> str | None:
