@@ -1,19 +1,38 @@
 """The programs of scenes, made once for all tests of a process: most of them ask for the same."""
 
+import tomllib
 from collections.abc import Iterable
+from decimal import Decimal
 from functools import cache
 from typing import Any
 
 import pytest
 
 from derive.library.library import Library, library
-from derive.scene import Machine, Scene, load
+from derive.scene import CATALOGUE, Machine, catalogue, load
+from derive.scene.declaration import ShortForm
+from derive.scene.short_form import read_scene
 
 
 @cache
-def scene_of(source: str) -> Scene | Machine:
+def scene_of(source: str) -> Machine:
     """Return a scene, by its name or path."""
     return load(source)
+
+
+def short(text: str) -> ShortForm:
+    """Return a scene of a single body as its short form declares it, by its text."""
+    return read_scene(tomllib.loads(text, parse_float=Decimal), "short", text)
+
+
+@cache
+def short_of(name: str) -> ShortForm:
+    """Return what a short scene of the catalogue declares."""
+    return short((CATALOGUE / f"{name}.toml").read_text(encoding="utf-8"))
+
+
+SHORT = tuple(name for name in catalogue() if scene_of(name).groups is not None)
+"""Scenes of the catalogue in short form."""
 
 
 @cache

@@ -24,15 +24,13 @@ from derive.check.emitted import Emitted, Files, casadi_module, files, is_double
 from derive.check.energy import emitted_balance, energy_balance
 from derive.check.fresh import fresh
 from derive.check.inlined import inlined
-from derive.check.invariants import power_balance, turned_axes
 from derive.check.motion import orders, step_slopes
 from derive.check.particles import clouds
 from derive.check.refusals import casadi_status, refusal
 from derive.check.sphere import near_a_sphere
-from derive.check.turned import turned_axes as turned_axes_of_machine
+from derive.check.turned import turned_axes
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library, library
-from derive.mechanics.mechanism import Mechanism
 from derive.scene import load
 from derive.verify.kept import stated_figures
 from derive.verify.motion_error import with_motion
@@ -154,13 +152,9 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
             yield casadi_status(one, module)
         plain = [s for s in each if s.kind == "ordinary"][: FEW * FEW]
         yield from clouds(one.library, plain[:FEW])
-        if isinstance(one.library.known, Mechanism):
-            yield from energy_balance(one.library, plain[:TWO])
-            yield from emitted_balance(one, plain[:TWO])
-            yield from turned_axes_of_machine(one, few, stated)
-        else:
-            yield from power_balance(one, plain)
-            yield from turned_axes(one, plain)
+        yield from energy_balance(one.library, plain[:TWO])
+        yield from emitted_balance(one, plain[:TWO])
+        yield from turned_axes(one, few, stated)
     if drawn.skipped:
         kinds = ", ".join(drawn.skipped)
         name = one.library.known.scene.name

@@ -18,11 +18,13 @@ from flint import arb, arb_mat, ctx
 from derive.program.precision import Precision
 from derive.program.program import Program
 from derive.program.status import CONSTANT, INERTIA, LENGTH, MASS, PARAMETER, RIGHT, SAYS, statuses
-from derive.scene import Machine, Scene
+from derive.scene import Machine
 from derive.scene.formula import Formula, evaluate, symbols
+from derive.scene.machine import Tensor
 from derive.verify.operators import IN_BALLS
 
 BITS = 400
+STATUS = {"mass": MASS, "length": LENGTH, "inertia": INERTIA}
 Values = Mapping[str, float]
 Entries = Mapping[tuple[int, int], Any]
 
@@ -50,7 +52,7 @@ class Ends:
     tiny: bool
 
 
-def allowed(scene: Scene | Machine, values: Values, precision: Precision) -> set[int]:
+def allowed(scene: Machine, values: Values, precision: Precision) -> set[int]:
     """Return each status that the declaration allows: one, or 0 and another where it is close.
 
     values : of set-up's parameters alone
@@ -70,26 +72,13 @@ def allowed(scene: Scene | Machine, values: Values, precision: Precision) -> set
         return found | {RIGHT}
 
 
-def _margins(scene: Scene | Machine, told: Told, precision: Precision) -> Iterator[tuple[int, int]]:
+def _margins(scene: Machine, told: Told, precision: Precision) -> Iterator[tuple[int, int]]:
     """Yield the status of every rule, with 1 where it is kept, -1 where broken, 0 for close."""
-    bodies = scene.bodies if isinstance(scene, Machine) else (scene.body,)
-    for body in bodies:
-        tube = [body.lengths[n] for n in ("outer", "inner") if n in body.lengths]
-        gap = [tube[0] - tube[1]] if len(tube) == 2 else []
-        for status, own in ((MASS, [body.mass]), (LENGTH, [*body.lengths.values(), *gap])):
-            for formula in own:
-                if formula is not None and told.all_of(formula):
-                    yield from _above(told[formula], status)
-    if isinstance(scene, Machine):
-        for body in scene.bodies:
-            yield INERTIA, _judged(_tensor(body.inertia, told), "not negative", precision)
-        return
-    for wheel in scene.wheels:
-        if told.all_of(wheel.axial):
-            yield from _above(told[wheel.axial], INERTIA)
-    axis = "xyz".index(scene.body.axis) if scene.body.kind == "rod" and scene.body.axis else None
-    whole = {p: x for p, x in _tensor(scene.body.inertia, told).items() if axis not in p}
-    yield INERTIA, _judged(_without_wheels(scene, whole, told), "positive", precision)
+    for demand in scene.demands:
+        if isinstance(demand, Tensor):
+            yield INERTIA, _judged(_tensor(demand.entries, told), demand.relation, precision)
+        elif told.all_of(demand.formula):
+            yield from _above(told[demand.formula], STATUS[demand.kind])
 
 
 def _above(x: Any, status: int) -> Iterator[tuple[int, int]]:
@@ -107,17 +96,6 @@ def _tensor(inertia: Sequence[Formula | None], told: Told) -> dict[tuple[int, in
         for p, f in zip(places, inertia, strict=True)
         if f is not None and told.all_of(f)
     }
-
-
-def _without_wheels(scene: Scene, tensor: Entries, told: Told) -> Entries:
-    left = dict(tensor)
-    for i, k in tensor:
-        for w in scene.wheels:
-            if not (told.all_of(w.axial) and told.all_of(w.axis[i]) and told.all_of(w.axis[k])):
-                left.pop((i, k), None)
-            elif (i, k) in left:
-                left[i, k] -= told[w.axial] * told[w.axis[i]] * told[w.axis[k]]
-    return left
 
 
 def _judged(tensor: Entries, relation: str, precision: Precision) -> int:
@@ -179,9 +157,7 @@ def _odd(values: Values, name: str, dice: Random, ends: Sequence[float]) -> floa
     return dice.choice((*choices, x * (0.5 + dice.random()), x * (0.5 + dice.random())))
 
 
-def fault(
-    scene: Scene | Machine, values: Values, precision: Precision, status: int, ends: Ends
-) -> str:
+def fault(scene: Machine, values: Values, precision: Precision, status: int, ends: Ends) -> str:
     """Return what is wrong with a status that set-up returned; "" if nothing is."""
     may = allowed(scene, values, precision)
     refused = set(SAYS) - {RIGHT, PARAMETER}

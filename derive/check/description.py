@@ -12,7 +12,7 @@ from typing import Any
 
 from flint import arb
 
-from derive.mechanics.words import attitude
+from derive.mechanics.words import rate_of_each
 from derive.scene import Machine
 from derive.scene.declaration import Axis, Triple, Turning
 from derive.scene.formula import ZERO, Formula, number, substitute, symbol
@@ -51,6 +51,10 @@ class Description:
     frames: frozenset[str]
 
     @cached_property
+    def _rates(self) -> Mapping[str, str]:
+        return rate_of_each(self.machine)
+
+    @cached_property
     def rows(self) -> list[list[Fraction]]:
         """Return R, whose columns are the images of the unit vectors."""
         w, *v = self.turn
@@ -74,6 +78,7 @@ class Description:
             momentum=replace(place, at=self._triple(place.at, place.frame)),
             results=results,
             steady=steady,
+            inverse=replace(self, machine=machine.inverse).told() if machine.inverse else None,
         )
 
     def given(self, values: Mapping[str, Any]) -> dict[str, Any]:
@@ -89,7 +94,7 @@ class Description:
         """Return answers, in balls, with vectors and quaternions as the machine tells them."""
         found = dict(answers)
         for q, (left, right) in self._attitudes():
-            parts = [f"{c}_rate" for c in q]
+            parts = [self._rates[c] for c in q]
             if parts[0] in answers:
                 first, last = (list(map(_ball, r)) for r in (_back(left), right))
                 turned = product(product(first, [answers[c] for c in parts]), last)
@@ -105,8 +110,8 @@ class Description:
     def _attitudes(self) -> Iterator[tuple[list[str], tuple[Quaternion, Quaternion]]]:
         """Yield the quaternions of the state, each with the turns of its parent and its frame."""
         for frame in self.machine.frames:
-            if frame.quaternion:
-                parts = [f"{attitude(frame.name)}_{p}" for p in ("w", *XYZ)]
+            if frame.attitude:
+                parts = [f"{frame.attitude}_{p}" for p in ("w", *XYZ)]
                 yield parts, (self._turn(frame.parent), self._turn(frame.name))
 
     def _turn(self, frame: str) -> Quaternion:
@@ -177,6 +182,7 @@ class Description:
         return replace(
             body, turned=self._turned(body.turned), centre=centre, angular_velocity=omega,
             inertia=inertia, axis=axis, spin=spin,
+            spin_axis=self._maybe(body.spin_axis, body.frame),
         )  # fmt: skip
 
     def _inertia(self, inertia: Entries) -> Entries:

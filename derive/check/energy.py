@@ -16,11 +16,10 @@ from derive.check.emitted import Emitted
 from derive.check.particles import AGREE, digits
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library, library
-from derive.mechanics.mechanism import Mechanism
 from derive.program.largest import largest
 from derive.program.program import Program, component_names
 from derive.program.run import run
-from derive.scene import Input, Machine, SceneError
+from derive.scene import Input, SceneError
 from derive.scene.results import ENERGIES
 from derive.verify.cloud import Answers, answers
 from derive.verify.cloud.power import Powers, powers
@@ -40,8 +39,6 @@ Rates = Callable[[Sample, Mapping[str, Any]], Mapping[str, Any]]
 
 def energy_balance(made: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether every energy of a machine changes by the power of the loads that change it."""
-    if not isinstance(made.known, Mechanism):
-        return
     for program, names in _energies(made):
         row = (made.known.scene.name, program.name, "exact", "power balance")
         try:
@@ -106,7 +103,6 @@ def rates_of(made: Library) -> Library | None:
         return None
     if any(p.name == RATES for p in (*made.functions, *made.rates)):
         return made
-    assert isinstance(scene, Machine)  # noqa: S101
     return library(replace(scene, wanted=(RATES,), asked={RATES: (RATES,)}))
 
 
@@ -137,7 +133,6 @@ def _emitted(one: Emitted, program: Program, others: Rates) -> Rates:
 def power_gaps(made: Library, rates: Rates, program: Program, sample: Sample) -> list[Any]:
     """Return how far the rates of a program's energies are from powers, beside their terms."""
     scene = made.known.scene
-    assert isinstance(scene, Machine)  # noqa: S101
     with ctx.workprec(BITS):
         at = unit_attitude(made, {c: arb(x) for c, x in sample.values.items()})
         with mp.workdps(DIGITS):

@@ -9,15 +9,13 @@ from mpmath import mp, mpf
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library
 from derive.mechanics.mechanism import Mechanism
-from derive.mechanics.truth import Truth
+from derive.mechanics.problem import Problem
 from derive.mechanics.words import MATRICES
 from derive.program.largest import largest
-from derive.scene import Input, Machine, Scene
+from derive.scene import Input, Machine
 from derive.scene.formula import symbols
-from derive.scene.long_form import FRAME, long_form
 from derive.scene.machine import Result
 from derive.scene.results import written_out
-from derive.scene.rules import FORWARD
 from derive.verify.cloud import Answers, answers
 from derive.verify.cloud.series import DIGITS
 from derive.verify.cloud.small import at_rest, slopes
@@ -43,12 +41,10 @@ def clouds(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
             true = reference(question, values, ())
             with mp.workdps(DIGITS):
                 given = {name: digits(x) for name, x in values.items()}
-            if not isinstance(known, Mechanism):
-                gaps = _apart(fact, true, of_one_body(known.scene, base, given))
-            elif base == "linearised" or fact.outputs[0].name in MATRICES:
+            if base == "linearised" or fact.outputs[0].name in MATRICES:
                 gaps = _small(known.scene, given, true)
             else:
-                gaps = _gaps(known.scene, given, fact, true)
+                gaps = _gaps(known.posed(base), given, fact, true)
             worst, count = largest([worst, *gaps]), count + len(gaps)
         if not count:
             says = "the cloud has no such number at these points"
@@ -67,7 +63,7 @@ def _where_it_lasts(library: Library, each: Sequence[Sample]) -> Iterator[dict[s
     """
     with ctx.workprec(BITS):
         balls = [unit_attitude(library, {c: arb(x) for c, x in s.values.items()}) for s in each]
-    steady = library.known.scene.steady if isinstance(library.known.scene, Machine) else None
+    steady = library.known.scene.steady
     if steady is None or steady.vanishes is not None or "steady" not in library.truths:
         yield from balls
     elif len(steady.unknown) == 1:
@@ -81,8 +77,7 @@ def _where_it_lasts(library: Library, each: Sequence[Sample]) -> Iterator[dict[s
 
 def _rates(library: Library) -> list[str]:
     """Return the rates of a machine's free coordinates, which rest while motion is steady."""
-    scene = library.known.scene
-    coordinates = scene.coordinates if isinstance(scene, Machine) else ()
+    coordinates = library.known.scene.coordinates
     return [c.rate.name for c in coordinates if c.free and isinstance(c.rate, Input)]
 
 
@@ -106,9 +101,10 @@ def _root(question: Equations, values: Mapping[str, Any], name: str) -> Any:
 
 
 def _gaps(
-    machine: Machine, given: Mapping[str, Any], fact: Truth, true: Mapping[str, Known]
+    known: Mechanism, given: Mapping[str, Any], fact: Problem, true: Mapping[str, Known]
 ) -> list[Any]:
     """Return how far each answer is from the cloud's, relative to the function's largest term."""
+    machine = known.scene
     cloud = answers(machine, given)
     lasts = machine.steady is not None and machine.steady.vanishes is None
     if fact.name == "steady" and lasts:
@@ -116,10 +112,10 @@ def _gaps(
     if lasts and cloud.contradiction > AGREE:
         return []
     names = [c for q in fact.outputs for c in q.components]
-    return _apart(fact, true, {n: _of_cloud(machine, cloud, fact.name, n) for n in names})
+    return _apart(fact, true, of_cloud(known, cloud, fact.name, names))
 
 
-def _apart(fact: Truth, true: Mapping[str, Known], cloud: Mapping[str, Any]) -> list[Any]:
+def _apart(fact: Problem, true: Mapping[str, Known], cloud: Mapping[str, Any]) -> list[Any]:
     """Return how far what the cloud has is from each answer, relative to the largest term."""
     names = [c for q in fact.outputs for c in q.components]
     found = [cloud.get(name) for name in names]
@@ -132,12 +128,22 @@ def _apart(fact: Truth, true: Mapping[str, Known], cloud: Mapping[str, Any]) -> 
         ]
 
 
+def of_cloud(
+    known: Mechanism, cloud: Answers, function: str, names: Sequence[str]
+) -> dict[str, Any]:
+    """Return the answers of a function that a cloud has, None for those that it has not."""
+    if function == "state_rate":
+        states = (c for q in known.words.states for c in q.components)
+        return {rate: cloud.rate(state) for rate, state in zip(names, states, strict=True)}
+    return {name: _of_cloud(known.scene, cloud, function, name) for name in names}
+
+
 def _of_cloud(machine: Machine, cloud: Answers, function: str, name: str) -> Any:
     """Return an answer of the cloud, None if it has none."""
     if function == "steady" and machine.steady is not None and machine.steady.vanishes is not None:
         return cloud.result(machine.steady.vanishes)
-    if function == "state_rate":
-        return cloud.rate(name.removesuffix("_rate"))
+    if function == "angular_momentum_rate":
+        return cloud.momentum_rate.get(name)
     if name in cloud.unknowns:
         return cloud.unknowns[name]
     if name in cloud.momenta:
@@ -148,24 +154,6 @@ def _of_cloud(machine: Machine, cloud: Answers, function: str, name: str) -> Any
     if _of_matrices(machine, result):
         return _of_slopes(machine, cloud, result)
     return cloud.result(result.formula)
-
-
-def of_one_body(scene: Scene, base: str, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what the cloud of a single body has of the quantities that such a scene speaks of."""
-    machine = long_form(scene, "sought" if base in FORWARD else "given")
-    parts = {f"{FRAME}_{p}": given[f"attitude_{p}"] for p in "wxyz" if f"attitude_{p}" in given}
-    cloud = answers(machine, {**given, **{f"attitude_{name}": x for name, x in parts.items()}})
-    found = dict(cloud.momenta)
-    for a in "xyz":
-        found[f"omega_dot_{a}"] = cloud.unknowns.get(f"omega_{a}_dot")
-        found[f"velocity_rate_{a}"] = cloud.unknowns.get(f"position_{a}_ddot")
-        if scene.point.kind != "moving":
-            found[f"rate_absolute_{a}"] = cloud.unknowns.get(f"moment_{a}")
-    if base in FORWARD:
-        rates = {f"{c.name}_dot": c.name for c in machine.coordinates if c.state}
-        rates |= {f"position_rate_{a}": f"position_{a}" for a in "xyz" if scene.position}
-        found |= {rate: cloud.rate(name) for rate, name in rates.items()}
-    return found | cloud.unknowns
 
 
 def _of_slopes(machine: Machine, cloud: Answers, result: Result) -> Any:

@@ -15,11 +15,10 @@ from derive.check.agreement import ABSURD, LARGEST_BOUND, MORE
 from derive.check.description import Description, relabelled, turned
 from derive.check.emitted import Emitted
 from derive.check.verdict import JUDGED, Outcome, Verdict
-from derive.mechanics.mechanism import Mechanism, mechanism, truth
+from derive.mechanics.mechanism import Mechanism, mechanism, problem
 from derive.mechanics.words import MATRICES
 from derive.program.largest import largest
 from derive.program.program import Program
-from derive.scene import Machine
 from derive.scene.formula import symbols
 from derive.scene.results import written_out
 from derive.verify.equations import Equations, equations
@@ -34,7 +33,6 @@ Stated = Mapping[str, Mapping[str, Mapping[str, Mapping[str, Any]]]]
 def turned_axes(one: Emitted, each: Sequence[Sample], stated: Stated) -> Iterator[Verdict]:
     """Yield whether every function is what the machine told along other axes gives."""
     scene = one.library.known.scene
-    assert isinstance(scene, Machine)  # noqa: S101
     told = {"cyclic relabelling": relabelled(scene), "rotation of axes": turned(scene)}
     for check, description in told.items():
         if description is None:
@@ -43,7 +41,7 @@ def turned_axes(one: Emitted, each: Sequence[Sample], stated: Stated) -> Iterato
             continue
         anew = mechanism(description.told())
         asked = {
-            base: None if _free_to_choose(anew, base) else equations(anew, truth(anew, base))
+            base: None if _free_to_choose(anew, base) else equations(anew, problem(anew, base))
             for base in one.library.truths
         }
         for program, true in references(one.library, each):

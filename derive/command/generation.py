@@ -10,10 +10,9 @@ from derive.emit.gallery.card import Card, card, gallery
 from derive.emit.page.lecture import lecture_page
 from derive.library.library import Library, library
 from derive.library.saving import Saving, savings
-from derive.mechanics.mechanism import Mechanism, doubts, pole
+from derive.mechanics.mechanism import doubts, pole
 from derive.program.program import Measurement
-from derive.scene import Machine, Scene, SceneError, load
-from derive.scene.rules import singular_attitude
+from derive.scene import SceneError, load
 from derive.verify.kept import Measuring, figures_of
 from derive.verify.prove import prove
 from derive.verify.reference import NoValueError
@@ -55,7 +54,7 @@ def made(source: str, measuring: Measuring) -> Made:
         measured = figures_of(programs, measuring)
     except NoValueError as error:
         rule = "formulas must have a value on all of the declared ranges"
-        why = _poles(programs) or _attitude(scene) or str(error)
+        why = scene.merging or _poles(programs) or str(error)
         raise SceneError(f"scene '{scene.name}': {rule}, but {why}") from None
     _finite(programs, measured.each)
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in doubts(programs.known))
@@ -79,13 +78,7 @@ def _ranges_of_floats(programs: Library) -> None:
 def _poles(programs: Library) -> str:
     """Return what a machine divides by that vanishes in its ranges, and where; "" if nothing."""
     known = programs.known
-    each = [pole(known, base) for base in programs.truths] if isinstance(known, Mechanism) else []
-    return next(filter(None, each), "")
-
-
-def _attitude(scene: Scene | Machine) -> str:
-    """Return where a body's three angles cannot be told apart; "" if nowhere."""
-    return "" if isinstance(scene, Machine) else singular_attitude(scene)
+    return next(filter(None, (pole(known, base) for base in programs.truths)), "")
 
 
 def _finite(programs: Library, measured: Sequence[Measurement]) -> None:

@@ -13,7 +13,7 @@ from derive.emit.c.text import pair_functions
 from derive.emit.notation import equation_text
 from derive.lecture.chapters import LECTURE
 from derive.library.library import Library
-from derive.mechanics.mechanism import Mechanism, depends_on, doubts, dropped
+from derive.mechanics.mechanism import depends_on, doubts, dropped
 from derive.program.precision import F32, F64, PRECISIONS
 from derive.program.program import Measurement, Program, Quantity, Sparsity
 from derive.program.status import possible
@@ -138,8 +138,6 @@ def _function(library: Library, program: Program, figures: Sequence[Measurement]
 
 def _choice(library: Library, program: Program) -> dict[str, Any]:
     """Return what a function of a machine depends on, and what it was found not to need."""
-    if not isinstance(library.known, Mechanism):
-        return {}
     base = program.name.removesuffix(JACOBIAN)
     if base not in library.truths:
         return {}

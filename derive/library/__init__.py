@@ -2,19 +2,20 @@
 
 The road, from a file to what is emitted; each line says what comes in, what goes out, and where:
 
-    str            -> Scene | Machine        scene.load
-    Scene | Machine -> Known                 mechanics.mechanism.in_terms
-    Known          -> Truth                  mechanics.mechanism.truth_of
-    Truth          -> Arrangement            library.function.ways
+    str            -> Machine                scene.load
+    Machine        -> Mechanism              mechanics.mechanism.mechanism
+    Mechanism      -> Problem                mechanics.mechanism.problem
+    Problem        -> Arrangement            lower.arrange.plan.arrange
     Arrangement    -> Value                  lower.lower.lower
     Value          -> Op, Operand            lower.stage.hot
     Arranged       -> Program                library.function.function
-    Scene | Machine -> Library               library.library.library
+    Machine        -> Library                library.library.library
     Library        -> Measurement            verify.stated.figures
     Library, Measurement -> str              emit.c.source.c_files
     Library        -> str                    emit.casadi_text.casadi_file
     Library, Measurement -> str              emit.manifest.manifest
 
-A truth is what the lecture says of a wanted function in a scene; an arrangement, in which order to
-compute it. Steps in time enter at the library: they are made of the rate's program and the tensor.
+A problem is what the lecture says of a wanted function in a scene; an arrangement, in which order
+to compute it. Steps in time enter at the library: they are made of the rate's program and of the
+tensor.
 """

@@ -18,8 +18,9 @@ from derive.program.operations import less, select, unit_roundoff
 from derive.program.program import Rule
 from derive.program.status import OF_KIND
 from derive.program.tape import Number, Tape, free_prefix
-from derive.scene.demands import Above, Demand, Tensor, demands, kind
+from derive.scene.demands import kind
 from derive.scene.formula import ZERO, Formula, symbols
+from derive.scene.machine import Above, Demand, Tensor
 
 SLACK = 4
 """How far a rod's tensor may be from one, in u of its trace: its entries come rounded."""
@@ -35,7 +36,7 @@ def tried(scene: Graphed, parameters: AbstractSet[str]) -> Tried:
     setting = Setting(scene, {}, None, tape)
     numbers = set(scene.known.words.numbers) | {"pi"}
     rules: dict[tuple[int, object], Rule] = {}
-    every = demands(scene.known.scene)
+    every = scene.known.scene.demands
     above = {d.formula for d in every if isinstance(d, Above) and d.kind != "inertia"}
     for demand in every:
         if isinstance(demand, Tensor) and _follows(demand, above):

@@ -7,15 +7,14 @@ from sympy import Symbol
 
 from derive.lecture.chapters import LECTURE
 from derive.lower.arrange import plan
-from derive.lower.arrange.arrange import arrange
 from derive.lower.arrange.draft import Arrangement
 from derive.lower.expand import families
 from derive.lower.forms import Block, best_values, best_with_jacobian, cost
 from derive.lower.graph import Graph, Value
 from derive.lower.lower import lower
 from derive.lower.stage import Constants, hot, used_inputs
-from derive.mechanics.mechanism import Known, Mechanism, truth_of
-from derive.mechanics.truth import Truth
+from derive.mechanics.mechanism import Mechanism, problem
+from derive.mechanics.problem import Problem
 from derive.program.pattern import compressed
 from derive.program.program import Program, Quantity, Sparsity
 from derive.scene import SceneError
@@ -29,7 +28,7 @@ class Graphed:
     best : the cheapest values of outputs, where they were looked for already
     """
 
-    known: Known
+    known: Mechanism
     graph: Graph
     leaves: Mapping[str, Value]
     constants: Constants
@@ -49,11 +48,11 @@ class Graphed:
 class Arranged:
     """A wanted function in the graph: its truth, and its output components by quantity."""
 
-    fact: Truth
+    fact: Problem
     outputs: tuple[tuple[Value, ...], ...]
 
 
-def graphed(known: Known) -> Graphed:
+def graphed(known: Mechanism) -> Graphed:
     """Return a scene in a graph that holds its parameters, states and inputs, and nothing else."""
     graph, words = Graph(), known.words
     leaves = {c: graph.parameter(c) for q in words.parameters for c in q.components}
@@ -64,8 +63,8 @@ def graphed(known: Known) -> Graphed:
 
 def arranged(scene: Graphed, base: str) -> Arranged:
     """Return what the lecture says of a function, in the cheapest way to compute it."""
-    fact = truth_of(scene.known, base)
-    found = [_lowered(scene, fact, way) for way in ways(scene.known, fact)]
+    fact = problem(scene.known, base)
+    found = [_lowered(scene, fact, way) for way in plan.arrange(scene.known, fact)]
     if len(found) == 1:
         return found[0]
     return min(found, key=lambda way: cost(scene.graph, _best(scene, way)))
@@ -78,12 +77,7 @@ def function(scene: Graphed, wanted: Arranged, name: str) -> Program:
     return _with_jacobian(scene, wanted, name)
 
 
-def ways(known: Known, fact: Truth) -> tuple[Arrangement, ...]:
-    """Return the ways to compute a wanted function: in which order, with what named in between."""
-    return plan.arrange(known, fact) if isinstance(known, Mechanism) else arrange(known, fact)
-
-
-def _lowered(scene: Graphed, fact: Truth, way: Arrangement) -> Arranged:
+def _lowered(scene: Graphed, fact: Problem, way: Arrangement) -> Arranged:
     values = lower(scene.graph, way, scene.by_symbol())
     outputs, place = [], 0
     for quantity in fact.outputs:
@@ -205,7 +199,7 @@ def _inputs_below(graph: Graph, values: Iterable[Value]) -> set[str]:
     return names
 
 
-def _program(scene: Graphed, fact: Truth, values: Sequence[Value]) -> Program:
+def _program(scene: Graphed, fact: Problem, values: Sequence[Value]) -> Program:
     words = scene.known.words
     ops, results = hot(scene.graph, scene.constants, values, scene.taken())
     inputs = used_inputs((*words.states, *words.inputs), ops, results)

@@ -12,12 +12,12 @@ from derive.library.steps import motions, needs
 from derive.lower.graph import Graph, Value
 from derive.lower.stage import Constant, Traced, Tried, in_pairs, setup, with_low_parts
 from derive.lower.wording import formula
-from derive.mechanics.mechanism import Known, in_terms
-from derive.mechanics.truth import Truth
+from derive.mechanics.mechanism import Mechanism, mechanism
+from derive.mechanics.problem import Problem
 from derive.program.program import Program, Quantity, read_by
 from derive.program.tape import Tape, free_prefix
-from derive.scene import Machine, Scene, SceneError
-from derive.scene.wanted import EQUATIONS, IN_PAIRS, base_of, moves
+from derive.scene import Machine, SceneError
+from derive.scene.wanted import ATTITUDES, IN_PAIRS, base_of, moves
 
 INVERSE = re.compile("J_([xyz][xyz])'*")
 
@@ -31,11 +31,11 @@ class Library:
     motions   : what moves the state in time, and formulas for attitudes
     """
 
-    known: Known
+    known: Mechanism
     setup: Program
     functions: tuple[Program, ...]
     constants: tuple[Constant, ...]
-    truths: Mapping[str, Truth]
+    truths: Mapping[str, Problem]
     rates: tuple[Program, ...] = ()
     motions: tuple[Program, ...] = ()
 
@@ -56,7 +56,7 @@ class Moved:
     meanings: Mapping[str, str]
 
 
-def library(scene: Scene | Machine) -> Library:
+def library(scene: Machine) -> Library:
     """Return the programs that ``scene`` asks for.
 
     Raises SceneError, with one sentence that names the scene, if there can be none.
@@ -67,8 +67,8 @@ def library(scene: Scene | Machine) -> Library:
         raise SceneError(f"scene '{scene.name}': {error}") from None
 
 
-def _library(scene: Scene | Machine) -> Library:
-    terms = graphed(in_terms(scene))
+def _library(scene: Machine) -> Library:
+    terms = graphed(mechanism(scene))
     asked, hidden = _asked(scene)
     bases = dict.fromkeys(map(base_of, (*asked, *hidden)))
     wanted = {base: arranged(terms, base) for base in bases}
@@ -96,12 +96,9 @@ def _library(scene: Scene | Machine) -> Library:
     )
 
 
-def _asked(scene: Scene | Machine) -> tuple[list[str], list[str]]:
+def _asked(scene: Machine) -> tuple[list[str], list[str]]:
     """Return the functions that satisfy equations, and those that only motions rest on."""
-    if isinstance(scene, Machine):
-        asked = [name for name in scene.wanted if not moves(name)]
-    else:
-        asked = [name for name in scene.wanted if base_of(name) in EQUATIONS]
+    asked = [name for name in scene.wanted if not moves(name) and name not in ATTITUDES]
     return asked, [name for name in needs(scene) if name not in asked]
 
 

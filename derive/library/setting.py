@@ -7,12 +7,16 @@ from derive.library.function import Graphed
 from derive.lower.graph import Graph, Value
 from derive.lower.lower import value_of
 from derive.lower.stage import Traced, exact_number, hot, used_inputs
-from derive.mechanics.mechanism import Known, Mechanism, single
+from derive.mechanics.mechanism import Mechanism
+from derive.mechanics.rotation import FreeRotation, free_rotation
 from derive.motion.exact.inertia import Inertia, as_symmetric
 from derive.program.program import Program
 from derive.program.recorded import renamed
 from derive.program.tape import Number, Tape, free_prefix, number
+from derive.scene import SceneError
 from derive.scene.wanted import SPLITTINGS, step_of
+
+MOMENT = ("moment_x", "moment_y", "moment_z")
 
 
 @dataclass
@@ -30,7 +34,7 @@ class Setting:
     given: dict[str, Value] = field(default_factory=dict)
 
     @property
-    def known(self) -> Known:
+    def known(self) -> Mechanism:
         """Return the scene in the lecture's terms."""
         return self.scene.known
 
@@ -51,7 +55,7 @@ class Setting:
 
         Moments that are the same formula are equal, whatever kind of body the scene says it is.
         """
-        tensor, by_symbol = single(self.known).bindings["I"], self.scene.by_symbol()
+        tensor, by_symbol = rotation_of(self.scene).tensor, self.scene.by_symbol()
         places = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
         values = [value_of(self.scene.graph, tensor[p], by_symbol) for p in places]
         xx, yy, zz, xy, xz, yz = (self.parameter(value) for value in values)
@@ -62,20 +66,31 @@ class Setting:
         return Tape(free_prefix("t", set(self.scene.taken())), below=self.tape)
 
 
+def rotation_of(scene: Graphed) -> FreeRotation:
+    """Return the free rotation that a step moves on.
+
+    Raises SceneError if more than one body turning freely is in motion.
+    """
+    found = free_rotation(scene.known)
+    if found is None:
+        rule = "is of bodies that turn freely as one, and other things move with these"
+        raise SceneError(f"a step of a free rotation {rule}")
+    return found
+
+
 def applied_moment(scene: Graphed) -> Program | None:
     """Return the program of the moment along the axes, for steps that kick; None if it is zero."""
     known = scene.known
-    if isinstance(known, Mechanism):
-        return None
     if not any(step_of(name) in SPLITTINGS for name in known.scene.wanted):
         return None
     by_symbol = scene.by_symbol()
-    values = [value_of(scene.graph, e, by_symbol) for e in known.bindings["M"]]
+    turning = rotation_of(scene)
+    values = [value_of(scene.graph, e, by_symbol) for e in turning.moment]
     if not any(coefficient for coefficient, _ in values):
         return None
     ops, results = hot(scene.graph, scene.constants, values, scene.taken())
     inputs = used_inputs((*known.words.states, *known.words.inputs), ops, results)
-    output = known.words["moment"]
+    output = replace(turning.omega, name="moment", components=MOMENT, unit="N m")
     return Program("applied_moment", "", inputs, (output,), ops, results)
 
 

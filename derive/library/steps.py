@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from derive.lecture.chapters import LECTURE
 from derive.library.setting import Setting
 from derive.lower.stage import used_inputs
-from derive.mechanics.mechanism import single
 from derive.mechanics.vocabulary import Vocabulary
 from derive.motion import runge_kutta
 from derive.motion.attitude.functions import attitude_program
@@ -25,7 +24,7 @@ from derive.motion.taylor.series import in_loops
 from derive.program.program import Operand, Program, Quantity
 from derive.program.recorded import called, needed
 from derive.program.tape import Number, Tape, number, seen_from
-from derive.scene import Machine, Scene, SceneError
+from derive.scene import Machine, SceneError
 from derive.scene.declaration import Given
 from derive.scene.wanted import ATTITUDES, SPLITTINGS, STEP_DERIVATIVES, TAYLOR, moves, step_of
 
@@ -52,7 +51,7 @@ SLOPES = {
 """What the derivatives of a step rest on, by kind."""
 
 
-def needs(scene: Scene | Machine) -> tuple[str, ...]:
+def needs(scene: Machine) -> tuple[str, ...]:
     """Return the equations that the wanted steps rest on, whether they are wanted themselves."""
     steps = [name for name in scene.wanted if step_of(name) in RATES]
     slopes = [SLOPES[name.rpartition("_")[2]] for name in steps if name in STEP_DERIVATIVES]
@@ -162,7 +161,7 @@ def _rotation(words: Vocabulary) -> tuple[Quantity, Quantity]:
 def _flow_exact(setting: Setting) -> Program:
     tape, words = setting.function(), setting.known.words
     attitude, omega = _rotation(words)
-    given = single(setting.known).scene.time
+    given = setting.known.scene.time
     time = _seconds("time", given, "time from the given to the new state")
     (t,) = _inputs(tape, time)
     body, rates = setting.inertia(), _inputs(tape, omega)

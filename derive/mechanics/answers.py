@@ -6,6 +6,7 @@ from functools import cached_property
 
 from sympy import Expr, Integer, Matrix, Symbol
 
+from derive.lecture.stated import stated
 from derive.mechanics.balances import Balance, Balances, Row
 from derive.mechanics.bodies import centre, centre_velocity, kinetic_energy, mass, momentum
 from derive.mechanics.choice import (
@@ -21,10 +22,9 @@ from derive.mechanics.loads import potential_energy
 from derive.mechanics.matter import without_factors
 from derive.mechanics.pivots import where
 from derive.mechanics.probe import NOTHING, POINTS, Probe, independent
-from derive.mechanics.question import Question, substituted
-from derive.mechanics.specialise import stated
+from derive.mechanics.problem import Problem, substituted
 from derive.mechanics.sweep import Weakest, probe_at, ranges, regular, weakest
-from derive.mechanics.words import MATRICES
+from derive.mechanics.words import MATRICES, rate_names
 from derive.program.program import Quantity
 from derive.scene import Input, Machine, SceneError
 from derive.scene.formula import Formula
@@ -51,7 +51,7 @@ class Answers:
     frames: Frames
     balances: Balances
 
-    def question(self, base: str) -> Question:
+    def question(self, base: str) -> Problem:
         """Return a wanted function as a question."""
         asked = self.machine.asked
         names = asked.get(base) or asked.get(base + JACOBIAN) or (base,)
@@ -62,8 +62,9 @@ class Answers:
         answers = {
             s: e for q, own in parts.items() for s, e in zip(self._symbols(q), own, strict=True)
         }
-        steps = tuple(s for name in names for s in _STEPS.get(name, ()))
-        return self._asked(base, quantities, answers, steps)
+        steps = tuple(s for name in names for s in STEPS.get(name, ()))
+        found = self._asked(base, quantities, answers, steps)
+        return replace(found, says=SAYS[base]) if (base,) == names and base in SAYS else found
 
     def _symbols(self, q: Quantity) -> list[Symbol]:
         return [self.frames.sheet.symbols[c] for c in q.components]
@@ -77,7 +78,7 @@ class Answers:
         outputs: tuple[Quantity, ...],
         answers: Mapping[Symbol, Expr],
         steps: tuple[str, ...],
-    ) -> Question:
+    ) -> Problem:
         sheet = self.frames.sheet
         used = {s for e in (*answers.values(), *sheet.needed(answers.values()).values())
                 for s in e.free_symbols}  # fmt: skip
@@ -88,7 +89,8 @@ class Answers:
         held = tuple(row.balance for row in rows)
         motion = FRAME_STEPS if definitions else ()
         says = f"{_listed([q.meaning for q in outputs])}."
-        return Question(base, says[:1].upper() + says[1:], outputs, answers, definitions, written,
+        says = says[:1].upper() + says[1:]
+        return Problem(base, says, outputs, answers, definitions, written,
                         unknowns, held, (*balance_steps(held), *steps, *motion))  # fmt: skip
 
     def _regular(self, wanted: set[Symbol]) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
@@ -149,14 +151,12 @@ class Answers:
     def _answer(self, name: str) -> dict[Quantity, list[Expr]]:
         if name == "state_rate" and not self._states:
             raise SceneError("'state_rate' needs something free, and nothing is")
-        if name == "accelerations":
-            free = [m.answer for m in (*self.machine.coordinates, *self.machine.speeds) if m.free]
-            if not free:
-                raise SceneError("'accelerations' needs a free coordinate or speed")
-            named = map(self._quantity, dict.fromkeys(free))
-            return {q: list(self._symbols(q)) for q in named}
+        if name in ("accelerations", "acceleration"):
+            return {q: list(self._symbols(q)) for q in self._accelerations(name)}
         if name == "state_rate":
-            return {self._quantity(f"{q.name}_rate"): self._rates(q) for q in self._states}
+            return self._state_rate()
+        if name == "angular_momentum_rate":
+            return self._momentum_rate()
         if name == "linearised":
             return {self._quantity(n): self.matrices[n] for n in MATRICES}
         q = self._quantity(name)
@@ -169,6 +169,35 @@ class Answers:
             return {q: [self.expression(result.formula)]}
         return {q: list(self._symbols(q))}
 
+    def _accelerations(self, name: str) -> list[Quantity]:
+        """Return what answers with the highest rates of all that is free, or of speeds alone."""
+        machine = self.machine
+        moving = (
+            machine.speeds if name == "acceleration" else (*machine.coordinates, *machine.speeds)
+        )
+        free = [m.unknown for m in moving if m.free]
+        if not free:
+            raise SceneError(f"'{name}' needs a free coordinate or speed")
+        every = self.frames.words.vocabulary.outputs
+        held = ([q for q in every if rate in q.components] for rate in free)
+        return [*dict.fromkeys(max(own, key=lambda q: len(q.components)) for own in held)]
+
+    def _state_rate(self) -> dict[Quantity, list[Expr]]:
+        """Return the rates of all states, in their order, grouped as the scene groups them."""
+        rates = [rate for q in self._states for rate in self._rates(q)]
+        found: dict[Quantity, list[Expr]] = {}
+        for q in map(self._quantity, rate_names(self.machine)):
+            found[q], rates = rates[: len(q.components)], rates[len(q.components) :]
+        return found
+
+    def _momentum_rate(self) -> dict[Quantity, list[Expr]]:
+        """Return the rate of the angular momentum, seen from its axes and from inertial ones."""
+        spin, frame = self.angular_momentum, self.machine.momentum.frame
+        own = self.frames.sheet.rate_of_column(spin)
+        known = {"l": spin, "l_dot": own, "Omega": self.frames.Omega[frame]}
+        each = {"rate_in_axes": own, "rate_absolute": stated("transport_theorem", known)}
+        return {self._quantity(name): list(value) for name, value in each.items()}
+
     @property
     def _states(self) -> tuple[Quantity, ...]:
         return self.frames.words.vocabulary.states
@@ -178,7 +207,7 @@ class Answers:
         sheet = self.frames.sheet
         if not q.is_quaternion:
             return [sheet.rate(s) for s in self._symbols(q)]
-        frame = self.machine.frame(q.name.removeprefix("attitude_"))
+        frame = next(f for f in self.machine.frames if f.attitude == q.name)
         assert frame.angular_velocity is not None  # noqa: S101
         w, *v = self._symbols(q)
         omega = self.frames.words.column(frame.angular_velocity)
@@ -232,7 +261,7 @@ class Answers:
             total = total + spin
         return total
 
-    def _steady(self, base: str) -> Question:
+    def _steady(self, base: str) -> Problem:
         """Return what vanishes in a steady motion: a formula, or balances without an unknown."""
         steady = self.machine.steady
         assert steady is not None  # noqa: S101
@@ -281,10 +310,19 @@ def _lasts(row: Row) -> bool:
     return bool(abs(rest[0]) > NOTHING * max(map(abs, rest)))
 
 
-_STEPS = {
+SAYS = {
+    "acceleration": "Rate of the angular velocity from the moment (forward dynamics).",
+    "state_rate": "Rate of the state from the state and the inputs (forward dynamics).",
+    "moment": "External moment that the motion needs (inverse dynamics).",
+    "angular_momentum": "Angular momentum from the angular velocity.",
+    "angular_momentum_rate": "Rate of the angular momentum, seen from the axes and from the "
+    "inertial frame.",
+}
+STEPS = {
     "kinetic_energy": ("koenig",),
     "energy": ("koenig",),
     "angular_momentum": ("angular_momentum",),
+    "angular_momentum_rate": ("rate_in_axes", "transport_theorem"),
     "linearised": ("general_form", "moving_point_form", "any_point_form"),
 }
 

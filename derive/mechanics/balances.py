@@ -13,12 +13,12 @@ from typing import Literal
 from mpmath import mp
 from sympy import Expr, Integer, Matrix, Symbol
 
+from derive.lecture.stated import stated
 from derive.mechanics.bodies import carries, moment_about
 from derive.mechanics.frames import ZERO, Frames, Point
 from derive.mechanics.loads import Wrench
 from derive.mechanics.probe import DIGITS, NOTHING, POINTS
-from derive.mechanics.specialise import stated
-from derive.mechanics.turning import unit_vector
+from derive.mechanics.sheet import AXES
 from derive.mechanics.valued import Array, Sides, Valued, sides, trial_points
 from derive.scene.machine import Force, Spring
 
@@ -40,7 +40,8 @@ class Balance:
 
     def __str__(self) -> str:
         about = f" about {self.spot}" if self.kind == "moment" else ""
-        return f"{self.kind} on {' + '.join(self.bodies)}{about} along {self.axis} of {self.frame}"
+        along = f"{self.axis} of {self.frame}" if self.axis in AXES else f"the axis of {self.axis}"
+        return f"{self.kind} on {' + '.join(self.bodies)}{about} along {along}"
 
 
 @dataclass(frozen=True)
@@ -136,9 +137,8 @@ class Balances:
         valued: Sequence[Valued],
         vectors: Sequence[Array],
     ) -> Row:
-        k = "xyz".index(balance.axis)
         values = tuple(
-            v.rotation(balance.frame)[:, k] @ vector
+            v.direction(balance.frame, balance.axis) @ vector
             for v, vector in zip(valued, vectors, strict=True)
         )
         return Row(balance, values)
@@ -164,12 +164,14 @@ class Balances:
     def _axes(self, bodies: tuple[str, ...], valued: Valued) -> list[tuple[str, str]]:
         found: list[tuple[str, str]] = []
         seen: list[Array] = []
-        for frame in self._frames_of(bodies):
-            for k, axis in enumerate("xyz"):
-                e = valued.rotation(frame)[:, k]
-                if not any(abs(abs(e @ other) - 1) < NOTHING for other in seen):
-                    found.append((frame, axis))
-                    seen.append(e)
+        members = [self.frames.machine.body(name) for name in bodies]
+        spun = [(m.frame, m.name) for m in members if m.spin_axis is not None]
+        whole = [(frame, axis) for frame in self._frames_of(bodies) for axis in AXES]
+        for frame, axis in (*whole, *spun):
+            e = valued.direction(frame, axis)
+            if not any(abs(abs(e @ other) - 1) < NOTHING for other in seen):
+                found.append((frame, axis))
+                seen.append(e)
         return found
 
     def _points(self, bodies: tuple[str, ...], valued: Valued) -> list[tuple[str, Point]]:
@@ -202,7 +204,7 @@ class Balances:
     def written(self, row: Row) -> Expr:
         """Return a balance as an expression that is zero, without unknowns that drop out of it."""
         frames, sheet, balance = self.frames, self.frames.sheet, row.balance
-        e = unit_vector(balance.axis)
+        e = frames.direction(balance.axis)
         total: Expr = Integer(0)
         for body in balance.bodies:
             own = self.sides.efforts[body]
@@ -228,7 +230,7 @@ class Balances:
         """Return the coefficients of a balance at another place: the rest, then the unknowns."""
         b = row.balance
         vector = valued.force(b.bodies) if b.point is None else valued.moment(b.bodies, b.point)
-        found: Array = valued.rotation(b.frame)[:, "xyz".index(b.axis)] @ vector
+        found: Array = valued.direction(b.frame, b.axis) @ vector
         return found
 
     def carried_vectors(self, balance: Balance) -> int:

@@ -6,8 +6,8 @@ from typing import Any
 
 from sympy import Expr, Matrix, zeros
 
+from derive.lecture.stated import stated
 from derive.mechanics.frames import ZERO, Frames, Parts, Point
-from derive.mechanics.specialise import stated
 from derive.mechanics.turning import reduced
 from derive.mechanics.words import inertia_name, mass_name
 

@@ -6,10 +6,10 @@ from functools import cached_property
 
 from sympy import Expr, Matrix, expand_trig, eye, zeros
 
-from derive.mechanics.sheet import Sheet
-from derive.mechanics.specialise import stated
+from derive.lecture.stated import stated
+from derive.mechanics.sheet import AXES, Sheet
 from derive.mechanics.turning import turn_matrix, unit_vector
-from derive.mechanics.words import Words, attitude
+from derive.mechanics.words import Words
 from derive.scene import Machine, SceneError
 from derive.scene.declaration import Turning
 from derive.scene.machine import INERTIAL, Frame
@@ -42,8 +42,8 @@ class Frames:
         return {name: self._rotation(frame) for name, frame in self.each.items()}
 
     def _rotation(self, frame: Frame) -> Matrix | None:
-        if frame.quaternion:
-            parts = self.words.vocabulary.column(attitude(frame.name))
+        if frame.attitude:
+            parts = self.words.vocabulary.column(frame.attitude)
             known = {"q_w": parts[0], "q_v": Matrix(parts[1:])}
             images = [stated("rotation_of_vector", known | {"v": eye(3)[:, k]}) for k in range(3)]
             return Matrix.hstack(*images)
@@ -98,10 +98,10 @@ class Frames:
         frame = self.each[name]
         if name == INERTIAL:
             return ZERO
-        if frame.acceleration is not None:
-            raise SceneError(f"frame '{name}' has an acceleration, but its velocity is not given")
         if frame.velocity is not None:
             return self.words.column(frame.velocity)
+        if frame.acceleration is not None:
+            raise SceneError(f"frame '{name}' has an acceleration, but its velocity is not given")
         if frame.rolls is not None:
             return self.sheet.column(f"{name}.v", self._rolling(frame))
         along, here = self.origin_velocity(name)
@@ -198,6 +198,14 @@ class Frames:
             s = self.words.expression(member.axial_speed) - (e.T * Omega)[0]
             return stated("spins_in_axes", {"Omega": Omega, "s": s, "e": e})
         return Omega
+
+    def direction(self, axis: str) -> Matrix:
+        """Return the unit vector of an axis: x, y, z, or that which a body spins about."""
+        if axis in AXES:
+            return unit_vector(axis)
+        line = self.machine.body(axis).spin_axis
+        assert line is not None  # noqa: S101
+        return self.words.column(line)
 
     def chain(self, name: str) -> list[str]:
         """Return a frame, its parent, and so on to the inertial frame."""
@@ -299,7 +307,7 @@ def own_axes(body: str) -> str:
 def _bodies_own(machine: Machine) -> tuple[Frame, ...]:
     """Return a frame for each turned body, at its mass centre."""
     return tuple(
-        Frame(own_axes(b.name), b.frame, b.turned, None, quaternion=False, origin=b.centre)
+        Frame(own_axes(b.name), b.frame, b.turned, None, "", b.centre)
         for b in machine.bodies
         if b.turned
     )

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 from sympy import Expr, Integer, Matrix, Rational, sqrt
 
+from derive.lecture.stated import stated
 from derive.mechanics.bodies import centre, mass, tensor
 from derive.mechanics.frames import ZERO, Frames, Point
 from derive.mechanics.probe import NOTHING, POINTS, at_rest, point
-from derive.mechanics.specialise import stated
 from derive.scene import SceneError
 from derive.scene.machine import INERTIAL, Force, Gradient, Load, Spring, Weight
 

@@ -13,7 +13,7 @@ from mpmath import mp, mpf
 from sympy import Expr, Integer, Symbol
 
 from derive.mechanics.probe import DIGITS, NOTHING, POINTS, another, point
-from derive.mechanics.question import Question, answered, substituted
+from derive.mechanics.problem import Problem, answered, substituted
 from derive.mechanics.words import Words
 from derive.scene import SceneError
 
@@ -24,11 +24,11 @@ STAND_INS = (0, 1, 2, 3)
 class Lean:
     """A question without what does not matter, and the symbols that were taken out."""
 
-    question: Question
+    question: Problem
     cancelled: tuple[Symbol, ...]
 
 
-def lean(question: Question, words: Words) -> Lean:
+def lean(question: Problem, words: Words) -> Lean:
     """Return ``question`` without the arguments that its answers do not depend on.
 
     Raises SceneError if an answer depends on data that the user left out.
@@ -58,7 +58,7 @@ def lean(question: Question, words: Words) -> Lean:
 
 
 def _everywhere(
-    question: Question, words: Words, changed: Sequence[Mapping[Symbol, Any]]
+    question: Problem, words: Words, changed: Sequence[Mapping[Symbol, Any]]
 ) -> list[Any] | None:
     """Return the answers at all trial points in one list, each with values of its own changed."""
     found: list[Any] = []
@@ -71,7 +71,7 @@ def _everywhere(
 
 
 def _answers(
-    question: Question, words: Words, number: int, changed: Mapping[Symbol, Any]
+    question: Problem, words: Words, number: int, changed: Mapping[Symbol, Any]
 ) -> list[Any] | None:
     with mp.workdps(DIGITS):
         try:
@@ -91,7 +91,7 @@ def _same(first: list[Any] | None, second: list[Any] | None) -> bool:
     )
 
 
-def without_factors(question: Question, words: Words, sought: AbstractSet[Symbol]) -> Question:
+def without_factors(question: Problem, words: Words, sought: AbstractSet[Symbol]) -> Problem:
     """Return a question of what vanishes without the parameters that only multiply it.
 
     sought : what it vanishes at, which is kept; so is a state: sines of angles have roots too
@@ -106,7 +106,7 @@ def without_factors(question: Question, words: Words, sought: AbstractSet[Symbol
     return substituted(question, taken)
 
 
-def _is_factor(question: Question, words: Words, symbol: Symbol) -> bool:
+def _is_factor(question: Problem, words: Words, symbol: Symbol) -> bool:
     here, there = (_answers(question, words, n, {symbol: mpf(2)}) for n in range(POINTS))
     once, twice = (_answers(question, words, n, {symbol: mpf(3)}) for n in range(POINTS))
     if here is None or there is None or once is None or twice is None:

@@ -8,13 +8,12 @@ from dataclasses import dataclass
 
 from sympy import Expr, Matrix, zeros
 
+from derive.lecture.stated import stated
 from derive.mechanics.bodies import centre, mass, tensor
 from derive.mechanics.frames import ZERO, Frames
 from derive.mechanics.loads import Wrench, wrenches
 from derive.mechanics.mechanism import Mechanism
-from derive.mechanics.specialise import stated
 from derive.mechanics.turning import reduced
-from derive.mechanics.words import attitude
 from derive.program.program import Quantity
 from derive.scene import SceneError
 from derive.scene.machine import INERTIAL, Frame
@@ -43,7 +42,7 @@ def free_rotation(known: Mechanism) -> FreeRotation | None:
     have a known moment about its origin.
     """
     frames = known.answers.frames
-    turning = [frame for frame in frames.each.values() if frame.quaternion]
+    turning = [frame for frame in frames.each.values() if frame.attitude]
     bodies = [body.name for body in known.scene.bodies]
     if len(turning) != 1 or turning[0].parent != INERTIAL:
         return None
@@ -61,7 +60,7 @@ def free_rotation(known: Mechanism) -> FreeRotation | None:
     acting = acting.applyfunc(lambda value: written_out(frames, value))
     if (whole.free_symbols | acting.free_symbols) & {*frames.sheet.unknowns, *known.made.hidden}:
         return None
-    return FreeRotation(frame.name, known.words[attitude(frame.name)], omega, whole, acting)
+    return FreeRotation(frame.name, known.words[frame.attitude], omega, whole, acting)
 
 
 def _omega(known: Mechanism, frame: Frame) -> Quantity | None:

@@ -74,6 +74,11 @@ class Valued:
                 self._turned[name] = self.rotation(frames.each[name].parent) @ own
         return self._turned[name]
 
+    def direction(self, frame: str, axis: str) -> Array:
+        """Return the unit vector of an axis of a frame."""
+        found: Array = self.rotation(frame) @ self.array(self.sides.frames.direction(axis))[:, 0]
+        return found
+
     def array(self, matrix: Matrix) -> Array:
         """Return the values of a matrix."""
         rows, columns = matrix.shape

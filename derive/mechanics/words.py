@@ -12,6 +12,7 @@ from derive.program.program import Quantity
 from derive.scene import Input, Machine
 from derive.scene.declaration import Moving
 from derive.scene.formula import Formula
+from derive.scene.machine import Group
 from derive.scene.results import AXES, ENERGIES, groups
 from derive.scene.scopes import PER_SECOND
 
@@ -25,9 +26,13 @@ MATRICES = {
 
 @dataclass(frozen=True)
 class Words:
-    """The vocabulary of a machine, its working sheet, and the data left out by the user."""
+    """The vocabulary of a machine, its working sheet, and the data left out by the user.
+
+    spoken : the vocabulary in which an input may be an answer of another function as well
+    """
 
     vocabulary: Vocabulary
+    spoken: Vocabulary
     sheet: Sheet
     hidden: Mapping[Symbol, str]
 
@@ -56,8 +61,7 @@ def words(machine: Machine) -> Words:
         if p.value is None
     )
     numbers = {p.name: p.value for p in machine.parameters if p.value is not None}
-    states, inputs = tuple(_states(machine)), tuple(_inputs(machine))
-    outputs = tuple(_outputs(machine))
+    states, inputs, outputs = _grouped(machine)
     every = (*parameters, *states, *inputs, *outputs)
     names = dict.fromkeys(c for q in every for c in q.components)
     above = {c for q in every for c in q.components if q.low is not None and q.low > 0}
@@ -65,12 +69,17 @@ def words(machine: Machine) -> Words:
         name: Symbol(f"s{place:04d}", positive=True) if name in above else Symbol(f"s{place:04d}")
         for place, name in enumerate(names)
     }
-    book = Vocabulary(parameters, states, inputs, outputs, numbers, symbols)
     unknowns = {u.name for u in machine.unknowns} | {m.unknown for m in machine.moving if m.free}
-    rateless = {symbols[m.name]: f"the rate of input '{m.name}' is not known"
+    given = tuple(q for q in inputs if not unknowns & set(q.components))
+    sought = tuple(q for q in inputs if q not in given)
+    every_role = Vocabulary(parameters, states, inputs, outputs, numbers, symbols)
+    book = replace(every_role, inputs=given, outputs=(*outputs, *sought))
+    sheet = Sheet(symbols, {}, frozenset(), {})
+    rateless = {sheet.symbol(m.name): f"the rate of input '{m.name}' is not known"
                 for m in machine.inputs}  # fmt: skip
-    sheet = Sheet(symbols, {}, frozenset(symbols[n] for n in unknowns), rateless)
-    made = Words(book, sheet, {})
+    sheet = replace(sheet, unknowns=frozenset(map(sheet.symbol, sorted(unknowns))),
+                    rateless=rateless)  # fmt: skip
+    made = Words(book, every_role, sheet, {})
     sheet.rates |= _rates(machine, made)
     return replace(made, hidden=_hidden(machine, sheet))
 
@@ -85,19 +94,47 @@ def _of(entry: Input | Moving) -> Quantity:
     return _scalar(entry.name, entry.unit, entry.low, entry.high, entry.meaning)
 
 
+Quantities = tuple[Quantity, ...]
+
+
+def _grouped(machine: Machine) -> tuple[Quantities, Quantities, Quantities]:
+    """Return states, inputs and outputs: as the scene groups them, or a scalar each."""
+    if machine.groups is None:
+        return tuple(_states(machine)), tuple(_inputs(machine)), tuple(_outputs(machine))
+    states, inputs, outputs = (
+        tuple(map(_of_group, each))
+        for each in (machine.groups.states, machine.groups.inputs, machine.groups.outputs)
+    )
+    return states, inputs, outputs
+
+
+def _of_group(g: Group) -> Quantity:
+    shape = () if g.components == (g.name,) else (len(g.components),)
+    return Quantity(g.name, g.components, shape, g.unit, g.frame, g.low, g.high, g.meaning)
+
+
+def rate_names(machine: Machine) -> tuple[str, ...]:
+    """Return the outputs that answer with the rates of all states, in their order."""
+    if machine.groups is not None:
+        return machine.groups.rates
+    return tuple(f"{q.name}_rate" for q in _states(machine))
+
+
+def rate_of_each(machine: Machine) -> dict[str, str]:
+    """Return what answers with the rate of each component of the state."""
+    states, _, outputs = _grouped(machine)
+    named = {q.name: q.components for q in outputs}
+    rates = [c for name in rate_names(machine) for c in named[name]]
+    return dict(zip((c for q in states for c in q.components), rates, strict=True))
+
+
 def _states(machine: Machine) -> Iterator[Quantity]:
     yield from _with_rates(m for m in (*machine.coordinates, *machine.speeds) if m.state)
     for frame in machine.frames:
-        if frame.quaternion:
-            name = attitude(frame.name)
+        if name := frame.attitude:
             parts = tuple(f"{name}_{p}" for p in QUATERNION)
             says = f"quaternion of {frame.name}, scalar first, to {frame.parent}, of norm 1"
             yield Quantity(name, parts, (4,), "1", "", *ANY, says)
-
-
-def attitude(frame: str) -> str:
-    """Return what the quaternion of a frame is called."""
-    return f"attitude_{frame}"
 
 
 def _inputs(machine: Machine) -> Iterator[Quantity]:

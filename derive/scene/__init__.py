@@ -12,16 +12,11 @@ from decimal import Decimal, InvalidOperation
 from pathlib import Path
 
 from derive.scene.declaration import (
-    Axes,
-    Body,
     Given,
     Input,
     Parameter,
-    Point,
-    Scene,
     SceneError,
     Turning,
-    Wheel,
 )
 from derive.scene.doubtful import (
     beyond,
@@ -31,6 +26,7 @@ from derive.scene.doubtful import (
     turns_in_degrees,
 )
 from derive.scene.escape import brief, visible
+from derive.scene.long_form import written_out
 from derive.scene.machine import Machine
 from derive.scene.names import file_name
 from derive.scene.reader import is_machine, read_machine
@@ -41,17 +37,12 @@ from derive.scene.table import THE_FILE, gate, nearest, shown, table
 from derive.scene.wanted import check_form, idle_times
 
 __all__ = [
-    "Axes",
-    "Body",
     "Given",
     "Input",
     "Machine",
     "Parameter",
-    "Point",
-    "Scene",
     "SceneError",
     "Turning",
-    "Wheel",
     "argument",
     "catalogue",
     "load",
@@ -71,7 +62,7 @@ def catalogue() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in CATALOGUE.glob("*.toml")))
 
 
-def argument(scene: Scene | Machine) -> str:
+def argument(scene: Machine) -> str:
     """Return what commands are told to mean a scene: its name in the catalogue, or its file.
 
     >>> argument(load("heavy_top"))
@@ -82,13 +73,13 @@ def argument(scene: Scene | Machine) -> str:
     return scene.name if known else file
 
 
-def load(source: str | Path) -> Scene | Machine:
+def load(source: str | Path) -> Machine:
     """Return the scene of a catalogue name or of a file, named by the file's stem.
 
     Raises SceneError with one sentence if there is no such scene or it breaks a rule.
 
-    >>> load("heavy_top").point.kind
-    'fixed'
+    >>> [body.name for body in load("heavy_top").bodies]
+    ['body']
     """
     if isinstance(source, str) and source in catalogue():
         source = CATALOGUE / f"{source}.toml"
@@ -120,7 +111,7 @@ def _contents(path: Path) -> str:
         raise SceneError(f"{start} is not UTF-8 (byte {error.start})") from None
 
 
-def parse_scene(text: str, name: str) -> Scene | Machine:
+def parse_scene(text: str, name: str) -> Machine:
     """Return the scene that a TOML text declares, with warnings about what seems unlikely.
 
     Raises SceneError; its sentence names the scene, the quantity, the rule and the value found.
@@ -130,8 +121,6 @@ def parse_scene(text: str, name: str) -> Scene | Machine:
         document = _document(text)
         gate(document, THE_FILE)
         scene = _read(document, name, text)
-        check_form(scene.wanted, scene.form, scene.emission)
-        require_values(scene)
         times = table(document.get("motion", {}), "motion").entries
         idle = idle_times(times, scene.wanted)
         return replace(scene, warnings=(*scene.warnings, *idle))
@@ -143,10 +132,12 @@ def _quoted(name: str) -> str:
     return f"'{brief(visible(name))}'"
 
 
-def _read(document: dict[str, object], name: str, text: str) -> Scene | Machine:
+def _read(document: dict[str, object], name: str, text: str) -> Machine:
     if is_machine(document):
         machine = read_machine(document, name, text)
         require_sizes(machine)
+        check_form(machine.wanted, machine.form, machine.emission)
+        require_values(machine)
         angles = in_degrees((*machine.coordinates, *machine.inputs))
         more = (*beyond(machine), *idle_frames(machine), *angles, *in_degrees(machine.parameters))
         every = (*machine.warnings, *more, *turns_in_degrees(machine))
@@ -154,7 +145,9 @@ def _read(document: dict[str, object], name: str, text: str) -> Scene | Machine:
     scene = read_scene(document, name, text)
     said = tuple(table(document.get("known", {}), "known").entries)
     check(scene, said)
-    return replace(scene, warnings=warnings(scene, said))
+    check_form(scene.wanted, scene.form, scene.emission)
+    require_values(scene)
+    return written_out(replace(scene, warnings=warnings(scene, said)))
 
 
 def _document(text: str) -> dict[str, object]:

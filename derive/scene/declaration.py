@@ -54,7 +54,8 @@ class Moving:
     Of an input no rate is known, of a free coordinate or speed the last rate is an unknown. A free
     coordinate without a rate is an angle of a single body, whose rate its angular velocity fixes.
     A state is summed up from its rate: all that is free, and coordinates that a formula moves. What
-    was declared with ``components`` says of which ``vector`` it is one.
+    was declared with ``components`` says of which ``vector`` it is one. ``highest`` is what its
+    highest rate is called, "" if that follows from its name.
     """
 
     name: str
@@ -68,11 +69,12 @@ class Moving:
     rate: Input | Formula | None
     acceleration: Input | Formula | None
     vector: str = ""
+    highest: str = ""
 
     @property
     def unknown(self) -> str:
         """Return the name of its highest rate: x_ddot of a coordinate, u_dot of a speed."""
-        return f"{self.name}_{'ddot' if self.kind == 'coordinate' else 'dot'}"
+        return self.highest or f"{self.name}_{'ddot' if self.kind == 'coordinate' else 'dot'}"
 
     @property
     def answer(self) -> str:
@@ -159,7 +161,7 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Scene:
+class ShortForm:
     """Everything the user declared, checked; ``text`` is the file as it was read."""
 
     name: str

@@ -6,47 +6,16 @@ triangle inequality is not among the demands: it is a warning in a scene, and so
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from derive.scene.machine import Machine
+from derive.scene.machine import Above, Demand, Tensor
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
-    from derive.scene.declaration import Body, Scene, Sextuple
+    from derive.scene.declaration import Body, Sextuple, ShortForm
     from derive.scene.formula import Formula
-    from derive.scene.machine import Entries
-
-
-@dataclass(frozen=True)
-class Above:
-    """A formula of parameters that must be above zero."""
-
-    label: str
-    kind: Literal["mass", "length", "inertia"]
-    formula: Formula
-
-
-@dataclass(frozen=True)
-class Tensor:
-    """An inertia (xx, yy, zz, xy, xz, yz) that must be positive definite, or not negative.
-
-    None stands for an entry that is not known or not asked about.
-    """
-
-    label: str
-    entries: Entries
-    relation: Literal["positive", "not negative"]
-
-
-Demand = Above | Tensor
-
-
-def demands(scene: Scene | Machine) -> tuple[Demand, ...]:
-    """Return all that ``scene`` demands of its parameters, masses first, tensors last."""
-    found = tuple(_of_machine(scene) if isinstance(scene, Machine) else _of_scene(scene))
-    return tuple(sorted(found, key=lambda d: ("mass", "length", "inertia").index(kind(d))))
+    from derive.scene.machine import Entries, Member
 
 
 def kind(demand: Demand) -> Literal["mass", "length", "inertia"]:
@@ -54,23 +23,32 @@ def kind(demand: Demand) -> Literal["mass", "length", "inertia"]:
     return "inertia" if isinstance(demand, Tensor) else demand.kind
 
 
-def _of_scene(scene: Scene) -> Iterator[Demand]:
-    body = scene.body
-    yield from _of_substance("body", body.mass, body.lengths)
+def of_one_body(scene: ShortForm) -> tuple[Demand, ...]:
+    """Return what the scene of a single body demands of its parameters."""
+    body, found = scene.body, list[Demand]()
+    found += _of_substance("body", body.mass, body.lengths)
     for wheel in scene.wheels:
-        yield Above(f"wheel '{wheel.name}': axial", "inertia", wheel.axial)
+        found.append(Above(f"wheel '{wheel.name}': axial", "inertia", wheel.axial))
     label = "body inertia less that of the wheels" if scene.wheels else "body inertia"
-    yield Tensor(label, _about_every_axis(body, carrier(scene)), "positive")
+    return _sorted((*found, Tensor(label, _about_every_axis(body, carrier(scene)), "positive",
+                                     body.inertia)))  # fmt: skip
 
 
-def _of_machine(machine: Machine) -> Iterator[Demand]:
-    for body in machine.bodies:
+def of_bodies(bodies: Iterable[Member]) -> tuple[Demand, ...]:
+    """Return what bodies demand of a scene's parameters, masses first, tensors last."""
+    found = list[Demand]()
+    for body in bodies:
         label = f"body '{body.name}'"
-        yield from _of_substance(label, body.mass, body.lengths)
+        found += _of_substance(label, body.mass, body.lengths)
         if {"inner", "outer"} <= set(body.lengths):
             gap = body.lengths["outer"] - body.lengths["inner"]
-            yield Above(f"{label}.outer less inner", "length", gap)
-        yield Tensor(f"{label} inertia", body.inertia, "not negative")
+            found.append(Above(f"{label}.outer less inner", "length", gap))
+        found.append(Tensor(f"{label} inertia", body.inertia, "not negative"))
+    return _sorted(found)
+
+
+def _sorted(found: Iterable[Demand]) -> tuple[Demand, ...]:
+    return tuple(sorted(found, key=lambda d: ("mass", "length", "inertia").index(kind(d))))
 
 
 def _of_substance(
@@ -82,7 +60,7 @@ def _of_substance(
         yield Above(f"{label}.{name}", "length", length)
 
 
-def carrier(scene: Scene) -> Sextuple:
+def carrier(scene: ShortForm) -> Sextuple:
     """Return the inertia of the body without what its wheels have about their axes."""
     xx, yy, zz, xy, xz, yz = scene.body.inertia
     for wheel in scene.wheels:

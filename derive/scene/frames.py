@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from derive.scene.scopes import Scalars
 
 ORIGIN = ("origin", "rolls", "velocity", "acceleration")
-STILL = Frame(INERTIAL, "", (), None, False, (ZERO, ZERO, ZERO))  # noqa: FBT003
+STILL = Frame(INERTIAL, "", (), None, "", (ZERO, ZERO, ZERO))
 
 
 def read_frames(given: Table, scalars: Scalars, bodies: tuple[str, ...]) -> tuple[Frame, ...]:
@@ -60,7 +60,7 @@ def _frame(name: str, given: Table, by: Reading) -> Frame:
         said["parent"],
         said["turned"] or (),
         said["angular_velocity"],
-        said["attitude"] is not None,
+        f"attitude_{name}" if said["attitude"] else "",
         said["origin"] or (ZERO, ZERO, ZERO),
         said["velocity"],
         said["acceleration"],

@@ -11,9 +11,10 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
 
-from derive.scene.declaration import Given, Input, Moving, Scene, Triple, Turning
-from derive.scene.demands import carrier
+from derive.scene.declaration import Input, Moving, ShortForm, Triple, Turning
+from derive.scene.demands import carrier, of_one_body
 from derive.scene.formula import ONE, ZERO, Formula, apply, symbol
+from derive.scene.groups import groups, turns_freely
 from derive.scene.machine import (
     INERTIAL,
     Entries,
@@ -25,6 +26,7 @@ from derive.scene.machine import (
     Place,
     Unknown,
 )
+from derive.scene.rules import singular_attitude
 from derive.scene.shape import moved
 
 AXES = ("x", "y", "z")
@@ -34,21 +36,26 @@ Motion = Literal["sought", "given"]
 _ANY = (Fraction(-1), Fraction(1))
 
 
-def long_form(scene: Scene, motion: Motion) -> Machine:
+def written_out(scene: ShortForm) -> Machine:
     """Return the machine that a scene of a single body is; names of scalars stay what they are."""
+    given = long_form(scene, "given")
+    return replace(long_form(scene, "sought"), wanted=scene.wanted, inverse=given)
+
+
+def long_form(scene: ShortForm, motion: Motion) -> Machine:
+    """Return the machine of a single body whose motion is sought, or given."""
     speeds, inputs = [*scene.speeds], [*scene.inputs]
-    if _turns_freely(scene):
+    if turns_freely(scene):
         speeds += _omega(scene, motion)
     coordinates = [_coordinate(scene, c) for c in scene.coordinates]
-    coordinates += _vector("position", scene.position, "velocity")
+    if scene.position is not None:
+        coordinates += _position()
     force = scene.known["force"] if scene.position else None
     known = (("moment", scene.known["moment"], "N m"), ("force", force, "N"),
              ("point_acceleration", scene.point.acceleration, "m/s^2"))  # fmt: skip
     for name, given, unit in known:
         if given is not None and given.formulas is None and (name, motion) != ("moment", "given"):
             inputs += [_input(f"{name}_{a}", unit) for a in AXES]
-    if scene.axes.quaternion:  # a moment may be a formula of the attitude
-        inputs += [_input(f"attitude_{part}", "1") for part in ("w", *AXES)]
     wheels = [_wheel(scene, n, motion) for n in range(len(scene.wheels))]
     speeds += [speed for speed, _, _ in wheels]
     inputs += [_input(w.torque.name, "N m") for w in scene.wheels]
@@ -61,26 +68,22 @@ def long_form(scene: Scene, motion: Motion) -> Machine:
         loads=(*loads, *(load for _, _, load in wheels)), unknowns=unknowns, results=(),
         momentum=Place(FRAME, NOWHERE, (BODY, *(member.name for _, member, _ in wheels))),
         about={}, steady=None, asked={}, wanted=(), form=scene.form, time_step=scene.time_step,
-        emission=scene.emission, warnings=(),
+        time=scene.time, emission=scene.emission, warnings=scene.warnings,
+        demands=of_one_body(scene), merging=singular_attitude(scene), groups=groups(scene),
     )  # fmt: skip
 
 
-def _turns_freely(scene: Scene) -> bool:
-    """Tell whether the components of omega are quantities of their own."""
-    alone = scene.axes.kind == "body" and scene.known["angular_velocity"].formulas is None
-    return alone or any(c.free for c in scene.coordinates)
-
-
-def _omega(scene: Scene, motion: Motion) -> list[Moving]:
+def _omega(scene: ShortForm, motion: Motion) -> list[Moving]:
     """Return the components of omega: free, or with rates that are given."""
     formulas = scene.known["angular_acceleration"].formulas
     found = []
     for k, a in enumerate(AXES):
-        name, rate = f"omega_{a}", Input(f"omega_dot_{a}", "rad/s^2", *_ANY, "")
+        name, rate = f"omega_{a}", f"omega_dot_{a}"
         if motion == "sought":
-            found.append(_moving(name, "rad/s", "speed", None))
+            found.append(replace(_moving(name, "rad/s", "speed", None), highest=rate))
         else:
-            found.append(_moving(name, "rad/s", "speed", formulas[k] if formulas else rate))
+            given = formulas[k] if formulas else Input(rate, "rad/s^2", *_ANY, "")
+            found.append(_moving(name, "rad/s", "speed", given))
     return found
 
 
@@ -98,22 +101,24 @@ def _input(name: str, unit: str) -> Moving:
     return _moving(name, unit, "input", None)
 
 
-def _vector(name: str, given: Given | None, rate: str) -> list[Moving]:
+def _position() -> list[Moving]:
     """Return the coordinates of the mass centre, whose rates have names of their own."""
-    if given is None:
-        return []
-    each = [(f"{name}_{a}", Input(f"{rate}_{a}", "m/s", *_ANY, "")) for a in AXES]
-    return [replace(_moving(n, "m", "coordinate", i), free=True, state=True) for n, i in each]
+    found = []
+    for a in AXES:
+        rate = Input(f"velocity_{a}", "m/s", *_ANY, "")
+        one = _moving(f"position_{a}", "m", "coordinate", rate)
+        found.append(replace(one, free=True, state=True, highest=f"velocity_rate_{a}"))
+    return found
 
 
-def _coordinate(scene: Scene, c: Moving) -> Moving:
+def _coordinate(scene: ShortForm, c: Moving) -> Moving:
     """Return an angle of the body; the rate of a free one follows from omega."""
     if not c.free:
         return c
     return replace(c, free=False, state=True, rate=angle_rates(scene)[c.name])
 
 
-def angle_rates(scene: Scene) -> dict[str, Formula]:
+def angle_rates(scene: ShortForm) -> dict[str, Formula]:
     """Return the rates of three free angles, from the components of omega along the axes.
 
     Along the axes after the second turn, that turn has its own axis, the third has its own, and
@@ -152,26 +157,27 @@ def _turned(v: Sequence[Formula], turn: Turning) -> list[Formula]:
 
 
 def _still() -> Frame:
-    return Frame(INERTIAL, "", (), None, False, NOWHERE)  # noqa: FBT003
+    return Frame(INERTIAL, "", (), None, "", NOWHERE)
 
 
-def _frame(scene: Scene) -> Frame:
+def _frame(scene: ShortForm) -> Frame:
     """Return the axes as a frame; its origin is the scene's point."""
     axes, given = scene.axes, scene.known["angular_velocity"].formulas
     omega = axes.angular_velocity
     if axes.kind == "body":
         omega = given or tuple(symbol(f"omega_{a}") for a in AXES)  # type: ignore[assignment]
-    frame = Frame(FRAME, INERTIAL, axes.turned, omega, axes.quaternion, NOWHERE)
+    attitude = "attitude" if axes.quaternion else ""
+    frame = Frame(FRAME, INERTIAL, axes.turned, omega, attitude, NOWHERE)
     if scene.position is not None:
         x, y, z = (symbol(f"position_{a}") for a in AXES)
         return replace(frame, origin=(x, y, z))
     if scene.point.acceleration is None:
         return replace(frame, velocity=NOWHERE)
     x, y, z = scene.point.acceleration.formulas or (symbol(f"point_acceleration_{a}") for a in AXES)
-    return replace(frame, acceleration=(x, y, z))
+    return replace(frame, acceleration=(x, y, z), velocity=NOWHERE)
 
 
-def _body(scene: Scene) -> Member:
+def _body(scene: ShortForm) -> Member:
     """Return the carrier: the body without what its wheels have about their axes."""
     body = scene.body
     inertia: Entries = carrier(scene)
@@ -187,7 +193,7 @@ def _body(scene: Scene) -> Member:
     )  # fmt: skip
 
 
-def _wheel(scene: Scene, n: int, motion: Motion) -> tuple[Moving, Member, Load]:
+def _wheel(scene: ShortForm, n: int, motion: Motion) -> tuple[Moving, Member, Load]:
     """Return the speed of a wheel, the wheel, and what its motor and its bearing do to it."""
     wheel, (x, y, z) = scene.wheels[n], scene.wheels[n].axis
     s, u, C = symbol(wheel.speed.name), symbol(wheel.torque.name), wheel.axial
@@ -196,7 +202,19 @@ def _wheel(scene: Scene, n: int, motion: Motion) -> tuple[Moving, Member, Load]:
     inertia = (C * x * x, C * y * y, C * z * z, -C * x * y, -C * x * z, -C * y * z)
     name = f"wheel {wheel.name}"
     member = Member(
-        name, FRAME, ZERO, inertia, NOWHERE, None, (), None, None, (s * x, s * y, s * z), "", {}
+        name,
+        FRAME,
+        ZERO,
+        inertia,
+        NOWHERE,
+        None,
+        (),
+        None,
+        None,
+        (s * x, s * y, s * z),
+        "",
+        {},
+        None if sorted(map(str, (x, y, z))) == ["0", "0", "1"] else (x, y, z),
     )
     held = [symbol(_held(wheel.name, a)) for a in AXES]
     along = x * held[0] + y * held[1] + z * held[2]
@@ -211,7 +229,7 @@ def _held(wheel: str, part: str) -> str:
     return f"bearing of wheel {wheel}, {part}"
 
 
-def _loads(scene: Scene, motion: Motion) -> tuple[list[Load], tuple[Unknown, ...]]:
+def _loads(scene: ShortForm, motion: Motion) -> tuple[list[Load], tuple[Unknown, ...]]:
     """Return what acts on the body, and which of it is to be found."""
     names = [
         _held(w.name, part) for w in scene.wheels for part in (*AXES, *(f"f{a}" for a in AXES))
@@ -224,7 +242,8 @@ def _loads(scene: Scene, motion: Motion) -> tuple[list[Load], tuple[Unknown, ...
     if scene.position is not None:
         force = scene.known["force"].formulas or tuple(symbol(f"force_{a}") for a in AXES)
     else:
-        names += [f"held_{a}" for a in AXES]
-        force = tuple(symbol(f"held_{a}") for a in AXES)
+        held = [f"force that holds the point, {a}" for a in AXES]
+        names += held
+        force = tuple(map(symbol, held))
     load = Force("known", BODY, "", FRAME, NOWHERE, FRAME, force, couple)  # type: ignore[arg-type]
     return [load], tuple(Unknown(name, "", "known", "") for name in names)

@@ -13,6 +13,7 @@ from derive.scene.formula import Formula
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from fractions import Fraction
 
 INERTIAL = "inertial"
 LEFT_OVER = "0 where motion is steady"
@@ -30,13 +31,16 @@ class Rolling:
 
 @dataclass(frozen=True)
 class Frame:
-    """Axes carried by a parent: how they turn in it, and where their origin is or how it moves."""
+    """Axes carried by a parent: how they turn in it, and where their origin is or how it moves.
+
+    attitude : the name of their quaternion, "" if they have none
+    """
 
     name: str
     parent: str
     turned: tuple[Turning, ...]
     angular_velocity: Triple | None
-    quaternion: bool
+    attitude: str
     origin: Triple
     velocity: Triple | None = None
     acceleration: Triple | None = None
@@ -47,7 +51,8 @@ class Frame:
 class Member:
     """A rigid body in a frame: inertia (xx, yy, zz, xy, xz, yz) about its mass centre, own axes.
 
-    None stands for data that the user does not know. ``look`` is the shape, for people.
+    None stands for data that the user does not know. ``look`` is the shape, for people;
+    ``spin_axis`` a unit vector along the frame, of a body that spins about none of its axes.
     """
 
     name: str
@@ -62,6 +67,7 @@ class Member:
     angular_velocity: Triple | None
     look: str
     lengths: Mapping[str, Formula]
+    spin_axis: Triple | None = None
 
 
 @dataclass(frozen=True)
@@ -160,8 +166,66 @@ class Steady:
 
 
 @dataclass(frozen=True)
+class Group:
+    """Components that enter and leave functions together, and the frame that they lie along."""
+
+    name: str
+    components: tuple[str, ...]
+    unit: str
+    frame: str
+    low: Fraction | None
+    high: Fraction | None
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Groups:
+    """What a scene's quantities are grouped as; an input of one function may answer another.
+
+    rates : of the outputs, those that answer with the rates of all states, in their order
+    """
+
+    states: tuple[Group, ...]
+    inputs: tuple[Group, ...]
+    outputs: tuple[Group, ...]
+    rates: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Above:
+    """A formula of parameters that must be above zero."""
+
+    label: str
+    kind: Literal["mass", "length", "inertia"]
+    formula: Formula
+
+
+@dataclass(frozen=True)
+class Tensor:
+    """An inertia (xx, yy, zz, xy, xz, yz) that must be positive definite, or not negative.
+
+    None stands for an entry that is not known or not asked about. ``whole`` is what masses must be
+    able to make up, where that is more than the entries.
+    """
+
+    label: str
+    entries: Entries
+    relation: Literal["positive", "not negative"]
+    whole: Entries = ()
+
+
+Demand = Above | Tensor
+
+
+@dataclass(frozen=True)
 class Machine:
-    """Everything the user declared of a machine, checked; ``text`` is the file as it was read."""
+    """Everything the user declared of a machine, checked; ``text`` is the file as it was read.
+
+    merging : words on where two of three free angles merge in their ranges, "" if nowhere
+    groups  : of its quantities, where they are not one scalar each
+    inverse : the same bodies where their motion is given, and what moves them is sought
+    demands : what its parameters must fulfil, masses first, tensors last
+    """
 
     name: str
     title: str
@@ -183,8 +247,13 @@ class Machine:
     wanted: tuple[str, ...]
     form: Literal["fast", "accurate"]
     time_step: Given
+    time: Given
     emission: Literal["fast", "compact"]
     warnings: tuple[str, ...]
+    demands: tuple[Demand, ...]
+    merging: str = ""
+    groups: Groups | None = None
+    inverse: Machine | None = None
 
     @property
     def moving(self) -> tuple[Moving, ...]:

@@ -9,10 +9,10 @@ from derive.scene.formula import ZERO, symbols
 from derive.scene.wanted import ROTATIONAL, SPLITTINGS, TORQUE_FREE, moves, step_of
 
 if TYPE_CHECKING:
-    from derive.scene.declaration import Scene
+    from derive.scene.declaration import ShortForm
 
 
-def check_moving(scene: Scene, prescribed: str) -> None:
+def check_moving(scene: ShortForm, prescribed: str) -> None:
     """Raise SceneError for the first step or flow that the scene does not admit.
 
     prescribed : what prescribes the rotation, "" if it is free
@@ -37,23 +37,23 @@ def check_moving(scene: Scene, prescribed: str) -> None:
             _needs_kicks(scene, name)
 
 
-def _needs_attitude(scene: Scene, name: str) -> None:
+def _needs_attitude(scene: ShortForm, name: str) -> None:
     if not scene.axes.quaternion:
         raise SceneError(f"'{name}' moves a quaternion: say axes.attitude = 'quaternion'")
 
 
-def _needs_rotation_only(scene: Scene, name: str) -> None:
+def _needs_rotation_only(scene: ShortForm, name: str) -> None:
     if scene.wheels:
         raise SceneError(f"'{name}' is of a rigid body, and wheels turn on this one")
     if scene.position is not None:
         raise SceneError(f"'{name}' moves attitude and omega only; leave [position] out")
 
 
-def _torque_free(scene: Scene) -> bool:
+def _torque_free(scene: ShortForm) -> bool:
     return scene.known["moment"].formulas == (ZERO, ZERO, ZERO)
 
 
-def _needs_kicks(scene: Scene, name: str) -> None:
+def _needs_kicks(scene: ShortForm, name: str) -> None:
     """A kick turns no attitude, so the moment may depend on the attitude, but not on omega."""
     formulas = scene.known["moment"].formulas or ()
     rates = [s for f in formulas for s in symbols(f) if s in ("omega_x", "omega_y", "omega_z")]

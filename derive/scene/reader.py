@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from derive.scene.bodies import read_member
 from derive.scene.declaration import Input, SceneError
-from derive.scene.entries import MOMENTUM, STEADY, TIME_STEP
+from derive.scene.demands import of_bodies
+from derive.scene.entries import MOMENTUM, STEADY, TIME, TIME_STEP
 from derive.scene.entry import Reading, entries_of
 from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.frames import read_frames
@@ -69,7 +70,9 @@ def read_machine(document: Mapping[str, object], name: str, source: str) -> Mach
         momentum=_momentum(part["angular_momentum"], frames, bodies, scalars),
         about=_about(part["linearised"], scalars),
         steady=steady, asked=asked, wanted=tuple(asked), form=read_form(document),
-        emission=read_emission(document), **entries_of(part["motion"], (TIME_STEP,), Reading()),
+        emission=read_emission(document), demands=of_bodies(bodies),
+        **entries_of(part["motion"], (TIME_STEP,), Reading()),
+        **entries_of(Table("motion", {}), (TIME,), Reading()),
         warnings=(*_unused(scalars, source), *_doubts(bodies, scalars),
                   *_misnamed(scalars, results)),
     )  # fmt: skip
@@ -136,8 +139,8 @@ def _made(
     parts = [(m, name) for m in moved for name in (m.name, *(rate.name for rate in m.given))]
     states = [name for m, own in parts for name in (own, m.of_vector(own))]
     for frame in frames:
-        if frame.quaternion:
-            own = [f"attitude_{frame.name}{part}" for part in ("", "_w", "_x", "_y", "_z")]
+        if frame.attitude:
+            own = [f"{frame.attitude}{part}" for part in ("", "_w", "_x", "_y", "_z")]
             yield from ((name, f"the attitude of frame '{frame.name}'") for name in own)
             states += own
     steps = any(map(moves, answers))

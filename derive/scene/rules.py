@@ -27,13 +27,13 @@ from derive.scene.wanted import moves
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from derive.scene.declaration import Scene, Turning
+    from derive.scene.declaration import ShortForm, Turning
 
 FORWARD = ("acceleration", "state_rate")
 ROTATIONAL = ("angular_velocity", "angular_acceleration")
 
 
-def check(scene: Scene, said: tuple[str, ...]) -> None:
+def check(scene: ShortForm, said: tuple[str, ...]) -> None:
     """Raise SceneError for the first rule that the scene breaks.
 
     said : the known vectors that the file gives, as opposed to default ranges
@@ -51,11 +51,11 @@ def check(scene: Scene, said: tuple[str, ...]) -> None:
     check_moving(scene, _prescribed(scene))
 
 
-def _chain(scene: Scene) -> tuple[Turning, ...]:
+def _chain(scene: ShortForm) -> tuple[Turning, ...]:
     return scene.axes.turned + scene.body.turned
 
 
-def _prescribed(scene: Scene) -> str:
+def _prescribed(scene: ShortForm) -> str:
     """Return what prescribes the rotation of the body, "" if it is free."""
     motions = {entry.name: entry.free for entry in scene.coordinates}
     if scene.axes.kind == "given":
@@ -68,7 +68,7 @@ def _prescribed(scene: Scene) -> str:
     return f"coordinate '{driven[0]}' is prescribed" if driven else ""
 
 
-def _relative_motion(scene: Scene) -> None:
+def _relative_motion(scene: ShortForm) -> None:
     """How the body moves in the axes is said once: it does not, by angles, or by a spin."""
     turned, spin = scene.body.turned, scene.body.spin
     if turned and spin is not None:
@@ -82,7 +82,7 @@ def _relative_motion(scene: Scene) -> None:
         raise SceneError(f"axes given by {said} {rule}")
 
 
-def _symmetry(scene: Scene) -> None:
+def _symmetry(scene: ShortForm) -> None:
     """A spin without an angle leaves the inertia constant only about an axis of symmetry."""
     body = scene.body
     if body.spin is None:
@@ -96,7 +96,7 @@ def _symmetry(scene: Scene) -> None:
             raise SceneError(f"body.centre {rule}, not at {name} = '{length}'")
 
 
-def _turns(scene: Scene) -> None:
+def _turns(scene: ShortForm) -> None:
     """Every angle turns once, all are free or all are prescribed, and free ones are three."""
     motions = {entry.name: entry.free for entry in scene.coordinates}
     used = [turn.coordinate for turn in _chain(scene)]
@@ -121,7 +121,7 @@ def _turns(scene: Scene) -> None:
             )
 
 
-def _attitude(scene: Scene) -> None:
+def _attitude(scene: ShortForm) -> None:
     if not scene.axes.quaternion:
         return
     if scene.axes.kind != "body":
@@ -131,7 +131,7 @@ def _attitude(scene: Scene) -> None:
         raise SceneError(f"axes.attitude = 'quaternion' is for free motion, but {reason}")
 
 
-def _known(scene: Scene, said: tuple[str, ...]) -> None:
+def _known(scene: ShortForm, said: tuple[str, ...]) -> None:
     """A known vector must not be given twice, nor made of what is no state."""
     reason = _prescribed(scene)
     own = reason.startswith("known.") and scene.axes.kind == "body"
@@ -154,7 +154,7 @@ def _known(scene: Scene, said: tuple[str, ...]) -> None:
         )
 
 
-def _point(scene: Scene) -> None:
+def _point(scene: ShortForm) -> None:
     body, kind = scene.body, scene.point.kind
     if kind == "centre_of_mass" and body.centre is not None:
         raise SceneError(
@@ -170,7 +170,7 @@ def _point(scene: Scene) -> None:
             raise SceneError(f"'{name}' needs the velocity of the moving point, which is not given")
 
 
-def _position(scene: Scene) -> None:
+def _position(scene: ShortForm) -> None:
     if scene.position is None:
         return
     if scene.body.mass is None:
@@ -185,7 +185,7 @@ def _position(scene: Scene) -> None:
         raise SceneError("[position] needs axes.attitude = 'quaternion' or axes.turned")
 
 
-def _wheels(scene: Scene) -> None:
+def _wheels(scene: ShortForm) -> None:
     if scene.wheels and not scene.axes.fixed_in_body:
         raise SceneError("wheels need axes fixed in their carrier, the body: fixed_in = 'body'")
     if scene.wheels and scene.point.kind == "moving":
@@ -195,7 +195,7 @@ def _wheels(scene: Scene) -> None:
     check_carrier(scene.body, scene.wheels, scene.parameters)
 
 
-def _forward(scene: Scene) -> None:
+def _forward(scene: ShortForm) -> None:
     """An acceleration can be found only where the motion is free and the inertia invertible."""
     asked = [name for name in scene.wanted if name.removesuffix("_jacobian") in FORWARD]
     if not asked:
@@ -207,7 +207,7 @@ def _forward(scene: Scene) -> None:
         raise SceneError(f"'{asked[0]}' {rule}")
 
 
-def warnings(scene: Scene, said: tuple[str, ...]) -> tuple[str, ...]:
+def warnings(scene: ShortForm, said: tuple[str, ...]) -> tuple[str, ...]:
     """Return sentences on what is allowed and yet unlikely to be meant."""
     return (
         *doubts(scene.body, scene.parameters),
@@ -218,7 +218,7 @@ def warnings(scene: Scene, said: tuple[str, ...]) -> tuple[str, ...]:
     )
 
 
-def _unused(scene: Scene, said: tuple[str, ...]) -> Iterator[str]:
+def _unused(scene: ShortForm, said: tuple[str, ...]) -> Iterator[str]:
     used = {name for formula in _formulas(scene) for name in symbols(formula)}
     used |= {turn.coordinate for turn in _chain(scene)}
     for entry in scene.parameters:
@@ -237,7 +237,7 @@ def _unused(scene: Scene, said: tuple[str, ...]) -> Iterator[str]:
             yield f"known.{name} is given, but no {asked} is wanted"
 
 
-def _formulas(scene: Scene) -> Iterator[Formula]:
+def _formulas(scene: ShortForm) -> Iterator[Formula]:
     """Yield every formula of a scene."""
     body, point = scene.body, scene.point
     yield from body.inertia
@@ -252,7 +252,7 @@ def _formulas(scene: Scene) -> Iterator[Formula]:
         yield from given.formulas or ()
 
 
-def _doubtful_angles(scene: Scene) -> Iterator[str]:
+def _doubtful_angles(scene: ShortForm) -> Iterator[str]:
     for wheel in scene.wheels:
         if inexact_axis(wheel):
             yield f"wheel '{wheel.name}': axis has unit length only nearly; write it as a formula"
@@ -260,7 +260,7 @@ def _doubtful_angles(scene: Scene) -> Iterator[str]:
         yield where
 
 
-def singular_attitude(scene: Scene) -> str:
+def singular_attitude(scene: ShortForm) -> str:
     """Return words on where two of three free angles merge in the ranges, "" if nowhere."""
     ranges = {entry.name: entry for entry in scene.coordinates}
     chain = _chain(scene)

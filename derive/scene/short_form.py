@@ -15,9 +15,9 @@ from derive.scene.declaration import (
     Body,
     Input,
     Point,
-    Scene,
     SceneError,
     Sextuple,
+    ShortForm,
     Triple,
     Turning,
     Wheel,
@@ -53,7 +53,7 @@ TABLES = (
 LATER = ("frames", "bodies", "loads")
 
 
-def read_scene(document: dict[str, object], name: str, source: str) -> Scene:
+def read_scene(document: dict[str, object], name: str, source: str) -> ShortForm:
     """Return the scene of a parsed TOML document, checked table by table."""
     _top_level(document)
     part = {key: table(document.get(key, {}), key) for key in TABLES}
@@ -68,7 +68,7 @@ def read_scene(document: dict[str, object], name: str, source: str) -> Scene:
     by = Reading({"motions": scalars.motions, "known": scope, "loads": loads})
     times = entries_of(part["motion"], (TIME_STEP, TIME), by)
     point = _point(part["point"], scope)
-    return Scene(
+    return ShortForm(
         name=name,
         title=text(document.get("title", name), "title"),
         text=source,

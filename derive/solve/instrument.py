@@ -13,11 +13,12 @@ import casadi
 from derive.emit.casadi_module import imported
 from derive.emit.casadi_text import casadi_file
 from derive.library.library import Library, library
-from derive.mechanics.mechanism import Mechanism, depends_on, doubts_at
+from derive.mechanics.mechanism import depends_on, doubts_at
 from derive.program.program import Program, Quantity
 from derive.program.status import refusal
-from derive.scene import Machine, SceneError, load
-from derive.scene.numbers import doubts, member_doubts
+from derive.scene import SceneError, load
+from derive.scene.machine import Tensor
+from derive.scene.numbers import member_doubts
 
 Values = Mapping[str, Any]
 
@@ -44,7 +45,7 @@ class Instrument:
     def needed(self, function: str) -> tuple[str, ...]:
         """Return the components that a function changes with."""
         known = self.library.known
-        if isinstance(known, Mechanism) and function in self.library.truths:
+        if function in self.library.truths:
             return depends_on(known, function)
         program = self.library[function]
         own = [c for q in program.inputs if q.role != "constants" for c in q.components]
@@ -79,9 +80,8 @@ class Instrument:
             else replace(p, low=(p.low + p.high) / 2, high=(p.low + p.high) / 2)
             for p in scene.parameters
         )
-        if not isinstance(scene, Machine):
-            return tuple(doubts(scene.body, pinned))
-        each = ((f"body '{body.name}'", body.inertia) for body in scene.bodies)
+        tensors = [d for d in scene.demands if isinstance(d, Tensor)]
+        each = ((d.label.split(" inertia")[0], d.whole or d.entries) for d in tensors)
         found = tuple(says for label, own in each for says in member_doubts(label, own, pinned))
         told = [p.name for p in scene.parameters if p.value is None]
         linear = "linearised" in self.library.truths

@@ -13,8 +13,8 @@ from typing import Any
 from flint import arb, ctx
 
 from derive.library.library import Library
-from derive.mechanics.mechanism import single
-from derive.mechanics.truth import truth
+from derive.mechanics.mechanism import problem
+from derive.mechanics.rotation import free_rotation
 from derive.program.largest import largest
 from derive.program.program import Program, component_names
 from derive.program.run import run
@@ -77,7 +77,7 @@ class Order:
 
 def rate_of(library: Library, values: Mapping[str, Any]) -> Rate:
     """Return the rate of the state as the lecture's equations give it, other inputs held."""
-    fact = library.truths.get("state_rate") or truth(single(library.known), "state_rate")
+    fact = library.truths.get("state_rate") or problem(library.known, "state_rate")
     asked: Equations = equations(library.known, fact)
     states = _states(library)
     rates = [c for q in fact.outputs for c in q.components]
@@ -154,10 +154,10 @@ def closed(library: Library, name: str) -> bool:
     base = step_of(name)
     if base not in (*SPLITTINGS, "step_dmv", "step_lie"):
         return False
-    known = single(library.known)
-    tensor, moment = known.bindings["I"], known.bindings["M"]
-    if any(moment) or not tensor.is_diagonal():
+    turning = free_rotation(library.known)
+    if turning is None or any(turning.moment) or not turning.tensor.is_diagonal():
         return False
+    tensor = turning.tensor
     distinct = len({tensor[k, k].expand() for k in range(3)})
     return distinct < (2 if base == "step_lie" else 3)
 

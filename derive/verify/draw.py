@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 
 from derive.library.library import Library
-from derive.mechanics.mechanism import Mechanism
 from derive.motion.compensated import REMAINDER
 from derive.program.precision import Precision
 from derive.program.program import Quantity, component_names
 from derive.scene import SceneError
 from derive.scene.formula import evaluate
+from derive.scene.machine import Entries
 from derive.verify.columns import Column, Known, Plan, arithmetics, in_columns, known, planned
-from derive.verify.hard_bodies import formulas_of_body
+from derive.verify.hard_bodies import inverted, without_wheels
 from derive.verify.motion_error import OMEGA_DOT, bounds_of_times, fresh_quantities, telling
 from derive.verify.sample import varying
 
@@ -129,23 +129,23 @@ def on_the_sphere(of: Ranges, rows: Column) -> Column:
 
 def admitted(of: Ranges, rows: Column) -> Any:
     """Return which samples are of bodies that can be, wheels included."""
-    if isinstance(of.library.known, Mechanism):
-        return np.ones(rows.shape[1], bool)
     numbers: dict[str, Any] = dict(zip(of.names, held(of, rows), strict=True))
     numbers |= {n: float(x) for n, x in of.library.known.words.numbers.items()}
-    inertia, wheels = formulas_of_body(of.library.known)
-    with np.errstate(all="ignore"):
-        xx, yy, zz, xy, xz, yz = (_value(f, numbers) for f in inertia)
-        rest = [[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]
-        half = (xx + yy + zz) / 2
-        second = [[(half if i == k else 0.0) - rest[i][k] for k in range(3)] for i in range(3)]
-        for axis, axial in wheels:
-            n, c = [_value(f, numbers) for f in axis], _value(axial, numbers)
-            rest = [[rest[i][k] - c * n[i] * n[k] for k in range(3)] for i in range(3)]
-        size = np.abs(xx) + np.abs(yy) + np.abs(zz)
-        fits = _semidefinite(rest, size)
-        fits = fits if of.lenient else fits & _semidefinite(second, size)
+    fits = np.ones(rows.shape[1], bool)
+    for one in inverted(of.library.known):
+        with np.errstate(all="ignore"):
+            whole, rest = _matrix(one.whole, numbers), _matrix(without_wheels(one), numbers)
+            half = (whole[0][0] + whole[1][1] + whole[2][2]) / 2
+            second = [[(half if i == k else 0.0) - whole[i][k] for k in range(3)] for i in range(3)]
+            size = np.abs(whole[0][0]) + np.abs(whole[1][1]) + np.abs(whole[2][2])
+            fits = fits & _semidefinite(rest, size)
+            fits = fits if of.lenient else fits & _semidefinite(second, size)
     return np.broadcast_to(fits, (rows.shape[1],))
+
+
+def _matrix(entries: Entries, numbers: Mapping[str, Any]) -> list[list[Any]]:
+    xx, yy, zz, xy, xz, yz = (_value(f, numbers) for f in entries)
+    return [[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]
 
 
 def _value(formula: Any, numbers: Mapping[str, Any]) -> Any:

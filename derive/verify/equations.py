@@ -11,8 +11,8 @@ from functools import cached_property
 from typing import Any
 
 from derive.lower.arrange.matching import blocks
-from derive.mechanics.mechanism import Known
-from derive.mechanics.truth import Truth
+from derive.mechanics.mechanism import Mechanism
+from derive.mechanics.problem import Problem
 from derive.verify.valuation import Atom, Atoms, Monomial, Polynomial, terms
 
 Coefficient = tuple[tuple[Monomial, Fraction], ...]
@@ -88,11 +88,11 @@ def _coefficient_of(row: Polynomial, unknown: int) -> Polynomial:
     }
 
 
-def equations(known: Known, fact: Truth) -> Equations:
+def equations(known: Mechanism, fact: Problem) -> Equations:
     """Return the equations of ``fact``, multiplied out and in an order to solve them in."""
-    words, atoms = known.words, Atoms()
+    words, atoms = known.posed(fact.name).words, Atoms()
     rows = [atoms.polynomial(residual) for residual in fact.residuals]
-    unknowns = [atoms.symbol(symbol) for symbol in fact.unknowns]
+    unknowns = [atoms.symbol(symbol) for symbol in fact.sought]
     parameters = {words.symbols[c] for q in words.parameters for c in q.components}
     splitter = _Splitter(atoms, _fixed(atoms, parameters), {})
     found, later = [], set(unknowns)

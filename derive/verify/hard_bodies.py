@@ -9,13 +9,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from random import Random
+from typing import TypeGuard
 
-from derive.mechanics.mechanism import Known, Mechanism
-from derive.mechanics.specialise import Specialised
+from derive.mechanics.mechanism import Mechanism
 from derive.program.added import added
 from derive.program.arithmetic import rounded
 from derive.program.precision import Precision
-from derive.scene.formula import FLOATS, Formula, evaluate
+from derive.scene.formula import FLOATS, ZERO, Formula, evaluate
+from derive.scene.machine import Above, Demand, Entries, Tensor
 from derive.scene.numbers import Matrix, semidefinite, triangle
 
 Triple = tuple[float, float, float]
@@ -55,46 +56,56 @@ BODIES = (
 )
 
 
-def bodies_taken(known: Known) -> tuple[Hard, ...]:
+def inverted(known: Mechanism) -> list[Tensor]:
+    """Return the tensors that must be definite, since the equations divide by them."""
+    tensors = [d for d in known.scene.demands if isinstance(d, Tensor)]
+    return [t for t in tensors if t.relation == "positive"]
+
+
+def bodies_taken(known: Mechanism) -> tuple[Hard, ...]:
     """Return the kinds of hard bodies that a scene's parameters can describe."""
-    if isinstance(known, Mechanism):
-        return ()
-    body = known.scene.body
-    entered = [_entered(known, f) for f in body.inertia]
-    if body.kind == "principal" and all(entered[:3]) and len(set(entered[:3])) == 3:
-        return tuple(hard for hard in BODIES if hard.axes is OWN_AXES)
-    if body.kind == "general" and all(entered) and len(set(entered)) == 6:
-        return BODIES
-    if body.kind == "axisymmetric" and sum(f is not None for f in set(entered[:3])) == 2:
-        return tuple(hard for hard in BODIES if hard.axes is OWN_AXES)
+    for tensor in inverted(known):
+        entered = [_entered(known, f) for f in tensor.whole]
+        moments, products = entered[:3], tensor.whole[3:]
+        if all(entered) and len(set(entered)) == 6:
+            return BODIES
+        straight = all(p == ZERO for p in products)
+        distinct = len({m for m in moments if m is not None})
+        if straight and (distinct == 3 or (distinct == 2 and None not in moments)):
+            return tuple(hard for hard in BODIES if hard.axes is OWN_AXES)
     return ()
 
 
-def _entered(known: Known, formula: Formula) -> str | None:
+def _entered(known: Mechanism, formula: Formula | None) -> str | None:
     free = {q.name for q in known.words.parameters}
-    named = formula.operator == "symbol" and formula.name in free
-    return formula.name if named else None
+    named = formula is not None and formula.operator == "symbol" and formula.name in free
+    return formula.name if named and formula is not None else None
 
 
-def hard_body(
-    known: Specialised, hard: Hard, dice: Random, precision: Precision
-) -> dict[str, float]:
+def hard_body(known: Mechanism, hard: Hard, dice: Random, precision: Precision) -> dict[str, float]:
     """Return the parameters of a hard body, and of wheels that are light enough for it."""
     a, b, c = (x * (1 + hard.spread * dice.random()) for x in hard.second[precision.name])
-    body = known.scene.body
-    if body.kind == "axisymmetric":
-        a, b, c = _symmetric((a, b, c), body.axis or "z")
-    moments = (b + c, c + a, a + b)
-    whole = _turned(moments, hard.axes)
+    (tensor, *_), moments = inverted(known), inverted(known)[0].whole[:3]
+    alone = [axis for axis, m in zip("xyz", moments, strict=True) if moments.count(m) == 1]
+    if len(alone) == 1:
+        a, b, c = _symmetric((a, b, c), alone[0])
+    principal = (b + c, c + a, a + b)
+    whole = _turned(principal, hard.axes)
     entries = [float(rounded(Fraction(x), precision.dtype)) for x in whole]
     values = {
-        f.name: x for f, x in zip(body.inertia, entries, strict=True) if f.operator == "symbol"
+        f.name: x
+        for f, x in zip(tensor.whole, entries, strict=True)
+        if f is not None and f.operator == "symbol"
     }
-    for wheel in known.scene.wheels:
-        if wheel.axial.operator == "symbol":
-            light = min(moments) * (0.1 + 0.1 * dice.random())
-            values[wheel.axial.name] = float(rounded(Fraction(light), precision.dtype))
+    for axial in (d.formula for d in known.scene.demands if _of_wheel(d)):
+        if axial.operator == "symbol":
+            light = min(principal) * (0.1 + 0.1 * dice.random())
+            values[axial.name] = float(rounded(Fraction(light), precision.dtype))
     return values
+
+
+def _of_wheel(demand: Demand) -> TypeGuard[Above]:
+    return isinstance(demand, Above) and demand.kind == "inertia"
 
 
 def _symmetric(second: Triple, axis: str) -> Triple:
@@ -114,46 +125,37 @@ def _turned(moments: Triple, turn: Sequence[float]) -> tuple[float, ...]:
     return tuple(own)
 
 
-def formulas_of_body(
-    known: Specialised,
-) -> tuple[Sequence[Formula], list[tuple[Sequence[Formula], Formula]]]:
-    """Return a body's moments and products, and axis and axial moment of each wheel."""
-    scene = known.scene
-    return scene.body.inertia, [(wheel.axis, wheel.axial) for wheel in scene.wheels]
+def admissible(known: Mechanism, values: Mapping[str, float]) -> bool:
+    """Tell whether a scene's parameters describe bodies, wheels included."""
+    wholes = (_tensor(known, values, t.whole) for t in inverted(known))
+    return solvable(known, values) and all(map(triangle, wholes))
 
 
-def admissible(known: Known, values: Mapping[str, float]) -> bool:
-    """Tell whether a scene's parameters describe a body, wheels included."""
-    if isinstance(known, Mechanism):
-        return True
-    return solvable(known, values) and triangle(_tensor(known, values))
-
-
-def solvable(known: Specialised, values: Mapping[str, float]) -> bool:
-    """Tell whether the tensor, less the wheels' axial moments, has no negative moment.
+def solvable(known: Mechanism, values: Mapping[str, float]) -> bool:
+    """Tell whether no tensor that equations divide by has a negative moment.
 
     That is all that the equations need; a body keeps the triangle inequality besides.
     """
-    numbers = _numbers(known, values)
-    tensor = _tensor(known, values)
-    size = sum(abs(tensor[i][i]) for i in range(3))
-    for wheel in known.scene.wheels:
-        axis, axial = [_number(f, numbers) for f in wheel.axis], _number(wheel.axial, numbers)
-        tensor = tuple(
-            tuple(tensor[i][k] - axial * axis[i] * axis[k] for k in range(3)) for i in range(3)
-        )
-    return semidefinite(tensor, Fraction(size))
+    return all(
+        semidefinite(_tensor(known, values, without_wheels(t)), _size(known, values, t))
+        for t in inverted(known)
+    )
 
 
-def _numbers(known: Specialised, values: Mapping[str, float]) -> dict[str, float]:
-    return dict(values) | {n: float(x) for n, x in known.words.numbers.items()}
+def without_wheels(tensor: Tensor) -> Entries:
+    """Return the entries of a tensor, those that are not asked about as they are of the whole."""
+    pairs = zip(tensor.entries, tensor.whole, strict=True)
+    return tuple(whole if own is None else own for own, whole in pairs)
 
 
-def _tensor(known: Specialised, values: Mapping[str, float]) -> Matrix:
-    numbers = _numbers(known, values)
-    xx, yy, zz, xy, xz, yz = (_number(f, numbers) for f in known.scene.body.inertia)
+def _size(known: Mechanism, values: Mapping[str, float], tensor: Tensor) -> Fraction:
+    whole = _tensor(known, values, tensor.whole)
+    return sum((abs(whole[i][i]) for i in range(3)), Fraction(0))
+
+
+def _tensor(known: Mechanism, values: Mapping[str, float], entries: Entries) -> Matrix:
+    numbers = dict(values) | {n: float(x) for n, x in known.words.numbers.items()}
+    xx, yy, zz, xy, xz, yz = (
+        Fraction(0) if f is None else Fraction(evaluate(f, numbers, FLOATS)) for f in entries
+    )
     return (xx, -xy, -xz), (-xy, yy, -yz), (-xz, -yz, zz)
-
-
-def _number(formula: Formula, numbers: Mapping[str, float]) -> Fraction:
-    return Fraction(evaluate(formula, numbers, FLOATS))

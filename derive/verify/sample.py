@@ -11,13 +11,21 @@ from fractions import Fraction
 from math import sqrt
 from random import Random
 
-from derive.mechanics.mechanism import Known, Mechanism, single
+from derive.mechanics.mechanism import Mechanism
 from derive.program.added import added
 from derive.program.arithmetic import rounded
 from derive.program.precision import Precision
 from derive.program.program import Quantity
 from derive.scene import SceneError
-from derive.verify.hard_bodies import BODIES, Hard, admissible, bodies_taken, hard_body, solvable
+from derive.verify.hard_bodies import (
+    BODIES,
+    Hard,
+    admissible,
+    bodies_taken,
+    hard_body,
+    inverted,
+    solvable,
+)
 
 Values = dict[str, float]
 LARGE_SPIN = 1e4
@@ -48,7 +56,7 @@ class Samples:
 class Source:
     """Where samples come from: a scene, a precision, and dice for one kind of sample."""
 
-    known: Known
+    known: Mechanism
     precision: Precision
     dice: Random
 
@@ -57,13 +65,13 @@ class Source:
         return float(rounded(Fraction(x), self.precision.dtype))
 
 
-def source(known: Known, precision: Precision, kind: str) -> Source:
+def source(known: Mechanism, precision: Precision, kind: str) -> Source:
     """Return the source of one kind of sample."""
     seed = f"derive: {known.scene.name} {precision.name} {kind}"
     return Source(known, precision, Random(seed))  # noqa: S311 - samples, no secret
 
 
-def samples(known: Known, precision: Precision, ordinary: int, corners: int) -> Samples:
+def samples(known: Mechanism, precision: Precision, ordinary: int, corners: int) -> Samples:
     """Return ``ordinary`` samples on the declared ranges, and ``corners`` of each hard kind."""
     plain = source(known, precision, "ordinary")
     found = [("ordinary", _ordinary(plain)) for _ in range(ordinary)]
@@ -85,7 +93,7 @@ def samples(known: Known, precision: Precision, ordinary: int, corners: int) -> 
 
 
 def _with_hard_body(of: Source, hard: Hard) -> Values:
-    return _ordinary(of) | hard_body(single(of.known), hard, of.dice, of.precision)
+    return _ordinary(of) | hard_body(of.known, hard, of.dice, of.precision)
 
 
 def _ordinary(of: Source) -> Values:
@@ -96,7 +104,7 @@ def _ordinary(of: Source) -> Values:
         }
         if admissible(of.known, values):
             return values | _motion(of)
-        if tries > PATIENCE and solvable(single(of.known), values):
+        if tries > PATIENCE and solvable(of.known, values):
             return values | _motion(of)
     raise SceneError(
         f"scene '{of.known.scene.name}': the ranges of its parameters must hold a body, "
@@ -113,7 +121,7 @@ def _motion(of: Source) -> Values:
     return values
 
 
-def varying(known: Known) -> tuple[Quantity, ...]:
+def varying(known: Mechanism) -> tuple[Quantity, ...]:
     """Return all quantities that vary with time and enter from outside."""
     return (*known.words.states, *known.words.inputs)
 
@@ -140,7 +148,7 @@ def _changed(of: Source, change: Callable[[Quantity, float], float]) -> Values:
 
 def _large_spin(of: Source, _: int) -> Values | None:
     moves = any(wanted.startswith("step_") for wanted in of.known.scene.wanted)
-    if isinstance(of.known, Mechanism) and moves:
+    if not inverted(of.known) and moves:
         return None  # a step would turn angles by many radians, and their sines magnify rounding
     fast = [q for q in varying(of.known) if q.unit == "rad/s"]
 
@@ -156,7 +164,7 @@ def _at_rest(of: Source, _: int) -> Values | None:
 
 
 def _denormal(of: Source, _: int) -> Values | None:
-    if isinstance(of.known, Mechanism):
+    if not inverted(of.known):
         return None  # chains of products fall below the smallest float one after another
     tiny = DENORMAL[of.precision.name]
     return _changed(of, lambda q, x: x * tiny if _may_vanish(q) else x)
@@ -182,7 +190,8 @@ def _half_turn(of: Source, number: int) -> Values | None:
 
 def _range_ends(of: Source, number: int) -> Values | None:
     """Return a sample with every coordinate at an end of its range: closest to a gimbal lock."""
-    names = [c.name for c in of.known.scene.coordinates]
+    scalars = {q.name for q in varying(of.known)}
+    names = [c.name for c in of.known.scene.coordinates if c.name in scalars]
 
     def change(q: Quantity, x: float) -> float:
         return _end(of, q, number >> names.index(q.name) & 1) if q.name in names else x

@@ -1,6 +1,6 @@
 """The lecture's equations solved as they stand, in any arithmetic: values, scales, slopes.
 
-The equations of a ``Truth`` are multiplied out and solved block by block; slopes follow term by
+The equations of a ``Problem`` are multiplied out and solved block by block; slopes follow term by
 term. Nothing is shared with how programs are arranged, lowered or differentiated. Beside every
 value stands its scale: the largest product in the equation that it solves, or itself where it is
 larger, the measure of its rounding errors: no sensible order of operations rounds what is much

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 3128b62a81a0b9f9.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 5d3af430e39d6b1a.
  */
 #ifndef FREE_BODY_F64_H
 #define FREE_BODY_F64_H
@@ -23,9 +23,9 @@ extern "C" {
 
 /* Constants made of parameters only, by free_body_setup_f64. */
 typedef struct {
-    double I_yy_minus_I_zz; /* I_yy - I_zz */
     double I_xz; /* I_xz */
     double I_yz; /* I_yz */
+    double I_yy_minus_I_zz; /* I_yy - I_zz */
     double I_xy; /* I_xy */
     double J_xx; /* xx of the inverse inertia tensor */
     double I_xx_minus_I_yy; /* I_xx - I_yy */
@@ -37,20 +37,20 @@ typedef struct {
     double k1; /* I_xz*J_xx - I_yz*J_xy + (I_xx - I_yy)*J_xz */
     double k2; /* I_xy*J_xx + J_xy*(I_xx - I_zz) - I_yz*J_xz */
     double k3; /* 2*(I_xz*J_xy - I_xy*J_xz) */
-    double k4; /* (I_yy - I_zz)*J_xx + I_xy*J_xy - I_xz*J_xz */
-    double k5; /* 2*(I_yz*J_xx - I_xy*J_xz) */
+    double k4; /* 2*(I_yz*J_xx - I_xy*J_xz) */
+    double k5; /* (I_yy - I_zz)*J_xx + I_xy*J_xy - I_xz*J_xz */
     double k6; /* 2*(I_yz*J_xx - I_xz*J_xy) */
     double k7; /* I_xz*J_xy - I_yz*J_yy + (I_xx - I_yy)*J_yz */
     double k8; /* I_xy*J_xy + J_yy*(I_xx - I_zz) - I_yz*J_yz */
     double k9; /* 2*(I_xz*J_yy - I_xy*J_yz) */
-    double k10; /* (I_yy - I_zz)*J_xy + I_xy*J_yy - I_xz*J_yz */
-    double k11; /* 2*(I_yz*J_xy - I_xy*J_yz) */
+    double k10; /* 2*(I_yz*J_xy - I_xy*J_yz) */
+    double k11; /* (I_yy - I_zz)*J_xy + I_xy*J_yy - I_xz*J_yz */
     double k12; /* 2*(I_yz*J_xy - I_xz*J_yy) */
     double k13; /* I_xz*J_xz - I_yz*J_yz + (I_xx - I_yy)*J_zz */
     double k14; /* I_xy*J_xz + J_yz*(I_xx - I_zz) - I_yz*J_zz */
     double k15; /* 2*(I_xz*J_yz - I_xy*J_zz) */
-    double k16; /* I_xy*J_yz + (I_yy - I_zz)*J_xz - I_xz*J_zz */
-    double k17; /* 2*(I_yz*J_xz - I_xy*J_zz) */
+    double k16; /* 2*(I_yz*J_xz - I_xy*J_zz) */
+    double k17; /* I_xy*J_yz + (I_yy - I_zz)*J_xz - I_xz*J_zz */
     double k18; /* 2*(I_yz*J_xz - I_xz*J_yz) */
     double I_xx; /* I_xx */
     double I_yy; /* I_yy */
@@ -83,11 +83,18 @@ int free_body_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doub
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
  * Returned:  omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.25, largest 8.3 u of the largest product or sum in the equation (of omega_dot;
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.24, largest 7.3 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst, 156 hard ones).
- * Cost: 12 add, 5 sub, 23 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
- *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
+ * Cost: 13 add, 4 sub, 23 mul.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void free_body_acceleration_f64(const free_body_constants_f64 *constants, const double omega[3],
     const double moment[3], double omega_dot[3]);
@@ -99,11 +106,18 @@ void free_body_acceleration_f64(const free_body_constants_f64 *constants, const 
  * Returned:  omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  *            jacobian[18]  nonzeros of the Jacobian, in compressed-column order
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.28, largest 6.6 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst, 156 hard ones).
  * Cost: 21 add, 12 sub, 48 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
- *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void free_body_acceleration_jacobian_f64(const free_body_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18]);
@@ -118,11 +132,18 @@ void free_body_acceleration_jacobian_dense_f64(const free_body_constants_f64 *co
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
  * Returned:  moment[3]  N m  along B  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.44, largest 13 u of the largest product or sum in the equation (of moment;
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.44, largest 11 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst, 156 hard ones).
- * Cost: 6 add, 11 sub, 23 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
- *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
+ * Cost: 7 add, 10 sub, 23 mul.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void free_body_moment_f64(const free_body_constants_f64 *constants, const double omega[3],
     const double omega_dot[3], double moment[3]);
@@ -163,12 +184,12 @@ void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constant
  * Given:     constants  constants made of parameters only, for the functions of this scene
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
- * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.52, largest 4.6 u of the largest product or sum in the equation (of
+ * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
+ * Error: median 0.53, largest 5.4 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 156 hard
  *            ones).
- * Cost: 1 add, 4 sub, 9 mul.
- * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
+ * Cost: 2 add, 3 sub, 9 mul.
+ * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
  */
 void free_body_kinetic_energy_f64(const free_body_constants_f64 *constants, const double omega[3],
     double *kinetic_energy);

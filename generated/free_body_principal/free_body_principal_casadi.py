@@ -297,10 +297,10 @@ def _moment():
     t1 = omega[1] * omega[2]
     t2 = t1 * constants[0]
     t3 = t0 - t2
-    t4 = omega_dot[1] * constants[10]
-    t5 = omega[2] * omega[0]
-    t6 = t5 * constants[2]
-    t7 = t4 + t6
+    t4 = omega[2] * omega[0]
+    t5 = t4 * constants[2]
+    t6 = omega_dot[1] * constants[10]
+    t7 = t5 + t6
     t8 = omega_dot[2] * constants[11]
     t9 = omega[1] * omega[0]
     t10 = t9 * constants[4]

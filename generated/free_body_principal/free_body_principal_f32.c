@@ -233,10 +233,10 @@ void free_body_principal_moment_f32(const free_body_principal_constants_f32 *con
     const float t1 = omega[1] * omega[2];
     const float t2 = t1 * constants->I_yy_minus_I_zz;
     const float t3 = t0 - t2;
-    const float t4 = omega_dot[1] * constants->I_yy;
-    const float t5 = omega[2] * omega[0];
-    const float t6 = t5 * constants->I_xx_minus_I_zz;
-    const float t7 = t4 + t6;
+    const float t4 = omega[2] * omega[0];
+    const float t5 = t4 * constants->I_xx_minus_I_zz;
+    const float t6 = omega_dot[1] * constants->I_yy;
+    const float t7 = t5 + t6;
     const float t8 = omega_dot[2] * constants->I_zz;
     const float t9 = omega[1] * omega[0];
     const float t10 = t9 * constants->I_xx_minus_I_yy;

@@ -233,10 +233,10 @@ void free_body_principal_moment_f64(const free_body_principal_constants_f64 *con
     const double t1 = omega[1] * omega[2];
     const double t2 = t1 * constants->I_yy_minus_I_zz;
     const double t3 = t0 - t2;
-    const double t4 = omega_dot[1] * constants->I_yy;
-    const double t5 = omega[2] * omega[0];
-    const double t6 = t5 * constants->I_xx_minus_I_zz;
-    const double t7 = t4 + t6;
+    const double t4 = omega[2] * omega[0];
+    const double t5 = t4 * constants->I_xx_minus_I_zz;
+    const double t6 = omega_dot[1] * constants->I_yy;
+    const double t7 = t5 + t6;
     const double t8 = omega_dot[2] * constants->I_zz;
     const double t9 = omega[1] * omega[0];
     const double t10 = t9 * constants->I_xx_minus_I_yy;

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 95e797a6611859bf.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 72a2ed69279c258e.
  */
 #ifndef GYROSTAT_F32_H
 #define GYROSTAT_F32_H
@@ -23,15 +23,15 @@ extern "C" {
 
 /* Constants made of parameters only, by gyrostat_setup_f32. */
 typedef struct {
-    float C_2; /* C_2 */
-    float I_xy; /* I_xy */
-    float I_yz; /* I_yz */
-    float C_3; /* C_3 */
-    float I_yy_minus_I_zz; /* I_yy - I_zz */
     float I_xz; /* I_xz */
+    float I_yz; /* I_yz */
+    float I_yy_minus_I_zz; /* I_yy - I_zz */
+    float C_3; /* C_3 */
+    float I_xy; /* I_xy */
+    float C_2; /* C_2 */
     float J_xx; /* xx of the inverse inertia tensor */
-    float C_1; /* C_1 */
     float I_xx_minus_I_yy; /* I_xx - I_yy */
+    float C_1; /* C_1 */
     float J_xy; /* xy of the inverse inertia tensor */
     float J_xz; /* xz of the inverse inertia tensor */
     float J_yy; /* yy of the inverse inertia tensor */
@@ -61,13 +61,13 @@ typedef struct {
     float minus_J_yy; /* -J_yy */
     float minus_J_yz; /* -J_yz */
     float minus_J_zz; /* -J_zz */
-    float k1; /* J_xx + 1/C_1 */
-    float k2; /* J_yy + 1/C_2 */
-    float k3; /* J_zz + 1/C_3 */
+    float k1; /* 1/C_1 + J_xx */
+    float k2; /* 1/C_2 + J_yy */
+    float k3; /* 1/C_3 + J_zz */
     float half_C_1; /* 1/2*C_1 */
+    float half_I_xx_minus_C_1; /* 1/2*(I_xx - C_1) */
     float half_C_2; /* 1/2*C_2 */
     float half_C_3; /* 1/2*C_3 */
-    float half_I_xx; /* 1/2*I_xx */
     float half_I_yy; /* 1/2*I_yy */
     float half_I_zz; /* 1/2*I_zz */
     float I_xx; /* I_xx */
@@ -106,18 +106,20 @@ int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_x
  * Returned:  coordinate_rates[3]  rad/s  rates of psi, theta, phi
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  *            wheel_accelerations[3]  rad/s^2  wheel axes  wheel acceleration relative to the carrier
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: M = I omega_dot + h_dot + omega x (I omega + h)   [lecture step gyrostat_form]
- * Postcondition: u = C (a . omega_dot + s_dot)   [lecture step wheel_equation]
- * Error: median 0.78, largest 19 u of the largest product or sum in the equation (of omega_dot;
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.72, largest 14 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot infinite, no number or beyond all measure.
- * Cost: 12 add, 17 sub, 34 mul, 1 div, 2 sin, 2 cos.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, gyrostat_parts, newton,
- *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law,
- *            wheel_axis_is_unit, wheel_is_axisymmetric, wheel_is_balanced, wheel_on_carrier,
- *            wheel_spins.
+ * Cost: 15 add, 14 sub, 34 mul, 1 div, 2 sin, 2 cos.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float theta, float phi,
     const float omega[3], const float wheel_speeds[3], const float moment[3],
@@ -136,19 +138,21 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  *            wheel_accelerations[3]  rad/s^2  wheel axes  wheel acceleration relative to the carrier
  *            jacobian[84]  nonzeros of the Jacobian, in compressed-column order
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: M = I omega_dot + h_dot + omega x (I omega + h)   [lecture step gyrostat_form]
- * Postcondition: u = C (a . omega_dot + s_dot)   [lecture step wheel_equation]
- * Error: median 0.78, largest 16 u of the largest product or sum in the equation (of omega_dot;
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.72, largest 14 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all
  *            measure.
- * Cost: 24 add, 46 sub, 98 mul, 1 div, 20 neg, 2 sin, 2 cos.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, gyrostat_parts, newton,
- *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law,
- *            wheel_axis_is_unit, wheel_is_axisymmetric, wheel_is_balanced, wheel_on_carrier,
- *            wheel_spins.
+ * Cost: 33 add, 37 sub, 96 mul, 1 div, 20 neg, 2 sin, 2 cos.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void gyrostat_state_rate_jacobian_f32(const gyrostat_constants_f32 *constants, float theta,
     float phi, const float omega[3], const float wheel_speeds[3], const float moment[3],
@@ -166,15 +170,16 @@ void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *consta
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
  * Returned:  kinetic_energy  J  kinetic energy
- * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Postcondition: T_w = C s a . omega + 1/2 C s^2   [lecture step wheel_energy]
- * Error: median 0.68, largest 6.4 u of the largest product or sum in the equation (of
+ * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.68, largest 8.4 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 162 hard
  *            ones).
- * Cost: 8 add, 3 sub, 18 mul.
- * Rests on: A_is_fixed, axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            rate_seen_from_N, rigid, wheel_axis_is_unit, wheel_is_axisymmetric,
- *            wheel_is_balanced, wheel_on_carrier, wheel_spins.
+ * Cost: 5 add, 6 sub, 17 mul.
+ * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, rate_seen_from_N, rigid.
  */
 void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const float omega[3],
     const float wheel_speeds[3], float *kinetic_energy);
@@ -184,14 +189,16 @@ void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const 
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
- * Postcondition: l = I omega + h   [lecture step gyrostat_momentum]
+ * Postcondition: l = I omega   [lecture step angular_momentum]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.51, largest 6.3 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 162
  *            hard ones).
  * Cost: 3 add, 6 sub, 12 mul.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            gyrostat_parts, rate_seen_from_N, rigid, wheel_axis_is_unit, wheel_is_axisymmetric,
- *            wheel_is_balanced, wheel_on_carrier, wheel_spins.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            further_axes_are_right_handed, rate_seen_from_N, rigid.
  */
 void gyrostat_angular_momentum_f32(const gyrostat_constants_f32 *constants, const float omega[3],
     const float wheel_speeds[3], float angular_momentum[3]);

@@ -12,7 +12,7 @@ where it cannot and a derivative exists, it gives NaN or an infinity.
 import casadi as ca
 
 PARAMETERS = ['A', 'C', 'm', 'g', 'l']
-CONSTANTS = ['m_g_l_over_A', 'C_over_A', 'half_A', 'half_C', 'A', 'C']
+CONSTANTS = ['m_g_l_over_A', 'C_over_A', 'half_C', 'half_A', 'A', 'C']
 SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
@@ -163,8 +163,8 @@ def _tried():
     s2 = _mul(s1, (parameters[3], 0.0))
     s3 = _mul(s2, (parameters[4], 0.0))
     s4 = _mul(s0, (parameters[1], 0.0))
-    s5 = _mul((parameters[0], 0.0), (0.5, 0.0))
-    s6 = _mul((parameters[1], 0.0), (0.5, 0.0))
+    s5 = _mul((parameters[1], 0.0), (0.5, 0.0))
+    s6 = _mul((parameters[0], 0.0), (0.5, 0.0))
     constants = ca.vertcat(s3[0], s4[0], s5[0], s6[0], parameters[0], parameters[1])
     status = ca.SX(0)
     status = _refused(status, 5, _endless(s3[0]), _endless(s4[0]), _endless(s5[0]), _endless(s6[0]))
@@ -257,39 +257,37 @@ def _state_rate_jacobian():
     t1 = 1.0 / t0
     t2 = omega[1] * t1
     t3 = ca.cos(theta[0])
-    t4 = t2 * t3
-    t5 = omega[2] - t4
-    t6 = t0 * constants[0]
-    t7 = omega[2] * constants[1]
-    t8 = t7 - t4
-    t9 = omega[1] * t8
-    t10 = t6 - t9
-    t11 = omega[0] * t8
-    t12 = t1 * t3
-    t13 = omega[1] * t12
-    t14 = t1 * t13
-    t15 = -t14
-    t16 = t12 * t13
-    t17 = t0 * t2
-    t18 = t16 + t17
-    t19 = t3 * constants[0]
-    t20 = omega[1] * t18
-    t21 = t19 - t20
-    t22 = omega[0] * t18
-    t23 = -t12
-    t24 = t13 - t8
-    t25 = omega[0] * t12
+    t4 = t1 * t3
+    t5 = omega[1] * t4
+    t6 = omega[2] - t5
+    t7 = t0 * constants[0]
+    t8 = omega[2] * constants[1]
+    t9 = _kept(t8 - t5)
+    t10 = omega[1] * t9
+    t11 = t7 - t10
+    t12 = omega[0] * t9
+    t13 = t1 * t5
+    t14 = -t13
+    t15 = t4 * t5
+    t16 = omega[1] + t15
+    t17 = t3 * constants[0]
+    t18 = omega[1] * t16
+    t19 = t17 - t18
+    t20 = omega[0] * t16
+    t21 = -t4
+    t22 = t5 - t9
+    t23 = omega[0] * t4
+    t24 = -t23
+    t25 = omega[1] * constants[1]
     t26 = -t25
-    t27 = omega[1] * constants[1]
-    t28 = -t27
-    t29 = omega[0] * constants[1]
+    t27 = omega[0] * constants[1]
     return ca.Function(
         "heavy_top_state_rate_jacobian_hot",
         [constants, theta, omega],
         [
-            ca.vertcat(t2, omega[0], t5),
-            ca.vertcat(t10, t11, 0.0),
-            ca.SX(ca.Sparsity(6, 6, [0, 0, 4, 4, 6, 10, 13], [0, 2, 3, 4, 1, 4, 0, 2, 3, 4, 2, 3, 4]), ca.vertcat(t15, t18, t21, t22, 1.0, t8, t1, t23, t24, t26, 1.0, t28, t29)),
+            ca.vertcat(t2, omega[0], t6),
+            ca.vertcat(t11, t12, 0.0),
+            ca.SX(ca.Sparsity(6, 6, [0, 0, 4, 4, 6, 10, 13], [0, 2, 3, 4, 1, 4, 0, 2, 3, 4, 2, 3, 4]), ca.vertcat(t14, t16, t19, t20, 1.0, t9, t1, t21, t22, t24, 1.0, t26, t27)),
         ],
         ['constants', 'theta', 'omega'],
         ['coordinate_rates', 'omega_dot', 'jacobian'],
@@ -310,13 +308,13 @@ def kinetic_energy_hot():
 def _kinetic_energy():
     constants = ca.SX.sym("constants", 6)
     omega = ca.SX.sym("omega", 3)
-    t0 = omega[0] * omega[0]
-    t1 = omega[1] * omega[1]
-    t2 = t0 + t1
-    t3 = t2 * constants[2]
-    t4 = omega[2] * omega[2]
+    t0 = omega[2] * omega[2]
+    t1 = t0 * constants[2]
+    t2 = omega[1] * omega[1]
+    t3 = omega[0] * omega[0]
+    t4 = t2 + t3
     t5 = t4 * constants[3]
-    t6 = t3 + t5
+    t6 = t1 + t5
     return ca.Function(
         "heavy_top_kinetic_energy_hot",
         [constants, omega],

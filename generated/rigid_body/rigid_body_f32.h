@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 7e9afa0b66077584.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 8e0db48cc7172db0.
  */
 #ifndef RIGID_BODY_F32_H
 #define RIGID_BODY_F32_H
@@ -24,9 +24,9 @@ extern "C" {
 /* Constants made of parameters only, by rigid_body_setup_f32. */
 typedef struct {
     float one_over_m; /* 1/m */
-    float I_yy_minus_I_zz; /* I_yy - I_zz */
     float I_xz; /* I_xz */
     float I_yz; /* I_yz */
+    float I_yy_minus_I_zz; /* I_yy - I_zz */
     float I_xy; /* I_xy */
     float J_xx; /* xx of the inverse inertia tensor */
     float I_xx_minus_I_yy; /* I_xx - I_yy */
@@ -39,20 +39,20 @@ typedef struct {
     float k1; /* I_xz*J_xx - I_yz*J_xy + (I_xx - I_yy)*J_xz */
     float k2; /* I_xy*J_xx + J_xy*(I_xx - I_zz) - I_yz*J_xz */
     float k3; /* 2*(I_xz*J_xy - I_xy*J_xz) */
-    float k4; /* (I_yy - I_zz)*J_xx + I_xy*J_xy - I_xz*J_xz */
-    float k5; /* 2*(I_yz*J_xx - I_xy*J_xz) */
+    float k4; /* 2*(I_yz*J_xx - I_xy*J_xz) */
+    float k5; /* (I_yy - I_zz)*J_xx + I_xy*J_xy - I_xz*J_xz */
     float k6; /* 2*(I_yz*J_xx - I_xz*J_xy) */
     float k7; /* I_xz*J_xy - I_yz*J_yy + (I_xx - I_yy)*J_yz */
     float k8; /* I_xy*J_xy + J_yy*(I_xx - I_zz) - I_yz*J_yz */
     float k9; /* 2*(I_xz*J_yy - I_xy*J_yz) */
-    float k10; /* (I_yy - I_zz)*J_xy + I_xy*J_yy - I_xz*J_yz */
-    float k11; /* 2*(I_yz*J_xy - I_xy*J_yz) */
+    float k10; /* 2*(I_yz*J_xy - I_xy*J_yz) */
+    float k11; /* (I_yy - I_zz)*J_xy + I_xy*J_yy - I_xz*J_yz */
     float k12; /* 2*(I_yz*J_xy - I_xz*J_yy) */
     float k13; /* I_xz*J_xz - I_yz*J_yz + (I_xx - I_yy)*J_zz */
     float k14; /* I_xy*J_xz + J_yz*(I_xx - I_zz) - I_yz*J_zz */
     float k15; /* 2*(I_xz*J_yz - I_xy*J_zz) */
-    float k16; /* I_xy*J_yz + (I_yy - I_zz)*J_xz - I_xz*J_zz */
-    float k17; /* 2*(I_yz*J_xz - I_xy*J_zz) */
+    float k16; /* 2*(I_yz*J_xz - I_xy*J_zz) */
+    float k17; /* I_xy*J_yz + (I_yy - I_zz)*J_xz - I_xz*J_zz */
     float k18; /* 2*(I_yz*J_xz - I_xz*J_yz) */
     float half_m; /* 1/2*m */
     float half_I_zz; /* 1/2*I_zz */
@@ -92,18 +92,21 @@ int rigid_body_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xy
  *            attitude_rate[4]  1/s  N from B  rate of the attitude quaternion
  *            velocity_rate[3]  m/s^2  along N  rate of the velocity
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
- * Postcondition: R v = v + 2 q_w (q_v x v) + 2 q_v x (q_v x v)   [lecture step rotation_of_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.72, largest 9.3 u of the largest product or sum in the equation (of
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.69, largest 9.7 u of the largest product or sum in the equation (of
  *            velocity_rate; 200000 samples of the ranges, 65536 searched from the worst, 162 hard
  *            ones).
- * Cost: 23 add, 14 sub, 59 mul, 1 neg.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Cost: 21 add, 16 sub, 59 mul, 1 neg.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void rigid_body_state_rate_f32(const rigid_body_constants_f32 *constants, const float attitude[4],
     const float velocity[3], const float omega[3], const float force[3], const float moment[3],
@@ -121,17 +124,21 @@ void rigid_body_state_rate_f32(const rigid_body_constants_f32 *constants, const 
  *            velocity_rate[3]  m/s^2  along N  rate of the velocity
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  *            jacobian[66]  nonzeros of the Jacobian, in compressed-column order
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
- * Postcondition: R v = v + 2 q_w (q_v x v) + 2 q_v x (q_v x v)   [lecture step rotation_of_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.65, largest 8.7 u of the largest product or sum in the equation (of omega_dot;
- *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.65, largest 7.5 u of the largest product or sum in the equation (of
+ *            velocity_rate; 200000 samples of the ranges, 65536 searched from the worst, 162 hard
+ *            ones).
  * Cost: 43 add, 30 sub, 98 mul, 11 neg.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void rigid_body_state_rate_jacobian_f32(const rigid_body_constants_f32 *constants,
     const float attitude[4], const float velocity[3], const float omega[3], const float force[3],
@@ -153,7 +160,7 @@ void rigid_body_state_rate_jacobian_dense_f32(const rigid_body_constants_f32 *co
  * Error: median 0.72, largest 6.3 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 162 hard
  *            ones).
- * Cost: 4 add, 4 sub, 13 mul.
+ * Cost: 5 add, 3 sub, 13 mul.
  * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
  */
 void rigid_body_kinetic_energy_f32(const rigid_body_constants_f32 *constants,
@@ -165,11 +172,18 @@ void rigid_body_kinetic_energy_f32(const rigid_body_constants_f32 *constants,
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
  * Returned:  moment[3]  N m  along B  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.44, largest 9.5 u of the largest product or sum in the equation (of moment;
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.44, largest 14 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
- * Cost: 6 add, 11 sub, 23 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
- *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
+ * Cost: 7 add, 10 sub, 23 mul.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void rigid_body_moment_f32(const rigid_body_constants_f32 *constants, const float omega[3],
     const float omega_dot[3], float moment[3]);

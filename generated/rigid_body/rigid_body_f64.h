@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 efe488ecf8b1978c.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 7c2a4603d20953f1.
  */
 #ifndef RIGID_BODY_F64_H
 #define RIGID_BODY_F64_H
@@ -24,9 +24,9 @@ extern "C" {
 /* Constants made of parameters only, by rigid_body_setup_f64. */
 typedef struct {
     double one_over_m; /* 1/m */
-    double I_yy_minus_I_zz; /* I_yy - I_zz */
     double I_xz; /* I_xz */
     double I_yz; /* I_yz */
+    double I_yy_minus_I_zz; /* I_yy - I_zz */
     double I_xy; /* I_xy */
     double J_xx; /* xx of the inverse inertia tensor */
     double I_xx_minus_I_yy; /* I_xx - I_yy */
@@ -39,20 +39,20 @@ typedef struct {
     double k1; /* I_xz*J_xx - I_yz*J_xy + (I_xx - I_yy)*J_xz */
     double k2; /* I_xy*J_xx + J_xy*(I_xx - I_zz) - I_yz*J_xz */
     double k3; /* 2*(I_xz*J_xy - I_xy*J_xz) */
-    double k4; /* (I_yy - I_zz)*J_xx + I_xy*J_xy - I_xz*J_xz */
-    double k5; /* 2*(I_yz*J_xx - I_xy*J_xz) */
+    double k4; /* 2*(I_yz*J_xx - I_xy*J_xz) */
+    double k5; /* (I_yy - I_zz)*J_xx + I_xy*J_xy - I_xz*J_xz */
     double k6; /* 2*(I_yz*J_xx - I_xz*J_xy) */
     double k7; /* I_xz*J_xy - I_yz*J_yy + (I_xx - I_yy)*J_yz */
     double k8; /* I_xy*J_xy + J_yy*(I_xx - I_zz) - I_yz*J_yz */
     double k9; /* 2*(I_xz*J_yy - I_xy*J_yz) */
-    double k10; /* (I_yy - I_zz)*J_xy + I_xy*J_yy - I_xz*J_yz */
-    double k11; /* 2*(I_yz*J_xy - I_xy*J_yz) */
+    double k10; /* 2*(I_yz*J_xy - I_xy*J_yz) */
+    double k11; /* (I_yy - I_zz)*J_xy + I_xy*J_yy - I_xz*J_yz */
     double k12; /* 2*(I_yz*J_xy - I_xz*J_yy) */
     double k13; /* I_xz*J_xz - I_yz*J_yz + (I_xx - I_yy)*J_zz */
     double k14; /* I_xy*J_xz + J_yz*(I_xx - I_zz) - I_yz*J_zz */
     double k15; /* 2*(I_xz*J_yz - I_xy*J_zz) */
-    double k16; /* I_xy*J_yz + (I_yy - I_zz)*J_xz - I_xz*J_zz */
-    double k17; /* 2*(I_yz*J_xz - I_xy*J_zz) */
+    double k16; /* 2*(I_yz*J_xz - I_xy*J_zz) */
+    double k17; /* I_xy*J_yz + (I_yy - I_zz)*J_xz - I_xz*J_zz */
     double k18; /* 2*(I_yz*J_xz - I_xz*J_yz) */
     double half_m; /* 1/2*m */
     double half_I_zz; /* 1/2*I_zz */
@@ -92,18 +92,21 @@ int rigid_body_setup_f64(double m, double I_xx, double I_yy, double I_zz, double
  *            attitude_rate[4]  1/s  N from B  rate of the attitude quaternion
  *            velocity_rate[3]  m/s^2  along N  rate of the velocity
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
- * Postcondition: R v = v + 2 q_w (q_v x v) + 2 q_v x (q_v x v)   [lecture step rotation_of_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.72, largest 11 u of the largest product or sum in the equation (of
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.68, largest 9.9 u of the largest product or sum in the equation (of
  *            velocity_rate; 200000 samples of the ranges, 65536 searched from the worst, 162 hard
  *            ones).
- * Cost: 23 add, 14 sub, 59 mul, 1 neg.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Cost: 21 add, 16 sub, 59 mul, 1 neg.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void rigid_body_state_rate_f64(const rigid_body_constants_f64 *constants, const double attitude[4],
     const double velocity[3], const double omega[3], const double force[3], const double moment[3],
@@ -121,17 +124,20 @@ void rigid_body_state_rate_f64(const rigid_body_constants_f64 *constants, const 
  *            velocity_rate[3]  m/s^2  along N  rate of the velocity
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  *            jacobian[66]  nonzeros of the Jacobian, in compressed-column order
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
- * Postcondition: R v = v + 2 q_w (q_v x v) + 2 q_v x (q_v x v)   [lecture step rotation_of_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.66, largest 8.4 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
  * Cost: 43 add, 30 sub, 98 mul, 11 neg.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void rigid_body_state_rate_jacobian_f64(const rigid_body_constants_f64 *constants,
     const double attitude[4], const double velocity[3], const double omega[3],
@@ -153,7 +159,7 @@ void rigid_body_state_rate_jacobian_dense_f64(const rigid_body_constants_f64 *co
  * Error: median 0.72, largest 6.5 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 162 hard
  *            ones).
- * Cost: 4 add, 4 sub, 13 mul.
+ * Cost: 5 add, 3 sub, 13 mul.
  * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
  */
 void rigid_body_kinetic_energy_f64(const rigid_body_constants_f64 *constants,
@@ -165,11 +171,18 @@ void rigid_body_kinetic_energy_f64(const rigid_body_constants_f64 *constants,
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
  * Returned:  moment[3]  N m  along B  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.43, largest 9.6 u of the largest product or sum in the equation (of moment;
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.44, largest 14 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
- * Cost: 6 add, 11 sub, 23 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
- *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
+ * Cost: 7 add, 10 sub, 23 mul.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void rigid_body_moment_f64(const rigid_body_constants_f64 *constants, const double omega[3],
     const double omega_dot[3], double moment[3]);

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 320e282fde1b6c17.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 25752e4890b931be.
  */
 #ifndef RIGID_BODY_STEPS_F32_H
 #define RIGID_BODY_STEPS_F32_H
@@ -24,9 +24,9 @@ extern "C" {
 /* Constants made of parameters only, by rigid_body_steps_setup_f32. */
 typedef struct {
     float one_over_m; /* 1/m */
-    float I_yy_minus_I_zz; /* I_yy - I_zz */
     float I_xz; /* I_xz */
     float I_yz; /* I_yz */
+    float I_yy_minus_I_zz; /* I_yy - I_zz */
     float I_xy; /* I_xy */
     float J_xx; /* xx of the inverse inertia tensor */
     float I_xx_minus_I_yy; /* I_xx - I_yy */
@@ -39,20 +39,20 @@ typedef struct {
     float k1; /* I_xz*J_xx - I_yz*J_xy + (I_xx - I_yy)*J_xz */
     float k2; /* I_xy*J_xx + J_xy*(I_xx - I_zz) - I_yz*J_xz */
     float k3; /* 2*(I_xz*J_xy - I_xy*J_xz) */
-    float k4; /* (I_yy - I_zz)*J_xx + I_xy*J_xy - I_xz*J_xz */
-    float k5; /* 2*(I_yz*J_xx - I_xy*J_xz) */
+    float k4; /* 2*(I_yz*J_xx - I_xy*J_xz) */
+    float k5; /* (I_yy - I_zz)*J_xx + I_xy*J_xy - I_xz*J_xz */
     float k6; /* 2*(I_yz*J_xx - I_xz*J_xy) */
     float k7; /* I_xz*J_xy - I_yz*J_yy + (I_xx - I_yy)*J_yz */
     float k8; /* I_xy*J_xy + J_yy*(I_xx - I_zz) - I_yz*J_yz */
     float k9; /* 2*(I_xz*J_yy - I_xy*J_yz) */
-    float k10; /* (I_yy - I_zz)*J_xy + I_xy*J_yy - I_xz*J_yz */
-    float k11; /* 2*(I_yz*J_xy - I_xy*J_yz) */
+    float k10; /* 2*(I_yz*J_xy - I_xy*J_yz) */
+    float k11; /* (I_yy - I_zz)*J_xy + I_xy*J_yy - I_xz*J_yz */
     float k12; /* 2*(I_yz*J_xy - I_xz*J_yy) */
     float k13; /* I_xz*J_xz - I_yz*J_yz + (I_xx - I_yy)*J_zz */
     float k14; /* I_xy*J_xz + J_yz*(I_xx - I_zz) - I_yz*J_zz */
     float k15; /* 2*(I_xz*J_yz - I_xy*J_zz) */
-    float k16; /* I_xy*J_yz + (I_yy - I_zz)*J_xz - I_xz*J_zz */
-    float k17; /* 2*(I_yz*J_xz - I_xy*J_zz) */
+    float k16; /* 2*(I_yz*J_xz - I_xy*J_zz) */
+    float k17; /* I_xy*J_yz + (I_yy - I_zz)*J_xz - I_xz*J_zz */
     float k18; /* 2*(I_yz*J_xz - I_xz*J_yz) */
 } rigid_body_steps_constants_f32;
 
@@ -87,19 +87,22 @@ int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, floa
  *            attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            velocity_next[3]  m/s  along N  velocity of the centre of mass, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
- * Postcondition: R v = v + 2 q_w (q_v x v) + 2 q_v x (q_v x v)   [lecture step rotation_of_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.26, largest 4.6 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 90 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
- * Cost: 213 add, 56 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Cost: 205 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void rigid_body_steps_step_rk4_f32(const rigid_body_steps_constants_f32 *constants,
     const float position[3], const float attitude[4], const float velocity[3], const float omega[3],
@@ -120,19 +123,22 @@ void rigid_body_steps_step_rk4_f32(const rigid_body_steps_constants_f32 *constan
  *            velocity_next[3]  m/s  along N  velocity of the centre of mass, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
  *            jacobian[145]  nonzeros of the Jacobian, in compressed-column order
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
- * Postcondition: R v = v + 2 q_w (q_v x v) + 2 q_v x (q_v x v)   [lecture step rotation_of_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.26, largest 5.6 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst, 90 hard ones).
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 7608 add, 196 sub, 7986 mul, 1 div, 44 neg, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void rigid_body_steps_step_rk4_jacobian_f32(const rigid_body_steps_constants_f32 *constants,
     const float position[3], const float attitude[4], const float velocity[3], const float omega[3],

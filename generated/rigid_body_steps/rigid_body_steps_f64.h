@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 df2b3da82f6c9313.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 fc46cf688896f507.
  */
 #ifndef RIGID_BODY_STEPS_F64_H
 #define RIGID_BODY_STEPS_F64_H
@@ -24,9 +24,9 @@ extern "C" {
 /* Constants made of parameters only, by rigid_body_steps_setup_f64. */
 typedef struct {
     double one_over_m; /* 1/m */
-    double I_yy_minus_I_zz; /* I_yy - I_zz */
     double I_xz; /* I_xz */
     double I_yz; /* I_yz */
+    double I_yy_minus_I_zz; /* I_yy - I_zz */
     double I_xy; /* I_xy */
     double J_xx; /* xx of the inverse inertia tensor */
     double I_xx_minus_I_yy; /* I_xx - I_yy */
@@ -39,20 +39,20 @@ typedef struct {
     double k1; /* I_xz*J_xx - I_yz*J_xy + (I_xx - I_yy)*J_xz */
     double k2; /* I_xy*J_xx + J_xy*(I_xx - I_zz) - I_yz*J_xz */
     double k3; /* 2*(I_xz*J_xy - I_xy*J_xz) */
-    double k4; /* (I_yy - I_zz)*J_xx + I_xy*J_xy - I_xz*J_xz */
-    double k5; /* 2*(I_yz*J_xx - I_xy*J_xz) */
+    double k4; /* 2*(I_yz*J_xx - I_xy*J_xz) */
+    double k5; /* (I_yy - I_zz)*J_xx + I_xy*J_xy - I_xz*J_xz */
     double k6; /* 2*(I_yz*J_xx - I_xz*J_xy) */
     double k7; /* I_xz*J_xy - I_yz*J_yy + (I_xx - I_yy)*J_yz */
     double k8; /* I_xy*J_xy + J_yy*(I_xx - I_zz) - I_yz*J_yz */
     double k9; /* 2*(I_xz*J_yy - I_xy*J_yz) */
-    double k10; /* (I_yy - I_zz)*J_xy + I_xy*J_yy - I_xz*J_yz */
-    double k11; /* 2*(I_yz*J_xy - I_xy*J_yz) */
+    double k10; /* 2*(I_yz*J_xy - I_xy*J_yz) */
+    double k11; /* (I_yy - I_zz)*J_xy + I_xy*J_yy - I_xz*J_yz */
     double k12; /* 2*(I_yz*J_xy - I_xz*J_yy) */
     double k13; /* I_xz*J_xz - I_yz*J_yz + (I_xx - I_yy)*J_zz */
     double k14; /* I_xy*J_xz + J_yz*(I_xx - I_zz) - I_yz*J_zz */
     double k15; /* 2*(I_xz*J_yz - I_xy*J_zz) */
-    double k16; /* I_xy*J_yz + (I_yy - I_zz)*J_xz - I_xz*J_zz */
-    double k17; /* 2*(I_yz*J_xz - I_xy*J_zz) */
+    double k16; /* 2*(I_yz*J_xz - I_xy*J_zz) */
+    double k17; /* I_xy*J_yz + (I_yy - I_zz)*J_xz - I_xz*J_zz */
     double k18; /* 2*(I_yz*J_xz - I_xz*J_yz) */
 } rigid_body_steps_constants_f64;
 
@@ -87,20 +87,23 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  *            attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            velocity_next[3]  m/s  along N  velocity of the centre of mass, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
- * Postcondition: R v = v + 2 q_w (q_v x v) + 2 q_v x (q_v x v)   [lecture step rotation_of_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.37, largest 1.4e+02 u of the largest component, before or after, or of the
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.37, largest 2.9e+02 u of the largest component, before or after, or of the
  *            largest product of what the step adds, by rounding alone (of attitude_next at a hard
  *            sample, turned, ill-conditioned; 200000 samples of the ranges, 65536 searched from
  *            the worst, 90 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
- * Cost: 213 add, 56 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Cost: 205 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constants,
     const double position[3], const double attitude[4], const double velocity[3],
@@ -121,19 +124,22 @@ void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constan
  *            velocity_next[3]  m/s  along N  velocity of the centre of mass, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
  *            jacobian[145]  nonzeros of the Jacobian, in compressed-column order
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
- * Postcondition: R v = v + 2 q_w (q_v x v) + 2 q_v x (q_v x v)   [lecture step rotation_of_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.37, largest 6 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst, 90 hard ones).
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 7608 add, 196 sub, 7986 mul, 1 div, 44 neg, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void rigid_body_steps_step_rk4_jacobian_f64(const rigid_body_steps_constants_f64 *constants,
     const double position[3], const double attitude[4], const double velocity[3],

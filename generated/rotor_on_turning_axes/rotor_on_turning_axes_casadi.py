@@ -12,7 +12,7 @@ where it cannot and a derivative exists, it gives NaN or an infinity.
 import casadi as ca
 
 PARAMETERS = ['A', 'C']
-CONSTANTS = ['C', 'A', 'A_minus_C']
+CONSTANTS = ['C', 'A', 'A_minus_C', 'half_C', 'half_A']
 SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
@@ -159,9 +159,11 @@ def _setup_status():
 def _tried():
     parameters = ca.SX.sym("parameters", 2)
     s0 = _sub((parameters[0], 0.0), (parameters[1], 0.0))
-    constants = ca.vertcat(parameters[1], parameters[0], s0[0])
+    s1 = _mul((parameters[1], 0.0), (0.5, 0.0))
+    s2 = _mul((parameters[0], 0.0), (0.5, 0.0))
+    constants = ca.vertcat(parameters[1], parameters[0], s0[0], s1[0], s2[0])
     status = ca.SX(0)
-    status = _refused(status, 5, _endless(s0[0]))
+    status = _refused(status, 5, _endless(s0[0]), _endless(s1[0]), _endless(s2[0]))
     status = _refused(status, 4, parameters[1] <= 0.0, parameters[0] <= 0.0)
     status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]))
     return parameters, constants, status
@@ -198,7 +200,7 @@ def moment_hot():
 
 
 def _moment():
-    constants = ca.SX.sym("constants", 3)
+    constants = ca.SX.sym("constants", 5)
     W_x = ca.SX.sym("W_x", 1)
     W_x_dot = ca.SX.sym("W_x_dot", 1)
     W_y = ca.SX.sym("W_y", 1)
@@ -241,7 +243,7 @@ def angular_momentum_hot():
 
 
 def _angular_momentum():
-    constants = ca.SX.sym("constants", 3)
+    constants = ca.SX.sym("constants", 5)
     W_x = ca.SX.sym("W_x", 1)
     W_y = ca.SX.sym("W_y", 1)
     W_z = ca.SX.sym("W_z", 1)
@@ -273,7 +275,7 @@ def angular_momentum_rate_hot():
 
 
 def _angular_momentum_rate():
-    constants = ca.SX.sym("constants", 3)
+    constants = ca.SX.sym("constants", 5)
     W_x = ca.SX.sym("W_x", 1)
     W_x_dot = ca.SX.sym("W_x_dot", 1)
     W_y = ca.SX.sym("W_y", 1)
@@ -317,26 +319,24 @@ def kinetic_energy_hot():
 
 
 def _kinetic_energy():
-    constants = ca.SX.sym("constants", 3)
+    constants = ca.SX.sym("constants", 5)
     W_x = ca.SX.sym("W_x", 1)
     W_y = ca.SX.sym("W_y", 1)
     W_z = ca.SX.sym("W_z", 1)
     p = ca.SX.sym("p", 1)
     t0 = W_x[0] + p[0]
-    t1 = t0 * constants[0]
-    t2 = t0 * t1
-    t3 = W_y[0] * constants[1]
-    t4 = W_y[0] * t3
-    t5 = t2 + t4
-    t6 = W_z[0] * constants[1]
-    t7 = W_z[0] * t6
-    t8 = t5 + t7
-    t9 = t8 * 0.5
+    t1 = t0 * t0
+    t2 = t1 * constants[3]
+    t3 = W_y[0] * W_y[0]
+    t4 = W_z[0] * W_z[0]
+    t5 = t3 + t4
+    t6 = t5 * constants[4]
+    t7 = t2 + t6
     return ca.Function(
         "rotor_on_turning_axes_kinetic_energy_hot",
         [constants, W_x, W_y, W_z, p],
         [
-            ca.vertcat(t9),
+            ca.vertcat(t7),
         ],
         ['constants', 'W_x', 'W_y', 'W_z', 'p'],
         ['kinetic_energy'],

@@ -51,13 +51,38 @@ static rotor_on_turning_axes_pair_f32 rotor_on_turning_axes_sub_f32(rotor_on_tur
     return rotor_on_turning_axes_add_f32(a, rotor_on_turning_axes_neg_f32(b));
 }
 
+/* The product and its rounding error, exact (Veltkamp and Dekker). */
+static rotor_on_turning_axes_pair_f32 rotor_on_turning_axes_two_product_f32(float a, float b)
+{
+    const float p = a * b;
+    const float ca = 4097.0F * a;
+    const float ah = ca - (ca - a);
+    const float al = a - ah;
+    const float cb = 4097.0F * b;
+    const float bh = cb - (cb - b);
+    const float bl = b - bh;
+    return (rotor_on_turning_axes_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
+}
+
+static rotor_on_turning_axes_pair_f32 rotor_on_turning_axes_mul_f32(rotor_on_turning_axes_pair_f32 a, rotor_on_turning_axes_pair_f32 b)
+{
+    const rotor_on_turning_axes_pair_f32 p = rotor_on_turning_axes_two_product_f32(a.high, b.high);
+    const float e = p.low + (a.high * b.low + a.low * b.high);
+    const float high = p.high + e;
+    return (rotor_on_turning_axes_pair_f32){high, e - (high - p.high)};
+}
+
 int rotor_on_turning_axes_setup_f32(float A, float C,
     rotor_on_turning_axes_constants_f32 *constants)
 {
     const rotor_on_turning_axes_pair_f32 s0 = rotor_on_turning_axes_sub_f32((rotor_on_turning_axes_pair_f32){A, 0.0F}, (rotor_on_turning_axes_pair_f32){C, 0.0F});
+    const rotor_on_turning_axes_pair_f32 s1 = rotor_on_turning_axes_mul_f32((rotor_on_turning_axes_pair_f32){C, 0.0F}, (rotor_on_turning_axes_pair_f32){0.5F, 0.0F});
+    const rotor_on_turning_axes_pair_f32 s2 = rotor_on_turning_axes_mul_f32((rotor_on_turning_axes_pair_f32){A, 0.0F}, (rotor_on_turning_axes_pair_f32){0.5F, 0.0F});
     constants->C = C;
     constants->A = A;
     constants->A_minus_C = s0.high;
+    constants->half_C = s1.high;
+    constants->half_A = s2.high;
     if (!(A - A >= 0.0F)
         || !(C - C >= 0.0F)) {
         return 1;
@@ -66,7 +91,9 @@ int rotor_on_turning_axes_setup_f32(float A, float C,
         || A <= 0.0F) {
         return 4;
     }
-    if (!(s0.high - s0.high >= 0.0F)) {
+    if (!(s0.high - s0.high >= 0.0F)
+        || !(s1.high - s1.high >= 0.0F)
+        || !(s2.high - s2.high >= 0.0F)) {
         return 5;
     }
     return 0;
@@ -147,14 +174,12 @@ void rotor_on_turning_axes_kinetic_energy_f32(const rotor_on_turning_axes_consta
     float W_x, float W_y, float W_z, float p, float *kinetic_energy)
 {
     const float t0 = W_x + p;
-    const float t1 = t0 * constants->C;
-    const float t2 = t0 * t1;
-    const float t3 = W_y * constants->A;
-    const float t4 = W_y * t3;
-    const float t5 = t2 + t4;
-    const float t6 = W_z * constants->A;
-    const float t7 = W_z * t6;
-    const float t8 = t5 + t7;
-    const float t9 = t8 * 0.5F;
-    *kinetic_energy = t9;
+    const float t1 = t0 * t0;
+    const float t2 = t1 * constants->half_C;
+    const float t3 = W_y * W_y;
+    const float t4 = W_z * W_z;
+    const float t5 = t3 + t4;
+    const float t6 = t5 * constants->half_A;
+    const float t7 = t2 + t6;
+    *kinetic_energy = t7;
 }

@@ -51,13 +51,38 @@ static rotor_on_turning_axes_pair_f64 rotor_on_turning_axes_sub_f64(rotor_on_tur
     return rotor_on_turning_axes_add_f64(a, rotor_on_turning_axes_neg_f64(b));
 }
 
+/* The product and its rounding error, exact (Veltkamp and Dekker). */
+static rotor_on_turning_axes_pair_f64 rotor_on_turning_axes_two_product_f64(double a, double b)
+{
+    const double p = a * b;
+    const double ca = 134217729.0 * a;
+    const double ah = ca - (ca - a);
+    const double al = a - ah;
+    const double cb = 134217729.0 * b;
+    const double bh = cb - (cb - b);
+    const double bl = b - bh;
+    return (rotor_on_turning_axes_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
+}
+
+static rotor_on_turning_axes_pair_f64 rotor_on_turning_axes_mul_f64(rotor_on_turning_axes_pair_f64 a, rotor_on_turning_axes_pair_f64 b)
+{
+    const rotor_on_turning_axes_pair_f64 p = rotor_on_turning_axes_two_product_f64(a.high, b.high);
+    const double e = p.low + (a.high * b.low + a.low * b.high);
+    const double high = p.high + e;
+    return (rotor_on_turning_axes_pair_f64){high, e - (high - p.high)};
+}
+
 int rotor_on_turning_axes_setup_f64(double A, double C,
     rotor_on_turning_axes_constants_f64 *constants)
 {
     const rotor_on_turning_axes_pair_f64 s0 = rotor_on_turning_axes_sub_f64((rotor_on_turning_axes_pair_f64){A, 0.0}, (rotor_on_turning_axes_pair_f64){C, 0.0});
+    const rotor_on_turning_axes_pair_f64 s1 = rotor_on_turning_axes_mul_f64((rotor_on_turning_axes_pair_f64){C, 0.0}, (rotor_on_turning_axes_pair_f64){0.5, 0.0});
+    const rotor_on_turning_axes_pair_f64 s2 = rotor_on_turning_axes_mul_f64((rotor_on_turning_axes_pair_f64){A, 0.0}, (rotor_on_turning_axes_pair_f64){0.5, 0.0});
     constants->C = C;
     constants->A = A;
     constants->A_minus_C = s0.high;
+    constants->half_C = s1.high;
+    constants->half_A = s2.high;
     if (!(A - A >= 0.0)
         || !(C - C >= 0.0)) {
         return 1;
@@ -66,7 +91,9 @@ int rotor_on_turning_axes_setup_f64(double A, double C,
         || A <= 0.0) {
         return 4;
     }
-    if (!(s0.high - s0.high >= 0.0)) {
+    if (!(s0.high - s0.high >= 0.0)
+        || !(s1.high - s1.high >= 0.0)
+        || !(s2.high - s2.high >= 0.0)) {
         return 5;
     }
     return 0;
@@ -147,14 +174,12 @@ void rotor_on_turning_axes_kinetic_energy_f64(const rotor_on_turning_axes_consta
     double W_x, double W_y, double W_z, double p, double *kinetic_energy)
 {
     const double t0 = W_x + p;
-    const double t1 = t0 * constants->C;
-    const double t2 = t0 * t1;
-    const double t3 = W_y * constants->A;
-    const double t4 = W_y * t3;
-    const double t5 = t2 + t4;
-    const double t6 = W_z * constants->A;
-    const double t7 = W_z * t6;
-    const double t8 = t5 + t7;
-    const double t9 = t8 * 0.5;
-    *kinetic_energy = t9;
+    const double t1 = t0 * t0;
+    const double t2 = t1 * constants->half_C;
+    const double t3 = W_y * W_y;
+    const double t4 = W_z * W_z;
+    const double t5 = t3 + t4;
+    const double t6 = t5 * constants->half_A;
+    const double t7 = t2 + t6;
+    *kinetic_energy = t7;
 }

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 2e1f2515bdc79365.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 54159d15a2a23b8b.
  */
 #ifndef SATELLITE_F64_H
 #define SATELLITE_F64_H
@@ -23,21 +23,19 @@ extern "C" {
 
 /* Constants made of parameters only, by satellite_setup_f64. */
 typedef struct {
-    double I_yy_minus_I_zz; /* I_yy - I_zz */
     double one_over_I_xx; /* 1/I_xx */
-    double I_xx_minus_I_zz; /* I_xx - I_zz */
-    double one_over_I_yy; /* 1/I_yy */
-    double I_xx_minus_I_yy; /* I_xx - I_yy */
-    double one_over_I_zz; /* 1/I_zz */
     double k1; /* (I_yy - I_zz)/I_xx */
-    double k2; /* -(I_xx - I_zz)/I_yy */
+    double one_over_I_yy; /* 1/I_yy */
+    double k2; /* (I_xx - I_zz)/I_yy */
+    double one_over_I_zz; /* 1/I_zz */
     double k3; /* (I_xx - I_yy)/I_zz */
+    double k4; /* -(I_xx - I_zz)/I_yy */
     double one_over_I_xx_I_xx; /* 1/I_xx^2 */
-    double k4; /* (I_yy - I_zz)/I_xx^2 */
-    double k5; /* (I_xx - I_zz)/I_yy^2 */
+    double k5; /* (I_yy - I_zz)/I_xx^2 */
+    double k6; /* (I_xx - I_zz)/I_yy^2 */
     double one_over_I_yy_I_yy; /* 1/I_yy^2 */
     double one_over_I_zz_I_zz; /* 1/I_zz^2 */
-    double k6; /* (I_xx - I_yy)/I_zz^2 */
+    double k7; /* (I_xx - I_yy)/I_zz^2 */
     double from_x; /* 1 where the axis after x has the intermediate moment, else 0 */
     double from_y; /* 1 where the axis after y has the intermediate moment, else 0 */
     double ratio_a; /* moment about a over that about b */
@@ -69,16 +67,20 @@ int satellite_setup_f64(double I_xx, double I_yy, double I_zz, satellite_constan
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
  * Returned:  attitude_rate[4]  1/s  N from B  rate of the attitude quaternion
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.46, largest 5.1 u of the largest product or sum in the equation (of
  *            attitude_rate; 200000 samples of the ranges, 65536 searched from the worst, 150 hard
  *            ones).
  * Cost: 7 add, 4 sub, 24 mul, 1 neg.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void satellite_state_rate_f64(const satellite_constants_f64 *constants, const double attitude[4],
     const double omega[3], const double moment[3], double attitude_rate[4], double omega_dot[3]);
@@ -91,17 +93,21 @@ void satellite_state_rate_f64(const satellite_constants_f64 *constants, const do
  *            time_step  s  0 .. 0.02  length of the step
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.37, largest 3.9 u of the largest component, before or after, or of the largest
- *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.37, largest 4.2 u of the largest component, before or after, or of the largest
+ *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
- * Cost: 71 add, 22 sub, 123 mul, 1 div, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Cost: 71 add, 22 sub, 117 mul, 1 div, 1 sqrt.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void satellite_step_rk4_f64(const satellite_constants_f64 *constants, const double attitude[4],
     const double omega[3], const double moment[3], double time_step, double attitude_next[4],
@@ -116,17 +122,21 @@ void satellite_step_rk4_f64(const satellite_constants_f64 *constants, const doub
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
  *            jacobian[58]  nonzeros of the Jacobian, in compressed-column order
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.37, largest 8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 328 add, 110 sub, 458 mul, 2 div, 12 neg, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void satellite_step_rk4_jacobian_f64(const satellite_constants_f64 *constants,
     const double attitude[4], const double omega[3], const double moment[3], double time_step,
@@ -146,17 +156,21 @@ void satellite_step_rk4_jacobian_dense_f64(const satellite_constants_f64 *consta
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
  *            jacobian[45]  nonzeros of the Jacobian over attitude errors delta, q exp(delta / 2), in compressed-column order
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.37, largest 3.7 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 304 add, 89 sub, 394 mul, 6 div, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void satellite_step_rk4_tangent_f64(const satellite_constants_f64 *constants,
     const double attitude[4], const double omega[3], const double moment[3], double time_step,
@@ -176,17 +190,21 @@ void satellite_step_rk4_tangent_dense_f64(const satellite_constants_f64 *constan
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
  *            jacobian[21]  nonzeros of the derivatives by the parameters, in compressed-column order
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.37, largest 6.1 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 254 add, 170 sub, 479 mul, 2 div, 3 neg, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void satellite_step_rk4_sensitivity_f64(const satellite_constants_f64 *constants,
     const double attitude[4], const double omega[3], const double moment[3], double time_step,
@@ -205,18 +223,22 @@ void satellite_step_rk4_sensitivity_dense_f64(const satellite_constants_f64 *con
  *            time_step  s  0 .. 0.02  length of the step
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.39, largest 4.2 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
- * Cost: 95 add, 61 sub, 162 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
+ * Cost: 95 add, 61 sub, 156 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void satellite_step_lie_f64(const satellite_constants_f64 *constants, const double attitude[4],
     const double omega[3], const double moment[3], double time_step, double attitude_next[4],
@@ -251,13 +273,13 @@ void satellite_step_split_f64(const satellite_constants_f64 *constants, const do
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
  *            step_proposed  s  length at which a step's last terms are within rounding, a quarter to four times time_step; for an error of e instead of u, (e/u)^(1/order) times it
- * Error: median 0.19, largest 2.3 u of the largest component, before or after, or of the largest
+ * Error: median 0.19, largest 3 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
- * Cost: 2396 add, 916 sub, 3476 mul, 22 div, 20 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Cost: 2396 add, 916 sub, 3419 mul, 22 div, 20 neg, 9 sqrt, 28 abs, 3 less, 3 select.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void satellite_step_taylor_f64(const satellite_constants_f64 *constants, const double attitude[4],
     const double omega[3], const double moment[3], double time_step, double attitude_next[4],

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 8cb5270d6292e0b6.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 4f4eb0d83a46aa0c.
  */
 #ifndef TUMBLING_BODY_F32_H
 #define TUMBLING_BODY_F32_H
@@ -117,12 +117,12 @@ int tumbling_body_setup_f32(float I_xx, float I_yy, float I_zz,
  * Given:     constants  constants made of parameters only, for the functions of this scene
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
- * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
+ * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Error: median 0.5, largest 3.8 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 150 hard
  *            ones).
  * Cost: 2 add, 6 mul.
- * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
+ * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
  */
 void tumbling_body_kinetic_energy_f32(const tumbling_body_constants_f32 *constants,
     const float omega[3], float *kinetic_energy);
@@ -247,17 +247,21 @@ void tumbling_body_step_split6_f32(const tumbling_body_constants_f32 *constants,
  *            time_step  s  0 .. 0.02  length of the step
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.26, largest 3.9 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 63 add, 18 sub, 111 mul, 1 div, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void tumbling_body_step_rk4_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
@@ -271,17 +275,21 @@ void tumbling_body_step_rk4_f32(const tumbling_body_constants_f32 *constants,
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
  *            jacobian[37]  nonzeros of the Jacobian, in compressed-column order
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.26, largest 6.3 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 265 add, 98 sub, 398 mul, 2 div, 9 neg, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void tumbling_body_step_rk4_jacobian_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
@@ -299,18 +307,22 @@ void tumbling_body_step_rk4_jacobian_dense_f32(const tumbling_body_constants_f32
  *            time_step  s  0 .. 0.02  length of the step
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
- * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.39, largest 4.1 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 87 add, 57 sub, 150 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void tumbling_body_step_lie_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
@@ -328,9 +340,9 @@ void tumbling_body_step_lie_f32(const tumbling_body_constants_f32 *constants,
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Cost: 2394 add, 915 sub, 3416 mul, 22 div, 1 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
- *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
- *            strong_third_law, third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void tumbling_body_step_taylor_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],

@@ -12,7 +12,7 @@ where it cannot and a derivative exists, it gives NaN or an infinity.
 import casadi as ca
 
 PARAMETERS = ['I_xx', 'I_yy', 'I_zz']
-CONSTANTS = ['I_xx', 'I_yy_minus_I_zz', 'k1', 'twice_I_yy_minus_I_zz', 'I_yy']
+CONSTANTS = ['I_xx', 'I_yy_minus_I_zz', 'k1', 'twice_I_yy_minus_I_zz', 'I_yy', 'half_I_xx', 'half_I_yy', 'half_I_yy_minus_I_zz']
 SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
@@ -161,9 +161,12 @@ def _tried():
     s0 = _sub((parameters[1], 0.0), (parameters[2], 0.0))
     s1 = _sub((parameters[0], 0.0), s0)
     s2 = _mul(s0, (2.0, 0.0))
-    constants = ca.vertcat(parameters[0], s0[0], s1[0], s2[0], parameters[1])
+    s3 = _mul((parameters[0], 0.0), (0.5, 0.0))
+    s4 = _mul((parameters[1], 0.0), (0.5, 0.0))
+    s5 = _mul(s0, (0.5, 0.0))
+    constants = ca.vertcat(parameters[0], s0[0], s1[0], s2[0], parameters[1], s3[0], s4[0], s5[0])
     status = ca.SX(0)
-    status = _refused(status, 5, _endless(s0[0]), _endless(s1[0]), _endless(s2[0]))
+    status = _refused(status, 5, _endless(s0[0]), _endless(s1[0]), _endless(s2[0]), _endless(s3[0]), _endless(s4[0]), _endless(s5[0]))
     status = _refused(status, 4, parameters[0] <= 0.0, parameters[1] <= 0.0, parameters[2] <= 0.0)
     status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]))
     return parameters, constants, status
@@ -200,7 +203,7 @@ def moment_hot():
 
 
 def _moment():
-    constants = ca.SX.sym("constants", 5)
+    constants = ca.SX.sym("constants", 8)
     gamma = ca.SX.sym("gamma", 1)
     gamma_dot = ca.SX.sym("gamma_dot", 1)
     gamma_ddot = ca.SX.sym("gamma_ddot", 1)
@@ -214,25 +217,24 @@ def _moment():
     t5 = t2 * t4
     t6 = t1 * t5
     t7 = t0 - t6
-    t8 = W_dot[0] * t5
-    t9 = W[0] * gamma_dot[0]
-    t10 = t9 * constants[2]
-    t11 = t8 + t10
-    t12 = t3 * constants[3]
-    t13 = t9 * t12
-    t14 = t3 * t13
-    t15 = t11 + t14
-    t16 = t2 * t13
-    t17 = W_dot[0] * constants[4]
-    t18 = t16 + t17
-    t19 = t3 * W_dot[0]
-    t20 = t19 * t4
-    t21 = t18 - t20
+    t8 = W[0] * gamma_dot[0]
+    t9 = t8 * constants[2]
+    t10 = t3 * constants[3]
+    t11 = t8 * t10
+    t12 = t3 * t11
+    t13 = t9 + t12
+    t14 = W_dot[0] * t5
+    t15 = t13 + t14
+    t16 = t2 * t11
+    t17 = t3 * t4
+    t18 = constants[4] - t17
+    t19 = W_dot[0] * t18
+    t20 = t16 + t19
     return ca.Function(
         "unsymmetrical_rotor_in_carrier_axes_moment_hot",
         [constants, gamma, gamma_dot, gamma_ddot, W, W_dot],
         [
-            ca.vertcat(t7, t15, t21),
+            ca.vertcat(t7, t15, t20),
         ],
         ['constants', 'gamma', 'gamma_dot', 'gamma_ddot', 'W', 'W_dot'],
         ['moment'],
@@ -251,61 +253,61 @@ def moment_jacobian_hot():
 
 
 def _moment_jacobian():
-    constants = ca.SX.sym("constants", 5)
+    constants = ca.SX.sym("constants", 8)
     gamma = ca.SX.sym("gamma", 1)
     gamma_dot = ca.SX.sym("gamma_dot", 1)
     gamma_ddot = ca.SX.sym("gamma_ddot", 1)
     W = ca.SX.sym("W", 1)
     W_dot = ca.SX.sym("W_dot", 1)
     t0 = gamma_ddot[0] * constants[0]
-    t1 = ca.cos(gamma[0])
-    t2 = ca.sin(gamma[0])
+    t1 = ca.sin(gamma[0])
+    t2 = ca.cos(gamma[0])
     t3 = t1 * t2
     t4 = W[0] * constants[1]
     t5 = W[0] * t4
     t6 = t3 * t5
     t7 = t0 - t6
-    t8 = t1 * t1
-    t9 = t8 * constants[1]
-    t10 = t9 + t9
-    t11 = t10 + constants[2]
-    t12 = W[0] * gamma_dot[0]
-    t13 = t11 * t12
-    t14 = W_dot[0] * constants[1]
-    t15 = t3 * t14
-    t16 = t13 + t15
-    t17 = constants[4] - t9
-    t18 = W_dot[0] * t17
-    t19 = t3 * constants[3]
-    t20 = t12 * t19
-    t21 = t18 + t20
-    t22 = t2 * t2
-    t23 = t5 * t22
-    t24 = t8 * t5
-    t25 = t23 - t24
-    t26 = t8 * t14
-    t27 = _kept(t26 - t20)
-    t28 = t27 - t20
-    t29 = t14 * t22
-    t30 = t28 - t29
-    t31 = t15 + t15
-    t32 = t12 * constants[3]
-    t33 = t8 * t32
-    t34 = t31 + t33
-    t35 = t22 * t32
-    t36 = t34 - t35
-    t37 = W[0] * t11
-    t38 = W[0] * t19
+    t8 = W[0] * gamma_dot[0]
+    t9 = t8 * constants[2]
+    t10 = t2 * t2
+    t11 = t8 * constants[3]
+    t12 = t10 * t11
+    t13 = W_dot[0] * constants[1]
+    t14 = t3 * t13
+    t15 = _kept(t12 + t14)
+    t16 = t9 + t15
+    t17 = t3 * constants[3]
+    t18 = t8 * t17
+    t19 = t10 * constants[1]
+    t20 = constants[4] - t19
+    t21 = W_dot[0] * t20
+    t22 = t18 + t21
+    t23 = t1 * t1
+    t24 = t5 * t23
+    t25 = t10 * t5
+    t26 = t24 - t25
+    t27 = t10 * t13
+    t28 = _kept(t27 - t18)
+    t29 = t28 - t18
+    t30 = t13 * t23
+    t31 = t29 - t30
+    t32 = t14 + t15
+    t33 = t23 * t11
+    t34 = t32 - t33
+    t35 = t19 + t19
+    t36 = t35 + constants[2]
+    t37 = W[0] * t36
+    t38 = W[0] * t17
     t39 = -t38
-    t40 = gamma_dot[0] * t11
-    t41 = gamma_dot[0] * t19
+    t40 = gamma_dot[0] * t36
+    t41 = gamma_dot[0] * t17
     t42 = t3 * constants[1]
     return ca.Function(
         "unsymmetrical_rotor_in_carrier_axes_moment_jacobian_hot",
         [constants, gamma, gamma_dot, gamma_ddot, W, W_dot],
         [
-            ca.vertcat(t7, t16, t21),
-            ca.SX(ca.Sparsity(3, 5, [0, 3, 5, 6, 9, 11], [0, 1, 2, 1, 2, 0, 0, 1, 2, 1, 2]), ca.vertcat(t25, t30, t36, t37, t38, constants[0], t39, t40, t41, t42, t17)),
+            ca.vertcat(t7, t16, t22),
+            ca.SX(ca.Sparsity(3, 5, [0, 3, 5, 6, 9, 11], [0, 1, 2, 1, 2, 0, 0, 1, 2, 1, 2]), ca.vertcat(t26, t31, t34, t37, t38, constants[0], t39, t40, t41, t42, t20)),
         ],
         ['constants', 'gamma', 'gamma_dot', 'gamma_ddot', 'W', 'W_dot'],
         ['moment', 'jacobian'],
@@ -324,19 +326,19 @@ def angular_momentum_hot():
 
 
 def _angular_momentum():
-    constants = ca.SX.sym("constants", 5)
+    constants = ca.SX.sym("constants", 8)
     gamma = ca.SX.sym("gamma", 1)
     gamma_dot = ca.SX.sym("gamma_dot", 1)
     W = ca.SX.sym("W", 1)
     t0 = gamma_dot[0] * constants[0]
     t1 = ca.sin(gamma[0])
-    t2 = W[0] * t1
-    t3 = ca.cos(gamma[0])
-    t4 = t3 * constants[1]
-    t5 = t2 * t4
-    t6 = t3 * t4
-    t7 = constants[4] - t6
-    t8 = W[0] * t7
+    t2 = ca.cos(gamma[0])
+    t3 = W[0] * constants[1]
+    t4 = t2 * t3
+    t5 = t1 * t4
+    t6 = W[0] * constants[4]
+    t7 = t2 * t4
+    t8 = t6 - t7
     return ca.Function(
         "unsymmetrical_rotor_in_carrier_axes_angular_momentum_hot",
         [constants, gamma, gamma_dot, W],
@@ -360,35 +362,35 @@ def angular_momentum_rate_hot():
 
 
 def _angular_momentum_rate():
-    constants = ca.SX.sym("constants", 5)
+    constants = ca.SX.sym("constants", 8)
     gamma = ca.SX.sym("gamma", 1)
     gamma_dot = ca.SX.sym("gamma_dot", 1)
     gamma_ddot = ca.SX.sym("gamma_ddot", 1)
     W = ca.SX.sym("W", 1)
     W_dot = ca.SX.sym("W_dot", 1)
     t0 = gamma_ddot[0] * constants[0]
-    t1 = ca.sin(gamma[0])
-    t2 = ca.cos(gamma[0])
-    t3 = t2 * constants[1]
-    t4 = W_dot[0] * t3
+    t1 = ca.cos(gamma[0])
+    t2 = gamma_dot[0] * W[0]
+    t3 = t1 * constants[3]
+    t4 = t2 * t3
     t5 = t1 * t4
-    t6 = gamma_dot[0] * W[0]
-    t7 = t2 * constants[3]
-    t8 = t6 * t7
-    t9 = t2 * t8
+    t6 = ca.sin(gamma[0])
+    t7 = t1 * constants[1]
+    t8 = W_dot[0] * t7
+    t9 = t6 * t8
     t10 = t5 + t9
-    t11 = t6 * constants[1]
+    t11 = t2 * constants[1]
     t12 = t10 - t11
-    t13 = t1 * t8
-    t14 = W_dot[0] * constants[4]
+    t13 = W_dot[0] * constants[4]
+    t14 = t6 * t4
     t15 = t13 + t14
-    t16 = t2 * t4
+    t16 = t1 * t8
     t17 = t15 - t16
-    t18 = t1 * W[0]
-    t19 = t18 * W[0]
-    t20 = t19 * t3
+    t18 = W[0] * W[0]
+    t19 = t18 * t6
+    t20 = t19 * t7
     t21 = t0 - t20
-    t22 = t6 * constants[2]
+    t22 = t2 * constants[2]
     t23 = t22 + t10
     return ca.Function(
         "unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_hot",
@@ -414,20 +416,20 @@ def kinetic_energy_hot():
 
 
 def _kinetic_energy():
-    constants = ca.SX.sym("constants", 5)
+    constants = ca.SX.sym("constants", 8)
     gamma = ca.SX.sym("gamma", 1)
     gamma_dot = ca.SX.sym("gamma_dot", 1)
     W = ca.SX.sym("W", 1)
-    t0 = W[0] * W[0]
-    t1 = ca.cos(gamma[0])
-    t2 = t1 * t1
-    t3 = t2 * constants[1]
-    t4 = constants[4] - t3
-    t5 = t0 * t4
-    t6 = gamma_dot[0] * gamma_dot[0]
-    t7 = t6 * constants[0]
-    t8 = t5 + t7
-    t9 = t8 * 0.5
+    t0 = gamma_dot[0] * gamma_dot[0]
+    t1 = t0 * constants[5]
+    t2 = W[0] * W[0]
+    t3 = t2 * constants[6]
+    t4 = t1 + t3
+    t5 = ca.cos(gamma[0])
+    t6 = t5 * t5
+    t7 = t6 * t2
+    t8 = t7 * constants[7]
+    t9 = t4 - t8
     return ca.Function(
         "unsymmetrical_rotor_in_carrier_axes_kinetic_energy_hot",
         [constants, gamma, gamma_dot, W],

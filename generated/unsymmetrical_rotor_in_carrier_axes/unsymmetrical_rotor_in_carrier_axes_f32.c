@@ -80,11 +80,17 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float 
     const unsymmetrical_rotor_in_carrier_axes_pair_f32 s0 = unsymmetrical_rotor_in_carrier_axes_sub_f32((unsymmetrical_rotor_in_carrier_axes_pair_f32){I_yy, 0.0F}, (unsymmetrical_rotor_in_carrier_axes_pair_f32){I_zz, 0.0F});
     const unsymmetrical_rotor_in_carrier_axes_pair_f32 s1 = unsymmetrical_rotor_in_carrier_axes_sub_f32((unsymmetrical_rotor_in_carrier_axes_pair_f32){I_xx, 0.0F}, s0);
     const unsymmetrical_rotor_in_carrier_axes_pair_f32 s2 = unsymmetrical_rotor_in_carrier_axes_mul_f32(s0, (unsymmetrical_rotor_in_carrier_axes_pair_f32){2.0F, 0.0F});
+    const unsymmetrical_rotor_in_carrier_axes_pair_f32 s3 = unsymmetrical_rotor_in_carrier_axes_mul_f32((unsymmetrical_rotor_in_carrier_axes_pair_f32){I_xx, 0.0F}, (unsymmetrical_rotor_in_carrier_axes_pair_f32){0.5F, 0.0F});
+    const unsymmetrical_rotor_in_carrier_axes_pair_f32 s4 = unsymmetrical_rotor_in_carrier_axes_mul_f32((unsymmetrical_rotor_in_carrier_axes_pair_f32){I_yy, 0.0F}, (unsymmetrical_rotor_in_carrier_axes_pair_f32){0.5F, 0.0F});
+    const unsymmetrical_rotor_in_carrier_axes_pair_f32 s5 = unsymmetrical_rotor_in_carrier_axes_mul_f32(s0, (unsymmetrical_rotor_in_carrier_axes_pair_f32){0.5F, 0.0F});
     constants->I_xx = I_xx;
     constants->I_yy_minus_I_zz = s0.high;
     constants->k1 = s1.high;
     constants->twice_I_yy_minus_I_zz = s2.high;
     constants->I_yy = I_yy;
+    constants->half_I_xx = s3.high;
+    constants->half_I_yy = s4.high;
+    constants->half_I_yy_minus_I_zz = s5.high;
     if (!(I_xx - I_xx >= 0.0F)
         || !(I_yy - I_yy >= 0.0F)
         || !(I_zz - I_zz >= 0.0F)) {
@@ -97,7 +103,10 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float 
     }
     if (!(s0.high - s0.high >= 0.0F)
         || !(s1.high - s1.high >= 0.0F)
-        || !(s2.high - s2.high >= 0.0F)) {
+        || !(s2.high - s2.high >= 0.0F)
+        || !(s3.high - s3.high >= 0.0F)
+        || !(s4.high - s4.high >= 0.0F)
+        || !(s5.high - s5.high >= 0.0F)) {
         return 5;
     }
     return 0;
@@ -127,23 +136,22 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f32(const unsymmetrical_rotor_in
     const float t5 = t2 * t4;
     const float t6 = t1 * t5;
     const float t7 = t0 - t6;
-    const float t8 = W_dot * t5;
-    const float t9 = W * gamma_dot;
-    const float t10 = t9 * constants->k1;
-    const float t11 = t8 + t10;
-    const float t12 = t3 * constants->twice_I_yy_minus_I_zz;
-    const float t13 = t9 * t12;
-    const float t14 = t3 * t13;
-    const float t15 = t11 + t14;
-    const float t16 = t2 * t13;
-    const float t17 = W_dot * constants->I_yy;
-    const float t18 = t16 + t17;
-    const float t19 = t3 * W_dot;
-    const float t20 = t19 * t4;
-    const float t21 = t18 - t20;
+    const float t8 = W * gamma_dot;
+    const float t9 = t8 * constants->k1;
+    const float t10 = t3 * constants->twice_I_yy_minus_I_zz;
+    const float t11 = t8 * t10;
+    const float t12 = t3 * t11;
+    const float t13 = t9 + t12;
+    const float t14 = W_dot * t5;
+    const float t15 = t13 + t14;
+    const float t16 = t2 * t11;
+    const float t17 = t3 * t4;
+    const float t18 = constants->I_yy - t17;
+    const float t19 = W_dot * t18;
+    const float t20 = t16 + t19;
     moment[0] = t7;
     moment[1] = t15;
-    moment[2] = t21;
+    moment[2] = t20;
 }
 
 /* External moment that the motion needs (inverse dynamics), with its Jacobian. */
@@ -152,54 +160,54 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f32(const unsymmetrical
     float jacobian[11])
 {
     const float t0 = gamma_ddot * constants->I_xx;
-    const float t1 = cosf(gamma);
-    const float t2 = sinf(gamma);
+    const float t1 = sinf(gamma);
+    const float t2 = cosf(gamma);
     const float t3 = t1 * t2;
     const float t4 = W * constants->I_yy_minus_I_zz;
     const float t5 = W * t4;
     const float t6 = t3 * t5;
     const float t7 = t0 - t6;
-    const float t8 = t1 * t1;
-    const float t9 = t8 * constants->I_yy_minus_I_zz;
-    const float t10 = t9 + t9;
-    const float t11 = t10 + constants->k1;
-    const float t12 = W * gamma_dot;
-    const float t13 = t11 * t12;
-    const float t14 = W_dot * constants->I_yy_minus_I_zz;
-    const float t15 = t3 * t14;
-    const float t16 = t13 + t15;
-    const float t17 = constants->I_yy - t9;
-    const float t18 = W_dot * t17;
-    const float t19 = t3 * constants->twice_I_yy_minus_I_zz;
-    const float t20 = t12 * t19;
-    const float t21 = t18 + t20;
-    const float t22 = t2 * t2;
-    const float t23 = t5 * t22;
-    const float t24 = t8 * t5;
-    const float t25 = t23 - t24;
-    const float t26 = t8 * t14;
-    const float t27 = t26 - t20;
-    const float t28 = t27 - t20;
-    const float t29 = t14 * t22;
-    const float t30 = t28 - t29;
-    const float t31 = t15 + t15;
-    const float t32 = t12 * constants->twice_I_yy_minus_I_zz;
-    const float t33 = t8 * t32;
-    const float t34 = t31 + t33;
-    const float t35 = t22 * t32;
-    const float t36 = t34 - t35;
-    const float t37 = W * t11;
-    const float t38 = W * t19;
+    const float t8 = W * gamma_dot;
+    const float t9 = t8 * constants->k1;
+    const float t10 = t2 * t2;
+    const float t11 = t8 * constants->twice_I_yy_minus_I_zz;
+    const float t12 = t10 * t11;
+    const float t13 = W_dot * constants->I_yy_minus_I_zz;
+    const float t14 = t3 * t13;
+    const float t15 = t12 + t14;
+    const float t16 = t9 + t15;
+    const float t17 = t3 * constants->twice_I_yy_minus_I_zz;
+    const float t18 = t8 * t17;
+    const float t19 = t10 * constants->I_yy_minus_I_zz;
+    const float t20 = constants->I_yy - t19;
+    const float t21 = W_dot * t20;
+    const float t22 = t18 + t21;
+    const float t23 = t1 * t1;
+    const float t24 = t5 * t23;
+    const float t25 = t10 * t5;
+    const float t26 = t24 - t25;
+    const float t27 = t10 * t13;
+    const float t28 = t27 - t18;
+    const float t29 = t28 - t18;
+    const float t30 = t13 * t23;
+    const float t31 = t29 - t30;
+    const float t32 = t14 + t15;
+    const float t33 = t23 * t11;
+    const float t34 = t32 - t33;
+    const float t35 = t19 + t19;
+    const float t36 = t35 + constants->k1;
+    const float t37 = W * t36;
+    const float t38 = W * t17;
     const float t39 = -t38;
-    const float t40 = gamma_dot * t11;
-    const float t41 = gamma_dot * t19;
+    const float t40 = gamma_dot * t36;
+    const float t41 = gamma_dot * t17;
     const float t42 = t3 * constants->I_yy_minus_I_zz;
     moment[0] = t7;
     moment[1] = t16;
-    moment[2] = t21;
-    jacobian[0] = t25;
-    jacobian[1] = t30;
-    jacobian[2] = t36;
+    moment[2] = t22;
+    jacobian[0] = t26;
+    jacobian[1] = t31;
+    jacobian[2] = t34;
     jacobian[3] = t37;
     jacobian[4] = t38;
     jacobian[5] = constants->I_xx;
@@ -207,7 +215,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f32(const unsymmetrical
     jacobian[7] = t40;
     jacobian[8] = t41;
     jacobian[9] = t42;
-    jacobian[10] = t17;
+    jacobian[10] = t20;
 }
 
 /* External moment that the motion needs (inverse dynamics), with its Jacobian. Dense. */
@@ -235,13 +243,13 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f32(const unsymmetrica
 {
     const float t0 = gamma_dot * constants->I_xx;
     const float t1 = sinf(gamma);
-    const float t2 = W * t1;
-    const float t3 = cosf(gamma);
-    const float t4 = t3 * constants->I_yy_minus_I_zz;
-    const float t5 = t2 * t4;
-    const float t6 = t3 * t4;
-    const float t7 = constants->I_yy - t6;
-    const float t8 = W * t7;
+    const float t2 = cosf(gamma);
+    const float t3 = W * constants->I_yy_minus_I_zz;
+    const float t4 = t2 * t3;
+    const float t5 = t1 * t4;
+    const float t6 = W * constants->I_yy;
+    const float t7 = t2 * t4;
+    const float t8 = t6 - t7;
     angular_momentum[0] = t0;
     angular_momentum[1] = t5;
     angular_momentum[2] = t8;
@@ -253,28 +261,28 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f32(const unsymme
     float rate_absolute[3])
 {
     const float t0 = gamma_ddot * constants->I_xx;
-    const float t1 = sinf(gamma);
-    const float t2 = cosf(gamma);
-    const float t3 = t2 * constants->I_yy_minus_I_zz;
-    const float t4 = W_dot * t3;
+    const float t1 = cosf(gamma);
+    const float t2 = gamma_dot * W;
+    const float t3 = t1 * constants->twice_I_yy_minus_I_zz;
+    const float t4 = t2 * t3;
     const float t5 = t1 * t4;
-    const float t6 = gamma_dot * W;
-    const float t7 = t2 * constants->twice_I_yy_minus_I_zz;
-    const float t8 = t6 * t7;
-    const float t9 = t2 * t8;
+    const float t6 = sinf(gamma);
+    const float t7 = t1 * constants->I_yy_minus_I_zz;
+    const float t8 = W_dot * t7;
+    const float t9 = t6 * t8;
     const float t10 = t5 + t9;
-    const float t11 = t6 * constants->I_yy_minus_I_zz;
+    const float t11 = t2 * constants->I_yy_minus_I_zz;
     const float t12 = t10 - t11;
-    const float t13 = t1 * t8;
-    const float t14 = W_dot * constants->I_yy;
+    const float t13 = W_dot * constants->I_yy;
+    const float t14 = t6 * t4;
     const float t15 = t13 + t14;
-    const float t16 = t2 * t4;
+    const float t16 = t1 * t8;
     const float t17 = t15 - t16;
-    const float t18 = t1 * W;
-    const float t19 = t18 * W;
-    const float t20 = t19 * t3;
+    const float t18 = W * W;
+    const float t19 = t18 * t6;
+    const float t20 = t19 * t7;
     const float t21 = t0 - t20;
-    const float t22 = t6 * constants->k1;
+    const float t22 = t2 * constants->k1;
     const float t23 = t22 + t10;
     rate_in_axes[0] = t0;
     rate_in_axes[1] = t12;
@@ -288,15 +296,15 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f32(const unsymme
 void unsymmetrical_rotor_in_carrier_axes_kinetic_energy_f32(const unsymmetrical_rotor_in_carrier_axes_constants_f32 *constants,
     float gamma, float gamma_dot, float W, float *kinetic_energy)
 {
-    const float t0 = W * W;
-    const float t1 = cosf(gamma);
-    const float t2 = t1 * t1;
-    const float t3 = t2 * constants->I_yy_minus_I_zz;
-    const float t4 = constants->I_yy - t3;
-    const float t5 = t0 * t4;
-    const float t6 = gamma_dot * gamma_dot;
-    const float t7 = t6 * constants->I_xx;
-    const float t8 = t5 + t7;
-    const float t9 = t8 * 0.5F;
+    const float t0 = gamma_dot * gamma_dot;
+    const float t1 = t0 * constants->half_I_xx;
+    const float t2 = W * W;
+    const float t3 = t2 * constants->half_I_yy;
+    const float t4 = t1 + t3;
+    const float t5 = cosf(gamma);
+    const float t6 = t5 * t5;
+    const float t7 = t6 * t2;
+    const float t8 = t7 * constants->half_I_yy_minus_I_zz;
+    const float t9 = t4 - t8;
     *kinetic_energy = t9;
 }

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 a2bf3451575cbf41.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 08dd362e1b1e527c.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
@@ -27,6 +27,9 @@ typedef struct {
     double k1; /* I_xx - I_yy + I_zz */
     double twice_I_yy_minus_I_zz; /* 2*(I_yy - I_zz) */
     double I_yy; /* I_yy */
+    double half_I_xx; /* 1/2*I_xx */
+    double half_I_yy; /* 1/2*I_yy */
+    double half_I_yy_minus_I_zz; /* 1/2*(I_yy - I_zz) */
 } unsymmetrical_rotor_in_carrier_axes_constants_f64;
 
 /* Make the constants of this scene from its parameters; call it once.
@@ -38,7 +41,7 @@ typedef struct {
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
- * Cost: once; 3 operations on pairs.
+ * Cost: once; 6 operations on pairs.
  */
 int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, double I_zz,
     unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants);
@@ -52,11 +55,18 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, doub
  *            W_dot  rad/s^2  -1 .. 1
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.51, largest 7.5 u of the largest product or sum in the equation (of moment;
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.54, largest 15 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst, 150 hard ones).
- * Cost: 3 add, 2 sub, 15 mul, 1 sin, 1 cos.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
- *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
+ * Cost: 3 add, 2 sub, 14 mul, 1 sin, 1 cos.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants,
     double gamma, double gamma_dot, double gamma_ddot, double W, double W_dot, double moment[3]);
@@ -71,11 +81,19 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
  *            jacobian[11]  nonzeros of the Jacobian, in compressed-column order
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Error: median 0.51, largest 5.9 u of the largest product or sum in the equation (of jacobian;
- *            200000 samples of the ranges, 65536 searched from the worst, 150 hard ones).
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
+ *            step moving_point_form]
+ * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.54, largest 5.2e+02 u of the largest product or sum in the equation (of jacobian
+ *            at a hard sample, thin rod; 200000 samples of the ranges, 65536 searched from the
+ *            worst, 150 hard ones).
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
- *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f64(const unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants,
     double gamma, double gamma_dot, double gamma_ddot, double W, double W_dot, double moment[3],
@@ -93,11 +111,15 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(const unsymme
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
  * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
- * Error: median 0.42, largest 3.9 u of the largest product or sum in the equation (of
- *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 150
- *            hard ones).
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.49, largest 5.6e+02 u of the largest product or sum in the equation (of
+ *            angular_momentum at a hard sample, thin rod; 200000 samples of the ranges, 65536
+ *            searched from the worst, 150 hard ones).
  * Cost: 1 sub, 6 mul, 1 sin, 1 cos.
- * Rests on: body_triad, body_triad_is_orthonormal, rigid.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            further_axes_are_right_handed, rate_seen_from_N, rigid.
  */
 void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(const unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants,
     double gamma, double gamma_dot, double W, double angular_momentum[3]);
@@ -113,11 +135,14 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(const unsymmetrica
  *            rate_absolute[3]  N m  along xyz  rate of angular momentum seen from the inertial frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
- * Error: median 0.51, largest 6.7 u of the largest product or sum in the equation (of
- *            rate_in_axes; 200000 samples of the ranges, 65536 searched from the worst, 150 hard
- *            ones).
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.57, largest 23 u of the largest product or sum in the equation (of rate_in_axes;
+ *            200000 samples of the ranges, 65536 searched from the worst, 150 hard ones).
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            further_axes_are_right_handed, rate_seen_from_N, rigid.
  */
 void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(const unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants,
     double gamma, double gamma_dot, double gamma_ddot, double W, double W_dot,
@@ -129,12 +154,16 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(const unsymme
  *            gamma_dot  rad/s  -300 .. 300
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
  * Returned:  kinetic_energy  J  kinetic energy
- * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
- * Error: median 0.52, largest 2.9 u of the largest product or sum in the equation (of
+ * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
+ *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Error: median 0.59, largest 27 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 150 hard
  *            ones).
  * Cost: 1 add, 1 sub, 7 mul, 1 cos.
- * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
+ * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, rate_seen_from_N, rigid.
  */
 void unsymmetrical_rotor_in_carrier_axes_kinetic_energy_f64(const unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants,
     double gamma, double gamma_dot, double W, double *kinetic_energy);

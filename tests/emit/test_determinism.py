@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from derive.library.library import library
-from derive.lower.arrange.draft import Draft
+from derive.lower.arrange.block import Solution
 from derive.lower.expand import family
 from derive.lower.graph import Graph
 from derive.program.program import Line, Op, Operand, Program, Repeat
@@ -126,12 +126,12 @@ def test_what_the_stages_are_called_does_not_matter(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Without the letters before "_" no name tells which vector it belongs to."""
-    before, made = Draft.named, library_of(name)
+    before, made = Solution.named, library_of(name)
 
-    def named(self: Draft, kind: str, called: str, *of: Any) -> Any:
+    def named(self: Solution, kind: str, called: str, *of: Any) -> Any:
         return before(self, kind, called.replace("_", ""), *of)
 
-    monkeypatch.setattr(Draft, "named", named)
+    monkeypatch.setattr(Solution, "named", named)
     other = library(load(name))
     pairs = zip((made.setup, *made.printed()), (other.setup, *other.printed()), strict=True)
     assert [one.name for one, two in pairs if shape(one) != shape(two)] == []

@@ -7,8 +7,8 @@ from functools import cache
 import pytest
 
 from derive.emit.page.code import listing
-from derive.emit.page.equation import passages
 from derive.emit.page.lecture import ENDS, IN_COMPONENTS, lecture_page
+from derive.emit.page.machine import passages
 from derive.emit.page.prose import prose
 from derive.emit.page.scene import scene_page
 from derive.lecture.chapters import LECTURE

@@ -55,7 +55,6 @@ WHOLE = {
     "bench/motion/case.py: rate": "fractions",
     "bench/show.py: bench": "problems counted",
     "bench/truth.py: _add": "balls",
-    "verify/hard_bodies.py: solvable": "fractions",
     "check/admission.py: _joined": "entries counted",
     "check/derivatives.py: _differentiated": "whole numbers",
     "command/lecture.py: _verified": "seconds of this run",

@@ -7,7 +7,7 @@ import pytest
 
 from derive.check.particles import clouds
 from derive.library.library import Library, library
-from derive.mechanics.mechanism import in_terms, truth_of
+from derive.mechanics.mechanism import mechanism, problem
 from derive.program.precision import F64
 from derive.program.program import component_names
 from derive.scene import SceneError, parse_scene
@@ -83,13 +83,13 @@ def test_another_rate_does_not_agree_with_the_cloud_of_particles(top: Library) -
 
 
 def test_the_top_has_the_rates_of_the_body_whose_omega_the_speeds_are() -> None:
-    machine, body = (in_terms(s) for s in (parse_scene(TOP, "top"), scene_of("heavy_top")))
+    machine, body = (mechanism(s) for s in (parse_scene(TOP, "top"), scene_of("heavy_top")))
     (sample,) = samples(machine, F64, 1, 0).each
     omega = {f"omega_{axis}": sample.values[n] for axis, n in zip("xyz", OMEGA, strict=True)}
     values = {**sample.values, **omega, "phi": 0.3}
     ours, theirs = (
         {n: float(x.value) for n, x in
-         reference(equations(k, truth_of(k, "state_rate")), values, ()).items()}
+         reference(equations(k, problem(k, "state_rate")), values, ()).items()}
         for k in (machine, body)
     )  # fmt: skip
     pairs = {"psi_rate": "psi_dot", "theta_rate": "theta_dot"}
@@ -101,10 +101,10 @@ OMEGA = ("w_x", "w_y", "n")
 
 
 def test_a_sleigh_moves_as_chaplygin_says() -> None:
-    known = in_terms(parse_scene(SLEIGH, "sleigh"))
+    known = mechanism(parse_scene(SLEIGH, "sleigh"))
     (sample,) = samples(known, F64, 1, 0).each
     m, a, moment, v, w = (sample.values[n] for n in ("m", "a", "I", "v", "w"))
-    found = reference(equations(known, truth_of(known, "state_rate")), sample.values, ())
+    found = reference(equations(known, problem(known, "state_rate")), sample.values, ())
     assert float(found["v_rate"].value) == pytest.approx(a * w**2)
     assert float(found["w_rate"].value) == pytest.approx(-m * a * v * w / (moment + m * a**2))
 
@@ -161,6 +161,6 @@ def test_a_coordinate_is_given_if_its_rate_is_or_the_scene_says_so(
     said = f'"{rate}"' + (f', motion = "{motion}"' if motion else "")
     text = TOP.replace(RATE, said)
     text = text.replace("[speeds]", '[speeds]\nW = { unit = "rad/s", range = [1, 2], rate = 0 }')
-    words = in_terms(parse_scene(text, "top")).words
+    words = mechanism(parse_scene(text, "top")).words
     assert ("psi" in {q.name for q in words.states}) == state
     assert ("psi" in {q.name for q in words.inputs}) != state

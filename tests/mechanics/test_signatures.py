@@ -2,7 +2,7 @@
 
 import pytest
 
-from derive.mechanics.mechanism import Mechanism, depends_on, mechanism, truth
+from derive.mechanics.mechanism import Mechanism, depends_on, mechanism, problem
 from derive.mechanics.probe import POINTS, another, point
 from derive.scene import Machine, load
 
@@ -39,7 +39,7 @@ def test_an_answer_depends_on_what_the_data_file_says(
     name: str, function: str, expected: set[str]
 ) -> None:
     found = known(name)
-    truth(found, function)
+    problem(found, function)
     assert set(depends_on(found, function)) == expected
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from derive.cli import parser
 from derive.library.library import library
-from derive.mechanics.mechanism import Mechanism, depends_on, in_terms
+from derive.mechanics.mechanism import Mechanism, depends_on, mechanism
 from derive.scene import SceneError, parse_scene
 from derive.scene.machine import LEFT_OVER
 from derive.solve import opened, roots
@@ -51,7 +51,7 @@ def test_a_residual_that_does_not_hold_its_unknown_is_refused(tmp_path: Path) ->
 def test_what_is_sought_and_angles_stay_in_what_only_they_multiply(
     unknown: str, inputs: set[str]
 ) -> None:
-    known = in_terms(parse_scene(PENDULUM.replace("@", unknown), "pendulum"))
+    known = mechanism(parse_scene(PENDULUM.replace("@", unknown), "pendulum"))
     assert isinstance(known, Mechanism)
     assert {*depends_on(known, "steady")} == inputs
 

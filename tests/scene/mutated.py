@@ -17,19 +17,16 @@ from typing import Any
 
 from mpmath import mp, mpf
 
-from derive.check.particles import _of_cloud as of_cloud
-from derive.check.particles import digits
+from derive.check.particles import of_cloud
 from derive.emit.c.source import c_files
 from derive.library.library import Library, library
-from derive.mechanics.mechanism import in_terms, truth_of
+from derive.mechanics.mechanism import mechanism
 from derive.mechanics.words import MATRICES
 from derive.program.precision import PRECISIONS
-from derive.scene import Machine, Scene, SceneError, parse_scene
+from derive.scene import Machine, SceneError, parse_scene
 from derive.verify.cloud import answers
 from derive.verify.cloud.series import DIGITS
 from derive.verify.cloud.small import slopes
-from derive.verify.equations import equations
-from derive.verify.reference import reference
 from derive.verify.sample import samples
 
 Path = tuple[str | int, ...]
@@ -52,24 +49,9 @@ def ignored(text: str, name: str = "example") -> list[str]:
         heard = any(_said(other, name) != before for other in others)
         named = {CALLED.get(str(key), key) for key in path}
         if not heard and not ("range" in path and not named & taken):
-            one = isinstance(made.known.scene, Scene) and not _heard_if_freed(document, path, name)
-            matters = one or any(_matters(made, o, name) for o in others)
+            matters = any(_matters(made, o, name) for o in others)
             found += [".".join(map(str, path))] * matters
     return found
-
-
-def _heard_if_freed(document: Any, path: Path, name: str) -> bool:
-    """Tell whether an entry of one body is heard where no known vector of it is 0."""
-    known = {k: v for k, v in document.get("known", {}).items() if not _is_zero(v)}
-    freed = {**document, "known": known}
-    before = _said(written(freed), name)
-    values = [value for at, value in _leaves(freed, ()) if at == path]
-    others = [written(_with(freed, path, o)) for value in values for o in _others(value)]
-    return any(_said(other, name) != before for other in others)
-
-
-def _is_zero(value: Any) -> bool:
-    return isinstance(value, list) and all(str(x).strip("-+0. ") == "" for x in value)
 
 
 def unread(text: str, name: str = "example") -> list[str]:
@@ -86,7 +68,7 @@ def unread(text: str, name: str = "example") -> list[str]:
     return found
 
 
-def _read(text: str, name: str) -> Scene | Machine | str:
+def _read(text: str, name: str) -> Machine | str:
     try:
         return replace(parse_scene(text, name), text="")
     except SceneError as error:
@@ -96,7 +78,7 @@ def _read(text: str, name: str) -> Scene | Machine | str:
 def _said(text: str, name: str) -> tuple[str, ...]:
     """Return all that is said of a scene: its code and warnings, or why it is refused."""
     try:
-        scene: Scene | Machine = replace(parse_scene(text, name), text="")
+        scene: Machine = replace(parse_scene(text, name), text="")
         return (*c_files(library(scene), ()).values(), *scene.warnings)
     except SceneError as error:
         return (str(error),)
@@ -106,33 +88,25 @@ def _matters(made: Library, text: str, name: str) -> bool:
     """Tell whether a change changes the answers at a sample; where there are none, it does."""
     other = parse_scene(text, name)
     (sample,) = samples(made.known, PRECISIONS[1], 1, 0).each[:1]
-    by = _by_particles if isinstance(other, Machine) else _by_equations
-    first, second = (by(made, one, sample.values) for one in (made.known.scene, other))
+    scenes = (made.known.scene, other)
+    first, second = (_by_particles(made, one, sample.values) for one in scenes)
     with mp.workdps(DIGITS):
         pairs = list(zip(first, second, strict=True))
         size = max((abs(x) for pair in pairs for x in pair), default=mpf(0))
         return not pairs or any(abs(a - b) > AGREE * size for a, b in pairs)
 
 
-def _by_equations(made: Library, scene: Scene, values: Mapping[str, float]) -> list[Any]:
-    """Return the answers of one body that the lecture's equations have, in balls."""
-    known, found = in_terms(scene), []
-    for base in made.truths:
-        fact = truth_of(known, base)
-        solved = reference(equations(known, fact), values, ())
-        found += [solved[c].value for q in fact.outputs for c in q.components]
-    return [digits(x) for x in found]
-
-
 def _by_particles(made: Library, scene: Machine, values: Mapping[str, float]) -> list[Any]:
     """Return the answers of a machine that its cloud of particles has."""
-    cloud, found = answers(scene, values), []
+    known, found = mechanism(scene), []
     for base, fact in made.truths.items():
+        posed = known.posed(base)
+        cloud = answers(posed.scene, values)
         if base == "linearised" or fact.outputs[0].name in MATRICES:
             found += [x for table in slopes(scene, values) for x in table]
             continue
         names = [c for q in fact.outputs for c in q.components]
-        found += [of_cloud(scene, cloud, base, n) for n in names]
+        found += [*of_cloud(posed, cloud, base, names).values()]
     return [x for x in found if x is not None]
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from derive.check import proof
 from derive.library.library import library
 from derive.scene import SceneError, parse_scene
 from tests.scene import fuzzed
@@ -51,7 +52,6 @@ def test_programs_of_changed_scenes_are_made_or_refused_in_one_sentence(start: i
 @pytest.mark.parametrize(
     "text",
     [
-        ROOT_OF_A_SQUARE,
         TEXTS["rotor_whirl"].replace('"-k*y"', '"sqrt((-k*y)^2)"'),
         TEXTS["rolling_ball"].replace("[bodies.ball]", "[bodies]").replace("mass =", "# "),
     ],
@@ -60,6 +60,10 @@ def test_what_changes_of_scenes_brought_to_light_is_refused_in_one_sentence(text
     assert fuzzed.fault(text, "odd") == ""
     with pytest.raises(SceneError):
         library(parse_scene(text, "odd"))
+
+
+def test_the_root_of_the_square_of_what_is_positive_is_that() -> None:
+    assert proof(library(parse_scene(ROOT_OF_A_SQUARE, "odd"))).outcome == "holds"
 
 
 @pytest.mark.parametrize(

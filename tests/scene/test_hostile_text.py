@@ -25,7 +25,7 @@ from derive.emit.casadi_text import casadi_file
 from derive.emit.manifest import manifest
 from derive.emit.page.scene import scene_page
 from derive.library.library import library
-from derive.scene import CATALOGUE, Machine, Scene, SceneError, parse_scene
+from derive.scene import CATALOGUE, Machine, SceneError, parse_scene
 from derive.scene.escape import in_comment, in_docstring, visible
 from tests.made import thinned
 
@@ -94,7 +94,7 @@ time_step = { range = [0.1, 0.2] }
 """
 
 
-def read(document: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> Scene | Machine:
+def read(document: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> Machine:
     """Return the scene of a document that no TOML stands behind."""
     monkeypatch.setattr(derive.scene, "_document", lambda _: document)
     return parse_scene("", "odd")
@@ -200,7 +200,7 @@ def test_no_entry_takes_text_that_ends_a_comment_a_string_or_a_line(
             assert not accepts(copy, monkeypatch), (path, key)
 
 
-def filled(text: str, hostile: str, monkeypatch: pytest.MonkeyPatch) -> Scene | Machine:
+def filled(text: str, hostile: str, monkeypatch: pytest.MonkeyPatch) -> Machine:
     """Return a scene with a text in every entry that takes it."""
     document = tomllib.loads(text, parse_float=Decimal)
     for path, key in entries(document, monkeypatch):
@@ -209,7 +209,7 @@ def filled(text: str, hostile: str, monkeypatch: pytest.MonkeyPatch) -> Scene | 
     return read(document, monkeypatch)
 
 
-def require_harmless(scene: Scene | Machine, folder: Path) -> None:
+def require_harmless(scene: Machine, folder: Path) -> None:
     """Compile, import and parse all that a scene becomes; refuse whatever came to life in it."""
     made = library(scene)
     texts = c_files(made, ())

@@ -17,7 +17,7 @@ from derive.library.library import Library, library
 from derive.program.precision import PRECISIONS
 from derive.program.program import Quantity, component_names
 from derive.program.run import run
-from derive.scene import Machine, Scene, parse_scene
+from derive.scene import parse_scene
 from derive.verify.cloud import answers
 from derive.verify.convergence import unit_attitude
 from derive.verify.equations import equations
@@ -42,15 +42,12 @@ AGREE = mpf(10) ** -25  # the cloud has so many digits
 
 def body(text: str, wanted: str) -> Library:
     """Return the programs of a scene of one body that wants one function."""
-    scene = parse_scene(text, "example")
-    assert isinstance(scene, Scene)
-    return library(replace(scene, wanted=(wanted,)))
+    return library(replace(parse_scene(text, "example"), wanted=(wanted,)))
 
 
 def rocket_by_particles(values: Mapping[str, Any]) -> list[Any]:
     """Return velocity_rate and omega_dot of the rocket, from its cloud of particles."""
     machine = parse_scene((DATA / "rocket_machine.toml").read_text(), "rocket_machine")
-    assert isinstance(machine, Machine)
     named = {f"attitude_hull_{p}": f"attitude_{p}" for p in "wxyz"}
     named |= {f"w_{p}": f"omega_{p}" for p in "xyz"}
     named |= {p.upper(): f"position_{p}" for p in "xyz"}

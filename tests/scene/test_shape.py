@@ -11,8 +11,9 @@ from math import cos, pi, sin, sqrt
 
 import pytest
 
-from derive.scene import Body, parse_scene
+from derive.scene.declaration import Body
 from derive.scene.formula import FLOATS, ZERO, evaluate
+from tests.made import short
 
 MASS, RADIUS, LENGTH = 1.7, 0.6, 1.3
 EDGES = (0.4, 0.9, 1.4)
@@ -107,7 +108,7 @@ mass = "m"
 [point]
 kind = "{point}"
 """
-    return parse_scene(text, "shape").body
+    return short(text).body
 
 
 def summed(cloud: list[Particle], centre: tuple[float, float, float]) -> list[float]:
@@ -217,7 +218,7 @@ c = { unit = "kg m^2", range = [1, 2] }
 kind = "principal"
 second_moments = ["a", "b", "c"]
 """
-    body = parse_scene(text, "sums").body
+    body = short(text).body
     assert [str(part) for part in body.inertia[:3]] == ["b + c", "a + c", "a + b"]
 
 

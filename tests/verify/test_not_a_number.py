@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from derive.check.invariants import power_balance, turned_axes
 from flint import arb
 from mpmath import mpf
 
@@ -18,7 +19,6 @@ from bench.report.hard_top import ANSWERS
 from bench.report.hard_top import _largest as largest_of_top
 from derive.check.compiler import find_compiler
 from derive.check.emitted import Emitted, Files, loaded
-from derive.check.invariants import power_balance, turned_axes
 from derive.check.motion import orders, step_slopes
 from derive.check.particles import clouds
 from derive.emit.files import scene_files

@@ -8,8 +8,8 @@ import pytest
 import sympy
 from flint import arb, ctx
 
-from derive.mechanics.mechanism import Known, Mechanism, in_terms, truth_of
-from derive.mechanics.truth import Truth
+from derive.mechanics.mechanism import Mechanism, mechanism, problem
+from derive.mechanics.problem import Problem
 from derive.program.precision import F64
 from derive.scene import catalogue, load
 from derive.scene.wanted import EQUATIONS, JACOBIAN, moves
@@ -24,14 +24,14 @@ BITS = 800
 
 
 @cache
-def scene(name: str) -> Known:
-    return in_terms(load(name))
+def scene(name: str) -> Mechanism:
+    return mechanism(load(name))
 
 
-def truths(known: Known) -> list[Truth]:
+def truths(known: Mechanism) -> list[Problem]:
     bases = dict.fromkeys(w.removesuffix(JACOBIAN) for w in known.scene.wanted)
     stated = [b for b in bases if b in EQUATIONS or (isinstance(known, Mechanism) and not moves(b))]
-    return [truth_of(known, base) for base in stated]
+    return [problem(known, base) for base in stated]
 
 
 def valued(e: Any, values: Mapping[Any, Any]) -> Any:
@@ -57,7 +57,7 @@ def valued(e: Any, values: Mapping[Any, Any]) -> Any:
     return parts[0].sin() if isinstance(e, sympy.sin) else parts[0].cos()
 
 
-def ordinary(known: Known) -> Sample:
+def ordinary(known: Mechanism) -> Sample:
     return samples(known, F64, 1, 0).each[0]
 
 
@@ -97,7 +97,7 @@ def test_slopes_are_central_differences_of_the_reference_itself(name: str) -> No
 def found(name: str, wanted: str, values: Mapping[str, float]) -> dict[str, Any]:
     known = scene(name)
     given = dict(ordinary(known).values) | values
-    return reference(equations(known, truth_of(known, wanted)), given, ())
+    return reference(equations(known, problem(known, wanted)), given, ())
 
 
 def test_near_a_sphere_the_products_are_large_and_the_difference_is_small() -> None:

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from derive.mechanics.mechanism import Known, in_terms
+from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.program.precision import F32, F64, PRECISIONS, Precision
 from derive.scene import catalogue, load
 from derive.verify.hard_bodies import BODIES, TURN, admissible, bodies_taken
@@ -16,8 +16,8 @@ from tests.made import thinned
 
 
 @cache
-def scene(name: str) -> Known:
-    return in_terms(load(name))
+def scene(name: str) -> Mechanism:
+    return mechanism(load(name))
 
 
 def drawn(name: str, precision: Precision) -> Samples:

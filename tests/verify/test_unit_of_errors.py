@@ -11,7 +11,7 @@ import pytest
 from mpmath import matrix, mp, mpf
 from sympy import Add, Expr, S, Symbol, cos, expand, symbols
 
-from derive.mechanics.truth import Truth
+from derive.mechanics.problem import Problem
 from derive.program.precision import F64
 from derive.verify.equations import equations
 from derive.verify.reference import reference
@@ -72,7 +72,7 @@ def test_errors_are_counted_in_the_largest_product_of_the_equation(scene: str, a
 def test_products_of_a_matrix_that_varies_count_too() -> None:
     u, v, q, s, p = symbols("u v q s p")
     rows = ((2 + cos(q)) * u + cos(q) * v - s, cos(q) * u + v - p * s + p)
-    fact = Truth("both", "", (), (u, v), rows, ())
+    fact = Problem("both", "", (), (u, v), rows, ())
     words = SimpleNamespace(parameters=(), symbols={x.name: x for x in (u, v, q, s, p)})
     given = {"q": 0.25, "s": 1.0, "p": 1.5}
     true = reference(equations(SimpleNamespace(words=words), fact), given, ())

@@ -10,12 +10,12 @@ from sympy import Expr
 
 from derive.emit.gallery.drawing import drawing
 from derive.emit.notation import equation_mathml, sympy_equation_mathml
-from derive.emit.page.machine import written_names
+from derive.emit.page.equation import written_names
+from derive.emit.page.machine import all_names
 from derive.emit.templates import TEMPLATES
 from derive.lecture.chapters import LECTURE
 from derive.library.library import Library
 from derive.lower.arrange.plan import arrange
-from derive.mechanics.mechanism import Mechanism
 from derive.program.arithmetic import extended, paired, working
 from derive.program.program import Program, Quantity
 from derive.program.run import run
@@ -65,17 +65,16 @@ def _cost(library: Library) -> str:
 
 def _equation(library: Library, program: Program) -> str:
     """Return the closed form of the first answer, or the lecture step that it comes from."""
-    known = library.known
-    if not isinstance(known, Mechanism):
-        return equation_mathml(LECTURE[program.steps[0]]) if program.steps else ""
     fact = library.truths.get(program.name.removesuffix(JACOBIAN))
     if fact is None:
         return ""  # a step is no equation of the lecture
+    known = library.known.posed(fact.name)
     way, *_ = arrange(known, fact)
     values: dict[Expr, Expr] = {}
     for stage in way.stages:
         values[stage.symbol] = stage.value.xreplace(values)
-    question, names = known.question(fact.name), written_names(known)
+    question = known.question(fact.name)
+    names = all_names(known) | written_names(library)
     each = [e.xreplace(values) for e in way.outputs]
     place = next((k for k, e in enumerate(each) if e != 0), 0)
     symbol, answer = list(question.answers)[place], each[place]

@@ -11,8 +11,8 @@ from typing import Any
 
 from mpmath import mp, mpf
 
-from derive.scene import Input, Machine, Scene
-from derive.scene.formula import FLOATS, ZERO, evaluate
+from derive.scene import Input, Machine
+from derive.scene.formula import ZERO
 from derive.scene.machine import INERTIAL, Force
 from derive.scene.wanted import attitudes_only
 from derive.verify.cloud.balance import values
@@ -35,10 +35,10 @@ class Line:
     label: str = ""
 
 
-def drawing(scene: Scene | Machine) -> str:
+def drawing(scene: Machine) -> str:
     """Return the SVG of a scene."""
     with mp.workdps(DIGITS):
-        lines = list(_of_machine(scene) if isinstance(scene, Machine) else _of_body(scene))
+        lines = list(_lines(scene))
         return _svg(lines, f"drawing of {scene.name}")
 
 
@@ -53,14 +53,15 @@ def well_inside(machine: Machine) -> dict[str, Any]:
     found |= {m.unknown: mpf(0) for m in machine.moving if m.free}
     found |= {u.name: mpf(0) for u in machine.unknowns}
     for frame in machine.frames:
-        if frame.quaternion:
-            found |= {f"attitude_{frame.name}_{p}": mpf(p == "w") for p in "wxyz"}
+        if frame.attitude:
+            found |= {f"{frame.attitude}_{p}": mpf(p == "w") for p in "wxyz"}
     return found
 
 
-def _of_machine(machine: Machine) -> Iterator[Line]:
+def _lines(machine: Machine) -> Iterator[Line]:
     history = History(machine, well_inside(machine))
-    bodies = [line for b in machine.bodies for line in _ellipses(history, b.name)]
+    shown = () if attitudes_only(list(machine.wanted)) else machine.bodies
+    bodies = [line for b in shown for line in _ellipses(history, b.name)]
     size = _reach([p for line in bodies for p in line.points])
     yield from bodies
     for frame in machine.frames:
@@ -95,25 +96,6 @@ def _around(centre: Any, semi: Sequence[Any], name: str) -> Iterator[Line]:
         turn = [2 * mp.pi * n / STEPS for n in range(STEPS + 1)]
         points = tuple(tuple(centre + mp.cos(t) * semi[a] + mp.sin(t) * semi[b]) for t in turn)
         yield Line("body", points, name if a == 0 else "")
-
-
-def _of_body(scene: Scene) -> Iterator[Line]:
-    """Return the principal ellipses of a single body about its axes, from its moments.
-
-    Where formulas of attitudes alone are wanted there is no body, and its axes are all.
-    """
-    import numpy as np
-
-    known = {p.name: float((p.low + p.high) / 2) for p in scene.parameters}
-    xx, yy, zz = (mpf(evaluate(f, known, FLOATS)) for f in scene.body.inertia[:3])
-    half = (xx + yy + zz) / 2
-    axes = [np.array([mpf(i == k) for i in range(3)], dtype=object) for k in range(3)]
-    semi = [mp.sqrt(max(half - m, mpf(0))) * e for m, e in zip((xx, yy, zz), axes, strict=True)]
-    lines = [] if attitudes_only(list(scene.wanted)) else list(_around(0 * axes[0], semi, ""))
-    size = _reach([p for line in lines for p in line.points])
-    yield from lines
-    for k, e in enumerate(axes):
-        yield Line("frame", (tuple(0 * e), tuple(size * mpf("0.75") * e)), "xyz"[k])
 
 
 def _reach(points: Iterable[Point]) -> Any:

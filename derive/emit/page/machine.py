@@ -5,11 +5,13 @@ from collections.abc import Sequence
 from sympy import Expr, Symbol
 
 from derive.emit.notation import equation_mathml, sympy_equation_mathml
+from derive.emit.page.equation import written_names
 from derive.emit.page.passage import Line, Passage
 from derive.lecture.chapters import LECTURE
+from derive.library.library import Library
 from derive.mechanics.answers import FRAME_STEPS, balance_steps
 from derive.mechanics.mechanism import Mechanism, dropped
-from derive.mechanics.truth import Truth
+from derive.mechanics.problem import Problem
 from derive.scene import Machine
 from derive.scene.formula import ZERO, Formula
 from derive.scene.machine import INERTIAL, Force, Frame, Gradient, Load, Member, Spring
@@ -93,9 +95,10 @@ def notes(known: Mechanism, base: str) -> list[str]:
     return found
 
 
-def passages(known: Mechanism, fact: Truth) -> tuple[Passage, ...]:
+def passages(library: Library, fact: Problem) -> tuple[Passage, ...]:
     """Return the equations of a function: named quantities, balances, answers."""
-    question, names = known.question(fact.name), written_names(known)
+    known = library.known.posed(fact.name)
+    question, names = known.question(fact.name), all_names(known) | written_names(library)
     motion = [(s, s, value) for s, value in question.definitions.items()]
     rows = [(u, row - row, row) for u, row in zip(question.unknowns, question.rows, strict=True)]
     answers = [(s, s, value) for s, value in question.answers.items() if s != value]
@@ -108,7 +111,7 @@ def passages(known: Mechanism, fact: Truth) -> tuple[Passage, ...]:
 
 def _passage(
     known: Mechanism,
-    fact: Truth,
+    fact: Problem,
     steps: tuple[str, ...],
     lines: list[tuple[Symbol, Expr, Expr]],
     names: dict[Symbol, str],
@@ -122,7 +125,7 @@ def _passage(
     return Passage(tuple(LECTURE[step] for step in steps), general, shown)
 
 
-def written_names(known: Mechanism) -> dict[Symbol, str]:
+def all_names(known: Mechanism) -> dict[Symbol, str]:
     """Return how the page writes each symbol: named quantities by frame or body, and axis."""
     return {symbol: _written(name) for name, symbol in known.made.sheet.symbols.items()}
 

@@ -9,16 +9,14 @@ from derive.emit.c.comment import cost, of_what
 from derive.emit.c.source import first_line
 from derive.emit.notation import name_mathml
 from derive.emit.page.code import listing
-from derive.emit.page.equation import letter, passages, taken_names
-from derive.emit.page.machine import notes
+from derive.emit.page.equation import letter, taken_names
+from derive.emit.page.machine import given, notes, passages
 from derive.emit.page.passage import Passage
 from derive.emit.page.pattern import pattern
 from derive.emit.page.prose import prose
-from derive.emit.page.words import given
 from derive.emit.templates import TEMPLATES
 from derive.lecture.chapters import LECTURE
 from derive.library.library import Library
-from derive.mechanics.mechanism import Mechanism
 from derive.program.program import Measurement, Program, Quantity
 from derive.scene.wanted import JACOBIAN
 
@@ -122,7 +120,7 @@ def _section(
 
 def _notes(library: Library, program: Program) -> list[str]:
     known = library.known
-    if not isinstance(known, Mechanism) or _base(program) not in library.truths:
+    if _base(program) not in library.truths:
         return []
     return notes(known, _base(program))
 

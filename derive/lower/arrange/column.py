@@ -8,7 +8,7 @@ from sympy import Expr, Integer, Matrix, Symbol
 
 from derive.lower.arrange.block import fresh
 from derive.lower.arrange.tidy import in_what_is_given
-from derive.mechanics.question import Question, substituted
+from derive.mechanics.problem import Problem, substituted
 from derive.mechanics.sheet import Sheet
 
 
@@ -50,7 +50,7 @@ Rule = Callable[[Matrix, Known], Matrix | None]
 """A column written in another way, with what is named on the way; None if there is no such way."""
 
 
-def in_definitions(question: Question, rule: Rule, known: Known) -> Question:
+def in_definitions(question: Problem, rule: Rule, known: Known) -> Problem:
     """Return the question with columns of named quantities rewritten wherever a rule applies."""
     done: dict[Symbol, Expr] = {}
     symbols = list(question.definitions)
@@ -73,7 +73,7 @@ def _rewritten(column: Matrix, rule: Rule, known: Known) -> Matrix | None:
     return None
 
 
-def in_answers(question: Question, rule: Rule, known: Known, size: int) -> Question:
+def in_answers(question: Problem, rule: Rule, known: Known, size: int) -> Problem:
     """Return the question with answers rewritten, ``size`` one after another, by a rule."""
     answers, symbols = dict(question.answers), list(question.answers)
     for own in (symbols[k : k + size] for k in range(len(symbols) - size + 1)):
@@ -82,7 +82,7 @@ def in_answers(question: Question, rule: Rule, known: Known, size: int) -> Quest
     return replace(question, answers=answers, definitions={**question.definitions, **known.taken()})
 
 
-def in_rows(question: Question, sheet: Sheet, rule: Rule, known: Known) -> Question:
+def in_rows(question: Problem, sheet: Sheet, rule: Rule, known: Known) -> Problem:
     """Return the question with three of its rows rewritten, all that varies written out in them."""
     parts = [sheet.split(row) for row in question.rows]
     rests = [in_what_is_given(question, rest, known.constant) for rest, _ in parts]

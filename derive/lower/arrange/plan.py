@@ -33,9 +33,8 @@ from derive.lower.arrange.turns import turns_one_by_one
 from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.pivots import Pivots
 from derive.mechanics.probe import point
-from derive.mechanics.question import Question
+from derive.mechanics.problem import Problem
 from derive.mechanics.sweep import ranges
-from derive.mechanics.truth import Truth
 from derive.mechanics.vocabulary import Vocabulary
 
 OF_COLUMNS: tuple[ColumnRule, ...] = (turns_one_by_one, turned_by_quaternion, spherical_part)
@@ -52,31 +51,32 @@ class Way:
     most : a named quantity of more terms is not multiplied out by its users
     """
 
-    question: Question
+    question: Problem
     rules: tuple[Rule, ...] = ()
     families: Mapping[Symbol, str] = field(default_factory=dict)
     most: int = MANY_TERMS
 
 
-def arrange(known: Mechanism, fact: Truth) -> tuple[Arrangement, ...]:
+def arrange(known: Mechanism, fact: Problem) -> tuple[Arrangement, ...]:
     """Return the ways to compute the outputs of ``fact``, the plain one first."""
+    known = known.posed(fact.name)
     question = prepared(known, known.lean(fact.name).question)
     ways = (Way(question), _ruled(known, question), _written_out(known, question))
     return tuple(dict.fromkeys(_arranged(known, way) for way in ways))
 
 
-def plain_arrangement(known: Mechanism, question: Question) -> Arrangement:
+def plain_arrangement(known: Mechanism, question: Problem) -> Arrangement:
     """Return the stages of a question by what serves every question."""
     return _arranged(known, Way(prepared(known, question)))
 
 
-def prepared(known: Mechanism, question: Question) -> Question:
+def prepared(known: Mechanism, question: Problem) -> Problem:
     """Return a question without names of short constants, and no longer than it need be."""
     question = without_constants(question, parameters(known.words))
     return tidied(question, known.made.sheet, without_squares)
 
 
-def _ruled(known: Mechanism, question: Question) -> Way:
+def _ruled(known: Mechanism, question: Problem) -> Way:
     """Return a question with its columns rewritten by rules, then its like terms gathered."""
     sheet, words = known.made.sheet, known.words
     attitudes = [words.column(q.name) for q in words.states if q.is_quaternion]
@@ -92,7 +92,7 @@ def _ruled(known: Mechanism, question: Question) -> Way:
     return Way(question, OF_BLOCKS, own.families, MOST_TERMS)
 
 
-def _written_out(known: Mechanism, question: Question) -> Way:
+def _written_out(known: Mechanism, question: Problem) -> Way:
     """Return a question without named quantities wherever its rows stay short."""
     constant = constants(question, known.words)
     return Way(written_out(question, known.made.sheet, constant), OF_BLOCKS)
@@ -123,7 +123,7 @@ def parameters(words: Vocabulary) -> frozenset[Symbol]:
     return frozenset(words.symbols[c] for q in words.parameters for c in q.components)
 
 
-def constants(question: Question, words: Vocabulary) -> frozenset[Symbol]:
+def constants(question: Problem, words: Vocabulary) -> frozenset[Symbol]:
     """Return the symbols of a question that rest on parameters only."""
     found = set(parameters(words))
     for symbol, value in question.definitions.items():

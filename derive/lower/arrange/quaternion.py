@@ -7,8 +7,8 @@ shows what is turned, and its rate shows omega / 2. Lecture steps "rotation_of_v
 
 from sympy import Integer, Matrix, zeros
 
+from derive.lecture.stated import stated
 from derive.lower.arrange.column import Known
-from derive.mechanics.specialise import stated
 
 LONGEST = 150  # operations of a column that is multiplied out
 

@@ -10,7 +10,7 @@ from sympy import Add, Expr, Integer, Mul, Pow, Symbol, factor_terms, sin
 
 from derive.lower.arrange.block import fresh
 from derive.lower.arrange.like_terms import gathered
-from derive.mechanics.question import Question, substituted
+from derive.mechanics.problem import Problem, substituted
 from derive.mechanics.sheet import Sheet
 from derive.mechanics.turning import reduced
 
@@ -18,7 +18,7 @@ LONGEST = 150  # operations of a term that is multiplied out
 MANY_TERMS = 10  # a named quantity of more terms is not multiplied out by its users
 
 
-def without_constants(question: Question, parameters: AbstractSet[Symbol]) -> Question:
+def without_constants(question: Problem, parameters: AbstractSet[Symbol]) -> Problem:
     """Return the question without names for short sums of parameters: set-up finds them itself."""
     known: dict[Symbol, Expr] = {}
     for symbol, value in question.definitions.items():
@@ -28,7 +28,7 @@ def without_constants(question: Question, parameters: AbstractSet[Symbol]) -> Qu
     return substituted(question, known)
 
 
-def tidied(question: Question, sheet: Sheet, shorter: Callable[[Expr], Expr]) -> Question:
+def tidied(question: Problem, sheet: Sheet, shorter: Callable[[Expr], Expr]) -> Problem:
     """Return the question with every term in shorter words."""
     rows = []
     for row in question.rows:
@@ -58,7 +58,7 @@ def with_like_terms(e: Expr, constant: AbstractSet[Symbol]) -> Expr:
     return min(e, gathered(e, constant), key=lambda form: _operations(form, constant))
 
 
-def written_out(question: Question, sheet: Sheet, constant: AbstractSet[Symbol]) -> Question:
+def written_out(question: Problem, sheet: Sheet, constant: AbstractSet[Symbol]) -> Problem:
     """Return the question with rows in what is given, sin^2 = 1 - cos^2, like terms gathered."""
 
     def short(e: Expr) -> Expr:
@@ -72,7 +72,7 @@ def written_out(question: Question, sheet: Sheet, constant: AbstractSet[Symbol])
     return substituted(replace(question, rows=tuple(rows), answers=answers), {})
 
 
-def in_what_is_given(question: Question, e: Expr, constant: AbstractSet[Symbol]) -> Expr | None:
+def in_what_is_given(question: Problem, e: Expr, constant: AbstractSet[Symbol]) -> Expr | None:
     """Return an expression in what is given and constant, multiplied out; None if it is long."""
     varying = {s: value for s, value in question.definitions.items() if s not in constant}
     while e.free_symbols & varying.keys():

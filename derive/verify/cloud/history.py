@@ -119,9 +119,9 @@ class History:
         return R
 
     def _start(self, frame: Frame) -> Array:
-        if not frame.quaternion:
+        if not frame.attitude:
             return np.array([[mpf(i == k) for k in range(3)] for i in range(3)], dtype=object)
-        parts = [self.values[f"attitude_{frame.name}_{p}"] for p in "wxyz"]
+        parts = [self.values[f"{frame.attitude}_{p}"] for p in "wxyz"]
         w, x, y, z = (p / mp.sqrt(mp.fsum(q * q for q in parts)) for p in parts)
         return np.array([
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -137,11 +137,11 @@ class History:
         for frame in self.machine.frames:
             if frame.name == INERTIAL:
                 found[frame.name] = still
-            elif frame.rolls is not None or frame.velocity is not None:
-                found[frame.name] = each(lambda v: v.integral(mpf(0)), self._velocity(frame))
-            elif frame.acceleration is not None:
+            elif frame.acceleration is not None:  # from rest, or as seen moving along with it
                 a = self.rotations[frame.name] @ self.column(frame.acceleration)
                 found[frame.name] = each(lambda v: moving(0, 0, v.value / 2), a)
+            elif frame.rolls is not None or frame.velocity is not None:
+                found[frame.name] = each(lambda v: v.integral(mpf(0)), self._velocity(frame))
             else:
                 placed = self.rotations[frame.parent] @ self.column(frame.origin)
                 found[frame.name] = found[frame.parent] + placed

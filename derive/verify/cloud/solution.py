@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
 from mpmath import mp, mpf
 
 from derive.scene import Machine
@@ -110,6 +111,19 @@ class Answers:
             energies = {"kinetic_energy": energy, "potential_energy": height}
             energies["energy"] = energy + height
             return energies | dict(zip(names, along, strict=True))
+
+    @cached_property
+    def momentum_rate(self) -> dict[str, Any]:
+        """Return the rate of the angular momentum relative to its point, in the inertial frame."""
+        with mp.workdps(DIGITS):
+            history, place = self.history(self.unknowns), self.machine.momentum
+            point, total = history.place(place.frame, place.at), np.array([mpf(0)] * 3)
+            for body in place.of:
+                for m, at in history.particles(body):
+                    a = each(lambda x: x.rate().velocity, at - point)
+                    total = total + m * crossed(values(at - point), a)
+            along = values(history.rotations[place.frame]).T @ total
+            return dict(zip((f"rate_absolute_{axis}" for axis in "xyz"), along, strict=True))
 
     def rate(self, name: str) -> Any:
         """Return the rate of a state, None if it is none or an acceleration is not determined."""

@@ -1,4 +1,8 @@
-"""A wanted function as a question: answers, the balances they need, the named quantities below."""
+"""A wanted function as a problem: answers, the balances they need, the named quantities below.
+
+The reference solves it as it stands; how to compute its answers cheaply is left to arrangement,
+and a program is right if it satisfies the problem.
+"""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -14,7 +18,7 @@ from derive.program.program import Quantity
 
 
 @dataclass(frozen=True)
-class Question:
+class Problem:
     """Outputs with their values in named quantities and unknowns, and rows that are zero."""
 
     name: str
@@ -26,6 +30,19 @@ class Question:
     unknowns: tuple[Symbol, ...]
     balances: tuple[Balance, ...]
     steps: tuple[str, ...]
+
+    @property
+    def sought(self) -> tuple[Symbol, ...]:
+        """Return all that the residuals determine: named quantities, unknowns, answers."""
+        answers = (s for s in self.answers if s not in self.unknowns)
+        return (*self.definitions, *self.unknowns, *answers)
+
+    @property
+    def residuals(self) -> tuple[Expr, ...]:
+        """Return expressions that are zero, linear in what is sought."""
+        named = (value - s for s, value in self.definitions.items())
+        answers = (value - s for s, value in self.answers.items() if s not in self.unknowns)
+        return (*named, *self.rows, *answers)
 
     def expressions(self) -> tuple[Expr, ...]:
         """Return all that the answers are made of, definitions apart."""
@@ -39,7 +56,7 @@ class Question:
         return frozenset(used - set(self.definitions) - set(self.unknowns) - set(self.answers))
 
 
-def answered(question: Question, sheet: Sheet, probe: Probe) -> list[Any]:
+def answered(question: Problem, sheet: Sheet, probe: Probe) -> list[Any]:
     """Return the answers at a trial point.
 
     Raises ZeroDivisionError where the balances are singular.
@@ -56,7 +73,7 @@ def answered(question: Question, sheet: Sheet, probe: Probe) -> list[Any]:
         return [there.value(e) for e in question.answers.values()]
 
 
-def substituted(question: Question, values: Mapping[Symbol, Expr]) -> Question:
+def substituted(question: Problem, values: Mapping[Symbol, Expr]) -> Problem:
     """Return the question with symbols replaced, and named quantities that became plain put in."""
     known, definitions = dict(values), dict[Symbol, Expr]()
     for symbol, value in question.definitions.items():
