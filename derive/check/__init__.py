@@ -20,7 +20,7 @@ from derive.check.agreement import (
 from derive.check.attitudes import definitions
 from derive.check.compiler import Compiler, CompilerError, find_compiler
 from derive.check.derivatives import derivatives
-from derive.check.emitted import Emitted, Files, casadi_module, files, is_double, loaded
+from derive.check.emitted import Emitted, Files, casadi_module, files, is_double, loaded, verdict
 from derive.check.energy import emitted_balance, energy_balance
 from derive.check.fresh import fresh
 from derive.check.inlined import inlined
@@ -73,7 +73,7 @@ def check_library(
     try:
         for one in emitted:
             says = f"{with_.name}, {found.origin}"
-            yield _on_files(one, "compiles without warnings", says)
+            yield verdict(one, "all", "compiles without warnings", "holds", says)
             yield from _checks(one, found, workshop, ordinary)
     except CompilerError as error:
         name = made.known.scene.name
@@ -122,11 +122,6 @@ def interface(made: Library, found: Files) -> Verdict:
     return Verdict(name, "all", "", "describes the scene's functions", outcome, says)
 
 
-def _on_files(one: Emitted, check_: str, says: str) -> Verdict:
-    scene = one.library.known.scene.name
-    return Verdict(scene, "all", one.precision.name, check_, "holds", says)
-
-
 def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterator[Verdict]:
     drawn = samples(one.library.known, one.precision, ordinary, CORNERS)
     each = with_motion(one.library, drawn.each, one.precision)
@@ -157,9 +152,8 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
         yield from turned_axes(one, few, stated)
     if drawn.skipped:
         kinds = ", ".join(drawn.skipped)
-        name = one.library.known.scene.name
         says = f"{len(drawn.skipped)} kinds that the scene cannot take: {kinds}"
-        yield Verdict(name, "all", one.precision.name, "hard corners", "skipped", says)
+        yield verdict(one, "all", "hard corners", "skipped", says)
 
 
 def spread(each: Sequence[Sample]) -> tuple[Sample, ...]:

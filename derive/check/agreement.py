@@ -14,8 +14,8 @@ from typing import Any
 import casadi
 import numpy as np
 
-from derive.check.emitted import Emitted, inputs
-from derive.check.verdict import JUDGED, Outcome, Verdict
+from derive.check.emitted import Emitted, inputs, verdict
+from derive.check.verdict import JUDGED, Verdict
 from derive.program.arithmetic import LIBM, Table, working
 from derive.program.largest import largest
 from derive.program.program import Program
@@ -86,7 +86,7 @@ def replay(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
             if not same_bits(row, emitted.results(program, s))
         ]
         says = f"{len(each)} samples" if not worst else f"{len(worst)} differ, first {worst[0]}"
-        yield _verdict(emitted, program, "bits of the program", JUDGED[not worst], says)
+        yield verdict(emitted, program.name, "bits of the program", JUDGED[not worst], says)
 
 
 def accuracy(
@@ -137,7 +137,7 @@ def _accurate(
     says += "nothing" if stated is None else f"{stated:.2g} u"
     says += "" if holds else f"; allowed {half:.2g} u and {allowed:.2g} u"
     check_ = "error" if program in emitted.library.functions else "rounding"
-    return _verdict(emitted, program, check_, JUDGED[holds], says)
+    return verdict(emitted, program.name, check_, JUDGED[holds], says)
 
 
 def _stated(printed: Mapping[str, Any], emitted: Emitted, output: str, figure: str) -> float | None:
@@ -152,18 +152,22 @@ def casadi_bits(emitted: Emitted, module: Any, each: Sequence[Sample]) -> Iterat
     if library.constants:
         makes = module.setup()
         differ = [s.number for s in each if not _same_setup(emitted, module, makes, s)]
-        yield _verdict(
-            emitted, library.setup, "CasADi's bits", JUDGED[not differ], _differing(differ, each)
+        yield verdict(
+            emitted,
+            library.setup.name,
+            "CasADi's bits",
+            JUDGED[not differ],
+            _differing(differ, each),
         )
     for program in library.printed():
         built = _built(module, program)
         if program.unrolled is not None:
             says = "the C has loops and rounds elsewhere; CasADi's is the unrolled step"
-            yield _verdict(emitted, program, "CasADi's bits", "skipped", says)
+            yield verdict(emitted, program.name, "CasADi's bits", "skipped", says)
             continue
         differ = [s.number for s in each if not _same(emitted, built, s)]
-        yield _verdict(
-            emitted, program, "CasADi's bits", JUDGED[not differ], _differing(differ, each)
+        yield verdict(
+            emitted, program.name, "CasADi's bits", JUDGED[not differ], _differing(differ, each)
         )
         yield from _same_patterns(emitted, program, built.whole)
 
@@ -219,7 +223,7 @@ def _same_patterns(emitted: Emitted, program: Program, function: Any) -> Iterato
             list(pattern.row),
         )
         says = f"{name}: {own.nnz()} nonzeros of {shape[0]} x {shape[1]}"
-        yield _verdict(emitted, program, "sparsity", JUDGED[same], says)
+        yield verdict(emitted, program.name, "sparsity", JUDGED[same], says)
 
 
 def aliasing(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
@@ -235,7 +239,7 @@ def aliasing(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
         ]
         if not pairs:
             says = "no output and input are arrays that could share their place"
-            yield _verdict(emitted, program, "outputs over inputs", "skipped", says)
+            yield verdict(emitted, program.name, "outputs over inputs", "skipped", says)
             continue
         bad = [
             f"{o} over {i}"
@@ -243,7 +247,7 @@ def aliasing(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
             if any(not _same_over(function, values, o, i) for values in given)
         ]
         says = f"{len(pairs)} pairs" if not bad else f"{', '.join(bad)} changes the result"
-        yield _verdict(emitted, program, "outputs over inputs", JUDGED[not bad], says)
+        yield verdict(emitted, program.name, "outputs over inputs", JUDGED[not bad], says)
 
 
 def _same_over(function: Any, values: Mapping[str, Any], output: str, over: str) -> bool:
@@ -257,7 +261,7 @@ def dense(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
         for name, pattern in (program.sparsity or {}).items():
             bad = [s.number for s in each if not _same_matrix(emitted, program, name, s)]
             says = _differing(bad, each) + f", {len(pattern.rows)} x {len(pattern.columns)}"
-            yield _verdict(emitted, program, "whole matrix", JUDGED[not bad], says)
+            yield verdict(emitted, program.name, "whole matrix", JUDGED[not bad], says)
 
 
 def _same_matrix(emitted: Emitted, program: Program, name: str, sample: Sample) -> bool:
@@ -269,10 +273,3 @@ def _same_matrix(emitted: Emitted, program: Program, name: str, sample: Sample) 
     for (row, column), x in zip(pattern.places(), sparse, strict=True):
         expected[column * len(pattern.rows) + row] = x
     return same_bits(expected, whole)
-
-
-def _verdict(
-    emitted: Emitted, program: Program, check: str, outcome: Outcome, says: str
-) -> Verdict:
-    scene = emitted.library.known.scene.name
-    return Verdict(scene, program.name, emitted.precision.name, check, outcome, says)

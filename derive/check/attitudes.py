@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import atan, atan2, cos, hypot, inf, pi, sin, sqrt
 from random import Random
 
-from derive.check.emitted import Emitted
+from derive.check.emitted import Emitted, verdict
 from derive.check.verdict import JUDGED, Verdict
 from derive.program.added import added
 from derive.program.largest import largest
@@ -39,8 +39,7 @@ def definitions(emitted: Emitted) -> Iterator[Verdict]:
             gaps.append(largest(_gaps(program.name, list(given.values()), found)))
         worst = largest(gaps) / emitted.precision.unit_roundoff
         says = f"{COUNT} samples, largest gap {worst:.2g} u"
-        name, outcome = emitted.library.known.scene.name, JUDGED[worst <= ALLOWED]
-        yield Verdict(name, program.name, emitted.precision.name, "definition", outcome, says)
+        yield verdict(emitted, program.name, "definition", JUDGED[worst <= ALLOWED], says)
 
 
 def _held(emitted: Emitted, values: Row) -> list[float]:

@@ -20,9 +20,9 @@ from flint import arb, ctx
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library
 from derive.program.largest import largest
-from derive.program.program import Program, Quantity, component_names
+from derive.program.program import Program, Quantity
 from derive.program.run import run
-from derive.verify.convergence import BITS
+from derive.verify.convergence import BITS, results
 from derive.verify.operators import LONG_FLOATS
 from derive.verify.sample import Sample
 
@@ -197,8 +197,7 @@ def _results(library: Library, program: Program, place: Place, k: int) -> list[A
     known = {c: arb(x) + k * SHIFT * arb(place.direction[c]) for c, x in place.values.items()}
     names = [c for q in library.setup.inputs for c in q.components]
     if all(name in known for name in names):
-        constants = run(library.setup, LONG_FLOATS, [known[c] for c in names])
-        known |= dict(zip(component_names(library.setup), constants, strict=True))
+        return list(results(library, program, known).values())
     return run(program, LONG_FLOATS, [known[c] for q in program.inputs for c in q.components])
 
 

@@ -27,6 +27,7 @@ from derive.scene.machine import (
     Spring,
     Weight,
 )
+from derive.verify.differences import product
 
 Quaternion = tuple[Fraction, Fraction, Fraction, Fraction]
 HALF, FIFTH, ONE, NONE = Fraction(1, 2), Fraction(1, 5), Fraction(1), Fraction(0)
@@ -244,18 +245,6 @@ def dotted(first: Any, second: Any) -> Any:
     for other in others:
         one = one + other
     return one
-
-
-def product(p: Sequence[Any], q: Sequence[Any]) -> Any:
-    """Return the Hamilton product of two quaternions, scalar first."""
-    a, b, c, d = p
-    w, x, y, z = q
-    return (
-        a * w - b * x - c * y - d * z,
-        a * x + b * w + c * z - d * y,
-        a * y - b * z + c * w + d * x,
-        a * z + b * y - c * x + d * w,
-    )
 
 
 def _back(q: Quaternion) -> Quaternion:

@@ -9,6 +9,7 @@ from typing import Any
 
 from derive.check.call import Function, functions
 from derive.check.compiler import Compiler, compiled
+from derive.check.verdict import Outcome, Verdict
 from derive.emit.casadi_module import imported
 from derive.emit.files import differences, scene_files
 from derive.library.library import Library
@@ -56,6 +57,12 @@ class Emitted:
         """Return all components that a function of C gives at a sample."""
         found = self.functions[program.name](inputs(program, sample, self.constants(sample)))
         return [x for q in program.outputs for x in found[q.name]]
+
+
+def verdict(one: Emitted, function: str, check: str, outcome: Outcome, says: str) -> Verdict:
+    """Return a verdict on a function in C, or on ``all``."""
+    name = one.library.known.scene.name
+    return Verdict(name, function, one.precision.name, check, outcome, says)
 
 
 def inputs(

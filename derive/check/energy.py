@@ -18,14 +18,12 @@ from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library, library
 from derive.program.largest import largest
 from derive.program.program import Program, component_names
-from derive.program.run import run
 from derive.scene import Input, SceneError
 from derive.scene.results import ENERGIES
 from derive.verify.cloud import Answers, answers
 from derive.verify.cloud.power import Powers, powers
 from derive.verify.cloud.series import DIGITS
-from derive.verify.convergence import unit_attitude
-from derive.verify.operators import LONG_FLOATS
+from derive.verify.convergence import results, unit_attitude
 from derive.verify.sample import Sample
 from derive.verify.scale import base_of
 
@@ -112,7 +110,7 @@ def _exactly(rates: Library | None) -> Rates:
         return lambda _, __: {}
     program = next(p for p in (*rates.functions, *rates.rates) if base_of(p) == RATES)
     states = [c for q in rates.known.words.states for c in q.components]
-    return lambda _, at: dict(zip(states, _results(rates, program, at).values(), strict=False))
+    return lambda _, at: dict(zip(states, results(rates, program, at).values(), strict=False))
 
 
 def _emitted(one: Emitted, program: Program, others: Rates) -> Rates:
@@ -178,16 +176,8 @@ def _slopes(
     for moving, v in velocity.items():
         if moving in at:
             ahead, behind = (
-                _results(made, program, {**at, moving: at[moving] + s * h * v}) for s in (1, -1)
+                results(made, program, {**at, moving: at[moving] + s * h * v}) for s in (1, -1)
             )
             for name, own in terms.items():
                 own.append((ahead[name] - behind[name]) / (2 * h))
     return terms
-
-
-def _results(made: Library, program: Program, at: Mapping[str, Any]) -> dict[str, Any]:
-    known = dict(at)
-    for one in (made.setup, program):
-        given = [known[c] for q in one.inputs for c in q.components]
-        known |= dict(zip(component_names(one), run(one, LONG_FLOATS, given), strict=True))
-    return {name: known[name] for name in component_names(program)}

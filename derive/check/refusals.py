@@ -8,8 +8,8 @@ from typing import Any
 import casadi
 
 from derive.check.admission import ends_of, fault, hostile, replayed
-from derive.check.emitted import Emitted
-from derive.check.verdict import JUDGED, Outcome, Verdict
+from derive.check.emitted import Emitted, verdict
+from derive.check.verdict import JUDGED, Verdict
 from derive.program.status import RIGHT
 from derive.verify.sample import Sample
 
@@ -20,7 +20,7 @@ def refusal(emitted: Emitted, each: Sequence[Sample]) -> Verdict:
     """Return whether set-up refuses what the scene's declaration refuses, by the same rule."""
     setup, check_ = emitted.library.setup, "refuses what is no body"
     if not emitted.library.constants:
-        return _verdict(emitted, check_, "skipped", "there is no set-up to refuse anything")
+        return verdict(emitted, "setup", check_, "skipped", "there is no set-up to refuse anything")
     bad = [f"sample {s.number}" for s in each if emitted.constants(s)["status"] != [RIGHT]]
     drawn = _hostile(emitted)
     found = [_status(emitted, values) for values in drawn]
@@ -35,7 +35,7 @@ def refusal(emitted: Emitted, each: Sequence[Sample]) -> Verdict:
     refused = sum(status != RIGHT for status in found)
     says = f"{len(each)} bodies taken, {refused} of {len(drawn)} hostile ones refused"
     says = f"{len(bad)} wrong, first {bad[0]}" if bad else says
-    return _verdict(emitted, check_, JUDGED[not bad], says)
+    return verdict(emitted, "setup", check_, JUDGED[not bad], says)
 
 
 def _hostile(emitted: Emitted) -> list[dict[str, float]]:
@@ -62,9 +62,4 @@ def casadi_status(emitted: Emitted, module: Any) -> Verdict:
         silent = status != RIGHT and any(not isnan(x) for x in makes(given).nonzeros())
         bad += int(tries(given)) != status or silent
     says = f"{bad} of {len(drawn)} differ" if bad else f"{len(drawn)} hostile parameters"
-    return _verdict(emitted, "CasADi's status", JUDGED[not bad], says)
-
-
-def _verdict(emitted: Emitted, check: str, outcome: Outcome, says: str) -> Verdict:
-    scene = emitted.library.known.scene.name
-    return Verdict(scene, "setup", emitted.precision.name, check, outcome, says)
+    return verdict(emitted, "setup", "CasADi's status", JUDGED[not bad], says)

@@ -12,7 +12,7 @@ from statistics import median
 import numpy as np
 
 from derive.check.agreement import LARGEST_BOUND
-from derive.check.emitted import Emitted
+from derive.check.emitted import Emitted, verdict
 from derive.check.verdict import JUDGED, Verdict
 from derive.program.largest import largest
 from derive.verify.measure import errors, references
@@ -27,7 +27,6 @@ def near_a_sphere(one: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     own = [_left_alone(one, s) for s in each if s.kind.endswith(KIND)]
     if not own:
         return
-    scene = one.library.known.scene.name
     for program, true in references(one.library, own, DIFFERENCES):
         rows = [one.results(program, s) for s in own]
         columns = [np.array(column) for column in zip(*rows, strict=True)]
@@ -37,7 +36,7 @@ def near_a_sphere(one: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
             says = f"{found.output}: median of a component at most {most:.2g} u of the differences"
             says += f" at {len(own)} samples; allowed {LARGEST_BOUND:g} u"
             holds = JUDGED[most <= LARGEST_BOUND]
-            yield Verdict(scene, program.name, one.precision.name, "near a sphere", holds, says)
+            yield verdict(one, program.name, "near a sphere", holds, says)
 
 
 def _left_alone(one: Emitted, sample: Sample) -> Sample:

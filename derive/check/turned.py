@@ -13,8 +13,8 @@ from flint import arb, ctx
 
 from derive.check.agreement import ABSURD, LARGEST_BOUND, MORE
 from derive.check.description import Description, relabelled, turned
-from derive.check.emitted import Emitted
-from derive.check.verdict import JUDGED, Outcome, Verdict
+from derive.check.emitted import Emitted, verdict
+from derive.check.verdict import JUDGED, Verdict
 from derive.mechanics.mechanism import Mechanism, mechanism, problem
 from derive.mechanics.words import MATRICES
 from derive.program.largest import largest
@@ -37,7 +37,7 @@ def turned_axes(one: Emitted, each: Sequence[Sample], stated: Stated) -> Iterato
     for check, description in told.items():
         if description is None:
             says = "no frame with an angular velocity of its own holds bodies of any axes"
-            yield _verdict(one, "all", check, "skipped", says)
+            yield verdict(one, "all", check, "skipped", says)
             continue
         anew = mechanism(description.told())
         asked = {
@@ -48,7 +48,7 @@ def turned_axes(one: Emitted, each: Sequence[Sample], stated: Stated) -> Iterato
             question = asked[base_of(program)]
             if question is None:
                 says = "rows of small motion and what vanishes if steady may be told otherwise"
-                yield _verdict(one, program.name, check, "skipped", says)
+                yield verdict(one, program.name, check, "skipped", says)
             elif not program.sparsity:
                 rows = [
                     _told_back(description, question, program, s, own)
@@ -108,9 +108,4 @@ def _judged(
         if not gap / most <= worst / (allowed or 1.0):
             worst, allowed = gap, most
     says = f"{len(each)} samples, largest gap {worst:.2g} u; allowed {allowed:.2g} u"
-    return _verdict(one, program.name, check, JUDGED[worst <= allowed], says)
-
-
-def _verdict(one: Emitted, function: str, check: str, outcome: Outcome, says: str) -> Verdict:
-    name = one.library.known.scene.name
-    return Verdict(name, function, one.precision.name, check, outcome, says)
+    return verdict(one, program.name, check, JUDGED[worst <= allowed], says)

@@ -213,6 +213,11 @@ def stepped(library: Library, name: str, values: Mapping[str, Any], h: Any) -> d
     return known
 
 
+def results(library: Library, program: Program, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a program gives, in balls, from the scene's parameters on."""
+    return _results(program, {**values, **_results(library.setup, values)})
+
+
 def _results(program: Program, known: Mapping[str, Any]) -> dict[str, Any]:
     given = [known[c] for q in program.inputs for c in q.components]
     return dict(zip(component_names(program), run(program, LONG_FLOATS, given), strict=True))

@@ -12,10 +12,8 @@ from flint import arb, ctx
 
 from derive.library.library import Library
 from derive.program.largest import largest
-from derive.program.program import Program, component_names
-from derive.program.run import run
-from derive.verify.convergence import BITS, unit_attitude
-from derive.verify.operators import LONG_FLOATS
+from derive.program.program import Program
+from derive.verify.convergence import BITS, results, unit_attitude
 
 SHIFT = arb(2) ** -130  # exact
 GAP = 1e-70
@@ -41,12 +39,12 @@ def slopes(library: Library, program: Program, values: Mapping[str, float]) -> I
     with ctx.workprec(BITS):
         given = unit_attitude(library, {c: arb(x) for c, x in values.items()})
         parts = _attitude(library)
-        here = _results(library, program, given)
+        here = results(library, program, given)
         (quantity,) = (q for q in program.outputs if q.name == output)
         entries = dict(zip(pattern.places(), (here[c] for c in quantity.components), strict=True))
         for k, column in enumerate(pattern.columns):
             above, below = (
-                _results(library, program, _shifted(given, column, parts, s)) for s in (1, -1)
+                results(library, program, _shifted(given, column, parts, s)) for s in (1, -1)
             )
             apart = [_difference((here, above, below), row, parts) for row in pattern.rows]
             rises = [change / (2 * SHIFT) for change in apart]
@@ -62,22 +60,13 @@ def _attitude(library: Library) -> tuple[str, ...]:
     return next((q.components for q in states if q.is_quaternion), ())
 
 
-def _results(library: Library, program: Program, values: Values) -> dict[str, Any]:
-    """Return what a step gives, from the scene's parameters on."""
-    known = dict(values)
-    for each in (library.setup, program):
-        given = [known[c] for q in each.inputs for c in q.components]
-        known |= dict(zip(component_names(each), run(each, LONG_FLOATS, given), strict=True))
-    return known
-
-
 def _shifted(values: Values, column: str, parts: Sequence[str], sign: int) -> dict[str, Any]:
     """Return the values with one of them, or the attitude by an error about one axis, shifted."""
     if not column.startswith(ERROR):
         return {**values, column: values[column] + sign * SHIFT}
     axis = "xyz".index(column[-1])
     half = [sign * SHIFT / 2 if k == axis else arb(0) for k in range(3)]
-    turned = _product([values[part] for part in parts], [arb(1), *half])
+    turned = product([values[part] for part in parts], [arb(1), *half])
     return {**values, **dict(zip(parts, turned, strict=True))}
 
 
@@ -88,10 +77,11 @@ def _difference(ends: tuple[Values, Values, Values], row: str, parts: Sequence[s
         return above[row] - below[row]
     w, *v = (here[f"{part}_next"] for part in parts)
     change = [above[f"{part}_next"] - below[f"{part}_next"] for part in parts]
-    return 2 * _product([w, *(-x for x in v)], change)["wxyz".index(row[len(ERROR)])]
+    return 2 * product([w, *(-x for x in v)], change)["wxyz".index(row[len(ERROR)])]
 
 
-def _product(p: list[Any], q: list[Any]) -> list[Any]:
+def product(p: Sequence[Any], q: Sequence[Any]) -> list[Any]:
+    """Return the Hamilton product of two quaternions, scalar first."""
     a, b, c, d = p
     w, x, y, z = q
     return [
