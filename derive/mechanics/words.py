@@ -122,8 +122,8 @@ def rate_names(machine: Machine) -> tuple[str, ...]:
 
 def rate_of_each(machine: Machine) -> dict[str, str]:
     """Return what answers with the rate of each component of the state."""
-    states, _, outputs = _grouped(machine)
-    named = {q.name: q.components for q in outputs}
+    states, inputs, outputs = _grouped(machine)
+    named = {q.name: q.components for q in (*inputs, *outputs)}
     rates = [c for name in rate_names(machine) for c in named[name]]
     return dict(zip((c for q in states for c in q.components), rates, strict=True))
 
