@@ -138,6 +138,8 @@ def power_gaps(made: Library, rates: Rates, program: Program, sample: Sample) ->
         if cloud.contradiction > AGREE:
             return []
         velocity = {**_velocities(cloud, at), **rates(sample, at)}
+        if not all(arb(v).is_finite() for v in velocity.values()):
+            return [mpf("inf")]
         found = _slopes(made, program, at, velocity)
     acting = powers(cloud)
     with mp.workdps(DIGITS):

@@ -12,7 +12,7 @@ from derive.mechanics.mechanism import Mechanism, mechanism, problem
 from derive.mechanics.problem import Problem
 from derive.program.precision import F64
 from derive.scene import catalogue, load
-from derive.scene.wanted import EQUATIONS, JACOBIAN, moves
+from derive.scene.wanted import ATTITUDES, JACOBIAN, moves
 from derive.verify.equations import equations
 from derive.verify.reference import BALLS, reference
 from derive.verify.sample import Sample, samples
@@ -30,7 +30,7 @@ def scene(name: str) -> Mechanism:
 
 def truths(known: Mechanism) -> list[Problem]:
     bases = dict.fromkeys(w.removesuffix(JACOBIAN) for w in known.scene.wanted)
-    stated = [b for b in bases if b in EQUATIONS or (isinstance(known, Mechanism) and not moves(b))]
+    stated = [b for b in bases if not moves(b) and b not in ATTITUDES]
     return [problem(known, base) for base in stated]
 
 

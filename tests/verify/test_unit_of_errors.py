@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from mpmath import matrix, mp, mpf
-from sympy import Add, Expr, S, Symbol, cos, expand, symbols
+from sympy import Add, Expr, Mul, S, Symbol, cos, expand, symbols
 
 from derive.mechanics.problem import Problem
 from derive.program.precision import F64
@@ -27,27 +27,65 @@ ANSWERS = [
 ]
 
 
-def unit(fact: Any, known: dict[Symbol, Any], parameters: set[Symbol]) -> list[float]:
+def unit(fact: Any, known: dict[Symbol, Any], parameters: set[Symbol]) -> dict[Symbol, float]:
     """Return the largest product in the equations of each unknown, as docs/code.md defines it."""
+    values, sizes = dict(known), {s: abs(x) for s, x in known.items()}
+    fixed = set(parameters)
+    for s, e in fact.definitions.items():
+        values[s] = _number(e, values)
+        sizes[s] = max(abs(values[s]), *(_size(p, values, sizes) for p in _products(e)))
+        fixed |= {s} if e.free_symbols <= fixed else set()
+    if fact.rows:
+        sizes |= _solved(fact, values, sizes, fixed)
+    for s, e in fact.answers.items():
+        if s not in fact.unknowns:
+            values[s] = _number(e, values)
+            sizes[s] = max(abs(values[s]), *(_size(p, values, sizes) for p in _products(e)))
+    return {s: float(sizes[s]) for s in fact.answers}
+
+
+def _solved(
+    fact: Any, values: dict[Symbol, Any], sizes: dict[Symbol, Any], fixed: set[Symbol]
+) -> dict[Symbol, Any]:
     unknowns = list(fact.unknowns)
-    rows = [list(Add.make_args(expand(row))) for row in fact.residuals]
+    rows = [_products(row) for row in fact.rows]
     a = [[sum((p / u for p in row if p.has(u)), S.Zero) for u in unknowns] for row in rows]
     loads = [[p for p in row if not p.has(*unknowns)] for row in rows]
-    numbers = matrix([[_number(entry, known) for entry in row] for row in a])
-    given = matrix([-sum(_number(p, known) for p in row) for row in loads])
+    numbers = matrix([[_number(entry, values) for entry in row] for row in a])
+    given = matrix([-sum(_number(p, values) for p in row) for row in loads])
     solved = mp.lu_solve(numbers, given)
-    values = known | dict(zip(unknowns, solved, strict=True))
-    varies = any(entry.free_symbols - parameters for row in a for entry in row)
+    values |= dict(zip(unknowns, solved, strict=True))
+    varies = any(entry.free_symbols - fixed for row in a for entry in row)
     order = range(len(rows))
-    largest = [max(abs(_number(p, known)) for p in (*own, sum(own))) for own in loads]
-    if varies:
-        each = [[p for p in row if p.has(*unknowns)] for row in rows]
-        each = [[*own, *(a[k][j] * unknowns[j] for j in order)] for k, own in enumerate(each)]
-        largest = [max(largest[k], *(abs(_number(p, values)) for p in each[k])) for k in order]
-    inverse = mp.inverse(numbers)
-    return [
-        float(max(abs(solved[i]), *(abs(inverse[i, k]) * largest[k] for k in order))) for i in order
+    most = [
+        max([abs(x) for x in [given[k]]] + [_size(p, values, sizes) for p in loads[k]])
+        for k in order
     ]
+    if varies:
+        for k in order:
+            own = [_size(p, values, sizes | {u: abs(values[u]) for u in unknowns})
+                   for p in rows[k] if p.has(*unknowns)]  # fmt: skip
+            whole = [abs(numbers[k, j] * values[u]) for j, u in enumerate(unknowns)]
+            most[k] = max([most[k], *own, *whole])
+    inverse = mp.inverse(numbers)
+    return {
+        u: max(abs(solved[i]), *(abs(inverse[i, k]) * most[k] for k in order))
+        for i, u in enumerate(unknowns)
+    }
+
+
+def _products(e: Expr) -> list[Expr]:
+    return list(Add.make_args(expand(e)))
+
+
+def _size(product: Expr, values: dict[Symbol, Any], sizes: dict[Symbol, Any]) -> Any:
+    """Return the size of a product: that of its factors, which may be sums of larger terms."""
+    found = mpf(1)
+    for factor in Mul.make_args(product):
+        base, power = factor.as_base_exp()
+        size = sizes[base] if base in sizes else abs(_number(base, values))
+        found *= size**power
+    return found
 
 
 def _number(e: Expr, known: dict[Symbol, Any]) -> mpf:
@@ -57,7 +95,7 @@ def _number(e: Expr, known: dict[Symbol, Any]) -> mpf:
 @pytest.mark.parametrize(("scene", "answer"), ANSWERS)
 def test_errors_are_counted_in_the_largest_product_of_the_equation(scene: str, answer: str) -> None:
     library = library_of(scene)
-    fact, words = library.truths[answer], library.known.words
+    fact, words = library.truths[answer], library.known.posed(answer).words
     parameters = {words.symbols[c] for q in words.parameters for c in q.components}
     names = {symbol: name for name, symbol in words.symbols.items()}
     for sample in samples(library.known, F64, 3, 0).each:
@@ -65,17 +103,19 @@ def test_errors_are_counted_in_the_largest_product_of_the_equation(scene: str, a
         known = {s: sample.values[c] for c, s in words.symbols.items() if c in sample.values}
         with mp.workdps(30):
             sizes = unit(fact, known, parameters)
-        found = [true[names[u]].scale for u in fact.unknowns]
+        found = {u: true[names[u]].scale for u in fact.answers}
         assert found == pytest.approx(sizes, rel=1e-12)
 
 
 def test_products_of_a_matrix_that_varies_count_too() -> None:
     u, v, q, s, p = symbols("u v q s p")
     rows = ((2 + cos(q)) * u + cos(q) * v - s, cos(q) * u + v - p * s + p)
-    fact = Problem("both", "", (), (u, v), rows, ())
+    answers = {x: x for x in (u, v)}
+    fact = Problem("both", "", (), answers, {}, rows, (u, v), (), ())
     words = SimpleNamespace(parameters=(), symbols={x.name: x for x in (u, v, q, s, p)})
+    posed = SimpleNamespace(words=words)
     given = {"q": 0.25, "s": 1.0, "p": 1.5}
-    true = reference(equations(SimpleNamespace(words=words), fact), given, ())
+    true = reference(equations(SimpleNamespace(posed=lambda _: posed), fact), given, ())
     with mp.workdps(30):
         sizes = unit(fact, {words.symbols[c]: x for c, x in given.items()}, set())
-    assert [true["u"].scale, true["v"].scale] == pytest.approx(sizes, rel=1e-12)
+    assert {u: true["u"].scale, v: true["v"].scale} == pytest.approx(sizes, rel=1e-12)
