@@ -36,11 +36,13 @@ FRAME_STEPS = ("angular_velocities_add", "acceleration_seen_from_axes")
 
 
 def balance_steps(balances: Iterable[Balance]) -> tuple[str, ...]:
-    """Return the lecture steps that balances are written by."""
-    kinds = {balance.kind for balance in balances}
-    force = ("mass_centre_motion",) if "force" in kinds else ()
-    moment = ("general_form", "moving_point_form", "any_point_form")
-    return force + (moment if "moment" in kinds else ())
+    """Return the lecture steps that balances are written by; a mass centre needs no other form."""
+    each = tuple(balances)
+    moments = [balance for balance in each if balance.kind == "moment"]
+    force = ("mass_centre_motion",) if len(moments) < len(each) else ()
+    general = ("general_form",) if moments else ()
+    other = ("moving_point_form", "any_point_form")
+    return force + general + (() if all(b.central for b in moments) else other)
 
 
 @dataclass
@@ -63,6 +65,8 @@ class Answers:
             s: e for q, own in parts.items() for s, e in zip(self._symbols(q), own, strict=True)
         }
         steps = tuple(s for name in names for s in STEPS.get(name, ()))
+        if "state_rate" in names and any(q.is_quaternion for q in self._states):
+            steps += ("quaternion_rate_scalar", "quaternion_rate_vector")
         found = self._asked(base, quantities, answers, steps)
         return replace(found, says=SAYS[base]) if (base,) == names and base in SAYS else found
 

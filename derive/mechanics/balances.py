@@ -17,6 +17,7 @@ from derive.lecture.stated import stated
 from derive.mechanics.bodies import carries, moment_about
 from derive.mechanics.frames import ZERO, Frames, Point
 from derive.mechanics.loads import Wrench
+from derive.mechanics.own_axes import called
 from derive.mechanics.probe import DIGITS, NOTHING, POINTS
 from derive.mechanics.sheet import AXES
 from derive.mechanics.valued import Array, Sides, Valued, sides, trial_points
@@ -40,7 +41,11 @@ class Balance:
 
     def __str__(self) -> str:
         about = f" about {self.spot}" if self.kind == "moment" else ""
-        along = f"{self.axis} of {self.frame}" if self.axis in AXES else f"the axis of {self.axis}"
+        along = (
+            f"{self.axis} of {called(self.frame)}"
+            if self.axis in AXES
+            else f"the axis of {self.axis}"
+        )
         return f"{self.kind} on {' + '.join(self.bodies)}{about} along {along}"
 
 
@@ -180,7 +185,10 @@ class Balances:
         inner = {w.load for w in acting if sum(v.load == w.load for v in acting) > 1}
         alone = bodies if len(bodies) == 1 else ()
         near: list[tuple[str, Point]] = [
-            *((f"the origin of {frame}", (frame, ZERO)) for frame in self._frames_of(bodies)),
+            *(
+                (f"the origin of {called(frame)}", (frame, ZERO))
+                for frame in self._frames_of(bodies)
+            ),
             *((f"the mass centre of {b}", self.sides.efforts[b].centre) for b in alone),
             *((f"the point of {w.load}", w.point) for w in acting if w.load not in inner),
         ]

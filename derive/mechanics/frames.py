@@ -7,6 +7,7 @@ from functools import cached_property
 from sympy import Expr, Matrix, expand_trig, eye, zeros
 
 from derive.lecture.stated import stated
+from derive.mechanics.own_axes import frames_of_bodies, own_axes
 from derive.mechanics.sheet import AXES, Sheet
 from derive.mechanics.turning import turn_matrix, unit_vector
 from derive.mechanics.words import Words
@@ -34,7 +35,7 @@ class Frames:
     @cached_property
     def each(self) -> Mapping[str, Frame]:
         """Return all frames by name, those of turned bodies included, parents first."""
-        return {f.name: f for f in (*self.machine.frames, *_bodies_own(self.machine))}
+        return {f.name: f for f in (*self.machine.frames, *frames_of_bodies(self.machine))}
 
     @cached_property
     def rotations(self) -> Mapping[str, Matrix | None]:
@@ -297,17 +298,3 @@ def _added(R: Matrix, first: Matrix, own: Matrix) -> Matrix:
     if first == ZERO:
         return own
     return stated("angular_velocities_add", {"R_2": R, "Omega": first, "Omega_2": own})
-
-
-def own_axes(body: str) -> str:
-    """Return what the axes of a turned body are called; no user's frame can have this name."""
-    return f"{body}.axes"
-
-
-def _bodies_own(machine: Machine) -> tuple[Frame, ...]:
-    """Return a frame for each turned body, at its mass centre."""
-    return tuple(
-        Frame(own_axes(b.name), b.frame, b.turned, None, "", b.centre)
-        for b in machine.bodies
-        if b.turned
-    )

@@ -245,5 +245,5 @@ def _loads(scene: ShortForm, motion: Motion) -> tuple[list[Load], tuple[Unknown,
         held = [f"force that holds the point, {a}" for a in AXES]
         names += held
         force = tuple(map(symbol, held))
-    load = Force("known", BODY, "", FRAME, NOWHERE, FRAME, force, couple)  # type: ignore[arg-type]
-    return [load], tuple(Unknown(name, "", "known", "") for name in names)
+    load = Force("external", BODY, "", FRAME, NOWHERE, FRAME, force, couple)  # type: ignore[arg-type]
+    return [load], tuple(Unknown(name, "", "external", "") for name in names)

@@ -116,9 +116,8 @@ void heavy_body_step_split_f32(const heavy_body_constants_f32 *constants, const 
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
+ * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
@@ -127,9 +126,10 @@ void heavy_body_step_split_f32(const heavy_body_constants_f32 *constants, const 
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 76 add, 24 sub, 144 mul, 1 div, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
+ *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
+ *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
+ *            third_law, unit_quaternion.
  */
 void heavy_body_step_rk4_f32(const heavy_body_constants_f32 *constants, const float attitude[4],
     const float omega[3], float time_step, float attitude_next[4], float omega_next[3]);
@@ -146,9 +146,10 @@ void heavy_body_step_rk4_f32(const heavy_body_constants_f32 *constants, const fl
  *            product of what the step adds, by rounding alone (of omega_next at a hard sample, at
  *            rest; 200000 samples of the ranges, 65536 searched from the worst, 78 hard ones).
  * Cost: 3062 add, 1125 sub, 4296 mul, 22 div, 21 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
+ *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
+ *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
+ *            third_law, unit_quaternion.
  */
 void heavy_body_step_taylor_f32(const heavy_body_constants_f32 *constants, const float attitude[4],
     const float omega[3], float time_step, float attitude_next[4], float omega_next[3],

@@ -45,9 +45,6 @@ int propeller_3_blade_setup_f32(float blade_mass, float blade_length, float p, f
  * Given:     constants  constants made of parameters only, for the functions of this scene
  * Returned:  M[3]  N m  couple of hub
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]

@@ -89,9 +89,8 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
+ * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
@@ -101,9 +100,10 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  *            the worst, 90 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 205 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
+ *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
+ *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
+ *            third_law, unit_quaternion.
  */
 void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constants,
     const double position[3], const double attitude[4], const double velocity[3],
@@ -126,9 +126,8 @@ void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constan
  *            jacobian[145]  nonzeros of the Jacobian, in compressed-column order
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
+ * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
@@ -137,9 +136,10 @@ void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constan
  *            ranges, 65536 searched from the worst, 90 hard ones).
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 7608 add, 196 sub, 7986 mul, 1 div, 44 neg, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
+ *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
+ *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
+ *            third_law, unit_quaternion.
  */
 void rigid_body_steps_step_rk4_jacobian_f64(const rigid_body_steps_constants_f64 *constants,
     const double position[3], const double attitude[4], const double velocity[3],

@@ -7,8 +7,8 @@ from functools import cache
 import pytest
 
 from derive.emit.page.code import listing
+from derive.emit.page.equation import passages
 from derive.emit.page.lecture import ENDS, IN_COMPONENTS, lecture_page
-from derive.emit.page.machine import passages
 from derive.emit.page.prose import prose
 from derive.emit.page.scene import scene_page
 from derive.lecture.chapters import LECTURE
@@ -89,13 +89,13 @@ def test_every_link_leads_to_a_place_that_is_there(name: str) -> None:
 @pytest.mark.parametrize("name", thinned(catalogue(), 4))
 def test_every_stored_result_leads_to_the_equation_that_it_satisfies(name: str) -> None:
     for program in library_of(name).functions:
-        fact = library_of(name).truths[program.name.removesuffix("_jacobian")]
-        lines = [line for passage in passages(library_of(name), fact) for line in passage.lines]
+        known, base = library_of(name).known, program.name.removesuffix("_jacobian")
+        lines = [line for passage in passages(known, base) for line in passage.lines]
         links = {line.unknown: line.place for line in lines}
         text = str(listing(program, name, links))
         assert text.count("<a href=") == len(program.results)
-        assert {p.name for g in passages(library_of(name), fact) for p in g.steps} == set(
-            fact.steps
+        assert {p.name for g in passages(known, base) for p in g.steps} == set(
+            known.question(base).steps
         )
 
 

@@ -69,6 +69,7 @@ WHOLE = {
     "lower/arrange/spherical_part.py: _pair": "powers",
     "mechanics/sweep.py: _valued": "arrays, which no interpreter compensates",
     "emit/notation/glyph.py: glyph": "dots counted",
+    "emit/page/equation.py: written_names": "quaternions counted",
     "emit/notation/symbolic.py: _degree": "powers",
     "emit/notation/symbolic.py: _term_key": "powers",
     "program/program.py: flops": "operations counted",

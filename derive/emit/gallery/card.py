@@ -10,8 +10,7 @@ from sympy import Expr
 
 from derive.emit.gallery.drawing import drawing
 from derive.emit.notation import equation_mathml, sympy_equation_mathml
-from derive.emit.page.equation import written_names
-from derive.emit.page.machine import all_names
+from derive.emit.page.equation import LONGEST, written_names
 from derive.emit.templates import TEMPLATES
 from derive.lecture.chapters import LECTURE
 from derive.library.library import Library
@@ -22,8 +21,6 @@ from derive.program.run import run
 from derive.scene.machine import LEFT_OVER
 from derive.scene.unit import behind
 from derive.scene.wanted import JACOBIAN
-
-LONGEST_EQUATION = 45  # operations of a closed form that a card still shows
 
 
 @dataclass(frozen=True)
@@ -45,7 +42,7 @@ def card(library: Library) -> Card:
     return Card(
         scene.name,
         scene.title,
-        getattr(scene, "source", ""),
+        scene.source,
         Markup(drawing(scene)),  # noqa: S704 (numbers and checked names)
         Markup(_equation(library, program)),  # noqa: S704 (MathML of checked names)
         _answer(library, program),
@@ -74,11 +71,11 @@ def _equation(library: Library, program: Program) -> str:
     for stage in way.stages:
         values[stage.symbol] = stage.value.xreplace(values)
     question = known.question(fact.name)
-    names = all_names(known) | written_names(library)
+    names = written_names(known)
     each = [e.xreplace(values) for e in way.outputs]
-    place = next((k for k, e in enumerate(each) if e != 0), 0)
+    place = next((k for k, e in enumerate(each) if e.count_ops()), 0)  # no name alone, no zero
     symbol, answer = list(question.answers)[place], each[place]
-    if answer.count_ops() <= LONGEST_EQUATION:
+    if answer.count_ops() <= LONGEST:
         return sympy_equation_mathml(symbol, answer, names)
     step = next(iter(question.steps), "")
     return equation_mathml(LECTURE[step]) if step else ""

@@ -11,6 +11,7 @@ from typing import Any
 
 from mpmath import mp, mpf
 
+from derive.emit.page.words import told
 from derive.scene import Input, Machine
 from derive.scene.formula import ZERO
 from derive.scene.machine import INERTIAL, Force
@@ -66,7 +67,7 @@ def _lines(machine: Machine) -> Iterator[Line]:
     yield from bodies
     for frame in machine.frames:
         origin, R = values(history.origins[frame.name]), values(history.rotations[frame.name])
-        kind = "ground" if frame.name == INERTIAL else "frame"
+        kind = "ground" if frame.name == INERTIAL and shown else "frame"
         for k in range(3):
             end = origin + size / 2 * R[:, k]
             yield Line(kind, (tuple(origin), tuple(end)), "xyz"[k] if kind == "frame" else "")
@@ -77,7 +78,7 @@ def _lines(machine: Machine) -> Iterator[Line]:
 
 def _forces(history: History, load: Force, size: Any) -> Iterator[Line]:
     place, R = values(history.place(load.frame, load.at)), values(history.rotations[load.along])
-    for k, f in enumerate(load.force):
+    for k, f in enumerate(told(load.force)):
         if f != ZERO:
             start = place - size / 3 * R[:, k]
             yield Line("force", (tuple(start), tuple(place)))

@@ -1,9 +1,26 @@
-"""The letters of a scene's page: the lecture's for what every scene calls by a word."""
+"""The equations of one scene for its page: the lecture's, with the scene's own quantities in place.
 
-from sympy import Symbol
+Every line is arranged so that what it determines stands on the left. What the equations name in
+between is put in where it is short; elsewhere it has a line of its own.
+"""
 
-from derive.library.library import Library
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 
+from sympy import Add, Expr, Symbol, cos, sin
+
+from derive.emit.notation import equation_mathml, sympy_equation_mathml
+from derive.emit.notation.glyph import glyph
+from derive.lecture.chapters import LECTURE
+from derive.lecture.step import Step
+from derive.lower.arrange.matching import matched
+from derive.mechanics.answers import FRAME_STEPS, balance_steps
+from derive.mechanics.mechanism import Mechanism, dropped
+from derive.mechanics.problem import Problem
+from derive.mechanics.turning import reduced
+
+LONGEST, SHORT = 45, 12
+"""Operations of an equation that is shown whole, and of a part put into one that is longer."""
 # Letters of the lecture for the quantities that every scene calls by a word.
 _LETTERS = {
     "moment": ("M",), "force": ("F",), "attitude": ("q",), "position": ("p",), "velocity": ("v",),
@@ -13,6 +30,26 @@ _LETTERS = {
     "position_rate": ("p_dot",), "velocity_rate": ("v_dot",),
 }  # fmt: skip
 
+Equation = tuple[Symbol, Expr, Expr]  # what it determines, left side, right side
+
+
+@dataclass(frozen=True)
+class Line:
+    """One equation of the scene, what it determines, and the place to link to."""
+
+    place: str
+    unknown: str
+    mathml: str
+
+
+@dataclass(frozen=True)
+class Passage:
+    """Lines of a scene that come from the same lecture steps."""
+
+    steps: tuple[Step, ...]
+    general: tuple[str, ...]
+    lines: tuple[Line, ...]
+
 
 def letter(quantity: str, taken: frozenset[str]) -> str:
     """Return the letter for a quantity on a page: the lecture's, unless the user took it."""
@@ -20,21 +57,189 @@ def letter(quantity: str, taken: frozenset[str]) -> str:
     return next(free, quantity)
 
 
-def written_names(library: Library) -> dict[Symbol, str]:
-    """Return how the page writes each symbol of a scene."""
-    words, taken = library.known.words, taken_names(library)
-    names: dict[Symbol, str] = {}
-    for q in words.every():
-        for component in q.components:
-            own = component.removeprefix(q.name)
-            new = letter(q.name, taken) if component.startswith(q.name) else component
-            names[words.symbols[component]] = new + own if new != component else component
-    return names
-
-
-def taken_names(library: Library) -> frozenset[str]:
+def taken_names(known: Mechanism) -> frozenset[str]:
     """Return the names that the user chose."""
-    words = library.known.words
+    words = known.words
     return frozenset(
         c for q in (*words.parameters, *words.states, *words.inputs) for c in q.components
     )
+
+
+def written_names(known: Mechanism) -> dict[Symbol, str]:
+    """Return how the page writes each symbol; what has no name of the scene's by what it is of."""
+    symbols, taken = known.made.sheet.symbols, taken_names(known)
+    names = {symbol: _written(name) for name, symbol in symbols.items()}
+    alone = sum(q.is_quaternion for q in known.words.states) == 1
+    for q in known.words.every():
+        start = q.name if alone or not q.is_quaternion else "attitude"
+        new = letter("attitude" if q.is_quaternion else q.name, taken)
+        own = (c for c in q.components if new != q.name and c.startswith(start))
+        names |= {symbols[c]: new + c.removeprefix(start) for c in own}
+    for q in known.words.states:  # the rate of what is written q_w is written q_w_dot
+        rates = ((c, f"{c}_rate") for c in q.components if f"{c}_rate" in symbols)
+        names |= {symbols[rate]: _dotted(names[symbols[c]]) for c, rate in rates}
+    return names
+
+
+def _dotted(name: str) -> str:
+    base = glyph(name).base
+    return f"{base}_dot{name.removeprefix(base)}"
+
+
+def _written(label: str) -> str:
+    """Return a label as a name: a letter, whose frame or body it belongs to is an index.
+
+    >>> _written("stem.Omega.x.dot.by.alpha_ddot"), _written("balance#2")
+    ('Omega_dot_stem_x_by_alpha_ddot', 'balance_2')
+    >>> _written("disc.axes.Omega.x"), _written("balance.by.omega_x_dot")
+    ('Omega_disc_axes_x', 'balance_by_omega_x_dot')
+    """
+    name, *by = label.replace("#", "_").split(".by.")
+    owner, *rest = name.split(".")
+    at = next((k for k, part in enumerate(rest) if part not in ("about", "axes")), None)
+    if at is not None:
+        dots = [part for part in rest[at + 1 :] if part == "dot"]
+        after = [part for part in rest[at + 1 :] if part != "dot"]
+        owner = "_".join([rest[at], *dots, owner, *rest[:at], *after])
+    return "_by_".join([owner, *by])
+
+
+def _shown(known: Mechanism, base: str) -> Problem:
+    """Return a function's question without what cancels, if a reader is spared more than letters.
+
+    A parameter that cancels stays beside others: as a number it would say less.
+    """
+    known = known.posed(base)
+    fixed = {known.words.symbols[c] for q in known.words.parameters for c in q.components}
+    lean = known.lean(base)
+    return lean.question if set(lean.cancelled) - fixed else known.question(base)
+
+
+def notes(known: Mechanism, base: str) -> list[str]:
+    """Return which balances a function uses, and what was found not to matter to it, and why."""
+    parts, balances = dropped(known, base), known.question(base).balances
+    whole = _shown(known, base) is known.question(base)
+    place = "Stands in the equations, but" if whole else "Left out of the equations, since"
+    each = (
+        ("Balances", map(str, balances), "; "),
+        ("Chosen so that these unknowns do not enter",
+         parts["unknowns left out"] if balances else (), ", "),
+        (f"{place} no answer changes with it", parts["cancels"], ", "),
+        ("Stands in none of these equations", parts["never enters"], ", "),
+    )  # fmt: skip
+    texts = ((says, between.join(names)) for says, names, between in each)
+    return [f"{says}: {text}." for says, text in texts if text]
+
+
+def passages(known: Mechanism, base: str) -> tuple[Passage, ...]:
+    """Return the equations of a function: named quantities, balances, answers."""
+    known = known.posed(base)
+    question = _shown(known, base)
+    named, rows, answers = _put_together(question)
+    motion: list[Equation] = [(s, s, value) for s, value in named.items()]
+    found = {value: s for s, value in reversed(answers.items()) if value in question.unknowns}
+    balanced = [(found.get(u, u), *sides) for u, *sides in _balanced(question, rows, _loads(known))]
+    given = [(s, s, value) for s, value in answers.items() if s not in found.values()]
+    every, of_motion = dict.fromkeys(question.steps), FRAME_STEPS if motion else ()
+    of_rows = tuple(s for s in (*balance_steps(question.balances), *FRAME_STEPS) if s in every)
+    of_rows = tuple(s for s in of_rows if s not in of_motion) if rows else ()
+    others = tuple(s for s in every if s not in (*of_motion, *of_rows))
+    groups = ((of_motion, motion), (of_rows, balanced), (others, given))
+    names = written_names(known)
+    names |= {u: names[s] for u, s in found.items()}
+    return tuple(_passage(known, base, steps, own, names) for steps, own in groups if own)
+
+
+def _put_together(
+    question: Problem,
+) -> tuple[dict[Symbol, Expr], list[Expr], dict[Symbol, Expr]]:
+    """Return the named quantities that keep a line, rows, and answers, with all else put in."""
+    whole: dict[Expr, Expr] = {}
+    short: dict[Expr, Expr] = {}
+    named: dict[Symbol, Expr] = {}
+    for symbol, value in question.definitions.items():
+        full, part = _plainer(value.xreplace(whole)), _plainer(value.xreplace(short))
+        if full.count_ops() <= LONGEST:
+            whole[symbol] = full
+        if part.count_ops() <= SHORT:
+            short[symbol] = part
+        else:
+            named[symbol] = part
+
+    def shown(value: Expr) -> Expr:
+        full = _plainer(value.xreplace(whole))
+        return full if full.count_ops() <= LONGEST else value.xreplace(short)
+
+    rows = [shown(row) for row in question.rows]
+    answers = {s: shown(value) for s, value in question.answers.items()}
+    return _read(named, short, [*rows, *answers.values()]), rows, answers
+
+
+def _read(
+    named: Mapping[Symbol, Expr], short: Mapping[Expr, Expr], ends: Iterable[Expr]
+) -> dict[Symbol, Expr]:
+    """Return the named quantities that other lines speak of, in their order."""
+    read = {s for e in ends for s in e.free_symbols}
+    kept: dict[Symbol, Expr] = {}
+    for symbol, value in reversed((dict(short) | dict(named)).items()):
+        if symbol in read:
+            kept[symbol] = named.get(symbol, value)
+            read |= kept[symbol].free_symbols
+    return dict(reversed(kept.items()))
+
+
+def _plainer(value: Expr) -> Expr:
+    """Return a value as it is, or multiplied out with sin^2 = 1 - cos^2 if that is shorter."""
+    if not value.has(sin, cos) or value.count_ops() > 4 * LONGEST:
+        return value
+    return min(value, reduced(value), key=lambda e: e.count_ops())
+
+
+def _loads(known: Mechanism) -> frozenset[Symbol]:
+    """Return the forces and moments that are given."""
+    given = (q for q in known.words.inputs if q.unit in ("N", "N m"))
+    return frozenset(known.words.symbols[c] for q in given for c in q.components)
+
+
+def _balanced(question: Problem, rows: list[Expr], loads: frozenset[Symbol]) -> Iterator[Equation]:
+    """Yield each unknown with the row that determines it."""
+    unknowns = question.unknowns
+    holds = [frozenset(k for k, u in enumerate(unknowns) if u in r.free_symbols) for r in rows]
+    straight = all(k in own for k, own in enumerate(holds))
+    places = {k: k for k in range(len(rows))} if straight else matched(holds)
+    for k, place in sorted(places.items()):
+        yield (unknowns[k], *arranged(rows[place], unknowns[k], unknowns, loads))
+
+
+def arranged(
+    row: Expr, unknown: Symbol, unknowns: Iterable[Symbol], loads: frozenset[Symbol]
+) -> tuple[Expr, Expr]:
+    """Return left and right of ``row = 0``.
+
+    On the left stands the unknown itself if it is determined outright, else the load that the line
+    balances, else every term that holds an unknown.
+    """
+    terms, held = Add.make_args(row), row.free_symbols & set(unknowns)
+    for symbol in [unknown] * (held == {unknown}) + sorted(loads & row.free_symbols, key=str):
+        for sign in (1, -1):
+            if sign * symbol in terms:
+                return symbol, -sign * (row - sign * symbol)
+    left = Add(*(term for term in terms if term.free_symbols & held))
+    return left, left - row
+
+
+def _passage(
+    known: Mechanism, base: str, steps: tuple[str, ...], equations: list[Equation],
+    names: dict[Symbol, str],
+) -> Passage:  # fmt: skip
+    label = known.made.sheet.label
+    lines = tuple(
+        Line(
+            f"{base}.{label(s)}".replace(" ", "_"),
+            label(s),
+            sympy_equation_mathml(left, right, names),
+        )
+        for s, left, right in equations
+    )
+    own = tuple(LECTURE[step] for step in steps)
+    return Passage(own, tuple(map(equation_mathml, own)), lines)

@@ -9,11 +9,10 @@ from derive.emit.c.comment import cost, of_what
 from derive.emit.c.source import first_line
 from derive.emit.notation import name_mathml
 from derive.emit.page.code import listing
-from derive.emit.page.equation import letter, taken_names
-from derive.emit.page.machine import given, notes, passages
-from derive.emit.page.passage import Passage
+from derive.emit.page.equation import Passage, letter, notes, passages, taken_names
 from derive.emit.page.pattern import pattern
 from derive.emit.page.prose import prose
+from derive.emit.page.words import given
 from derive.emit.templates import TEMPLATES
 from derive.lecture.chapters import LECTURE
 from derive.library.library import Library
@@ -100,7 +99,7 @@ def _section(
     library: Library, program: Program, owner: str, figures: Sequence[Measurement]
 ) -> Section:
     fact = library.truths.get(_base(program)) if program in library.functions else None
-    equations = passages(library, fact) if fact else ()
+    equations = passages(library.known, _base(program)) if fact else ()
     links = {line.unknown: line.place for passage in equations for line in passage.lines}
     sparsity = (program.sparsity or {}).get("jacobian")
     says = f"pattern of the Jacobian of {_base(program)}"
@@ -114,15 +113,8 @@ def _section(
         _accuracy(program, figures),
         listing(program, library.known.scene.name, links),
         pattern(sparsity, says) if sparsity else Markup(""),
-        _notes(library, program),
+        notes(library.known, _base(program)) if fact else [],
     )
-
-
-def _notes(library: Library, program: Program) -> list[str]:
-    known = library.known
-    if _base(program) not in library.truths:
-        return []
-    return notes(known, _base(program))
 
 
 def _arguments(library: Library, program: Program) -> tuple[Argument, ...]:
@@ -133,7 +125,7 @@ def _arguments(library: Library, program: Program) -> tuple[Argument, ...]:
 def _argument(library: Library, q: Quantity, direction: str) -> Argument:
     size = f"[{len(q.components)}]" if q.shape else ""
     scalars = not q.shape or not q.components[0].startswith(q.name)
-    name = letter(q.name, taken_names(library))
+    name = letter(q.name, taken_names(library.known))
     symbol = "" if scalars and q.shape else name_mathml(name, "vector" if q.shape else "scalar")
     bounds = direction == "given" and q.low is not None and q.high is not None
     return Argument(

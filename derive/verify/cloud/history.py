@@ -27,6 +27,9 @@ class History:
     def scalars(self) -> dict[str, Series]:
         """Return every scalar as a series in time."""
         found = {"pi": series(+mp.pi)}
+        for frame in self.machine.frames:  # a load may be a formula of them, at this instant
+            parts = [f"{frame.attitude}_{p}" for p in "wxyz"] if frame.attitude else []
+            found |= {name: series(self.values[name]) for name in parts}
         for p in self.machine.parameters:
             fixed = None if p.value is None else mpf(p.value.numerator) / p.value.denominator
             found[p.name] = series(self.values[p.name] if fixed is None else fixed)

@@ -1,0 +1,118 @@
+"""What a scene is made of, in sentences: its frames, its bodies, what acts on them."""
+
+from collections.abc import Iterable, Sequence
+
+from derive.scene import Machine, Turning
+from derive.scene.formula import ZERO, Formula, substitute, symbols
+from derive.scene.machine import INERTIAL, Force, Frame, Gradient, Load, Member, Spring
+
+
+def given(machine: Machine) -> list[str]:
+    """Return what a scene is made of, one sentence each."""
+    found = [_frame(f) for f in machine.frames if f.name != INERTIAL]
+    found += [_body(b) for b in machine.bodies]
+    found += [_load(load) for load in machine.loads]
+    return [*found, *([f"Source: {machine.source}."] if machine.source else [])]
+
+
+def is_hidden(name: str) -> bool:
+    """Tell whether a name is of a load that the scene does not speak of, as of what holds a body.
+
+    Such a name says so in words, which no scene can write: "bearing of wheel 1, x".
+    """
+    return not name.isidentifier()
+
+
+def told(formulas: Iterable[Formula]) -> tuple[Formula, ...]:
+    """Return the components of a load without what the scene does not speak of."""
+    each = tuple(formulas)
+    hidden = {name: ZERO for f in each for name in symbols(f) if is_hidden(name)}
+    return tuple(substitute(f, hidden) for f in each)
+
+
+def _column(formulas: Sequence[Formula]) -> str:
+    return f"({', '.join(map(str, formulas))})"
+
+
+def _turns(turns: Sequence[Turning]) -> str:
+    return ", then ".join(f"about {t.axis} by {t.angle}" for t in turns)
+
+
+def _frame(frame: Frame) -> str:
+    start = f"Frame {frame.name} is carried by {frame.parent}"
+    if frame.angular_velocity is not None:
+        start += f" and turns in it with {_column(frame.angular_velocity)} along its own axes"
+    if frame.attitude:
+        start += ", its attitude a unit quaternion, scalar first"
+    if frame.turned:
+        start += f" and turned from it {_turns(frame.turned)}"
+    if any(f != ZERO for f in frame.origin):
+        start += f"; its origin lies at {_column(frame.origin)}"
+    if frame.rolls is not None:
+        start += (
+            f"; it moves so that {frame.rolls.body} rolls on its point {_column(frame.rolls.at)}"
+        )
+    for name, value in (("velocity", frame.velocity), ("acceleration", frame.acceleration)):
+        if value is not None and not any(f != ZERO for f in value):
+            start += "; its origin stays where it is" if name == "velocity" else ""
+        elif value is not None:
+            start += f"; its origin has the {name} {_column(value)}"
+    return start + "."
+
+
+def _body(body: Member) -> str:
+    says = f"Body {body.name}{f', a {body.look},' if body.look else ''} is carried by {body.frame}"
+    says += "" if body.look else _inertia(body)
+    if body.turned:
+        says += f", turned from it {_turns(body.turned)}"
+    if any(f != ZERO for f in body.centre):
+        says += f", its mass centre at {_column(body.centre)}"
+    if body.spin is not None:
+        says += f", and spins about its {body.axis} axis at {body.spin} relative to it"
+    if body.axial_speed is not None:
+        says += f", and has the angular velocity {body.axial_speed} along its {body.axis} axis"
+    if body.angular_velocity is not None:
+        says += f", and turns relative to it with {_column(body.angular_velocity)}"
+    return says + "."
+
+
+def _inertia(body: Member) -> str:
+    """Return what is known of the moments of inertia of a body without a shape."""
+    if None in body.inertia:
+        return ""
+    if any(f != ZERO for f in body.inertia[3:]):
+        return ", with a full inertia tensor"
+    x, y, z = body.inertia[:3]
+    if x == y == z:
+        return ", with three equal moments of inertia"
+    axis = "z" if x == y else "y" if x == z else "x" if y == z else ""
+    if not axis:
+        return ", its principal axes those of the frame"
+    thin = body.inertia["xyz".index(axis)] == ZERO
+    return f", a thin rod along its {axis} axis" if thin else f", symmetrical about its {axis} axis"
+
+
+def _load(load: Load) -> str:
+    if isinstance(load, Force):
+        return f"Load {load.name}: {_force(load)}."
+    if isinstance(load, Spring):
+        return (
+            f"Load {load.name}: a spring {load.stiffness} with damper {load.damping} on {load.on}."
+        )
+    if isinstance(load, Gradient):
+        return f"Load {load.name}: the gravity gradient {load.strength} on {', '.join(load.on)}."
+    where = f"along {load.along}, on {', '.join(load.on)}"
+    return f"Load {load.name}: gravity {_column(load.gravity)} {where}."
+
+
+def _force(load: Force) -> str:
+    """Return what a load is; what the scene does not speak of is only said to be there."""
+    values = (("force", load.force), ("couple", load.couple))
+    parts = [f"the {kind} {_column(told(value))}" for kind, value in values
+             if any(f != ZERO for f in told(value))]  # fmt: skip
+    if parts:
+        parts[-1] += f" along {load.along} at {_column(load.at)} of {load.frame}"
+    if any(told(value) != tuple(value) for _, value in values):
+        parts.append("what holds it there")
+    against = f", and the opposite on {load.against}" if load.against else ""
+    return f"{' and '.join(parts)}, on {load.on}{against}"
