@@ -9,13 +9,13 @@ from typing import Any
 import pytest
 
 from derive.library.library import Library, library
-from derive.scene import CATALOGUE, Machine, catalogue, load
+from derive.scene import CATALOGUE, Scene, catalogue, load
 from derive.scene.declaration import ShortForm
 from derive.scene.short_form import read_scene
 
 
 @cache
-def scene_of(source: str) -> Machine:
+def scene_of(source: str) -> Scene:
     """Return a scene, by its name or path."""
     return load(source)
 

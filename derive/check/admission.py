@@ -18,7 +18,7 @@ from flint import arb, arb_mat, ctx
 from derive.program.precision import Precision
 from derive.program.program import Program
 from derive.program.status import CONSTANT, INERTIA, LENGTH, MASS, PARAMETER, RIGHT, SAYS, statuses
-from derive.scene import Machine
+from derive.scene import Scene
 from derive.scene.formula import Formula, evaluate, symbols
 from derive.scene.machine import Tensor
 from derive.verify.operators import IN_BALLS
@@ -52,7 +52,7 @@ class Ends:
     tiny: bool
 
 
-def allowed(scene: Machine, values: Values, precision: Precision) -> set[int]:
+def allowed(scene: Scene, values: Values, precision: Precision) -> set[int]:
     """Return each status that the declaration allows: one, or 0 and another where it is close.
 
     values : of set-up's parameters alone
@@ -72,7 +72,7 @@ def allowed(scene: Machine, values: Values, precision: Precision) -> set[int]:
         return found | {RIGHT}
 
 
-def _margins(scene: Machine, told: Told, precision: Precision) -> Iterator[tuple[int, int]]:
+def _margins(scene: Scene, told: Told, precision: Precision) -> Iterator[tuple[int, int]]:
     """Yield the status of every rule, with 1 where it is kept, -1 where broken, 0 for close."""
     for demand in scene.demands:
         if isinstance(demand, Tensor):
@@ -157,7 +157,7 @@ def _odd(values: Values, name: str, dice: Random, ends: Sequence[float]) -> floa
     return dice.choice((*choices, x * (0.5 + dice.random()), x * (0.5 + dice.random())))
 
 
-def fault(scene: Machine, values: Values, precision: Precision, status: int, ends: Ends) -> str:
+def fault(scene: Scene, values: Values, precision: Precision, status: int, ends: Ends) -> str:
     """Return what is wrong with a status that set-up returned; "" if nothing is."""
     may = allowed(scene, values, precision)
     refused = set(SAYS) - {RIGHT, PARAMETER}

@@ -13,7 +13,7 @@ from typing import Any
 from flint import arb
 
 from derive.mechanics.words import rate_of_each
-from derive.scene import Machine
+from derive.scene import Scene
 from derive.scene.declaration import Axis, Triple, Turning
 from derive.scene.formula import ZERO, Formula, number, substitute, symbol
 from derive.scene.machine import (
@@ -47,7 +47,7 @@ class Description:
     turn : quaternion of R      frames : those that are turned
     """
 
-    machine: Machine
+    machine: Scene
     turn: Quaternion
     frames: frozenset[str]
 
@@ -64,7 +64,7 @@ class Description:
         images = [product(product(self.turn, e), back)[1:] for e in units]
         return [list(row) for row in zip(*images, strict=True)]
 
-    def told(self) -> Machine:
+    def told(self) -> Scene:
         """Return the machine as it is told along the turned frames."""
         machine, place = self.machine, self.machine.momentum
         results = tuple(replace(r, formula=self._formula(r.formula)) for r in machine.results)
@@ -219,12 +219,12 @@ class Description:
                 return replace(load, at=at, to=to)
 
 
-def relabelled(machine: Machine) -> Description:
+def relabelled(machine: Scene) -> Description:
     """Return a machine with all axes of all frames relabelled, x -> y -> z -> x."""
     return Description(machine, CYCLE, frozenset(f.name for f in machine.frames))
 
 
-def turned(machine: Machine) -> Description | None:
+def turned(machine: Scene) -> Description | None:
     """Return a machine with the frames turned whose angular velocity is given along them.
 
     None if there is no such frame whose bodies can be told along any axes.

@@ -12,7 +12,7 @@ from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.problem import Problem
 from derive.mechanics.words import MATRICES
 from derive.program.largest import largest
-from derive.scene import Input, Machine
+from derive.scene import Input, Scene
 from derive.scene.formula import symbols
 from derive.scene.machine import Result
 from derive.scene.results import written_out
@@ -138,7 +138,7 @@ def of_cloud(
     return {name: _of_cloud(known.scene, cloud, function, name) for name in names}
 
 
-def _of_cloud(machine: Machine, cloud: Answers, function: str, name: str) -> Any:
+def _of_cloud(machine: Scene, cloud: Answers, function: str, name: str) -> Any:
     """Return an answer of the cloud, None if it has none."""
     if function == "steady" and machine.steady is not None and machine.steady.vanishes is not None:
         return cloud.result(machine.steady.vanishes)
@@ -156,7 +156,7 @@ def _of_cloud(machine: Machine, cloud: Answers, function: str, name: str) -> Any
     return cloud.result(result.formula)
 
 
-def _of_slopes(machine: Machine, cloud: Answers, result: Result) -> Any:
+def _of_slopes(machine: Scene, cloud: Answers, result: Result) -> Any:
     """Return a result of the matrices of small motion, None if it rests on more than slopes.
 
     The cloud knows M^-1 D and M^-1 K only, so a result must be the same for any M: it is taken
@@ -179,7 +179,7 @@ def _of_slopes(machine: Machine, cloud: Answers, result: Result) -> Any:
         return first if abs(first - second) <= AGREE * abs(first) else None
 
 
-def _of_matrices(machine: Machine, result: Result) -> bool:
+def _of_matrices(machine: Scene, result: Result) -> bool:
     return any(
         s.startswith(tuple(MATRICES)) for s in symbols(written_out(result.formula, machine.results))
     )
@@ -192,7 +192,7 @@ def digits(ball: Any) -> Any:
     return mpf(int(man)) * mpf(2) ** int(exp)
 
 
-def _small(machine: Machine, given: Mapping[str, Any], true: Mapping[str, Known]) -> list[Any]:
+def _small(machine: Scene, given: Mapping[str, Any], true: Mapping[str, Known]) -> list[Any]:
     """Return how far M, D and K are from the slopes of the cloud's accelerations."""
     if not at_rest(machine, given):
         return []  # the given motion is none, for these values

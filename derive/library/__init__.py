@@ -2,14 +2,14 @@
 
 The road, from a file to what is emitted; each line says what comes in, what goes out, and where:
 
-    str            -> Machine                scene.load
-    Machine        -> Mechanism              mechanics.mechanism.mechanism
+    str            -> Scene                  scene.load
+    Scene          -> Mechanism              mechanics.mechanism.mechanism
     Mechanism      -> Problem                mechanics.mechanism.problem
     Problem        -> Arrangement            lower.arrange.plan.arrange
     Arrangement    -> Value                  lower.lower.lower
     Value          -> Op, Operand            lower.stage.hot
     Arranged       -> Program                library.function.function
-    Machine        -> Library                library.library.library
+    Scene          -> Library                library.library.library
     Library        -> Measurement            verify.stated.figures
     Library, Measurement -> str              emit.c.source.c_files
     Library        -> str                    emit.casadi_text.casadi_file

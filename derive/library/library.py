@@ -16,7 +16,7 @@ from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.mechanics.problem import Problem
 from derive.program.program import Program, Quantity, read_by
 from derive.program.tape import Tape, free_prefix
-from derive.scene import Machine, SceneError
+from derive.scene import Scene, SceneError
 from derive.scene.wanted import ATTITUDES, IN_PAIRS, base_of, moves
 
 INVERSE = re.compile("J_([xyz][xyz])'*")
@@ -56,7 +56,7 @@ class Moved:
     meanings: Mapping[str, str]
 
 
-def library(scene: Machine) -> Library:
+def library(scene: Scene) -> Library:
     """Return the programs that ``scene`` asks for.
 
     Raises SceneError, with one sentence that names the scene, if there can be none.
@@ -67,7 +67,7 @@ def library(scene: Machine) -> Library:
         raise SceneError(f"scene '{scene.name}': {error}") from None
 
 
-def _library(scene: Machine) -> Library:
+def _library(scene: Scene) -> Library:
     terms = graphed(mechanism(scene))
     asked, hidden = _asked(scene)
     bases = dict.fromkeys(map(base_of, (*asked, *hidden)))
@@ -96,7 +96,7 @@ def _library(scene: Machine) -> Library:
     )
 
 
-def _asked(scene: Machine) -> tuple[list[str], list[str]]:
+def _asked(scene: Scene) -> tuple[list[str], list[str]]:
     """Return the functions that satisfy equations, and those that only motions rest on."""
     asked = [name for name in scene.wanted if not moves(name) and name not in ATTITUDES]
     return asked, [name for name in needs(scene) if name not in asked]

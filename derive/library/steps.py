@@ -24,7 +24,7 @@ from derive.motion.taylor.series import in_loops
 from derive.program.program import Operand, Program, Quantity
 from derive.program.recorded import called, needed
 from derive.program.tape import Number, Tape, number, seen_from
-from derive.scene import Machine, SceneError
+from derive.scene import Scene, SceneError
 from derive.scene.declaration import Given
 from derive.scene.wanted import ATTITUDES, SPLITTINGS, STEP_DERIVATIVES, TAYLOR, moves, step_of
 
@@ -51,7 +51,7 @@ SLOPES = {
 """What the derivatives of a step rest on, by kind."""
 
 
-def needs(scene: Machine) -> tuple[str, ...]:
+def needs(scene: Scene) -> tuple[str, ...]:
     """Return the equations that the wanted steps rest on, whether they are wanted themselves."""
     steps = [name for name in scene.wanted if step_of(name) in RATES]
     slopes = [SLOPES[name.rpartition("_")[2]] for name in steps if name in STEP_DERIVATIVES]

@@ -26,7 +26,7 @@ from derive.mechanics.problem import Problem, substituted
 from derive.mechanics.sweep import Weakest, probe_at, ranges, regular, weakest
 from derive.mechanics.words import MATRICES, rate_names
 from derive.program.program import Quantity
-from derive.scene import Input, Machine, SceneError
+from derive.scene import Input, Scene, SceneError
 from derive.scene.formula import Formula
 from derive.scene.results import written_out
 from derive.scene.wanted import JACOBIAN
@@ -49,7 +49,7 @@ def balance_steps(balances: Iterable[Balance]) -> tuple[str, ...]:
 class Answers:
     """The answers of a machine, each as an expression in unknowns and named quantities."""
 
-    machine: Machine
+    machine: Scene
     frames: Frames
     balances: Balances
 

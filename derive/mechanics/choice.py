@@ -19,7 +19,7 @@ from derive.mechanics.probe import (
     independent_at_all,
 )
 from derive.mechanics.valued import Valued
-from derive.scene import Machine, SceneError
+from derive.scene import Scene, SceneError
 from derive.scene.machine import Force
 
 GROUND = "the ground"
@@ -185,7 +185,7 @@ def undetermined(balances: Balances, wanted: frozenset[int]) -> str:
     return f"the balances do not determine {found}"
 
 
-def closed_loop(machine: Machine, unknowns: set[str]) -> str:
+def closed_loop(machine: Scene, unknowns: set[str]) -> str:
     """Return a sentence on bodies that loads with unknowns join in a ring, "" if there is none.
 
     unknowns : those that cannot be found; one of them is an acceleration or a load's of the ring

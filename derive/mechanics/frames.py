@@ -11,7 +11,7 @@ from derive.mechanics.own_axes import frames_of_bodies, own_axes
 from derive.mechanics.sheet import AXES, Sheet
 from derive.mechanics.turning import turn_matrix, unit_vector
 from derive.mechanics.words import Words
-from derive.scene import Machine, SceneError
+from derive.scene import Scene, SceneError
 from derive.scene.declaration import Turning
 from derive.scene.machine import INERTIAL, Frame
 
@@ -24,7 +24,7 @@ Parts = Mapping[str, Matrix]  # a vector as a sum of columns, each along the axe
 class Frames:
     """The frames of a machine in motion; every vector is a (3, 1) column along its frame's axes."""
 
-    machine: Machine
+    machine: Scene
     words: Words
 
     @property

@@ -17,7 +17,7 @@ from derive.mechanics.choice import chosen
 from derive.mechanics.probe import DIGITS, Probe, at_rest, independent, point, small, solved
 from derive.mechanics.valued import Valued
 from derive.mechanics.words import Words
-from derive.scene import Input, Machine, SceneError
+from derive.scene import Input, Scene, SceneError
 from derive.scene.escape import brief
 
 NEARBY = 1e-6
@@ -32,7 +32,7 @@ class Small:
     slopes: Mapping[Symbol, Expr]
 
 
-def linearised(machine: Machine, balances: Balances) -> dict[str, Matrix]:
+def linearised(machine: Scene, balances: Balances) -> dict[str, Matrix]:
     """Return the three matrices, (n, n), of the free coordinates and speeds in order.
 
     Each row is the one in which its own coordinate has the most mass, counted positive.
@@ -68,7 +68,7 @@ def linearised(machine: Machine, balances: Balances) -> dict[str, Matrix]:
     return {name: _in_order(matrix, own) for name, matrix in made.items()}
 
 
-def require_free(machine: Machine, answer: str, way_out: str = "") -> None:
+def require_free(machine: Scene, answer: str, way_out: str = "") -> None:
     """Refuse coordinates that formulas move: by them it cannot be told what is small, or rests."""
     for c in machine.coordinates:
         if c.state and not c.free:
@@ -76,7 +76,7 @@ def require_free(machine: Machine, answer: str, way_out: str = "") -> None:
             raise SceneError(f"'{answer}' {rule} '{brief(c.rate)}'; let it be free{way_out}")
 
 
-def unsteady(machine: Machine, balances: Balances, given: Mapping[str, float]) -> Iterator[str]:
+def unsteady(machine: Scene, balances: Balances, given: Mapping[str, float]) -> Iterator[str]:
     """Yield a sentence for every free coordinate or speed that the given state accelerates.
 
     given : values that were set; all else is in the middle of its range, or at rest if it varies
@@ -109,7 +109,7 @@ def unsteady(machine: Machine, balances: Balances, given: Mapping[str, float]) -
 
 
 def _accelerations(
-    machine: Machine,
+    machine: Scene,
     balances: Balances,
     rows: Sequence[Row],
     places: Sequence[int],

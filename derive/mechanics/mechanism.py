@@ -18,7 +18,7 @@ from derive.mechanics.problem import Problem, substituted
 from derive.mechanics.sweep import ranges, regular, weakest
 from derive.mechanics.vocabulary import Vocabulary
 from derive.mechanics.words import Words, words
-from derive.scene import Machine, SceneError
+from derive.scene import Scene, SceneError
 
 SOUGHT = ("acceleration", "accelerations", "state_rate")
 """Functions that find accelerations; what else may be asked of a body, its motion says."""
@@ -28,7 +28,7 @@ SOUGHT = ("acceleration", "accelerations", "state_rate")
 class Mechanism:
     """A machine with its words and balances; questions are asked once and kept."""
 
-    scene: Machine
+    scene: Scene
     made: Words
     answers: Answers
     questions: dict[str, Problem] = field(default_factory=dict)
@@ -82,7 +82,7 @@ def doubts_at(known: Mechanism, given: Mapping[str, float]) -> tuple[str, ...]:
     return tuple(unsteady(known.scene, known.answers.balances, given))
 
 
-def mechanism(machine: Machine) -> Mechanism:
+def mechanism(machine: Scene) -> Mechanism:
     """Return ``machine`` in the lecture's terms."""
     made = words(machine)
     frames = Frames(machine, made)

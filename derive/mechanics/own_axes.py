@@ -1,6 +1,6 @@
 """The axes of turned bodies: each a frame of its own, whose name no scene can give."""
 
-from derive.scene import Machine
+from derive.scene import Scene
 from derive.scene.machine import Frame
 
 
@@ -19,7 +19,7 @@ def called(frame: str) -> str:
     return frame if body == frame else f"the axes of {body}"
 
 
-def frames_of_bodies(machine: Machine) -> tuple[Frame, ...]:
+def frames_of_bodies(machine: Scene) -> tuple[Frame, ...]:
     """Return a frame for each turned body, at its mass centre."""
     return tuple(
         Frame(own_axes(b.name), b.frame, b.turned, None, "", b.centre)

@@ -9,7 +9,7 @@ from sympy import Expr, Integer, Matrix, Symbol, cos, expand_trig, sin, tan
 from derive.mechanics.sheet import Sheet
 from derive.mechanics.vocabulary import ANY, Vocabulary
 from derive.program.program import Quantity
-from derive.scene import Input, Machine
+from derive.scene import Input, Scene
 from derive.scene.declaration import Moving
 from derive.scene.formula import Formula
 from derive.scene.machine import Group
@@ -53,7 +53,7 @@ class Words:
         return self.sheet.symbol(name) if formula is None else self.expression(formula)
 
 
-def words(machine: Machine) -> Words:
+def words(machine: Scene) -> Words:
     """Return what ``machine`` speaks of; symbols are named by place, never by the user's words."""
     parameters = tuple(
         _scalar(p.name, p.unit, p.low, p.high, p.meaning)
@@ -97,7 +97,7 @@ def _of(entry: Input | Moving) -> Quantity:
 Quantities = tuple[Quantity, ...]
 
 
-def _grouped(machine: Machine) -> tuple[Quantities, Quantities, Quantities]:
+def _grouped(machine: Scene) -> tuple[Quantities, Quantities, Quantities]:
     """Return states, inputs and outputs: as the scene groups them, or a scalar each."""
     if machine.groups is None:
         return tuple(_states(machine)), tuple(_inputs(machine)), tuple(_outputs(machine))
@@ -113,14 +113,14 @@ def _of_group(g: Group) -> Quantity:
     return Quantity(g.name, g.components, shape, g.unit, g.frame, g.low, g.high, g.meaning)
 
 
-def rate_names(machine: Machine) -> tuple[str, ...]:
+def rate_names(machine: Scene) -> tuple[str, ...]:
     """Return the outputs that answer with the rates of all states, in their order."""
     if machine.groups is not None:
         return machine.groups.rates
     return tuple(f"{q.name}_rate" for q in _states(machine))
 
 
-def rate_of_each(machine: Machine) -> dict[str, str]:
+def rate_of_each(machine: Scene) -> dict[str, str]:
     """Return what answers with the rate of each component of the state."""
     states, inputs, outputs = _grouped(machine)
     named = {q.name: q.components for q in (*inputs, *outputs)}
@@ -128,7 +128,7 @@ def rate_of_each(machine: Machine) -> dict[str, str]:
     return dict(zip((c for q in states for c in q.components), rates, strict=True))
 
 
-def _states(machine: Machine) -> Iterator[Quantity]:
+def _states(machine: Scene) -> Iterator[Quantity]:
     yield from _with_rates(m for m in (*machine.coordinates, *machine.speeds) if m.state)
     for frame in machine.frames:
         if name := frame.attitude:
@@ -137,7 +137,7 @@ def _states(machine: Machine) -> Iterator[Quantity]:
             yield Quantity(name, parts, (4,), "1", "", *ANY, says)
 
 
-def _inputs(machine: Machine) -> Iterator[Quantity]:
+def _inputs(machine: Scene) -> Iterator[Quantity]:
     yield from _with_rates(m for m in machine.moving if not m.state)
 
 
@@ -161,7 +161,7 @@ def _joined(name: str, parts: Sequence[Quantity]) -> Quantity:
     return replace(parts[0], name=name, components=components, shape=(len(parts),))
 
 
-def _outputs(machine: Machine) -> Iterator[Quantity]:
+def _outputs(machine: Scene) -> Iterator[Quantity]:
     for u in machine.unknowns:
         yield _scalar(u.name, u.unit, None, None, u.meaning)
     for group in groups(machine.unknowns):
@@ -198,7 +198,7 @@ def _outputs(machine: Machine) -> Iterator[Quantity]:
                    "what vanishes in a steady motion")  # fmt: skip
 
 
-def _matrices(machine: Machine) -> Iterator[Quantity]:
+def _matrices(machine: Scene) -> Iterator[Quantity]:
     names = [m.name for m in (*machine.coordinates, *machine.speeds) if m.free]
     for name, by in MATRICES.items():
         parts = tuple(f"{name}_{i + 1}_{k + 1}" for k in range(len(names))
@@ -207,7 +207,7 @@ def _matrices(machine: Machine) -> Iterator[Quantity]:
         yield Quantity(name, parts, (len(parts),), "", "", None, None, says)
 
 
-def _rates(machine: Machine, made: Words) -> dict[Symbol, Expr]:
+def _rates(machine: Scene, made: Words) -> dict[Symbol, Expr]:
     """Return the rate of every coordinate, of its rate where it has a name, and of every speed."""
     symbols, found = made.sheet.symbols, dict[Symbol, Expr]()
     for m in (*machine.coordinates, *machine.speeds):
@@ -231,7 +231,7 @@ def _second(made: Words, second: Input | Formula | None) -> Expr:
     return Integer(0) if second is None else made.expression(second)
 
 
-def _hidden(machine: Machine, sheet: Sheet) -> dict[Symbol, str]:
+def _hidden(machine: Scene, sheet: Sheet) -> dict[Symbol, str]:
     """Return symbols for data of bodies that the user left out."""
     found: dict[Symbol, str] = {}
     for body in machine.bodies:
@@ -252,7 +252,7 @@ def mass_name(body: str) -> str:
     return f"{body}.mass"
 
 
-def inertia_name(machine: Machine, body: str, place: int) -> str:
+def inertia_name(machine: Scene, body: str, place: int) -> str:
     """Return what an unknown moment is called; the transverse ones of a body are one."""
     axis = machine.body(body).axis
     if axis is not None and place < 3:

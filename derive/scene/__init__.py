@@ -27,7 +27,7 @@ from derive.scene.doubtful import (
 )
 from derive.scene.escape import brief, visible
 from derive.scene.long_form import written_out
-from derive.scene.machine import Machine
+from derive.scene.machine import Scene
 from derive.scene.names import file_name
 from derive.scene.reader import is_machine, read_machine
 from derive.scene.rules import check, warnings
@@ -39,8 +39,8 @@ from derive.scene.wanted import check_form, idle_times
 __all__ = [
     "Given",
     "Input",
-    "Machine",
     "Parameter",
+    "Scene",
     "SceneError",
     "Turning",
     "argument",
@@ -62,7 +62,7 @@ def catalogue() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in CATALOGUE.glob("*.toml")))
 
 
-def argument(scene: Machine) -> str:
+def argument(scene: Scene) -> str:
     """Return what commands are told to mean a scene: its name in the catalogue, or its file.
 
     >>> argument(load("heavy_top"))
@@ -73,7 +73,7 @@ def argument(scene: Machine) -> str:
     return scene.name if known else file
 
 
-def load(source: str | Path) -> Machine:
+def load(source: str | Path) -> Scene:
     """Return the scene of a catalogue name or of a file, named by the file's stem.
 
     Raises SceneError with one sentence if there is no such scene or it breaks a rule.
@@ -111,7 +111,7 @@ def _contents(path: Path) -> str:
         raise SceneError(f"{start} is not UTF-8 (byte {error.start})") from None
 
 
-def parse_scene(text: str, name: str) -> Machine:
+def parse_scene(text: str, name: str) -> Scene:
     """Return the scene that a TOML text declares, with warnings about what seems unlikely.
 
     Raises SceneError; its sentence names the scene, the quantity, the rule and the value found.
@@ -132,7 +132,7 @@ def _quoted(name: str) -> str:
     return f"'{brief(visible(name))}'"
 
 
-def _read(document: dict[str, object], name: str, text: str) -> Machine:
+def _read(document: dict[str, object], name: str, text: str) -> Scene:
     if is_machine(document):
         machine = read_machine(document, name, text)
         require_sizes(machine)

@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
     from derive.scene.declaration import Moving, Parameter
     from derive.scene.formula import Formula
-    from derive.scene.machine import Machine, Member
+    from derive.scene.machine import Member, Scene
 
 MANY_RADIANS = 20
 """More than three turns: an angle in degrees that was not converted looks so."""
 
 
-def require_sizes(machine: Machine) -> None:
+def require_sizes(machine: Scene) -> None:
     """Refuse sizes that no body and no spring can have, anywhere on the declared ranges."""
     ranges = ranges_of(machine)
     for label, size in _sizes(machine):
@@ -35,7 +35,7 @@ def require_sizes(machine: Machine) -> None:
             raise SceneError(f"body '{body.name}': outer must be more than inner, but is the same")
 
 
-def beyond(machine: Machine) -> Iterator[str]:
+def beyond(machine: Scene) -> Iterator[str]:
     """Yield a sentence for every part of a state of small motion that is outside its range."""
     if not any("linearised" in answers for answers in machine.asked.values()):
         return
@@ -51,7 +51,7 @@ def beyond(machine: Machine) -> Iterator[str]:
                 )
 
 
-def _sizes(machine: Machine) -> Iterator[tuple[str, Formula]]:
+def _sizes(machine: Scene) -> Iterator[tuple[str, Formula]]:
     """Yield every size that must not be negative, with what it is called."""
     for body in machine.bodies:
         lengths = body.lengths
@@ -71,7 +71,7 @@ def _wall(tube: Member) -> Formula:
     return tube.lengths["outer"] - tube.lengths["inner"]
 
 
-def idle_frames(machine: Machine) -> Iterator[str]:
+def idle_frames(machine: Scene) -> Iterator[str]:
     """Yield a sentence for every frame that carries nothing and that nothing refers to."""
     used = {INERTIAL, machine.momentum.frame, *(f.parent for f in machine.frames)}
     used |= {body.frame for body in machine.bodies}
@@ -94,7 +94,7 @@ def in_degrees(scalars: Iterable[Moving | Parameter]) -> Iterator[str]:
             yield f"{says} {float(end):g} rad; are degrees meant?"
 
 
-def turns_in_degrees(machine: Machine) -> Iterator[str]:
+def turns_in_degrees(machine: Scene) -> Iterator[str]:
     """Yield a sentence for every turn by a formula that holds a number as of degrees."""
     turned = [(f"frame '{f.name}'", f.turned) for f in machine.frames]
     turned += [(f"body '{b.name}'", b.turned) for b in machine.bodies]

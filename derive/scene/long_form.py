@@ -21,9 +21,9 @@ from derive.scene.machine import (
     Force,
     Frame,
     Load,
-    Machine,
     Member,
     Place,
+    Scene,
     Unknown,
 )
 from derive.scene.rules import singular_attitude
@@ -36,13 +36,13 @@ Motion = Literal["sought", "given"]
 _ANY = (Fraction(-1), Fraction(1))
 
 
-def written_out(scene: ShortForm) -> Machine:
+def written_out(scene: ShortForm) -> Scene:
     """Return the machine that a scene of a single body is; names of scalars stay what they are."""
     given = long_form(scene, "given")
     return replace(long_form(scene, "sought"), wanted=scene.wanted, inverse=given)
 
 
-def long_form(scene: ShortForm, motion: Motion) -> Machine:
+def long_form(scene: ShortForm, motion: Motion) -> Scene:
     """Return the machine of a single body whose motion is sought, or given."""
     speeds, inputs = [*scene.speeds], [*scene.inputs]
     if turns_freely(scene):
@@ -60,7 +60,7 @@ def long_form(scene: ShortForm, motion: Motion) -> Machine:
     speeds += [speed for speed, _, _ in wheels]
     inputs += [_input(w.torque.name, "N m") for w in scene.wheels]
     loads, unknowns = _loads(scene, motion)
-    return Machine(
+    return Scene(
         name=scene.name, title=scene.title, source="", text=scene.text,
         parameters=scene.parameters, coordinates=tuple(coordinates), speeds=tuple(speeds),
         inputs=tuple(inputs), frames=(_still(), _frame(scene)),

@@ -218,7 +218,7 @@ Demand = Above | Tensor
 
 
 @dataclass(frozen=True)
-class Machine:
+class Scene:
     """Everything the user declared of a machine, checked; ``text`` is the file as it was read.
 
     merging : words on where two of three free angles merge in their ranges, "" if nowhere
@@ -253,7 +253,7 @@ class Machine:
     demands: tuple[Demand, ...]
     merging: str = ""
     groups: Groups | None = None
-    inverse: Machine | None = None
+    inverse: Scene | None = None
 
     @property
     def moving(self) -> tuple[Moving, ...]:

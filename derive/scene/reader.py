@@ -14,7 +14,7 @@ from derive.scene.entry import Reading, entries_of
 from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.frames import read_frames
 from derive.scene.loads import read_loads
-from derive.scene.machine import Frame, Machine, Member, Place, Result, Steady, Unknown
+from derive.scene.machine import Frame, Member, Place, Result, Scene, Steady, Unknown
 from derive.scene.names import distinct, label
 from derive.scene.numbers import member_doubts
 from derive.scene.results import (
@@ -47,7 +47,7 @@ def is_machine(document: Mapping[str, object]) -> bool:
     return "bodies" in document or "frames" in document
 
 
-def read_machine(document: Mapping[str, object], name: str, source: str) -> Machine:
+def read_machine(document: Mapping[str, object], name: str, source: str) -> Scene:
     """Return the machine of a parsed TOML document, checked table by table."""
     part = _tables(document)
     scalars = read_scalars(part)
@@ -61,7 +61,7 @@ def read_machine(document: Mapping[str, object], name: str, source: str) -> Mach
     steady = _steady(part["steady"], scalars, unknowns, results, asked)
     made = _made(scalars, frames, results, asked, steady)
     distinct([*_declared(scalars, unknowns, results), *made])
-    return Machine(
+    return Scene(
         name=name, title=text(document.get("title", name), "title"),
         source=text(document.get("source", "own"), "source"), text=source,
         parameters=scalars.parameters, coordinates=scalars.coordinates,

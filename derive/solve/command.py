@@ -11,7 +11,7 @@ from pathlib import Path
 from numpy.linalg import LinAlgError
 
 from derive.emit.files import require_writable, write
-from derive.scene import CATALOGUE, Machine, SceneError
+from derive.scene import CATALOGUE, SceneError
 from derive.scene.machine import LEFT_OVER
 from derive.scene.table import MANY, nearest, shown
 from derive.scene.unit import ANGULAR_VELOCITY, NONE, dimension
@@ -189,7 +189,7 @@ def _number(text: str, value: str, unit: str) -> float:
 def _unknowns(found: Instrument, name: str, values: dict[str, float]) -> tuple[str, ...]:
     """Return the unknowns of a steady motion that is to be found; none if they are all set."""
     scene = found.library.known.scene
-    steady = scene.steady if isinstance(scene, Machine) and name == "steady" else None
+    steady = scene.steady if name == "steady" else None
     return () if steady is None or all(n in values for n in steady.unknown) else steady.unknown
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.program.largest import largest
-from derive.scene import Machine, SceneError
+from derive.scene import SceneError
 from derive.solve.instrument import Instrument
 
 STARTS = 200  # of one unknown; of several, so many in all
@@ -21,7 +21,7 @@ HALVINGS = 60
 
 def _steady(found: Instrument) -> tuple[str, ...]:
     scene = found.library.known.scene
-    if not isinstance(scene, Machine) or scene.steady is None:
+    if scene.steady is None:
         raise SceneError(f"scene '{found.name}': roots need [steady]")
     return scene.steady.unknown
 

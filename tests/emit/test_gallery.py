@@ -7,7 +7,7 @@ import pytest
 from derive.emit.gallery import card, gallery
 from derive.emit.gallery.drawing import HEIGHT, WIDTH, drawing
 from derive.library.library import library
-from derive.scene import Machine, catalogue, load, parse_scene
+from derive.scene import catalogue, load, parse_scene
 from derive.scene.machine import LEFT_OVER
 from tests.made import library_of, scene_of, thinned
 
@@ -56,6 +56,5 @@ def test_what_is_left_of_a_balance_is_not_shown_as_an_answer(name: str) -> None:
 
 def test_a_drawing_moves_with_the_scene() -> None:
     scene = load("rod_wire_vertical_shaft")
-    assert isinstance(scene, Machine)
     steeper = parse_scene(scene.text.replace("[0.8, 1.2]", "[0.2, 0.3]"), scene.name)
     assert drawing(scene) != drawing(steeper)

@@ -11,7 +11,7 @@ import pytest
 
 from derive.library.function import arranged, function, graphed
 from derive.mechanics.mechanism import mechanism
-from derive.scene import Machine, load, parse_scene
+from derive.scene import Scene, load, parse_scene
 from derive.scene.wanted import base_of
 
 LONG = Path(__file__).parent.parent / "data" / "long_form"
@@ -35,7 +35,7 @@ ROWS = (
 )
 
 
-def in_short(name: str) -> Machine:
+def in_short(name: str) -> Scene:
     """Return the body's scene, that of the gyrostat without an attitude."""
     text = (CATALOGUE / f"{name}.toml").read_text(encoding="utf-8")
     if name == "gyrostat":
@@ -44,7 +44,7 @@ def in_short(name: str) -> Machine:
     return parse_scene(text, name)
 
 
-def operations(scene: Machine, name: str) -> int:
+def operations(scene: Scene, name: str) -> int:
     """Return how many + - * / a function of a scene takes."""
     terms = graphed(mechanism(scene))
     return function(terms, arranged(terms, base_of(name)), name).flops()

@@ -15,7 +15,7 @@ from derive.lower.arrange.constant_tensor import constant_tensor
 from derive.lower.arrange.quaternion import quaternion_rate, turned_by_quaternion
 from derive.lower.arrange.spherical_part import spherical_part
 from derive.lower.arrange.turns import turns_one_by_one
-from derive.scene import Machine, load
+from derive.scene import Scene, load
 from derive.verify.prove import ProofError, prove
 from tests.lower.test_long_form import CATALOGUE, LONG, operations
 
@@ -37,11 +37,10 @@ RULES = pytest.mark.parametrize(
 )
 
 
-def shown_by(rule: Any) -> tuple[Machine, str]:
+def shown_by(rule: Any) -> tuple[Scene, str]:
     """Return the scene and the function that a rule is shown by."""
     path, name = CASES[rule]
     scene = load(path)
-    assert isinstance(scene, Machine)
     return replace(scene, wanted=(name,)), name
 
 

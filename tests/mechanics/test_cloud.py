@@ -9,7 +9,7 @@ from derive.check.particles import clouds
 from derive.library.library import library
 from derive.mechanics.mechanism import mechanism
 from derive.program.precision import F64
-from derive.scene import Machine, catalogue, load, parse_scene
+from derive.scene import Scene, catalogue, load, parse_scene
 from derive.scene.formula import Formula
 from derive.solve import opened, roots
 from derive.verify.cloud import answers
@@ -18,7 +18,7 @@ from derive.verify.reference import reference
 from derive.verify.sample import samples
 from tests.made import library_of, scene_of, thinned
 
-MACHINES = [name for name in catalogue() if isinstance(scene_of(name), Machine)]
+MACHINES = [name for name in catalogue() if isinstance(scene_of(name), Scene)]
 FEW = 3
 SHORT = ("edge_runner_flat", "eulers_disk", "skewed_disc")
 """Machines of the short run; `derive check` and the longer run have all."""
@@ -49,10 +49,8 @@ def test_another_machine_does_not_agree_with_the_cloud(
 ) -> None:
     name, old, new, function = row
     right = load(name)
-    assert isinstance(right, Machine)
     assert old in right.text
     other = parse_scene(right.text.replace(old, new), name)
-    assert isinstance(other, Machine)
     made = library(other)
     spoilt = replace(made, known=replace(made.known, scene=right))
     each = samples(made.known, F64, 1, 0).each
@@ -69,7 +67,6 @@ def test_at_a_root_and_nowhere_near_it_the_cloud_is_in_balance(name: str) -> Non
     middle = {c: float(((q.low or 0) + (q.high or 0)) / 2) for q in found.quantities()
               for c in q.components}  # fmt: skip
     machine = load(name)
-    assert isinstance(machine, Machine)
     every = roots(found, {n: v for n, v in middle.items() if n != "W"})
     assert every
     for root in every:
@@ -97,7 +94,6 @@ def test_a_usual_shortcut_gives_another_answer_than_the_cloud(
 ) -> None:
     _, source, old, new, function = row
     right = load(source)
-    assert isinstance(right, Machine)
     assert old in right.text
     wrong = library(parse_scene(right.text.replace(old, new), right.name))
     (sample,) = samples(mechanism(right), F64, 1, 0).each
@@ -113,13 +109,12 @@ def test_a_usual_shortcut_gives_another_answer_than_the_cloud(
     assert max(gaps) > 1e-3 * max(map(abs, true))
 
 
-def _formula(machine: Machine, name: str) -> Formula:
+def _formula(machine: Scene, name: str) -> Formula:
     return next(r.formula for r in machine.results if r.name == name)
 
 
 def test_the_slow_rate_of_a_top_is_not_mgl_over_C_n() -> None:
     machine = load("top_steady_precession")
-    assert isinstance(machine, Machine)
     values = {"m": 0.5, "r": 0.05, "l": 0.06, "theta": 0.5, "n": 250.0, "g": 9.81, "psi": 0.0}
     C = values["m"] * values["r"] ** 2 / 2
     shortcut = values["m"] * values["g"] * values["l"] / (C * values["n"])

@@ -10,7 +10,7 @@ from derive.check.energy import emitted_balance, energy_balance
 from derive.library.library import Library, library
 from derive.mechanics import loads
 from derive.program.precision import F64
-from derive.scene import Machine, SceneError, load, parse_scene
+from derive.scene import SceneError, load, parse_scene
 from derive.verify.sample import Sample, samples
 from tests.check.mutants import first_sign_flipped
 from tests.check.replayed import Replayed
@@ -56,7 +56,6 @@ SPOILT = (
 def test_an_energy_of_other_loads_is_noticed(row: tuple[str, str, str, str]) -> None:
     _, name, old, new = row
     right = load(SCENES / f"{name}.toml")
-    assert isinstance(right, Machine)
     assert old in right.text
     made = library(parse_scene(right.text.replace(old, new), name))
     assert outcomes(replace(made, known=replace(made.known, scene=right))) == {"FAILS"}

@@ -3,7 +3,7 @@
 import pytest
 
 from derive.library.library import library
-from derive.scene import Machine, SceneError, parse_scene
+from derive.scene import Scene, SceneError, parse_scene
 
 SCENE = """
 wanted = ["accelerations"]
@@ -29,10 +29,8 @@ bearing = {{ on = "rotor", force = "?b", couple = ["0", "?c_y", "?c_z"] }}
 UP = '["0", "0", "1"]'
 
 
-def scene(body: str, towards: str = UP) -> Machine:
-    made = parse_scene(SCENE.format(body=body, towards=towards), "rotor")
-    assert isinstance(made, Machine)
-    return made
+def scene(body: str, towards: str = UP) -> Scene:
+    return parse_scene(SCENE.format(body=body, towards=towards), "rotor")
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from derive.library.library import library
 from derive.mechanics.balances import Balances
 from derive.mechanics.choice import closed_loop
 from derive.mechanics.mechanism import doubts, mechanism
-from derive.scene import CATALOGUE, Machine, SceneError, parse_scene
+from derive.scene import CATALOGUE, SceneError, parse_scene
 
 TRIALS = Path(__file__).parent.parent / "data" / "trials"
 EDGE = (CATALOGUE / "edge_runner_flat.toml").read_text(encoding="utf-8")
@@ -115,7 +115,6 @@ def test_a_name_beside_a_vector_of_unknowns_that_is_wanted_is_refused(name: str)
 def test_small_motion_about_no_equilibrium_is_warned_about(q: str, size: str) -> None:
     # -g b sin(q)/(b^2 + (a^2 + (a + b)^2)/2) with a = 0.2 and b = 0.3 is -6.004
     machine = parse_scene(f"{PLAIN.replace('k = ', '# k = ')}\n[linearised]\nq = {q}\n", "odd")
-    assert isinstance(machine, Machine)
     found = doubts(mechanism(machine))
     start = "'linearised' is about a state that is no equilibrium: the acceleration of 'q' is"
     assert [says.startswith(f"{start} {size} there") for says in found] == [True] * bool(size)
@@ -140,7 +139,6 @@ def test_a_spring_whose_ends_coincide_is_refused(name: str) -> None:
 @pytest.mark.parametrize("name", ["four_bar", "slider_crank"])
 def test_a_ring_of_bodies_is_found_and_a_tree_has_none(name: str) -> None:
     machine = parse_scene((TRIALS / f"{name}.toml").read_text(encoding="utf-8"), name)
-    assert isinstance(machine, Machine)
     assert "bodies form a closed loop" in closed_loop(machine, set())
     assert closed_loop(replace(machine, loads=machine.loads[:-1]), set()) == ""
 

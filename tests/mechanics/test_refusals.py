@@ -10,7 +10,7 @@ from derive.mechanics.choice import _contradicted as contradicted
 from derive.mechanics.choice import _least as least
 from derive.mechanics.choice import contradiction
 from derive.mechanics.mechanism import mechanism
-from derive.scene import CATALOGUE, Machine, SceneError, parse_scene
+from derive.scene import CATALOGUE, SceneError, parse_scene
 
 EDITS = tomllib.loads((Path(__file__).parent / "refusals.toml").read_text(encoding="utf-8"))["edit"]
 EDGE = (CATALOGUE / "edge_runner_flat.toml").read_text(encoding="utf-8")
@@ -27,7 +27,6 @@ def test_an_edit_that_breaks_a_rule_is_refused_by_its_sentence(edit: dict[str, s
 
 def test_the_balances_that_are_named_contradict_each_other_and_no_fewer_do() -> None:
     machine = parse_scene(EDGE.replace('"?friction", "?N"', '"0.1*?N", "?N"'), "edge")
-    assert isinstance(machine, Machine)
     balances = mechanism(machine).answers.balances
     together = least(contradicted(balances.rows, 0), 0)
     assert contradicted(together, 0)

@@ -5,7 +5,7 @@ from sympy import Matrix, Symbol, eye, sympify
 
 from derive.mechanics.mechanism import mechanism
 from derive.mechanics.rotation import FreeRotation, free_rotation
-from derive.scene import Machine, parse_scene
+from derive.scene import parse_scene
 
 BODY = """
 wanted = ["state_rate"]
@@ -69,7 +69,6 @@ spin = "W_x"
 
 def rotation(text: str) -> FreeRotation | None:
     machine = parse_scene(text, "turning")
-    assert isinstance(machine, Machine)
     known = mechanism(machine)
     found = free_rotation(known)
     if found is None:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.scene import Machine, parse_scene
+from derive.scene import parse_scene
 from derive.scene.formula import FLOATS, evaluate
 from derive.solve import opened
 from tests.scene.test_shape import ANGLES, MASS, ROUNDING, Particle, gauss, summed
@@ -66,7 +66,6 @@ body = {{ frame = "shaft", mass = "m", {says} }}
 bearing = {{ on = "body", couple = ["?M_x", "?M_y", "?M"] }}
 """
     scene = parse_scene(text, "shape")
-    assert isinstance(scene, Machine)
     found = [float(evaluate(f, VALUES, FLOATS)) for f in scene.body("body").inertia]
     true = [count * entry for entry in summed(list(cloud), NOWHERE)]
     assert found == pytest.approx(true, abs=ROUNDING * max(true))

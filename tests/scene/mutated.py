@@ -23,7 +23,7 @@ from derive.library.library import Library, library
 from derive.mechanics.mechanism import mechanism
 from derive.mechanics.words import MATRICES
 from derive.program.precision import PRECISIONS
-from derive.scene import Machine, SceneError, parse_scene
+from derive.scene import Scene, SceneError, parse_scene
 from derive.verify.cloud import answers
 from derive.verify.cloud.series import DIGITS
 from derive.verify.cloud.small import slopes
@@ -68,7 +68,7 @@ def unread(text: str, name: str = "example") -> list[str]:
     return found
 
 
-def _read(text: str, name: str) -> Machine | str:
+def _read(text: str, name: str) -> Scene | str:
     try:
         return replace(parse_scene(text, name), text="")
     except SceneError as error:
@@ -78,7 +78,7 @@ def _read(text: str, name: str) -> Machine | str:
 def _said(text: str, name: str) -> tuple[str, ...]:
     """Return all that is said of a scene: its code and warnings, or why it is refused."""
     try:
-        scene: Machine = replace(parse_scene(text, name), text="")
+        scene: Scene = replace(parse_scene(text, name), text="")
         return (*c_files(library(scene), ()).values(), *scene.warnings)
     except SceneError as error:
         return (str(error),)
@@ -96,7 +96,7 @@ def _matters(made: Library, text: str, name: str) -> bool:
         return not pairs or any(abs(a - b) > AGREE * size for a, b in pairs)
 
 
-def _by_particles(made: Library, scene: Machine, values: Mapping[str, float]) -> list[Any]:
+def _by_particles(made: Library, scene: Scene, values: Mapping[str, float]) -> list[Any]:
     """Return the answers of a machine that its cloud of particles has."""
     known, found = mechanism(scene), []
     for base, fact in made.truths.items():

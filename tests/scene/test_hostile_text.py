@@ -25,7 +25,7 @@ from derive.emit.casadi_text import casadi_file
 from derive.emit.manifest import manifest
 from derive.emit.page.scene import scene_page
 from derive.library.library import library
-from derive.scene import CATALOGUE, Machine, SceneError, parse_scene
+from derive.scene import CATALOGUE, Scene, SceneError, parse_scene
 from derive.scene.escape import in_comment, in_docstring, visible
 from tests.made import thinned
 
@@ -94,7 +94,7 @@ time_step = { range = [0.1, 0.2] }
 """
 
 
-def read(document: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> Machine:
+def read(document: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> Scene:
     """Return the scene of a document that no TOML stands behind."""
     monkeypatch.setattr(derive.scene, "_document", lambda _: document)
     return parse_scene("", "odd")
@@ -200,7 +200,7 @@ def test_no_entry_takes_text_that_ends_a_comment_a_string_or_a_line(
             assert not accepts(copy, monkeypatch), (path, key)
 
 
-def filled(text: str, hostile: str, monkeypatch: pytest.MonkeyPatch) -> Machine:
+def filled(text: str, hostile: str, monkeypatch: pytest.MonkeyPatch) -> Scene:
     """Return a scene with a text in every entry that takes it."""
     document = tomllib.loads(text, parse_float=Decimal)
     for path, key in entries(document, monkeypatch):
@@ -209,7 +209,7 @@ def filled(text: str, hostile: str, monkeypatch: pytest.MonkeyPatch) -> Machine:
     return read(document, monkeypatch)
 
 
-def require_harmless(scene: Machine, folder: Path) -> None:
+def require_harmless(scene: Scene, folder: Path) -> None:
     """Compile, import and parse all that a scene becomes; refuse whatever came to life in it."""
     made = library(scene)
     texts = c_files(made, ())
@@ -242,7 +242,6 @@ def test_places_where_text_is_printed_do_not_rest_on_the_gate(
 ) -> None:
     monkeypatch.setattr(reading, "_require_plain", lambda *_: None)
     scene = filled(MACHINE, hostile, monkeypatch)
-    assert isinstance(scene, Machine)
     assert {scene.title, scene.source, scene.results[0].meaning} == {hostile}
     require_harmless(scene, tmp_path)
 

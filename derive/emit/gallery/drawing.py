@@ -12,7 +12,7 @@ from typing import Any
 from mpmath import mp, mpf
 
 from derive.emit.page.words import told
-from derive.scene import Input, Machine
+from derive.scene import Input, Scene
 from derive.scene.formula import ZERO
 from derive.scene.machine import INERTIAL, Force
 from derive.scene.wanted import attitudes_only
@@ -36,14 +36,14 @@ class Line:
     label: str = ""
 
 
-def drawing(scene: Machine) -> str:
+def drawing(scene: Scene) -> str:
     """Return the SVG of a scene."""
     with mp.workdps(DIGITS):
         lines = list(_lines(scene))
         return _svg(lines, f"drawing of {scene.name}")
 
 
-def well_inside(machine: Machine) -> dict[str, Any]:
+def well_inside(machine: Scene) -> dict[str, Any]:
     """Return every argument of a machine at seven tenths of its range, accelerations at zero."""
     ends = {p.name: (3 * p.low + 7 * p.high) / 10 for p in machine.parameters}
     for m in machine.moving:
@@ -59,7 +59,7 @@ def well_inside(machine: Machine) -> dict[str, Any]:
     return found
 
 
-def _lines(machine: Machine) -> Iterator[Line]:
+def _lines(machine: Scene) -> Iterator[Line]:
     history = History(machine, well_inside(machine))
     shown = () if attitudes_only(list(machine.wanted)) else machine.bodies
     bodies = [line for b in shown for line in _ellipses(history, b.name)]

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterable, Sequence
 
-from derive.scene import Machine, Turning
+from derive.scene import Scene, Turning
 from derive.scene.formula import ZERO, Formula, substitute, symbols
 from derive.scene.machine import INERTIAL, Force, Frame, Gradient, Load, Member, Spring
 
 
-def given(machine: Machine) -> list[str]:
+def given(machine: Scene) -> list[str]:
     """Return what a scene is made of, one sentence each."""
     found = [_frame(f) for f in machine.frames if f.name != INERTIAL]
     found += [_body(b) for b in machine.bodies]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from mpmath import mp, mpf
 
-from derive.scene import Input, Machine
+from derive.scene import Input, Scene
 from derive.scene.formula import Formula, evaluate
 from derive.scene.machine import INERTIAL, Frame
 from derive.verify.cloud.series import ARITHMETIC, Array, Series, each, moving, series, turn
@@ -20,7 +20,7 @@ UNKNOWN = mpf(1)  # a mass or moment that the user left out, and that must not m
 class History:
     """A machine at given values of all that is known, and of the accelerations to be found."""
 
-    machine: Machine
+    machine: Scene
     values: Mapping[str, Any]
 
     @cached_property

@@ -5,14 +5,14 @@ from typing import Any
 
 from mpmath import matrix, mp, mpf
 
-from derive.scene import Input, Machine
+from derive.scene import Input, Scene
 from derive.verify.cloud.series import DIGITS
 from derive.verify.cloud.solution import Answers, answers
 
 STEP = mpf(10) ** -15  # a central difference of 50 digits keeps twenty
 
 
-def slopes(machine: Machine, given: Mapping[str, float]) -> tuple[Any, Any]:
+def slopes(machine: Scene, given: Mapping[str, float]) -> tuple[Any, Any]:
     """Return the derivatives of the accelerations by velocities and by places, (n, n) each.
 
     They are minus M^-1 D and minus M^-1 K of the linearised motion.
@@ -34,7 +34,7 @@ def slopes(machine: Machine, given: Mapping[str, float]) -> tuple[Any, Any]:
         return found[0], found[1]
 
 
-def at_rest(machine: Machine, given: Mapping[str, float]) -> bool:
+def at_rest(machine: Scene, given: Mapping[str, float]) -> bool:
     """Tell whether the motion of the scene goes on without any acceleration."""
     free = [m.unknown for m in (*machine.coordinates, *machine.speeds) if m.free]
     with mp.workdps(DIGITS):
@@ -42,14 +42,14 @@ def at_rest(machine: Machine, given: Mapping[str, float]) -> bool:
         return all(abs(found.get(name, mpf(1))) < STEP for name in free)
 
 
-def _base(machine: Machine, given: Mapping[str, float]) -> dict[str, Any]:
+def _base(machine: Scene, given: Mapping[str, float]) -> dict[str, Any]:
     """Return the motion about which the scene is linearised."""
     values = {name: mpf(x) for name, x in given.items()}
     start = Answers(machine, values | dict.fromkeys(machine.about, mpf(0)))
     return values | {name: start.result(f) for name, f in machine.about.items()}
 
 
-def _difference(machine: Machine, base: Mapping[str, Any], name: str) -> dict[str, Any]:
+def _difference(machine: Scene, base: Mapping[str, Any], name: str) -> dict[str, Any]:
     ahead, behind = (
         answers(machine, dict(base) | {name: base[name] + side * STEP}).unknowns for side in (1, -1)
     )

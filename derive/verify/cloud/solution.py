@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from mpmath import mp, mpf
 
-from derive.scene import Machine
+from derive.scene import Scene
 from derive.scene.formula import Formula
 from derive.scene.results import written_out
 from derive.verify.cloud.balance import left_over, potential_energy, values
@@ -22,7 +22,7 @@ NOTHING = mpf(10) ** (8 - DIGITS)
 class Answers:
     """A machine at given values; unknowns, energies and momenta as the cloud has them."""
 
-    machine: Machine
+    machine: Scene
     given: Mapping[str, Any]
 
     @cached_property
@@ -143,7 +143,7 @@ class Answers:
             return history.value(written_out(formula, self.machine.results)).value
 
 
-def answers(machine: Machine, given: Mapping[str, float]) -> Answers:
+def answers(machine: Scene, given: Mapping[str, float]) -> Answers:
     """Return what the cloud of ``machine`` answers at values of all that is given."""
     with mp.workdps(DIGITS):
         return Answers(machine, {name: mpf(x) for name, x in given.items()})
