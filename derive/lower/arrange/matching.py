@@ -39,11 +39,11 @@ def matched(holds: Sequence[frozenset[int]]) -> Mapping[int, int]:
 
     Raises UndeterminedError if some equation yields none.
     """
+    rows, size = range(len(holds)), len(holds)  # numbers: sets of words come in any order
     graph = nx.Graph()
-    graph.add_nodes_from(("row", n) for n in range(len(holds)))
-    graph.add_edges_from((("row", n), ("unknown", k)) for n, own in enumerate(holds) for k in own)
-    rows = [("row", n) for n in range(len(holds))]
+    graph.add_nodes_from(rows)
+    graph.add_edges_from((n, size + k) for n, own in enumerate(holds) for k in sorted(own))
     pairs = nx.bipartite.hopcroft_karp_matching(graph, rows)
-    if any(row not in pairs for row in rows):
+    if any(n not in pairs for n in rows):
         raise UndeterminedError("an equation fixes no unknown that others leave open")
-    return {pairs[row][1]: row[1] for row in rows}
+    return {pairs[n] - size: n for n in rows}

@@ -132,7 +132,9 @@ class Answers:
             return None
         with mp.workdps(DIGITS):
             scalars = self.history(self.unknowns).scalars
-            return scalars[name].velocity if name in scalars else None
+            attitudes = tuple(f"{f.attitude}_" for f in self.machine.frames if f.attitude)
+            known = name in scalars and not name.startswith(attitudes)
+            return scalars[name].velocity if known else None
 
     def result(self, formula: Formula, also: Mapping[str, Any] | None = None) -> Any:
         """Return the value of a formula of answers, and of what is ``also`` known by name."""
