@@ -99,7 +99,7 @@ def test_every_wrong_recurrence_is_noticed(name: str) -> None:
 def test_the_measured_order_is_the_claimed_one(name: str, order: int) -> None:
     made = catalogued(name) if "_" in name or name == "gyrostat" else handmade(name)
     step, rate, values = replace(made[0], order=order), *made[1:]
-    h = Fraction(1, 2**10)
+    h = Fraction(1, 2**11)
     ratio = largest(truncation(step, rate, values, h)) / largest(
         truncation(step, rate, values, h / 2)
     )

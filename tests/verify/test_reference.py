@@ -64,8 +64,8 @@ def ordinary(known: Mechanism) -> Sample:
 @pytest.mark.parametrize("name", thinned(catalogue(), 4))
 def test_the_reference_satisfies_every_residual(name: str) -> None:
     known = scene(name)
-    symbols = known.words.symbols
     for fact in truths(known):
+        symbols = known.posed(fact.name).words.symbols
         given = ordinary(known).values
         found = reference(equations(known, fact), given, ())
         values = {symbols[c]: arb(x) for c, x in given.items()}
