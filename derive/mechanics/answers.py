@@ -1,6 +1,6 @@
 """What each wanted answer is made of: unknowns, energies, momenta, results, small motion."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,20 +10,15 @@ from derive.lecture.stated import stated
 from derive.mechanics.balances import Balance, Balances, Row
 from derive.mechanics.bodies import centre, centre_velocity, kinetic_energy, mass, momentum
 from derive.mechanics.choice import (
-    chosen,
-    clearly_told,
-    contradiction,
-    require_no_ring,
     unbalanced,
 )
 from derive.mechanics.frames import ZERO, Frames
 from derive.mechanics.linearised import linearised, require_free
 from derive.mechanics.loads import potential_energy
 from derive.mechanics.matter import without_factors
-from derive.mechanics.pivots import where
-from derive.mechanics.probe import NOTHING, POINTS, Probe, independent
+from derive.mechanics.probe import NOTHING, POINTS, independent
 from derive.mechanics.problem import Problem, substituted
-from derive.mechanics.sweep import Weakest, probe_at, ranges, regular, weakest
+from derive.mechanics.regular import Regular
 from derive.mechanics.words import MATRICES, rate_names
 from derive.program.program import Quantity
 from derive.scene import Input, Scene, SceneError
@@ -31,7 +26,6 @@ from derive.scene.formula import Formula
 from derive.scene.results import written_out
 from derive.scene.wanted import JACOBIAN
 
-TRIES = 6  # places at which balances must be independent, found one after another
 FRAME_STEPS = ("angular_velocities_add", "acceleration_seen_from_axes")
 
 
@@ -87,7 +81,7 @@ class Answers:
         used = {s for e in (*answers.values(), *sheet.needed(answers.values()).values())
                 for s in e.free_symbols}  # fmt: skip
         wanted = used & sheet.unknowns
-        rows, unknowns = self._regular(wanted)
+        rows, unknowns = Regular(self.frames, self.balances).determining(wanted)
         written = tuple(self.balances.written(row) for row in rows)
         definitions = sheet.needed([*written, *answers.values()])
         held = tuple(row.balance for row in rows)
@@ -96,61 +90,6 @@ class Answers:
         says = says[:1].upper() + says[1:]
         return Problem(base, says, outputs, answers, definitions, written,
                         unknowns, held, (*balance_steps(held), *steps, *motion))  # fmt: skip
-
-    def _regular(self, wanted: set[Symbol]) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
-        """Return balances that determine the unknowns wherever the machine itself does.
-
-        Where those chosen are found to depend on each other, others are, for that place too.
-        """
-        hard: list[Probe] = []
-        first = rows, unknowns = self._chosen(wanted, hard)
-        for _ in range(TRIES):
-            worst = self._weakest(rows, unknowns)
-            if not worst.vanishes:
-                return rows, unknowns
-            hard.append(probe_at(self.frames.words, worst.place, self.frames.sheet.definitions))
-            try:
-                rows, unknowns = self._chosen(wanted, hard)
-            except SceneError:
-                break
-        worst = self._weakest(*first)
-        if rows and self._told(first[1], worst):
-            names = ", ".join(f"'{self.frames.sheet.label(u)}'" for u in first[1])
-            rule = f"vanishes {where(worst.place)}, where the machine itself is regular"
-            raise SceneError(f"the divisor of {names} {rule}, and no other balances were found")
-        return first
-
-    def _weakest(self, rows: tuple[Row, ...], unknowns: tuple[Symbol, ...]) -> Weakest:
-        """Return where the balances are nearest to depending on each other."""
-        if not rows:
-            return Weakest(1.0, {})
-        sheet = self.frames.sheet
-        slopes = [sheet.split(self.balances.written(row))[1] for row in rows]
-        entries = [[own.get(u, Integer(0)) for u in unknowns] for own in slopes]
-        below = sheet.needed([e for row in entries for e in row])
-        return weakest(ranges(self.frames.words), below, lambda at: regular(at, entries))
-
-    def _told(self, unknowns: tuple[Symbol, ...], worst: Weakest) -> bool:
-        """Tell whether the machine itself determines the unknowns where some balances do not."""
-        every = self.balances.unknowns
-        place = probe_at(self.frames.words, worst.place, self.frames.sheet.definitions)
-        return clearly_told(self.balances, frozenset(map(every.index, unknowns)), place)
-
-    def _chosen(
-        self, wanted: set[Symbol], hard: Sequence[Probe]
-    ) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
-        every = self.balances.unknowns
-        missing = [s for s in wanted if s not in every]
-        if missing:
-            name = self.frames.sheet.label(missing[0])
-            raise SceneError(f"no balance holds '{name}', so it cannot be found")
-        if not wanted:
-            return (), ()
-        require_no_ring(self.balances, frozenset(every.index(s) for s in wanted))
-        if self.machine.steady is None and (sentence := contradiction(self.balances)):
-            raise SceneError(sentence)
-        rows, unknowns = chosen(self.balances, frozenset(every.index(s) for s in wanted), hard)
-        return rows, tuple(every[k] for k in sorted(unknowns))
 
     def _answer(self, name: str) -> dict[Quantity, list[Expr]]:
         if name == "state_rate" and not self._states:

@@ -1,0 +1,79 @@
+"""Balances that determine what is asked wherever the machine itself does."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sympy import Integer, Symbol
+
+from derive.mechanics.balances import Balances, Row
+from derive.mechanics.choice import chosen, clearly_told, contradiction, require_no_ring
+from derive.mechanics.frames import Frames
+from derive.mechanics.pivots import where
+from derive.mechanics.probe import Probe
+from derive.mechanics.sweep import Weakest, probe_at, ranges, regular, weakest
+from derive.scene import SceneError
+
+TRIES = 6  # places at which balances must be independent, found one after another
+
+
+@dataclass(frozen=True)
+class Regular:
+    """The balances of a machine, to choose from."""
+
+    frames: Frames
+    balances: Balances
+
+    def determining(self, wanted: set[Symbol]) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
+        """Return balances that determine the unknowns wherever the machine itself does.
+
+        Where those chosen are found to depend on each other, others are, for that place too.
+        """
+        hard: list[Probe] = []
+        first = rows, unknowns = self._chosen(wanted, hard)
+        for _ in range(TRIES):
+            worst = self._weakest(rows, unknowns)
+            if not worst.vanishes:
+                return rows, unknowns
+            hard.append(probe_at(self.frames.words, worst.place, self.frames.sheet.definitions))
+            try:
+                rows, unknowns = self._chosen(wanted, hard)
+            except SceneError:
+                break
+        worst = self._weakest(*first)
+        if rows and self._told(first[1], worst):
+            names = ", ".join(f"'{self.frames.sheet.label(u)}'" for u in first[1])
+            rule = f"vanishes {where(worst.place)}, where the machine itself is regular"
+            raise SceneError(f"the divisor of {names} {rule}, and no other balances were found")
+        return first
+
+    def _weakest(self, rows: tuple[Row, ...], unknowns: tuple[Symbol, ...]) -> Weakest:
+        """Return where the balances are nearest to depending on each other."""
+        if not rows:
+            return Weakest(1.0, {})
+        sheet = self.frames.sheet
+        slopes = [sheet.split(self.balances.written(row))[1] for row in rows]
+        entries = [[own.get(u, Integer(0)) for u in unknowns] for own in slopes]
+        below = sheet.needed([e for row in entries for e in row])
+        return weakest(ranges(self.frames.words), below, lambda at: regular(at, entries))
+
+    def _told(self, unknowns: tuple[Symbol, ...], worst: Weakest) -> bool:
+        """Tell whether the machine itself determines the unknowns where some balances do not."""
+        every = self.balances.unknowns
+        place = probe_at(self.frames.words, worst.place, self.frames.sheet.definitions)
+        return clearly_told(self.balances, frozenset(map(every.index, unknowns)), place)
+
+    def _chosen(
+        self, wanted: set[Symbol], hard: Sequence[Probe]
+    ) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
+        every = self.balances.unknowns
+        missing = [s for s in wanted if s not in every]
+        if missing:
+            name = self.frames.sheet.label(missing[0])
+            raise SceneError(f"no balance holds '{name}', so it cannot be found")
+        if not wanted:
+            return (), ()
+        require_no_ring(self.balances, frozenset(every.index(s) for s in wanted))
+        if self.frames.machine.steady is None and (sentence := contradiction(self.balances)):
+            raise SceneError(sentence)
+        rows, unknowns = chosen(self.balances, frozenset(every.index(s) for s in wanted), hard)
+        return rows, tuple(every[k] for k in sorted(unknowns))
