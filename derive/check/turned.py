@@ -75,15 +75,15 @@ def _told_back(
 ) -> True_:
     """Return what the other description gives, with the scales of the scene's own.
 
-    What vanishes for the scene is a ball around zero where it is a sum along other axes.
+    What vanishes for the scene, or nearly, is a ball around zero where it is a sum along others.
     """
     with ctx.workprec(BITS):
         given = description.given({c: arb(x) for c, x in sample.values.items()})
         solved = reference(question, given, ())
         names = [c for q in program.outputs for c in q.components]
         values = description.told_back({c: solved[c].value for c in names})
-        zero = arb(0)
-        found = {c: zero if values[c].contains(zero) else values[c] for c in names}
+        small = {c for c in names if values[c].contains(0) and values[c].overlaps(own[c].value)}
+        found = {c: own[c].value if c in small else values[c] for c in names}
         return {c: replace(own[c], value=found[c]) for c in names}
 
 

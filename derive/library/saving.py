@@ -63,6 +63,7 @@ def savings(library: Library) -> Iterator[Saving]:
 
 def _plain(known: Mechanism, base: str) -> int | None:
     """Return the operations of a function body by body; None where that does not determine it."""
+    known = known.posed(base)
     answers = known.answers
     plain = Answers(answers.machine, answers.frames, _body_by_body(answers.balances))
     try:

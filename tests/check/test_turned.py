@@ -11,7 +11,7 @@ from derive.check.description import CYCLE, TURN, Description
 from derive.check.turned import turned_axes
 from derive.library.library import Library, library
 from derive.program.precision import F64
-from derive.scene import catalogue, load
+from derive.scene import catalogue, load, parse_scene
 from derive.verify.sample import samples
 from tests.check.mutants import first_sign_flipped
 from tests.check.replayed import Replayed
@@ -44,6 +44,22 @@ def test_a_scene_of_the_catalogue_is_the_same_along_other_axes(name: str) -> Non
 def test_a_body_in_long_form_is_the_same_along_other_axes(name: str) -> None:
     made = library(load(LONG_FORM / f"{name}.toml"))
     assert "FAILS" not in outcomes(made, made).values()
+
+
+GIVEN = """
+wanted = ["moment"]
+body = { kind = "principal", moments = [1, 1.5, 2] }
+speeds.w = { unit = "rad/s", range = [1, 2], rate = { range = [-1, 1] } }
+known.angular_velocity = [1, "w", 0]
+"""
+
+
+def test_what_is_denormal_is_lost_in_no_sum_along_other_axes() -> None:
+    made = library(parse_scene(GIVEN, "given"))
+    one = cast("Any", Replayed(made, made))
+    each = samples(made.known, F64, 1, 2).each
+    assert "denormal" in {s.kind for s in each}
+    assert {row.outcome for row in turned_axes(one, each, {})} == {"holds"}
 
 
 def test_a_flipped_sign_is_seen_along_other_axes() -> None:

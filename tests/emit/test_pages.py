@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 
 from derive.emit.page.code import listing
-from derive.emit.page.equation import passages
+from derive.emit.page.equation import passages, written_names
 from derive.emit.page.lecture import ENDS, IN_COMPONENTS, lecture_page
 from derive.emit.page.prose import prose
 from derive.emit.page.scene import scene_page
@@ -149,3 +149,9 @@ def test_a_title_cannot_break_the_page() -> None:
     text = TAKEN.replace("wanted", 'title = "a < b & <script>"\nwanted', 1)
     shown = scene_page(library(parse_scene(text, "taken")), ())
     assert parsed(shown).find(f".//{XHTML}h1").text == "a < b & <script>"  # type: ignore[union-attr]
+
+
+def test_the_rate_of_a_quaternion_is_written_with_a_dot() -> None:
+    known = library_of("satellite").known
+    symbols, names = known.words.symbols, written_names(known)
+    assert [names[symbols[f"attitude_rate_{p}"]] for p in "wxyz"] == [f"q_dot_{p}" for p in "wxyz"]

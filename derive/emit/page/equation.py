@@ -71,8 +71,9 @@ def written_names(known: Mechanism) -> dict[Symbol, str]:
     names = {symbol: _written(name) for name, symbol in symbols.items()}
     alone = sum(q.is_quaternion for q in known.words.states) == 1
     for q in known.words.every():
-        start = q.name if alone or not q.is_quaternion else "attitude"
-        new = letter("attitude" if q.is_quaternion else q.name, taken)
+        attitude = q.is_quaternion and q in known.words.states
+        start = q.name if alone or not attitude else "attitude"
+        new = letter("attitude" if attitude else q.name, taken)
         own = (c for c in q.components if new != q.name and c.startswith(start))
         names |= {symbols[c]: new + c.removeprefix(start) for c in own}
     for q in known.words.states:  # the rate of what is written q_w is written q_w_dot

@@ -54,7 +54,8 @@ def _frame(frame: Frame) -> str:
         )
     for name, value in (("velocity", frame.velocity), ("acceleration", frame.acceleration)):
         if value is not None and not any(f != ZERO for f in value):
-            start += "; its origin stays where it is" if name == "velocity" else ""
+            rests = name == "velocity" and frame.acceleration is None
+            start += "; its origin is taken to be at rest" if rests else ""
         elif value is not None:
             start += f"; its origin has the {name} {_column(value)}"
     return start + "."
@@ -113,6 +114,6 @@ def _force(load: Force) -> str:
     if parts:
         parts[-1] += f" along {load.along} at {_column(load.at)} of {load.frame}"
     if any(told(value) != tuple(value) for _, value in values):
-        parts.append("what holds it there")
+        parts.append("what else acts there and is not asked about")
     against = f", and the opposite on {load.against}" if load.against else ""
     return f"{' and '.join(parts)}, on {load.on}{against}"
