@@ -1,4 +1,4 @@
-"""What a scene declares, as plain values: the types that ``derive.scene`` returns.
+"""What a scene in short form declares, and the scalars and turns of every scene, as plain values.
 
 All numbers are exact fractions, all formulas exact trees, all units SI. Vectors are triples along
 the scene's axes unless said otherwise; a product of inertia is I_xy = +sum x y dm.
@@ -162,7 +162,7 @@ class Point:
 
 @dataclass(frozen=True)
 class ShortForm:
-    """Everything the user declared, checked; ``text`` is the file as it was read."""
+    """A single body as the user declared it, checked; ``text`` is the file as it was read."""
 
     name: str
     title: str

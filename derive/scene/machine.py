@@ -1,4 +1,4 @@
-"""What a machine declares, as plain values: frames, bodies, loads, and the answers wanted.
+"""What a scene declares, as plain values: frames, bodies, loads, and the answers wanted.
 
 Formulas are exact trees, units SI. Triples lie along the axes of the frame that stands with them.
 """
@@ -219,7 +219,7 @@ Demand = Above | Tensor
 
 @dataclass(frozen=True)
 class Scene:
-    """Everything the user declared of a machine, checked; ``text`` is the file as it was read.
+    """Everything the user declared, checked; ``text`` is the file as it was read.
 
     merging : words on where two of three free angles merge in their ranges, "" if nowhere
     groups  : of its quantities, where they are not one scalar each
