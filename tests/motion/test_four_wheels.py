@@ -11,6 +11,7 @@ from derive.program.run import run
 from derive.scene import parse_scene
 from derive.verify.operators import LONG_FLOATS
 from derive.verify.reference import BITS
+from tests.made import thinned
 
 QUADROTOR = (Path(__file__).parents[1] / "data" / "trials" / "quadrotor.toml").read_text()
 STEPS = ("step_rk4", "step_lie", "step_taylor12", "step_rk4_compensated")
@@ -27,7 +28,7 @@ def stepped(made: Library, name: str, values: dict[str, arb]) -> dict[str, arb]:
     return known
 
 
-@pytest.mark.parametrize("name", STEPS)
+@pytest.mark.parametrize("name", thinned(STEPS, 4))
 def test_motors_that_cancel_speed_up_their_wheels_and_turn_nothing(name: str) -> None:
     made = library(parse_scene(QUADROTOR.replace("step_rk4", name), "quadrotor"))
     with ctx.workprec(BITS):

@@ -100,6 +100,7 @@ def test_nothing_in_a_short_scene_is_ignored(name: str) -> None:
     assert ignored(SHORT[name], name) == []
 
 
+@pytest.mark.long
 def test_a_force_that_is_left_out_is_noticed(monkeypatch: Any) -> None:
     before = loads._force
     monkeypatch.setattr(
