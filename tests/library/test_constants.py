@@ -6,7 +6,7 @@ from derive.scene import catalogue
 from tests.made import library_of, thinned
 
 
-@pytest.mark.parametrize("name", thinned(catalogue(), 6))
+@pytest.mark.parametrize("name", thinned(catalogue(), 10))
 def test_a_constant_with_the_name_of_a_parameter_is_that_parameter(name: str) -> None:
     library = library_of(name)
     made, words = library.setup, library.known.words
