@@ -5,10 +5,12 @@ import re
 import tomllib
 import zipfile
 from pathlib import Path
+from pkgutil import resolve_name
 
 from hatchling.builders.wheel import WheelBuilder
 
 ROOT = Path(__file__).parent.parent
+TESTS = sorted((ROOT / "tests").rglob("*.py"))
 SETUP = "python3.11 -m venv .venv && .venv/bin/python -m pip install -q -e"
 TEST = f"{SETUP} '.[test]' && .venv/bin/python -m pytest -q -n auto"
 GENERATE = f"{SETUP} . && .venv/bin/derive generate"
@@ -129,3 +131,41 @@ def asserts(function: ast.AST) -> bool:
     inner = list(ast.walk(function))
     names = {node.attr for node in inner if isinstance(node, ast.Attribute)}
     return bool({"raises", "warns"} & names) or any(isinstance(n, ast.Assert) for n in inner)
+
+
+def test_what_a_test_replaces_is_there_also_where_only_the_longer_run_would_tell() -> None:
+    found = [(page, *r) for page in TESTS for r in replaced(page.read_text(encoding="utf-8"))]
+    assert len(found) > 20
+    assert [(page.name, *path) for page, *path in found if not stands(*path)] == []
+    gone = "from derive import mechanics\npatch.setattr(mechanics, 'gone', 1)\n"
+    assert [stands(*path) for path in replaced(gone)] == [False]
+
+
+def replaced(text: str) -> list[tuple[str, str]]:
+    """Return the dotted owner and the name of all that a test file's `setattr` replaces.
+
+    Of owners that the file itself makes (a local variable) nothing is known before it runs.
+    """
+    tree = ast.parse(text)
+    known = {
+        (name.asname or name.name): f"{node.module}.{name.name}"
+        for node in tree.body
+        if isinstance(node, ast.ImportFrom)
+        for name in node.names
+    }
+    found = []
+    for node in ast.walk(tree):
+        match node:
+            case ast.Call(ast.Attribute(attr="setattr"), [ast.Constant(str(path)), *_]):
+                found.append((*path.rpartition(".")[::2],))
+            case ast.Call(ast.Attribute(attr="setattr"), [ast.Name(own), ast.Constant(name), *_]):
+                found += [(known[own], str(name))] if own in known else []
+    return found
+
+
+def stands(owner: str, name: str) -> bool:
+    """Tell whether what a dotted path leads to has an attribute of that name."""
+    try:
+        return hasattr(resolve_name(owner), name)
+    except (ImportError, AttributeError):
+        return False

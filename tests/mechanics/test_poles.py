@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from derive.library.library import Library, library
-from derive.mechanics import answers
+from derive.mechanics import regular
 from derive.mechanics.mechanism import Mechanism, pole
 from derive.mechanics.pivots import Pivots
 from derive.mechanics.sweep import Weakest
@@ -63,7 +63,7 @@ def test_a_straight_cat_is_no_pole() -> None:
 
 @pytest.mark.long
 def test_without_the_search_the_pole_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(answers, "weakest", lambda *_: Weakest(1.0, {}))
+    monkeypatch.setattr(regular, "weakest", lambda *_: Weakest(1.0, {}))
     monkeypatch.setattr(Pivots, "vanish", lambda *_: False)
     found = poles(made_of("bent_cat", text("bent_cat", "waist")))
     assert [pole.output for pole in found] == ["waist"]
