@@ -17,7 +17,7 @@ from derive.program.arithmetic import pair_of, rounded
 from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, Row
 from derive.program.pair_sine import quarter_turn, series
 from derive.program.precision import F64
-from derive.program.program import Line, Op, Operand, Program, Quantity, Repeat, every_op
+from derive.program.program import Line, Op, Operand, Program, Quantity, every_op
 from derive.program.status import possible, tried
 
 Text = Callable[[Operand], str]
@@ -76,7 +76,7 @@ def _literal(q: Fraction) -> str:
 
 
 def _language(text: Text, own: Mapping[str, str], before: str, kept: Collection[str]) -> Language:
-    """Return how Python builds CasADi; a loop over passes is unrolled where it is built.
+    """Return how Python builds CasADi; a loop is unrolled where it is built.
 
     before : what stands before the name of an operator that is called
     kept   : the results whose rounding is worked out
@@ -93,11 +93,11 @@ def _language(text: Text, own: Mapping[str, str], before: str, kept: Collection[
 
     same = "float({0} == {1})"
     return Language(
-        text, own, called, line, _repeat, _declared, assign, _head, (), "float({})".format, same
+        text, own, called, line, _carried, _declared, assign, _head, (), "float({})".format, same
     )
 
 
-def _repeat(of: Language, loop: Repeat, inner: list[str]) -> list[str]:
+def _carried(of: Language, loop: Loop) -> tuple[list[str], list[str]]:
     text, carried, done = of.text, ", ".join(loop.carried), f"done_{loop.carried[0]}"
     begin = [f"{carried} = {', '.join(map(text, loop.start))}"]
     then, end = [*map(text, loop.then)], []
@@ -107,8 +107,7 @@ def _repeat(of: Language, loop: Repeat, inner: list[str]) -> list[str]:
             operation(of, "select", (done, c, t)) for c, t in zip(loop.carried, then, strict=True)
         ]
         end = [f"{done} = {operation(of, 'either', (done, text(loop.done)))}"]
-    inner = [*inner, f"{carried} = {', '.join(then)}", *end]
-    return [*begin, f"for _ in range({loop.passes}):", *(f"    {line}" for line in inner)]
+    return begin, [f"{carried} = {', '.join(then)}", *end]
 
 
 def _declared(of: Language, line: Arrays | Integers | Row) -> list[str]:
@@ -127,10 +126,10 @@ def _list(sizes: Sequence[int]) -> str:
 def _head(line: Loop | Even) -> list[str]:
     if isinstance(line, Even):
         return [f"if {line.counter} % 2 == 0:", f"    {line.half} = {line.counter} // 2"]
-    i, m, first, last = line.counter, line.mirror, line.first, line.last
+    i, m, first, last = line.counter or "_", line.mirror, line.first, line.last
     if not m:
-        step = "" if line.step > 0 else ", -1"
-        return [f"for {i} in range({first}, {last}{step}):"]
+        begin, step = "" if first == Index() else f"{first}, ", "" if line.step > 0 else ", -1"
+        return [f"for {i} in range({begin}{last}{step}):"]
     below = Index(last.counter, last.plus - 1)
     end = f"({last} + 1) // 2" if line.meets else f"{last}"  # they meet there if first is 1
     return [f"for {i}, {m} in zip(range({first}, {end}), range({below}, 0, -1)):"]

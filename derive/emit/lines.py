@@ -23,7 +23,7 @@ from derive.program.indexed import (
     Value,
     Whole,
 )
-from derive.program.program import Line, Op, Operand, Repeat
+from derive.program.program import Line, Op, Operand
 
 SIGNS = {"": "=", "add": "+=", "sub": "-="}
 
@@ -33,9 +33,10 @@ class Language:
     """How a language writes what a program is made of.
 
     text, patterns, call : an operand; operators by pattern, all others by what they are called
-    line, repeat         : an operation, its value given; a loop, the lines of its operations given
-    declared, assign     : arrays, tables and rows; an assignment, its value given
-    head, end            : what opens a loop over places or a choice, and what closes it
+    line, assign         : an operation and an assignment, their values given
+    declared             : arrays, tables and rows
+    carried              : the lines before a loop that carries values, and those that end a turn
+    head, end            : what opens a loop or a choice, and what closes it
     whole, same          : a counter as a value; the pattern of one where two counters are the same
     """
 
@@ -43,7 +44,7 @@ class Language:
     patterns: Mapping[str, str]
     call: Callable[[str], str]
     line: Callable[[Op, str], str]
-    repeat: Callable[[Language, Repeat, list[str]], list[str]]
+    carried: Callable[[Language, Loop], tuple[list[str], list[str]]]
     declared: Callable[[Language, Arrays | Integers | Row], list[str]]
     assign: Callable[[Assign, str], str]
     head: Callable[[Loop | Even], list[str]]
@@ -68,13 +69,14 @@ def _written(of: Language, line: Line) -> Iterator[str]:
     match line:
         case Op():
             yield of.line(line, operation(of, line.operator, [*map(of.text, line.operands)]))
-        case Repeat():
-            yield from of.repeat(of, line, written(of, line.ops))
         case Assign():
             yield of.assign(line, _value(of, line.value))
         case Loop() | Even():
-            inner = written(of, line.body)
-            yield from (*of.head(line), *(f"    {one}" for one in inner), *of.end)
+            before, after = list[str](), list[str]()
+            if isinstance(line, Loop) and line.carried:
+                before, after = of.carried(of, line)
+            inner = (*written(of, line.body), *after)
+            yield from (*before, *of.head(line), *(f"    {one}" for one in inner), *of.end)
         case _:
             yield from of.declared(of, line)
 

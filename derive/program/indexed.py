@@ -116,8 +116,11 @@ class Assign:
 class Loop:
     """``body`` for every whole number from ``first``, before ``last``.
 
-    step   : 1 upwards, -1 downwards
-    mirror : a counter that goes down from ``last`` - 1 meanwhile; with ``meets`` until they meet
+    counter : its name, none if nothing reads it        step : 1 upwards, -1 downwards
+    mirror  : a counter that goes down from ``last`` - 1 meanwhile; with ``meets`` until they meet
+    carried : values that begin as ``start`` and become ``then`` after each turn
+    done    : a truth; once it is, what is carried stays as it is, so the loop means the same
+              unrolled
     """
 
     counter: str
@@ -127,6 +130,10 @@ class Loop:
     step: Literal[1, -1] = 1
     mirror: str = ""
     meets: bool = False
+    carried: tuple[str, ...] = ()
+    start: tuple[str | Fraction, ...] = ()
+    then: tuple[str | Fraction, ...] = ()
+    done: str | Fraction | None = None
 
     def turns(self, counters: Counters, tables: Tables) -> Iterator[dict[str, int]]:
         """Yield the counters of each turn."""
@@ -135,7 +142,8 @@ class Loop:
             other = last - 1 - n
             if self.meets and now >= other:
                 return
-            yield {self.counter: now, self.mirror: other} if self.mirror else {self.counter: now}
+            both = ((self.counter, now), (self.mirror, other))
+            yield {name: place for name, place in both if name}
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from derive.program.arithmetic import FLOPS
-from derive.program.indexed import Even, Indexed, Integers, Loop, names_in, operators_in
+from derive.program.indexed import Arrays, Even, Indexed, Integers, Loop, names_in, operators_in
 
 Operand = str | Fraction
 
@@ -83,23 +83,7 @@ class Op:
     operands: tuple[Operand, ...]
 
 
-@dataclass(frozen=True)
-class Repeat:
-    """``carried`` begin as ``start`` and become ``then`` after each pass, until ``done`` is true.
-
-    A loop that means the same unrolled: there are never more than ``passes`` passes, and what is
-    done stays as it is.
-    """
-
-    carried: tuple[str, ...]
-    start: tuple[Operand, ...]
-    ops: tuple[Op, ...]
-    then: tuple[Operand, ...]
-    done: Operand | None
-    passes: int
-
-
-Line = Op | Repeat | Indexed
+Line = Op | Indexed
 
 
 @dataclass(frozen=True)
@@ -158,17 +142,17 @@ class Program:
         return any(q.role == role for q in self.outputs)
 
     def count(self) -> dict[str, int]:
-        """Return how often each operator is used at most, every pass of a loop counted."""
+        """Return how often each operator is used at most, every turn of a loop counted."""
         return dict(sorted(Counter(_uses(self.ops, {}, {})).items()))
 
     def flops(self) -> int:
-        """Return the number of + - * / in the operations, every pass of a loop counted."""
+        """Return the number of + - * / in the operations, every turn of a loop counted."""
         return sum(times for operator, times in self.count().items() if operator in FLOPS)
 
     @property
     def has_arrays(self) -> bool:
         """Tell whether there are loops over places of arrays."""
-        return any(isinstance(line, Loop) for line in self.ops)
+        return any(isinstance(line, Arrays) for line in self.ops)
 
 
 def _uses(lines: Sequence[Line], at: Mapping[str, int], tables: dict[str, Any]) -> Iterator[str]:
@@ -177,8 +161,6 @@ def _uses(lines: Sequence[Line], at: Mapping[str, int], tables: dict[str, Any]) 
         match line:
             case Op():
                 yield line.operator
-            case Repeat():
-                yield from _uses(line.ops * line.passes, at, tables)
             case Loop() | Even():
                 for turn in line.turns(at, tables):
                     yield from _uses(line.body, {**at, **turn}, tables)
@@ -193,8 +175,6 @@ def every_op(lines: Sequence[Line]) -> Iterator[Op]:
     for line in lines:
         if isinstance(line, Op):
             yield line
-        elif isinstance(line, Repeat):
-            yield from line.ops
         elif isinstance(line, Loop | Even):
             yield from every_op(line.body)
 
@@ -206,9 +186,9 @@ def operands_of(lines: Sequence[Line], results: Sequence[Operand | None] = ()) -
         match line:
             case Op():
                 found |= {*line.operands}
-            case Repeat():
-                found |= operands_of(line.ops, (*line.start, *line.then, line.done))
-            case Loop() | Even():
+            case Loop():
+                found |= operands_of(line.body, (*line.start, *line.then, line.done))
+            case Even():
                 found |= operands_of(line.body)
             case _:
                 found |= names_in(line)

@@ -5,8 +5,8 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, TypeVar
 
-from derive.program.indexed import Assign, Even, Loop, Row, Term
-from derive.program.program import Line, Op, Operand, Program, Repeat, operands_of
+from derive.program.indexed import Assign, Even, Index, Loop, Row, Term
+from derive.program.program import Line, Op, Operand, Program, operands_of
 from derive.program.tape import Number, Tape, number, operation, seen_from
 from derive.scene.functions import PLAIN
 
@@ -28,7 +28,8 @@ def repeat(tape: Tape, passes: int, start: Sequence[Number], body: Body) -> list
     if len(inner) < len(ops):
         raise ValueError("a loop within a loop is not there")
     begin = tuple(seen_from(tape, number(n)) for n in start)
-    loop = Repeat(tuple(names), begin, inner, after, until, passes)
+    loop = Loop("", Index(), Index(plus=passes), inner, carried=tuple(names), start=begin,
+                then=after, done=until)  # fmt: skip
     key = _without_names(loop)
     if key not in tape.numbered:
         tape.numbered[key] = " ".join(names)
@@ -36,12 +37,12 @@ def repeat(tape: Tape, passes: int, start: Sequence[Number], body: Body) -> list
     return [Number(tape, name) for name in tape.numbered[key].split()]
 
 
-def _without_names(loop: Repeat) -> tuple[object, ...]:
+def _without_names(loop: Loop) -> tuple[object, ...]:
     """Return what a loop does, its own values called by their places."""
-    own = (*loop.carried, *(op.result for op in loop.ops))
+    own = (*loop.carried, *(op.result for op in loop.body))
     (same,) = renamed((loop,), {name: f" {place}" for place, name in enumerate(own)})
-    steps = ((op.operator, op.operands) for op in same.ops)
-    return ("repeat", same.passes, same.start, *steps, same.then, same.done)
+    steps = ((op.operator, op.operands) for op in same.body)
+    return ("repeat", same.last, same.start, *steps, same.then, same.done)
 
 
 def needed(ops: Sequence[OneLine], results: Sequence[Operand | None]) -> tuple[OneLine, ...]:
@@ -51,8 +52,8 @@ def needed(ops: Sequence[OneLine], results: Sequence[Operand | None]) -> tuple[O
     for line in reversed(ops):
         if isinstance(line, Op) and line.result in wanted:
             kept.append(line)
-        elif isinstance(line, Repeat) and wanted & set(line.carried):
-            kept.append(replace(line, ops=needed(line.ops, (*line.then, line.done))))
+        elif isinstance(line, Loop) and wanted & set(line.carried):
+            kept.append(replace(line, body=needed(line.body, (*line.then, line.done))))
         else:
             continue
         wanted |= operands_of(kept[-1:])
@@ -93,10 +94,10 @@ def renamed(lines: Sequence[OneLine], names: Mapping[str, Operand]) -> tuple[One
                 return tuple(map(one, line))
             case Op() | Term():
                 return replace(line, operands=one(line.operands))
-            case Repeat():
-                ends = {name: one(getattr(line, name)) for name in ("start", "ops", "then", "done")}
-                return replace(line, **ends)
-            case Loop() | Even():
+            case Loop():
+                parts = ("start", "body", "then", "done")
+                return replace(line, **{name: one(getattr(line, name)) for name in parts})
+            case Even():
                 return replace(line, body=one(line.body))
             case Assign():
                 return replace(line, value=one(line.value))

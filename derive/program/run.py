@@ -5,7 +5,7 @@ from types import MappingProxyType
 from typing import Any
 
 from derive.program.indexed import Assign, Even, Integers, Loop, Row, value_at
-from derive.program.program import Arithmetic, Line, Op, Operand, Program, Repeat
+from derive.program.program import Arithmetic, Line, Op, Operand, Program
 
 NOWHERE: Mapping[str, int] = MappingProxyType({})
 
@@ -62,18 +62,20 @@ def run_lines(
                 name = line.target if isinstance(line.target, str) else line.target.at(at, known)
                 found = value_at(line.value, arithmetic, known, at)
                 known[name] = arithmetic[line.adds](known[name], found) if line.adds else found
-            case Loop() | Even():
+            case Even():
                 for turn in line.turns(at, known):
                     run_lines(line.body, arithmetic, known, {**at, **turn})
-            case Repeat():
-                _repeat(line, arithmetic, known)
+            case Loop():
+                _run_loop(line, arithmetic, known, at)
 
 
-def _repeat(loop: Repeat, arithmetic: Arithmetic, known: dict[str, Any]) -> None:
+def _run_loop(
+    loop: Loop, arithmetic: Arithmetic, known: dict[str, Any], at: Mapping[str, int]
+) -> None:
     known.update(zip(loop.carried, values_of(loop.start, arithmetic, known), strict=True))
     done: Any = None
-    for _ in range(loop.passes):
-        run_lines(loop.ops, arithmetic, known)
+    for turn in loop.turns(at, known):
+        run_lines(loop.body, arithmetic, known, {**at, **turn})
         new = values_of(loop.then, arithmetic, known)
         if done is not None:
             old = [known[name] for name in loop.carried]

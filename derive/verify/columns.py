@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.program.arithmetic import LIBM, extended, working
+from derive.program.indexed import Loop
 from derive.program.pairs import Pair
-from derive.program.program import Line, Op, Program, Repeat, component_names, operands_of
+from derive.program.program import Line, Op, Program, component_names, operands_of
 from derive.program.run import numbers_of, run_lines, values_of
 from derive.verify.operators import IN_DOUBLES, UNROUNDED, pair_sines
 
@@ -53,7 +54,7 @@ def _names(line: Line) -> set[str]:
     own = operands_of((line,))
     if isinstance(line, Op):
         own.add(line.result)
-    return own | {*line.carried} if isinstance(line, Repeat) else own
+    return own | {*line.carried} if isinstance(line, Loop) else own
 
 
 def in_columns(plan: Plan, table: Table, known: Mapping[str, Any]) -> list[Any]:

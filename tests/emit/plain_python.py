@@ -14,7 +14,7 @@ from derive.program.arithmetic import pair_of
 from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, Row
 from derive.program.pair_sine import quarter_turn, series
 from derive.program.precision import F64
-from derive.program.program import Op, Operand, Program, Repeat, component_names
+from derive.program.program import Op, Operand, Program, component_names
 
 OWN = {
     "both": "({0} and {1})",
@@ -58,7 +58,7 @@ def _function(program: Program, own: Mapping[str, str]) -> dict[str, object]:
         return f"_{operator}" if pairs else f"math.{F64.functions[operator]}"
 
     known = own if pairs else patterns(own, lambda q: repr(float(q)), F64.bits)
-    of = Language(text, known, call, _line, _repeat, _declared, _assign, _head, (),
+    of = Language(text, known, call, _line, _carried, _declared, _assign, _head, (),
                   "float({})".format, "float({0} == {1})")  # fmt: skip
     components = component_names(program)
     arrays = [f"{q.name} = [{', '.join(place[c] for c in q.components)}]" for q in program.inputs]
@@ -80,13 +80,12 @@ def _line(op: Op, value: str) -> str:
     return f"{op.result} = {value}"
 
 
-def _repeat(of: Language, loop: Repeat, inner: list[str]) -> list[str]:
+def _carried(of: Language, loop: Loop) -> tuple[list[str], list[str]]:
     carried, start, then = (
         ", ".join(map(of.text, each)) for each in (loop.carried, loop.start, loop.then)
     )
     done = [] if loop.done is None else [f"if {of.text(loop.done)}:", "    break"]
-    turn = [f"    {line}" for line in (*inner, f"{carried} = {then}", *done)]
-    return [f"{carried} = {start}", f"for _ in range({loop.passes}):", *turn]
+    return [f"{carried} = {start}"], [f"{carried} = {then}", *done]
 
 
 def _declared(of: Language, line: Arrays | Integers | Row) -> list[str]:
@@ -101,7 +100,7 @@ def _assign(line: Assign, value: str) -> str:
 
 
 def _head(line: Loop | Even) -> list[str]:
-    i, j = line.counter, line.half if isinstance(line, Even) else line.mirror
+    i, j = line.counter or "_", line.half if isinstance(line, Even) else line.mirror
     if isinstance(line, Even):
         return [f"if {i} % 2 == 0:", f"    {j} = {i} // 2"]
     down = Index(line.last.counter, line.last.plus - 1)

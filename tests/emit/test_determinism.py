@@ -17,7 +17,7 @@ from derive.library.library import library
 from derive.lower.arrange.block import Solution
 from derive.lower.expand import family
 from derive.lower.graph import Graph
-from derive.program.program import Line, Op, Operand, Program, Repeat
+from derive.program.program import Op, Operand, Program
 from derive.scene import catalogue, load, parse_scene
 from tests.made import library_of, thinned
 
@@ -156,22 +156,16 @@ def shape(program: Program) -> tuple[Any, ...]:
     def at(names: Iterable[Operand | None]) -> list[Any]:
         return [place.setdefault(n, len(place)) if isinstance(n, str) else n for n in names]
 
-    def line(one: Line) -> tuple[Any, ...]:
+    def line(one: Any) -> list[Any]:
         if isinstance(one, Op):
-            return one.operator, at(one.operands), at([one.result])
-        if not isinstance(one, Repeat):
-            return tuple(of_arrays(one))
-        start, carried = at(one.start), at(one.carried)
-        return start, carried, [line(op) for op in one.ops], at([*one.then, one.done]), one.passes
-
-    def of_arrays(one: Any) -> list[Any]:
+            return [one.operator, at(one.operands), at([one.result])]
         if isinstance(one, str):
             return at([one])
         if isinstance(one, tuple):
-            return [of_arrays(part) for part in one]
+            return [line(part) for part in one]
         if not is_dataclass(one):
             return [one]
-        return [type(one), *(of_arrays(getattr(one, f.name)) for f in fields(one))]
+        return [type(one), *(line(getattr(one, f.name)) for f in fields(one))]
 
     inputs = [at(q.components) for q in program.inputs]
     ops = [line(one) for one in program.ops]

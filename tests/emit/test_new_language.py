@@ -25,7 +25,7 @@ from derive.program.indexed import (
     Term,
     Whole,
 )
-from derive.program.program import Op, Program, Quantity, Repeat, component_names
+from derive.program.program import Op, Program, Quantity, component_names
 from derive.program.run import run
 from tests.emit.plain_python import OWN, python_file
 from tests.made import library_of
@@ -76,9 +76,9 @@ EVERY_KIND = Program(
             Assign("total", Term("mul", tuple(Element("a", (at(c),)) for c in "pm")), "add"),
         ), 1, "m", meets=True),
         Op("start", "mul", ("x", Fraction(3))),
-        Repeat(("y", "z"), ("start", Fraction(1)), (
+        Loop("", at(""), at("", 9), (
             Op("w", "mul", ("y", "z")), Op("small", "less", ("w", Fraction(1, 100))),
-        ), ("z", "w"), "small", 9),
+        ), carried=("y", "z"), start=("start", Fraction(1)), then=("z", "w"), done="small"),
         Op("size", "abs", ("y",)),
         Op("root", "sqrt", ("size",)),
     ),

@@ -10,7 +10,8 @@ from derive.lower.order import with_values_read_soon
 from derive.lower.signs import with_signs_moved
 from derive.motion.runge_kutta import step
 from derive.program.arithmetic import EXACT, working
-from derive.program.program import Op, Program, Quantity, Repeat
+from derive.program.indexed import Index, Loop
+from derive.program.program import Op, Program, Quantity
 from derive.program.run import run
 from derive.program.tape import Tape
 from tests.motion.systems import start, system
@@ -53,7 +54,8 @@ def test_the_order_of_an_order_is_the_same() -> None:
 @pytest.mark.parametrize("change", [with_values_read_soon, lambda p: with_signs_moved(p, "t")])
 def test_a_program_with_a_loop_is_refused(change) -> None:
     body = (Op("a", "add", ("x", "x")),)
-    loop = Repeat(("x",), ("attitude_w",), body, ("a",), None, 3)
+    carried = {"carried": ("x",), "start": ("attitude_w",), "then": ("a",)}
+    loop = Loop("", Index(), Index(plus=3), body, **carried)
     with pytest.raises(TypeError, match="'step_rk4_jacobian' has a loop"):
         change(replace(JACOBIAN, ops=(loop,)))
 

@@ -3,7 +3,8 @@
 import pytest
 
 from derive.program.arithmetic import TRUTHS
-from derive.program.program import Op, Program, Repeat, every_op, read_by
+from derive.program.indexed import Loop
+from derive.program.program import Op, Program, every_op, read_by
 from derive.scene import catalogue
 from tests.made import library_of, scene_of, thinned
 
@@ -54,7 +55,7 @@ def test_no_operation_works_on_parameters_only(scene, function):
 @pytest.mark.parametrize(("scene", "function"), EVERY)
 def test_no_operation_is_done_twice_and_none_is_idle(scene, function):
     program = library_of(scene)[function]
-    loops = [line.ops for line in program.ops if isinstance(line, Repeat)]
+    loops = [line.body for line in program.ops if isinstance(line, Loop) and line.carried]
     for ops in ([line for line in program.ops if isinstance(line, Op)], *loops):
         assert len({(op.operator, op.operands) for op in ops}) == len(ops)
     assert {op.result for op in every_op(program.ops)} <= read_by(program)

@@ -11,7 +11,8 @@ import pytest
 
 from derive.motion import moser_veselov
 from derive.program.arithmetic import MANTISSA, working
-from derive.program.program import Op, Repeat
+from derive.program.indexed import Loop
+from derive.program.program import Op
 from derive.program.run import run
 from tests.motion.free import FACTOR, LEAST, Case, cases
 from tests.motion.published import series
@@ -97,7 +98,7 @@ def test_a_body_of_revolution_is_moved_exactly_and_for_less(kind: str) -> None:
 
 def operations(stepper: Stepper) -> int:
     """Return the operations of a step, one pass of its loop counted."""
-    return sum(len(line.ops) if hasattr(line, "ops") else 1 for line in stepper.step.ops)
+    return sum(len(line.body) if isinstance(line, Loop) else 1 for line in stepper.step.ops)
 
 
 @pytest.mark.parametrize("dtype", PRECISIONS)
@@ -258,7 +259,7 @@ NOTHING = (*(f"s{i}" for i in range(7, 14)), *(f"plan_couple_low_{axis}" for axi
 def after_the_loop() -> list[int]:
     """Return the places of sums behind the loop, which only starts what follows, of two terms."""
     ops, nothing = dmv("principal").step.ops, set(NOTHING)
-    loop = next(i for i, line in enumerate(ops) if isinstance(line, Repeat))
+    loop = next(i for i, line in enumerate(ops) if isinstance(line, Loop))
     places = []
     for i, line in enumerate(ops):
         if not isinstance(line, Op):

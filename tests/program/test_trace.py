@@ -9,9 +9,10 @@ import pytest
 from derive.emit.c.text import body
 from derive.emit.casadi_text import plain_lines
 from derive.program.arithmetic import working
+from derive.program.indexed import Index, Loop
 from derive.program.operations import at_most, less, select
 from derive.program.precision import F32, F64
-from derive.program.program import Op, Program, Quantity, Repeat
+from derive.program.program import Line, Op, Program, Quantity
 from derive.program.recorded import called, needed, repeat
 from derive.program.run import run
 from derive.program.tape import Number, Tape, named, number, operation
@@ -106,8 +107,8 @@ def test_a_loop_ends_when_it_is_done_and_means_the_same_unrolled(precision) -> N
     assert np.array_equal(run(longer, working(precision.dtype), given)[0], found)
 
 
-def _longer(line: Op | Repeat) -> Op | Repeat:
-    return replace(line, passes=2 * line.passes) if isinstance(line, Repeat) else line
+def _longer(line: Line) -> Line:
+    return replace(line, last=Index(plus=2 * line.last.plus)) if isinstance(line, Loop) else line
 
 
 def test_a_loop_counts_all_its_passes() -> None:
@@ -124,7 +125,7 @@ def test_the_same_loop_is_recorded_once_and_another_is_not() -> None:
 
     assert halved(2) == halved(2)
     assert halved(2) != halved(3)
-    assert len([line for line in tape.ops if isinstance(line, Repeat)]) == 2
+    assert len([line for line in tape.ops if isinstance(line, Loop)]) == 2
 
 
 def test_a_loop_is_printed_as_a_loop() -> None:

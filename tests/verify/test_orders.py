@@ -7,8 +7,9 @@ import pytest
 
 from derive.check.motion import orders
 from derive.library.library import Library, library
+from derive.program.indexed import Loop
 from derive.program.precision import F64
-from derive.program.program import Line, Op, Program, Repeat, component_names
+from derive.program.program import Line, Op, Program, component_names
 from derive.program.recorded import needed
 from derive.scene import catalogue, load, parse_scene
 from derive.scene.wanted import STEP_DERIVATIVES, moves
@@ -178,7 +179,7 @@ def _with(whole: Library, program: Program, place: int) -> Library:
 
 def _turned(line: Line) -> Line:
     """Return an addition as a subtraction and the other way round; a loop in its last addition."""
-    if isinstance(line, Repeat):
+    if isinstance(line, Loop):
         return line
     return replace(line, operator={"add": "sub", "sub": "add"}.get(line.operator, line.operator))
 

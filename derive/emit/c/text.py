@@ -9,7 +9,7 @@ from derive.emit.operators import WRITTEN, literal, patterns
 from derive.program.arithmetic import TRUTHS, pair_of
 from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, Row
 from derive.program.precision import Precision
-from derive.program.program import Op, Operand, Program, Quantity, Repeat, every_op
+from derive.program.program import Op, Operand, Program, Quantity, every_op
 
 Text = Callable[[Operand], str]
 UNSIGNED_CHAR = 255
@@ -100,11 +100,11 @@ def _language(
 
     one, zero = (literal(Fraction(n), precision) for n in (1, 0))
     same = f"({{0}} == {{1}}) ? {one} : {zero}"
-    repeat, declared = partial(_repeat, kind), partial(_declared, scalar)
-    return Language(text, own, call, line, repeat, declared, assign, _head, ("}",), whole, same)
+    carried, declared = partial(_carried, kind), partial(_declared, scalar)
+    return Language(text, own, call, line, carried, declared, assign, _head, ("}",), whole, same)
 
 
-def _repeat(kind: str, of: Language, loop: Repeat, inner: list[str]) -> list[str]:
+def _carried(kind: str, of: Language, loop: Loop) -> tuple[list[str], list[str]]:
     begin = [f"{kind} {c} = {of.text(s)};" for c, s in zip(loop.carried, loop.start, strict=True)]
     kept = {c: f"{c}_then" for c in loop.carried if c in loop.then}
     after = [f"const {kind} {name} = {c};" for c, name in kept.items()]
@@ -114,9 +114,7 @@ def _repeat(kind: str, of: Language, loop: Repeat, inner: list[str]) -> list[str
         if c != t
     ]
     end = [] if loop.done is None else [f"if ({of.text(loop.done)}) {{", "    break;", "}"]
-    name = f"pass_{loop.carried[0]}"
-    head = f"for (int {name} = 0; {name} < {loop.passes}; ++{name}) {{"
-    return [*begin, head, *(f"    {line}" for line in (*inner, *after, *end)), "}"]
+    return begin, [*after, *end]
 
 
 def _declared(scalar: str, of: Language, line: Arrays | Integers | Row) -> list[str]:
@@ -146,7 +144,8 @@ def _head(line: Loop | Even) -> list[str]:
     if isinstance(line, Even):
         i = line.counter
         return [f"if ({i} % 2 == 0) {{", f"    const int {line.half} = {i} / 2;"]
-    i, sign, below = line.counter, "++" if line.step > 0 else "--", "<" if line.step > 0 else ">"
+    i = line.counter or f"pass_{line.carried[0]}"
+    sign, below = ("++", "<") if line.step > 0 else ("--", ">")
     if not line.mirror:
         return [f"for (int {i} = {line.first}; {i} {below} {line.last}; {sign}{i}) {{"]
     m, end = line.mirror, line.mirror if line.meets else line.last
