@@ -3,8 +3,6 @@
 ``load`` takes the name of a scene of the catalogue or the path of a file.
 """
 
-from __future__ import annotations
-
 import os
 import tomllib
 from dataclasses import replace

@@ -3,8 +3,6 @@
 What the user does not know stays None; whether an answer needs it is found later.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction

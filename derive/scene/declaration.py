@@ -4,16 +4,12 @@ All numbers are exact fractions, all formulas exact trees, all units SI. Vectors
 the scene's axes unless said otherwise; a product of inertia is I_xy = +sum x y dm.
 """
 
-from __future__ import annotations
-
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from fractions import Fraction
+from typing import Literal
 
 from derive.scene.formula import Formula
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from fractions import Fraction
 
 Axis = Literal["x", "y", "z"]
 Triple = tuple[Formula, Formula, Formula]

@@ -4,18 +4,12 @@ The reader tries the declared ranges; set-up tries the very values that it is gi
 triangle inequality is not among the demands: it is a warning in a scene, and so it is in set-up.
 """
 
-from __future__ import annotations
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Literal
 
-from typing import TYPE_CHECKING, Literal
-
-from derive.scene.machine import Above, Demand, Tensor
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
-    from derive.scene.declaration import Body, Sextuple, ShortForm
-    from derive.scene.formula import Formula
-    from derive.scene.machine import Entries, Member
+from derive.scene.declaration import Body, Sextuple, ShortForm
+from derive.scene.formula import Formula
+from derive.scene.machine import Above, Demand, Entries, Member, Tensor
 
 
 def kind(demand: Demand) -> Literal["mass", "length", "inertia"]:

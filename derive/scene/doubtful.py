@@ -1,21 +1,13 @@
 """What a machine says that cannot be meant, and what is hardly meant: sizes, ranges, frames."""
 
-from __future__ import annotations
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
 
-from typing import TYPE_CHECKING
-
-from derive.scene.declaration import SceneError
+from derive.scene.declaration import Moving, Parameter, SceneError
 from derive.scene.escape import at_place, brief
-from derive.scene.machine import INERTIAL, Force, Spring
+from derive.scene.formula import Formula
+from derive.scene.machine import INERTIAL, Force, Member, Scene, Spring
 from derive.scene.safe import negative, ranges_of, values_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from fractions import Fraction
-
-    from derive.scene.declaration import Moving, Parameter
-    from derive.scene.formula import Formula
-    from derive.scene.machine import Member, Scene
 
 MANY_RADIANS = 20
 """More than three turns: an angle in degrees that was not converted looks so."""

@@ -1,7 +1,5 @@
 """What a scene file may hold: every table, an entry a row; readers and manual follow them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from decimal import Decimal
 

@@ -1,7 +1,5 @@
 """An entry of a scene file's tables as a row of data, and the one way in which rows are read."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any

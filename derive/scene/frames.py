@@ -1,8 +1,6 @@
 """The frames of a machine: a tree of axes, each read by what turns it and what carries it."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from derive.scene.declaration import SceneError
 from derive.scene.entries import FRAME, ROLLS
@@ -11,10 +9,8 @@ from derive.scene.escape import brief
 from derive.scene.formula import ZERO
 from derive.scene.machine import INERTIAL, Frame, Rolling
 from derive.scene.names import label
+from derive.scene.scopes import Scalars
 from derive.scene.table import Table, nearest, table, text
-
-if TYPE_CHECKING:
-    from derive.scene.scopes import Scalars
 
 ORIGIN = ("origin", "rolls", "velocity", "acceleration")
 STILL = Frame(INERTIAL, "", (), None, "", (ZERO, ZERO, ZERO))

@@ -10,8 +10,6 @@ Numbers are read exactly as fractions (``0.1`` is 1/10). Length, nesting and siz
 that no text, however hostile, exhausts time or the stack.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from fractions import Fraction

@@ -3,15 +3,10 @@
 An input of one function may be the answer of another: the moment, and the rate of omega.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
+from derive.scene.declaration import Given, Input, Moving, ShortForm
 from derive.scene.machine import Group, Groups
-
-if TYPE_CHECKING:
-    from derive.scene.declaration import Given, Input, Moving, ShortForm
 
 XYZ = ("x", "y", "z")
 QUATERNION = ("w", *XYZ)

@@ -1,7 +1,5 @@
 """The loads of a machine: forces and couples with unknowns, weights, springs, gravity gradients."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -4,8 +4,6 @@ The axes become a frame, the body and its wheels become members, the known momen
 is *sought* where accelerations are found from the moment, *given* where the moment is found.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction

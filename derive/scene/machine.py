@@ -3,17 +3,13 @@
 Formulas are exact trees, units SI. Triples lie along the axes of the frame that stands with them.
 """
 
-from __future__ import annotations
-
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from fractions import Fraction
+from typing import Literal
 
 from derive.scene.declaration import Axis, Given, Moving, Parameter, Triple, Turning
 from derive.scene.formula import Formula
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from fractions import Fraction
 
 INERTIAL = "inertial"
 LEFT_OVER = "0 where motion is steady"
@@ -253,7 +249,7 @@ class Scene:
     demands: tuple[Demand, ...]
     merging: str = ""
     groups: Groups | None = None
-    inverse: Scene | None = None
+    inverse: "Scene | None" = None
 
     @property
     def moving(self) -> tuple[Moving, ...]:

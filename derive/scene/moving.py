@@ -1,15 +1,8 @@
 """Rules for what moves a scene in time: which steps and flows its motion admits."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
-from derive.scene.declaration import SceneError
+from derive.scene.declaration import SceneError, ShortForm
 from derive.scene.formula import ZERO, symbols
 from derive.scene.wanted import ROTATIONAL, SPLITTINGS, TORQUE_FREE, moves, step_of
-
-if TYPE_CHECKING:
-    from derive.scene.declaration import ShortForm
 
 
 def check_moving(scene: ShortForm, prescribed: str) -> None:

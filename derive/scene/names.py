@@ -3,17 +3,12 @@
 A name goes unchanged into C structs, CasADi inputs and JSON, so it must be usable in all of them.
 """
 
-from __future__ import annotations
-
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
 
 from derive.scene.declaration import SceneError
 from derive.scene.functions import FUNCTIONS, PLAIN
 from derive.scene.reserved import is_device, owner
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
 
 LONGEST_NAME = 40
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*")

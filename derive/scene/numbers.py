@@ -4,23 +4,17 @@ Formulas are evaluated in floating point at the middle of the ranges and at thei
 computed here leaves the module but a sentence.
 """
 
-from __future__ import annotations
-
 import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from itertools import islice, product
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
-from derive.scene.declaration import SceneError
+from derive.scene.declaration import Body, Moving, Parameter, SceneError, Sextuple, Triple, Wheel
 from derive.scene.escape import at_place, brief
 from derive.scene.formula import FLOATS, ONE, ZERO, Formula, evaluate, symbols
+from derive.scene.machine import Entries
 from derive.scene.shape import moved
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
-
-    from derive.scene.declaration import Body, Moving, Parameter, Sextuple, Triple, Wheel
-    from derive.scene.machine import Entries
 
 MOST_ENDS = 256
 """Enough for every combination of the ends of eight ranges."""

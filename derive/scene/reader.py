@@ -1,10 +1,8 @@
 """The scene file of a machine: its tables read into declarations, each by one function."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
 
 from derive.scene.bodies import read_member
 from derive.scene.declaration import Input, SceneError
@@ -31,9 +29,6 @@ from derive.scene.scopes import PER_SECOND, Scalars
 from derive.scene.table import Scope, Table, formula, keys, several, table, text
 from derive.scene.unit import BESIDE_SI, dimension, misnamed, spelled
 from derive.scene.wanted import moves, read_emission, read_form
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
 
 TABLES = (
     "parameters", "coordinates", "speeds", "inputs", "frames", "bodies", "loads", "results",

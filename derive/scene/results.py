@@ -1,29 +1,19 @@
 """What a machine is asked: the answers it has, results made of them, and what is wanted."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
 from derive.scene.declaration import SceneError
 from derive.scene.entries import RESULT
 from derive.scene.entry import Reading, entries_of
 from derive.scene.escape import brief
-from derive.scene.formula import substitute
+from derive.scene.formula import Formula, substitute
 from derive.scene.loads import MARK, unknown_units
-from derive.scene.machine import Result
+from derive.scene.machine import Result, Unknown
 from derive.scene.names import functions, identifier
-from derive.scene.scopes import unknown_rates
+from derive.scene.scopes import Scalars, unknown_rates
 from derive.scene.table import Scope, Table, measured, shown, text
-from derive.scene.unit import BESIDE_SI, NONE, UnitError, dimension, spelled
+from derive.scene.unit import BESIDE_SI, NONE, Dimension, UnitError, dimension, spelled
 from derive.scene.wanted import JACOBIAN, OF_MACHINES, resembling
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from derive.scene.formula import Formula
-    from derive.scene.machine import Unknown
-    from derive.scene.scopes import Scalars
-    from derive.scene.unit import Dimension
 
 ENERGIES = ("kinetic_energy", "potential_energy", "energy")
 FUNCTIONS = (

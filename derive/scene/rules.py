@@ -4,12 +4,10 @@ A motion is either free (its acceleration is what the equations find) or prescri
 the moment is what they find). A scene that mixes the two needs reactions, which come later.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
-from derive.scene.declaration import SceneError
+from derive.scene.declaration import SceneError, ShortForm, Turning
 from derive.scene.doubtful import in_degrees
 from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.moving import check_moving
@@ -23,11 +21,6 @@ from derive.scene.numbers import (
     merging,
 )
 from derive.scene.wanted import moves
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from derive.scene.declaration import ShortForm, Turning
 
 FORWARD = ("acceleration", "state_rate")
 ROTATIONAL = ("angular_velocity", "angular_acceleration")

@@ -6,15 +6,14 @@ rule. A part with a symbol of no range (an unknown, the attitude) is only refuse
 whatever its symbols are.
 """
 
-from __future__ import annotations
-
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import reduce
 from itertools import islice, product
 from operator import add
 from random import Random
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from derive.scene.declaration import SceneError
 from derive.scene.escape import at_place, brief
@@ -22,11 +21,8 @@ from derive.scene.formula import FLOATS, Formula, apply, evaluate, symbols
 from derive.scene.functions import INTERVALS
 from derive.scene.interval import Interval
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    Point = Mapping[str, float]
-    Ranges = Mapping[str, Interval]
+Point = Mapping[str, float]
+Ranges = Mapping[str, Interval]
 
 CORNERS, BETWEEN, BOXES = 256, 64, 2000
 """Enough for every corner of eight ranges; points tried between; boxes that a proof may take."""

@@ -1,9 +1,9 @@
 """The scalars of a scene: parameters, and what moves; and who may use them."""
 
-from __future__ import annotations
-
+from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from derive.scene.declaration import Input, Moving, Parameter, SceneError
 from derive.scene.entries import COORDINATE, INPUT, MEANING, PARAMETER, RANGE, SPEED
@@ -14,10 +14,6 @@ from derive.scene.scopes import ARTICLE, PER_SECOND, Scalars
 from derive.scene.table import Scope, Table, formula, shown, table
 from derive.scene.table import unit as unit_of
 from derive.scene.unit import ANGULAR_VELOCITY, LENGTH, NONE, VELOCITY, dimension, spelled
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from collections.abc import Set as AbstractSet
 
 UNITS = {"coordinate": ("rad", "m"), "speed": ("rad/s", "m/s")}
 DIMENSIONS = {"coordinate": (NONE, LENGTH), "speed": (ANGULAR_VELOCITY, VELOCITY)}

@@ -1,7 +1,5 @@
 """The scalars of a scene together, and who may stand in which formula."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property

@@ -4,18 +4,12 @@ A shape is a row of ``ROUND``: each moment about the mass centre is the mass tim
 times squared lengths. The tests integrate every shape again, by quadrature over its mass.
 """
 
-from __future__ import annotations
-
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
+from derive.scene.declaration import Axis, Sextuple, Triple
 from derive.scene.formula import ZERO, Formula, number
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from derive.scene.declaration import Axis, Sextuple, Triple
 
 Terms = tuple[tuple[Fraction, str], ...]
 

@@ -4,10 +4,9 @@ Every value is checked where it is read (type, unit, range, scalars); what must 
 tables is in ``derive.scene.rules``.
 """
 
-from __future__ import annotations
-
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Literal, cast
+from typing import Literal, cast
 
 from derive.scene.bodies import Kind, Substance, of_kind, of_shape
 from derive.scene.declaration import (
@@ -42,9 +41,6 @@ from derive.scene.shape import SHAPES, moved
 from derive.scene.table import Scope, Table, keys, nearest, shown, table, text
 from derive.scene.unit import ANGULAR_VELOCITY, LENGTH, NONE, VELOCITY, Dimension
 from derive.scene.wanted import attitudes_only, read_emission, read_form, read_wanted
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 TABLES = (
     *("parameters", "coordinates", "speeds", "inputs", "axes", "body", "point", "known"),

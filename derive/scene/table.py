@@ -3,22 +3,17 @@
 Every function here raises SceneError with a sentence that begins at the table's own name.
 """
 
-from __future__ import annotations
-
 import difflib
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from derive.scene.declaration import SceneError, Triple
 from derive.scene.escape import brief
 from derive.scene.formula import Formula, FormulaError, number, symbols
 from derive.scene.grammar import LARGEST_DECIMAL_EXPONENT, parse
 from derive.scene.unit import Dimension, UnitError, dimension, dimension_of, spelled
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
 
 LONGEST_INTEGER_BITS = 1000
 LONGEST_LINE, LONGEST_KEY = 1000, 100

@@ -4,18 +4,12 @@ Only coherent SI units are read, so that a number never needs a factor; a degree
 is refused with the unit to give instead. The radian is dimensionless.
 """
 
-from __future__ import annotations
-
 import re
+from collections.abc import Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from derive.scene.escape import brief
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from derive.scene.formula import Formula
+from derive.scene.formula import Formula
 
 Dimension = tuple[Fraction, Fraction, Fraction]
 """Powers of metre, kilogram and second."""

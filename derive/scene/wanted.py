@@ -1,15 +1,11 @@
 """What a scene may ask for, and in what form: functions of the lecture, motions, attitudes."""
 
-from __future__ import annotations
-
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import permutations
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from derive.scene.declaration import SceneError
 from derive.scene.table import nearest, shown, word
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
 
 EQUATIONS = (
     "angular_momentum",
