@@ -12,12 +12,13 @@ from typing import Any
 from mpmath import mp, mpf
 from sympy import Expr, Integer, Symbol
 
-from derive.mechanics.probe import DIGITS, NOTHING, POINTS, another, point
+from derive.mechanics.probe import DIGITS, NOTHING, POINTS, Probe, point
 from derive.mechanics.problem import Problem, answered, substituted
 from derive.mechanics.words import Words
 from derive.scene import SceneError
 
 STAND_INS = (0, 1, 2, 3)
+OTHERS = 7919  # where trial points begin that share nothing with the first
 
 
 @dataclass(frozen=True)
@@ -33,16 +34,19 @@ def lean(question: Problem, words: Words) -> Lean:
 
     Raises SceneError if an answer depends on data that the user left out.
     """
-    own = _everywhere(question, words, [{}] * POINTS)
+    here = [point(words, n).values for n in range(POINTS)]
+    there = [point(words, n + OTHERS).values for n in range(POINTS)]
+    own = _everywhere(question, words, here)
     if own is None:
         raise SceneError(f"'{question.name}' has no answer at a trial point: "
                          "its balances are singular there")  # fmt: skip
 
-    def stay(changed: Sequence[Mapping[Symbol, Any]]) -> bool:
-        return _same(own, _everywhere(question, words, changed))
+    def stay(changed: Sequence[dict[Symbol, Any]]) -> bool:
+        places = [values | more for values, more in zip(here, changed, strict=True)]
+        return _same(own, _everywhere(question, words, places))
 
     arguments = sorted(question.arguments(), key=str)
-    idle = [s for s in arguments if stay([{s: another(words, s, n)} for n in range(POINTS)])]
+    idle = [s for s in arguments if stay([{s: values[s]} for values in there])]
     for symbol, what in words.hidden.items():
         if symbol in arguments and symbol not in idle:
             raise SceneError(f"'{question.name}' depends on {what}, which is not given")
@@ -58,25 +62,17 @@ def lean(question: Problem, words: Words) -> Lean:
 
 
 def _everywhere(
-    question: Problem, words: Words, changed: Sequence[Mapping[Symbol, Any]]
+    question: Problem, words: Words, places: Sequence[Mapping[Symbol, Any]]
 ) -> list[Any] | None:
-    """Return the answers at all trial points in one list, each with values of its own changed."""
-    found: list[Any] = []
-    for number, values in enumerate(changed):
-        here = _answers(question, words, number, values)
-        if here is None:
-            return None
-        found += here
-    return found
+    """Return the answers at all trial points in one list."""
+    found = [_answers(question, words, values) for values in places]
+    return None if None in found else [x for each in found if each is not None for x in each]
 
 
-def _answers(
-    question: Problem, words: Words, number: int, changed: Mapping[Symbol, Any]
-) -> list[Any] | None:
+def _answers(question: Problem, words: Words, values: Mapping[Symbol, Any]) -> list[Any] | None:
     with mp.workdps(DIGITS):
         try:
-            probe = point(words, number)
-            probe.values |= changed
+            probe = Probe(dict(values))
             probe.define(question.definitions)
             return answered(question, words.sheet, probe)
         except ZeroDivisionError:
@@ -107,8 +103,12 @@ def without_factors(question: Problem, words: Words, sought: AbstractSet[Symbol]
 
 
 def _is_factor(question: Problem, words: Words, symbol: Symbol) -> bool:
-    here, there = (_answers(question, words, n, {symbol: mpf(2)}) for n in range(POINTS))
-    once, twice = (_answers(question, words, n, {symbol: mpf(3)}) for n in range(POINTS))
+    first, second = (point(words, n).values for n in range(POINTS))
+    here, there, once, twice = (
+        _answers(question, words, values | {symbol: mpf(x)})
+        for x in (2, 3)
+        for values in (first, second)
+    )
     if here is None or there is None or once is None or twice is None:
         return False
     with mp.workdps(DIGITS):

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from sympy import Expr, Matrix, Symbol
 
+from derive.mechanics.sheet import below
 from derive.mechanics.sweep import Array, Field, Ranges, block, field_at, weakest
 from derive.scene import SceneError
 from derive.scene.escape import at_place
@@ -24,14 +25,14 @@ class Pivots:
 
     def vanish(self, matrix: Matrix, places: Sequence[Place]) -> bool:
         """Tell whether some pivot vanishes, taken one after another at (row, column)."""
-        return weakest(self.ranges, self.definitions, self._measure(matrix, places)).vanishes
+        return weakest(self.ranges, self._below(matrix), self._measure(matrix, places)).vanishes
 
     def chosen(self, matrix: Matrix, unknowns: Sequence[Symbol], left: int) -> list[Place]:
         """Return (row, column) of the pivots to take until so many rows are ``left``.
 
         Raises SceneError where none is found, naming the divisor and where it vanishes.
         """
-        found = field_at(self.ranges, self.ranges.points(), self.definitions)
+        found = field_at(self.ranges, self.ranges.points(), self._below(matrix))
         A, taken = block(found, matrix.tolist()), list[Place]()
         rows, columns = list(range(matrix.rows)), list(range(matrix.rows))
         while len(rows) > left:
@@ -41,11 +42,14 @@ class Pivots:
             rows.remove(r)
             columns.remove(c)
             A = _eliminated(A, r, c)
-        worst = weakest(self.ranges, self.definitions, self._measure(matrix, taken))
+        worst = weakest(self.ranges, self._below(matrix), self._measure(matrix, taken))
         if worst.vanishes:
             names = ", ".join(f"'{self.label(u)}'" for u in unknowns)
             raise SceneError(f"a divisor of {names} vanishes {where(worst.place)}")
         return taken
+
+    def _below(self, matrix: Matrix) -> Mapping[Symbol, Expr]:
+        return below(self.definitions, matrix)
 
     def _measure(self, matrix: Matrix, places: Sequence[Place]) -> Callable[[Field], Any]:
         """Return the smallest pivot, and singular value of what is left, of scaled matrices."""

@@ -99,11 +99,6 @@ def _between(dice: Random, low: Any, high: Any) -> Any:
     return low + (high - low) * (mpf(dice.randrange(1, 10**9)) / 10**9)
 
 
-def another(words: Words, symbol: Symbol, number: int) -> Any:
-    """Return another value of one symbol."""
-    return point(words, number + 7919).values[symbol]
-
-
 def small(value: Any, size: Any) -> bool:
     """Tell whether a value is nothing beside a size."""
     return bool(abs(value) <= NOTHING * abs(size))

@@ -99,14 +99,19 @@ class Sheet:
 
     def needed(self, values: Iterable[Expr]) -> dict[Symbol, Expr]:
         """Return the definitions that ``values`` stand on, each after those it is made of."""
-        wanted: set[Symbol] = set()
-        waiting = [s for value in values for s in value.free_symbols]
-        while waiting:
-            symbol = waiting.pop()
-            if symbol in self.definitions and symbol not in wanted:
-                wanted.add(symbol)
-                waiting += self.definitions[symbol].free_symbols
-        return {s: value for s, value in self.definitions.items() if s in wanted}
+        return below(self.definitions, values)
+
+
+def below(definitions: Mapping[Symbol, Expr], values: Iterable[Expr]) -> dict[Symbol, Expr]:
+    """Return those of ``definitions`` that ``values`` stand on, in their order."""
+    wanted: set[Symbol] = set()
+    waiting = [s for value in values for s in value.free_symbols]
+    while waiting:
+        symbol = waiting.pop()
+        if symbol in definitions and symbol not in wanted:
+            wanted.add(symbol)
+            waiting += definitions[symbol].free_symbols
+    return {s: value for s, value in definitions.items() if s in wanted}
 
 
 def _plain(value: Expr) -> bool:

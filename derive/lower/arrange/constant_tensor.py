@@ -46,7 +46,8 @@ def _quotient(e: Expr, divisor: Expr) -> Expr:
 def _is_tensor(found: Solution, matrix: Matrix) -> bool:
     """Tell whether a matrix is symmetric and its trace vanishes nowhere."""
     trace = Matrix([[matrix.trace()]])
-    return bool(matrix.is_symmetric()) and not found.pivots.vanish(trace, [(0, 0)])
+    symmetric = (matrix - matrix.T).expand() == zeros(*matrix.shape)
+    return symmetric and not found.pivots.vanish(trace, [(0, 0)])
 
 
 def inverse(named: Named, tensor: Matrix) -> Matrix:

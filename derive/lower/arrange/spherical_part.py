@@ -9,11 +9,12 @@ cancel, and on the way there are fewer operations.
 from collections.abc import Mapping, Sequence
 from itertools import permutations
 
-from sympy import Add, Expr, Integer, Matrix, Mul, Symbol, diag, eye, zeros
+from sympy import Add, Expr, Integer, Matrix, Mul, Symbol, diag, eye
 
 from derive.lower.arrange.column import Known
 from derive.lower.arrange.like_terms import like_terms
 
+ZERO = Integer(0)
 MOST = 8  # symbols of which three are tried as omega
 
 Products = Mapping[frozenset[Symbol], Expr]  # coefficients of products of two symbols
@@ -48,27 +49,31 @@ def divided(q: Sequence[Products], omega: Matrix) -> Matrix | None:
     """Return l of q = omega x l, None if there is none."""
     if not all(q) or any(frozenset([w]) in own for w, own in zip(omega, q, strict=True)):
         return None
-    zero = Integer(0)
-    inner = zeros(3, 1)
+    linear: list[dict[Symbol, Expr]] = [{}, {}, {}]
     for s in sorted({s for own in q for pair in own for s in pair}, key=str):
         for k in (k for k in range(3) if s != omega[k]):
-            i, j = (k + 1) % 3, (k + 2) % 3
-            inner[k] += q[i].get(frozenset([omega[j], s]), zero) * s
-    a = q[0].get(frozenset([omega[1], omega[2]]), zero)
-    b = q[1].get(frozenset([omega[2], omega[0]]), zero)
-    inner += without_spherical_part(diag(a + b, 0, a)) * omega
-    given = Matrix([Add(*(c * _product(pair) for pair, c in own.items())) for own in q])
-    return inner if (omega.cross(inner) - given).expand() == zeros(3, 1) else None
+            linear[k][s] = q[(k + 1) % 3].get(frozenset([omega[(k + 2) % 3], s]), ZERO)
+    a = q[0].get(frozenset([omega[1], omega[2]]), ZERO)
+    b = q[1].get(frozenset([omega[2], omega[0]]), ZERO)
+    moments = without_spherical_part(diag(a + b, 0, a))
+    for k in range(3):
+        linear[k][omega[k]] = moments[k, k]
+    if not all(_is_component(own, k, linear, omega) for k, own in enumerate(q)):
+        return None
+    return Matrix([Add(*(c * s for s, c in own.items())) for own in linear])
 
 
-def _product(pair: frozenset[Symbol]) -> Expr:
-    """Return the product of two symbols, the square of one.
-
-    >>> x, y = Symbol("x"), Symbol("y")
-    >>> _product(frozenset([x])), _product(frozenset([x, y]))
-    (x**2, x*y)
-    """
-    return Mul(*pair) ** (3 - len(pair))
+def _is_component(
+    own: Products, k: int, linear: Sequence[Mapping[Symbol, Expr]], omega: Matrix
+) -> bool:
+    """Tell whether products are component ``k`` of omega x l, coefficient by coefficient."""
+    i, j = (k + 1) % 3, (k + 2) % 3
+    left: dict[frozenset[Symbol], Expr] = dict(own)
+    for w, part, sign in ((omega[i], linear[j], -1), (omega[j], linear[i], 1)):
+        for s, c in part.items():
+            pair = frozenset([w, s])
+            left[pair] = left.get(pair, ZERO) + sign * c
+    return all(c == 0 or c.expand() == 0 for c in left.values())
 
 
 def without_spherical_part(tensor: Matrix) -> Matrix:
