@@ -12,8 +12,9 @@ from itertools import combinations
 
 from derive.library.function import Graphed
 from derive.library.setting import Setting
+from derive.lower.apart import apart
 from derive.lower.lower import value_of
-from derive.lower.stage import Tried
+from derive.lower.stage import Part
 from derive.program.operations import less, select, unit_roundoff
 from derive.program.program import Rule
 from derive.program.status import OF_KIND
@@ -30,7 +31,7 @@ PLACES = {(0, 0): 0, (1, 1): 1, (2, 2): 2, (0, 1): 3, (0, 2): 4, (1, 2): 5}
 Matrix = dict[tuple[int, int], Number]
 
 
-def tried(scene: Graphed, parameters: AbstractSet[str]) -> Tried:
+def tried(scene: Graphed, parameters: AbstractSet[str]) -> Part:
     """Return the rules of ``scene`` that rest on nothing but these parameters."""
     tape = Tape(free_prefix("r", scene.graph.leaf_names()))
     setting = Setting(scene, {}, None, tape)
@@ -46,7 +47,7 @@ def tried(scene: Graphed, parameters: AbstractSet[str]) -> Tried:
                 relation = "positive" if isinstance(demand, Above) else demand.relation
                 rule = Rule(OF_KIND[kind(demand)], _says(demand), value.operand, relation)
                 rules.setdefault((rule.status, rule.value), rule)
-    return Tried(tuple(tape.ops), dict(setting.given), tuple(rules.values()))
+    return Part(tuple(tape.ops), dict(setting.given), rules=tuple(rules.values()))
 
 
 def _says(demand: Demand) -> str:
@@ -121,14 +122,8 @@ def _blocks(tensor: Matrix) -> list[tuple[int, ...]]:
 
 def _coupled(tensor: Matrix, axes: Sequence[int]) -> bool:
     """Tell whether products join all these axes to one another, directly or not."""
-    reached, waiting = {axes[0]}, [axes[0]]
-    while waiting:
-        one = waiting.pop()
-        for other in set(axes) - reached:
-            if tensor[min(one, other), max(one, other)].exact != 0:
-                reached.add(other)
-                waiting.append(other)
-    return len(reached) == len(axes)
+    products = {p for p in combinations(axes, 2) if tensor[p].exact != 0}
+    return len(apart([{k, *(p for p in products if k in p)} for k in axes])) == 1
 
 
 def _eased(tape: Tape, tensor: Matrix, axes: Sequence[int]) -> Matrix:

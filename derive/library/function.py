@@ -1,11 +1,12 @@
 """A function that the lecture states, from its truth to its program, with or without a Jacobian."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from sympy import Symbol
 
 from derive.lecture.chapters import LECTURE
+from derive.lower.apart import apart
 from derive.lower.arrange import plan
 from derive.lower.arrange.draft import Arrangement
 from derive.lower.expand import families
@@ -136,14 +137,8 @@ def _one_by_one(wanted: Arranged) -> Groups:
 
 def _together(graph: Graph, wanted: Arranged) -> Groups:
     """Return the places of outputs in groups that share a vector which they vary by."""
-    groups: list[tuple[set[str], list[int]]] = []
-    for n, output in enumerate(wanted.outputs):
-        own = {f for value in output for f in families(graph, value) if isinstance(f, str)}
-        near = [group for group in groups if group[0] & own]
-        groups = [group for group in groups if group not in near]
-        shared = own.union(*(vectors for vectors, _ in near))
-        groups.append((shared, sorted([n, *(k for _, places in near for k in places)])))
-    return tuple(sorted(tuple(places) for _, places in groups))
+    every = ({f for v in output for f in families(graph, v)} for output in wanted.outputs)
+    return tuple(apart([{f for f in own if isinstance(f, str)} for own in every]))
 
 
 def _in_groups(
@@ -177,26 +172,12 @@ def _columns(scene: Graphed, wanted: Arranged, name: str) -> tuple[Quantity, ...
     words = scene.known.words
     if name.endswith(SENSITIVITY):
         return (*words.states, *words.parameters)
-    used = _inputs_below(scene.graph, [v for output in wanted.outputs for v in output])
+    graph, values = scene.graph, (v for output in wanted.outputs for v in output)
+    below = (graph.nodes[n] for n in graph.within(values))
+    used = {node[1] for node in below if node[0] == "input"}
     every = (*words.states, *words.inputs)
     whole = words.states if wanted.fact.name == "state_rate" else ()
     return tuple(q for q in every if q in whole or used & set(q.components))
-
-
-def _inputs_below(graph: Graph, values: Iterable[Value]) -> set[str]:
-    """Return the names of all inputs that ``values`` are made of."""
-    names: set[str] = set()
-    seen: set[int] = set()
-    waiting = [node for _, node in values]
-    while waiting:
-        node = waiting.pop()
-        if node in seen:
-            continue
-        seen.add(node)
-        if graph.nodes[node][0] == "input":
-            names.add(graph.nodes[node][1])
-        waiting += graph.below(node)
-    return names
 
 
 def _program(scene: Graphed, fact: Problem, values: Sequence[Value]) -> Program:

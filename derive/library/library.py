@@ -10,7 +10,7 @@ from derive.library.setting import Setting, applied_moment, traced, with_names
 from derive.library.singular import with_singular
 from derive.library.steps import motions, needs
 from derive.lower.graph import Graph, Value
-from derive.lower.stage import Constant, Traced, Tried, in_pairs, setup, with_low_parts
+from derive.lower.stage import Constant, Part, in_pairs, setup, with_low_parts
 from derive.lower.wording import formula
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.mechanics.problem import Problem
@@ -52,7 +52,7 @@ class Moved:
     """What moves a scene's state: its programs, their part of set-up, and what its names mean."""
 
     programs: tuple[Program, ...]
-    traced: Traced
+    traced: Part
     meanings: Mapping[str, str]
 
 
@@ -116,12 +116,12 @@ def _moved(scene: Graphed, rates: Mapping[str, Program]) -> Moved:
     return Moved(programs, replace(part, names=names), meanings)
 
 
-def _set_up(scene: Graphed, part: Traced) -> Program:
+def _set_up(scene: Graphed, part: Part) -> Program:
     """Return the program of set-up, which also tries whether its parameters are admissible."""
     parameters = scene.known.words.parameters
-    bare = setup(scene.graph, scene.constants, parameters, part, Tried())
+    bare = setup(scene.graph, scene.constants, parameters, [part])
     used = {c for q in bare.inputs for c in q.components}
-    return setup(scene.graph, scene.constants, parameters, part, tried(scene, used))
+    return setup(scene.graph, scene.constants, parameters, [part, tried(scene, used)])
 
 
 def _constants(made: Program, meanings: Mapping[str, str]) -> tuple[Constant, ...]:

@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from derive.library.function import graphed
 from derive.library.library import Library
 from derive.lower.arrange.matching import UndeterminedError
 from derive.lower.arrange.plan import plain_arrangement
 from derive.lower.forms import cost
-from derive.lower.graph import Graph
 from derive.lower.lower import lower
 from derive.mechanics.answers import Answers
 from derive.mechanics.balances import Balances, Row
@@ -71,10 +71,6 @@ def _plain(known: Mechanism, base: str) -> int | None:
         way = plain_arrangement(known, question)
     except (SceneError, UndeterminedError):
         return None
-    graph = Graph()
-    words = known.words
-    leaves = {words.symbols[c]: graph.parameter(c) for q in words.parameters for c in q.components}
-    leaves |= {s: graph.parameter(what) for s, what in known.made.hidden.items()}
-    varying = [c for q in (*words.states, *words.inputs) for c in q.components]
-    leaves |= {words.symbols[c]: graph.variable(c) for c in varying}
-    return cost(graph, lower(graph, way, leaves))[0]
+    scene = graphed(known)
+    hidden = {s: scene.graph.parameter(what) for s, what in known.made.hidden.items()}
+    return cost(scene.graph, lower(scene.graph, way, scene.by_symbol() | hidden))[0]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from derive.library.function import Graphed
 from derive.lower.graph import Graph, Value
 from derive.lower.lower import value_of
-from derive.lower.stage import Traced, exact_number, hot, used_inputs
+from derive.lower.stage import Part, exact_number, hot, used_inputs
 from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.rotation import FreeRotation, free_rotation
 from derive.motion.exact.inertia import Inertia, as_symmetric
@@ -94,7 +94,7 @@ def applied_moment(scene: Graphed) -> Program | None:
     return Program("applied_moment", "", inputs, (output,), ops, results)
 
 
-def traced(setting: Setting) -> tuple[Traced, Mapping[str, str]]:
+def traced(setting: Setting) -> tuple[Part, Mapping[str, str]]:
     """Return set-up's part of the motions, and how its constants are renamed.
 
     A parameter that is a constant of the graph already keeps the name that it has there.
@@ -109,7 +109,7 @@ def traced(setting: Setting) -> tuple[Traced, Mapping[str, str]]:
         names[operand] = shared.get(operand) or next(n for n in several if n not in used)
     new = {name: names[operand] for operand, (name, _) in setting.tape.names.items()}
     own = {operand: name for operand, name in names.items() if operand not in shared}
-    return Traced(tuple(setting.tape.ops), dict(setting.given), own), new
+    return Part(tuple(setting.tape.ops), dict(setting.given), own), new
 
 
 def _parameter(graph: Graph, value: Value) -> str:
@@ -121,8 +121,7 @@ def _parameter(graph: Graph, value: Value) -> str:
 
 def with_names(program: Program, names: Mapping[str, str]) -> Program:
     """Return a program whose constants are called by their new names."""
-    results = tuple(names.get(r, r) if isinstance(r, str) else r for r in program.results)
-    free = tuple(names.get(r, r) if isinstance(r, str) else r for r in program.free)
     slopes = None if program.slopes is None else with_names(program.slopes, names)
-    ops = renamed(program.ops, names)
+    ops, results = renamed(program.ops, names), renamed(program.results, names)
+    free = renamed(program.free, names)
     return replace(program, ops=ops, results=results, free=free, slopes=slopes)

@@ -4,8 +4,9 @@ Formulas stand in ``flows`` and ``rotations``; here they are given the scene's b
 rates, and become programs. What rests on parameters only is on the tape of set-up.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from fractions import Fraction
 
 from derive.lecture.chapters import LECTURE
 from derive.library.setting import Setting
@@ -21,7 +22,7 @@ from derive.motion.runge_kutta.system import System, next_of
 from derive.motion.splitting import Start, step_split
 from derive.motion.taylor import taylor_step
 from derive.motion.taylor.series import in_loops
-from derive.program.program import Operand, Program, Quantity
+from derive.program.program import Program, Quantity
 from derive.program.recorded import called, needed
 from derive.program.tape import Number, Tape, number, seen_from
 from derive.scene import Scene, SceneError
@@ -49,6 +50,7 @@ SLOPES = {
     "sensitivity": "state_rate_sensitivity",
 }
 """What the derivatives of a step rest on, by kind."""
+Ends = tuple[Sequence[Quantity], Sequence[Quantity]]  # what may go in, and what comes out
 
 
 def needs(scene: Scene) -> tuple[str, ...]:
@@ -129,25 +131,14 @@ def _seconds(name: str, range_: Given, says: str) -> Quantity:
     return Quantity(name, (name,), (), "s", "", range_.low, range_.high, says)
 
 
-@dataclass(frozen=True)
-class Recorded:
-    """A function as it was traced: what goes in, what comes out, and by which numbers."""
-
-    inputs: tuple[Quantity, ...]
-    outputs: tuple[Quantity, ...]
-    results: tuple[Number, ...]
-
-
-def _program(name: str, says: str, tape: Tape, made: Recorded) -> Program:
-    results: tuple[Operand, ...] = tuple(
-        tape.below.constant(n.operand)
-        if tape.below is not None and n.tape is tape.below and isinstance(n.operand, str)
-        else n.operand
-        for n in made.results
-    )
+def _program(
+    name: str, says: str, tape: Tape, ends: Ends, values: Iterable[Number | Fraction | int]
+) -> Program:
+    """Return what a tape holds of ``values``; of the inputs, those that they rest on."""
+    results = tuple(seen_from(tape, number(value)) for value in values)
     ops = needed(tape.ops, results)
-    inputs = used_inputs(made.inputs, ops, results)
-    return Program(name, says, inputs, made.outputs, ops, results, assumptions=FREE_ROTATION)
+    inputs, outputs = used_inputs(ends[0], ops, results), tuple(ends[1])
+    return Program(name, says, inputs, outputs, ops, results, assumptions=FREE_ROTATION)
 
 
 def _inputs(tape: Tape, q: Quantity) -> list[Number]:
@@ -166,12 +157,11 @@ def _flow_exact(setting: Setting) -> Program:
     (t,) = _inputs(tape, time)
     body, rates = setting.inertia(), _inputs(tape, omega)
     q, w = flow_exact(body, _inputs(tape, attitude), rates, t)
-    outputs = (next_of(attitude), next_of(omega))
+    ends = (attitude, omega, time), (next_of(attitude), next_of(omega))
     says = "Attitude and angular velocity after any time without torque (exact solution)."
-    made = Recorded((attitude, omega, time), outputs, (*map(number, q), *map(number, w)))
     moments, axes = principal(body)
     free = (*moments, *(x for axis in axes for x in axis), *turned(body, rates, t)[0])
-    program = _program("flow_exact", says, tape, made)
+    program = _program("flow_exact", says, tape, ends, (*q, *w))
     return replace(program, free=tuple(seen_from(tape, n) for n in free))
 
 
@@ -187,11 +177,10 @@ def _dmv(setting: Setting) -> tuple[Program, ...]:
         "what a motion without torque and a length of step keep", "plan",
     )  # fmt: skip
     says = "Plan many steps of one length from an angular velocity; call it once."
-    made = Recorded((omega, step), (plan,), tuple(number(n) for _, n, _ in entries))
-    planned = _program("plan_dmv", says, tape, made)
+    ends = (omega, step), (plan,)
+    planned = _program("plan_dmv", says, tape, ends, [n for _, n, _ in entries])
     values = plan_slopes(tape, setting.inertia(), _inputs(tape, omega), h)
-    slopes = _program("plan_dmv", says, tape, replace(made, results=tuple(map(number, values))))
-    planned = replace(planned, slopes=slopes)
+    planned = replace(planned, slopes=_program("plan_dmv", says, tape, ends, values))
     return planned, _dmv_step(setting, plan, [name for name, _, _ in entries])
 
 
@@ -201,10 +190,9 @@ def _dmv_step(setting: Setting, plan: Quantity, names: Sequence[str]) -> Program
     planned = dict(zip(names, _inputs(tape, plan), strict=True))
     state = (_inputs(tape, q) for q in (attitude, omega, rest))
     after = step_dmv(tape, setting.inertia(), planned, *state)
-    outputs = (next_of(attitude), next_of(omega), next_of(rest))
+    moved = (attitude, omega, rest)
     says = "One step of a torque-free rotation, as plan_dmv laid it out (order 10)."
-    made = Recorded((plan, attitude, omega, rest), outputs, tuple(map(number, after)))
-    return _program("step_dmv", says, tape, made)
+    return _program("step_dmv", says, tape, ((plan, *moved), [*map(next_of, moved)]), after)
 
 
 def _split(setting: Setting, name: str) -> Program:
@@ -220,8 +208,7 @@ def _split(setting: Setting, name: str) -> Program:
     says = f"One step of the rotation by splitting it into turns about two axes (order {order})"
     says += ", carrying what rounding leaves." if carries else "."
     outputs = tuple(map(next_of, (attitude, omega, *rest)))
-    made = Recorded(inputs, outputs, tuple(map(number, after)))
-    return _program(name, says, tape, made)
+    return _program(name, says, tape, (inputs, outputs), after)
 
 
 def _outside(setting: Setting) -> tuple[Quantity, ...]:

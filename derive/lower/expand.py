@@ -41,20 +41,8 @@ def family(graph: Graph, node: int) -> Family:
 
 def families(graph: Graph, value: Value) -> list[Family]:
     """Return the families of the lets that ``value`` varies by, innermost first."""
-    found: dict[Family, None] = {}
-    seen: set[int] = set()
-
-    def visit(node: int) -> None:
-        if node in seen or graph.fixed[node]:
-            return
-        seen.add(node)
-        for inner in graph.below(node):
-            visit(inner)
-        if graph.nodes[node][0] == "let":
-            found[family(graph, node)] = None
-
-    visit(value[1])
-    return list(found)
+    varying = (n for n in graph.within([value]) if not graph.fixed[n])
+    return list(dict.fromkeys(family(graph, n) for n in varying if graph.nodes[n][0] == "let"))
 
 
 def _kept(graph: Graph, node: int, visit: Visit) -> Terms:

@@ -170,6 +170,20 @@ class Graph:
             return [n for _, n in rest[-1]]
         return [n for n, _ in rest[0]] if kind == "product" else []
 
+    def within(self, values: Iterable[Value]) -> list[int]:
+        """Return the nodes that ``values`` are made of, parts before what is made of them."""
+        found: dict[int, None] = {}
+
+        def visit(node: int) -> None:
+            if node not in found:
+                for part in self.below(node):
+                    visit(part)
+                found[node] = None
+
+        for _, node in values:
+            visit(node)
+        return list(found)
+
     def leaf_names(self) -> set[str]:
         """Return the names of all inputs."""
         return {node[1] for node in self.nodes if node[0] == "input"}

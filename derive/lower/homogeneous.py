@@ -7,6 +7,8 @@ choose from says which is tried next.
 
 from collections.abc import Iterable, Sequence
 
+from derive.lower.apart import apart
+
 Row = Sequence[int | None]
 Choice = tuple[tuple[int, int], ...]  # quantities, each with its power
 MOST_STEPS = 10_000  # a bound; the scenes of the tests take fewer than 50
@@ -26,23 +28,13 @@ def powers(rows: Iterable[Row], most: int = MOST_STEPS) -> dict[int, int] | None
     # Of quantities with the same degrees everywhere, no choice of the fewest holds but the first.
     usable = [q for q, own in enumerate(columns) if None not in own and columns.index(own) == q]
     total: Choice = ()
-    for part in _apart([{q: row[q] or 0 for q in usable} for row in distinct]):
-        found = _fewest(part, most)
+    degrees = [{q: row[q] or 0 for q in usable if row[q]} for row in distinct]
+    for places in apart([own.keys() for own in degrees]):
+        found = _fewest([degrees[k] for k in places], most)
         if found is None:
             return None
         total += found
     return dict(sorted(total))
-
-
-def _apart(rows: list[dict[int, int]]) -> list[list[dict[int, int]]]:
-    """Return the rows in groups that share no quantity, without the quantities of degree 0."""
-    groups: list[list[dict[int, int]]] = []
-    for row in rows:
-        own = {q: degree for q, degree in row.items() if degree}
-        near = [group for group in groups if any(own.keys() & other.keys() for other in group)]
-        groups = [group for group in groups if group not in near]
-        groups.append([*(other for group in near for other in group), own])
-    return groups
 
 
 def _fewest(rows: list[dict[int, int]], most: int) -> Choice | None:

@@ -7,6 +7,7 @@ in twice the working precision and rounds each constant once.
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from itertools import islice
 from math import prod
 
 from derive.lower.graph import ONE, Graph, Value
@@ -80,27 +81,17 @@ def exact_number(graph: Graph, value: Value) -> Fraction | None:
 
 
 @dataclass(frozen=True)
-class Traced:
-    """The part of set-up that the formulas of motion were traced to.
+class Part:
+    """A part of set-up that was recorded on a tape of its own.
 
     given : the graph's value of each input of the tape
     names : the constants that functions read, by operand
+    rules : what is found out about the parameters
     """
 
     ops: tuple[Line, ...]
     given: Mapping[str, Value]
-    names: Mapping[str, str]
-
-
-@dataclass(frozen=True)
-class Tried:
-    """The part of set-up that finds out whether its parameters are admissible.
-
-    given : the graph's value of each input of the tape
-    """
-
-    ops: tuple[Line, ...] = ()
-    given: Mapping[str, Value] = field(default_factory=dict)
+    names: Mapping[str, str] = field(default_factory=dict)
     rules: tuple[Rule, ...] = ()
 
 
@@ -129,12 +120,9 @@ def in_pairs(program: Program, constants: set[str]) -> Program:
     ordered = [c for q in program.inputs for c in q.components if c in used]
     every = {n for q in (*program.inputs, *program.outputs) for n in (q.name, *q.components)}
     prefix = free_prefix("w", operands_of(program.ops, program.results) | every)
-    whole: dict[Operand, Operand] = {c: f"{prefix}{place}" for place, c in enumerate(ordered)}
-    joined = tuple(
-        Op(f"{prefix}{place}", "add", (c, f"{c}_low")) for place, c in enumerate(ordered)
-    )
-    ops = renamed(program.ops, {name: o for name, o in whole.items() if isinstance(name, str)})
-    results = tuple(whole.get(r, r) for r in program.results)
+    whole = {c: f"{prefix}{place}" for place, c in enumerate(ordered)}
+    joined = tuple(Op(sum_, "add", (c, f"{c}_low")) for c, sum_ in whole.items())
+    ops, results = renamed(program.ops, whole), renamed(program.results, whole)
     return replace(program, ops=joined + ops, results=results, arithmetic="pairs")
 
 
@@ -153,54 +141,39 @@ def with_low_parts(made: Program) -> Program:
 
 
 def setup(
-    graph: Graph,
-    constants: Constants,
-    parameters: Sequence[Quantity],
-    traced: Traced,
-    tried: Tried,
+    graph: Graph, constants: Constants, parameters: Sequence[Quantity], parts: Sequence[Part]
 ) -> Program:
     """Return the program that makes the constants from the parameters.
 
-    traced : what the formulas of motion need, worked out after the graph's constants
-    tried  : what is found out about the parameters, last
+    parts : what is worked out after the graph's constants, in this order
     """
-    ops, own, placed, asked = _scheduled(graph, constants, traced, tried)
-    made = (*own, *(placed.get(o, o) for o in traced.names))
-    rules = tuple(replace(r, value=asked.get(str(r.value), r.value)) for r in tried.rules)
-    whole = (*ops, *renamed(traced.ops, placed), *renamed(tried.ops, asked))
-    asking = (*placed.values(), *asked.values(), *(rule.value for rule in rules))
-    whole = needed(whole, (*made, *asking))  # a trace may hold what no constant rests on
-    names = (*constants.names.values(), *traced.names.values())
+    values = [*constants.names, *(v for part in parts for v in part.given.values())]
+    prefix = free_prefix("s", graph.leaf_names())
+    first, found = schedule(graph, values, lambda n: n == ONE, lambda value: value[0], prefix)
+    left = iter(found)
+    made = list(islice(left, len(constants.names)))
+    ops, given, rules = list[Line](first), list(made), list[Rule]()
+    for part in parts:
+        at = dict(zip(part.given, left, strict=False))
+        made += [at.get(o, o) for o in part.names]
+        rules += [replace(r, value=at.get(str(r.value), r.value)) for r in part.rules]
+        ops += renamed(part.ops, at)
+        given += at.values()
+    # a tape may hold what no constant rests on
+    whole = needed(ops, (*made, *given, *(rule.value for rule in rules)))
+    names = (*constants.names.values(), *(n for part in parts for n in part.names.values()))
     says = "constants made of parameters only, for the functions of this scene"
     output = Quantity("constants", names, (len(names),), "", "", None, None, says, "constants")
     return Program(
         "setup",
         "Make the constants of this scene from its parameters; call it once.",
-        used_inputs(parameters, whole, (*own, *placed.values(), *asked.values())),
+        used_inputs(parameters, whole, given),
         (output,) if names else (),
         whole,
-        made,
-        rules=rules,
+        tuple(made),
+        rules=tuple(rules),
         arithmetic="pairs",
     )
-
-
-def _scheduled(
-    graph: Graph, constants: Constants, traced: Traced, tried: Tried
-) -> tuple[tuple[Op, ...], tuple[Operand, ...], dict[str, Operand], dict[str, Operand]]:
-    """Return operations, the graph's constants, and the operands given to ``traced``, ``tried``."""
-    values = [*constants.names, *traced.given.values(), *tried.given.values()]
-    ops, results = schedule(
-        graph,
-        values,
-        lambda node: node == ONE,
-        lambda value: value[0],
-        free_prefix("s", graph.leaf_names()),
-    )
-    own, given = len(constants.names), len(traced.given)
-    placed = dict(zip(traced.given, results[own : own + given], strict=True))
-    asked = dict(zip(tried.given, results[own + given :], strict=True))
-    return ops, results[:own], placed, asked
 
 
 def used_inputs(

@@ -11,6 +11,7 @@ from derive.program.tape import Number, Tape, number, operation, seen_from
 from derive.scene.functions import PLAIN
 
 OneLine = TypeVar("OneLine", bound=Line)
+Named = TypeVar("Named", bound=Line | Operand)
 Body = Callable[[list[Number]], tuple[Sequence[Number], Number | None]]
 
 
@@ -83,8 +84,8 @@ def called(tape: Tape, program: Program, values: Mapping[str, Number]) -> list[N
     return [value(result) for result in program.results]
 
 
-def renamed(lines: Sequence[OneLine], names: Mapping[str, Operand]) -> tuple[OneLine, ...]:
-    """Return the lines with operands called by their new ``names``; results keep theirs."""
+def renamed(lines: Sequence[Named], names: Mapping[str, Operand]) -> tuple[Named, ...]:
+    """Return lines or operands with operands called by new ``names``; results keep theirs."""
 
     def one(line: Any) -> Any:
         match line:

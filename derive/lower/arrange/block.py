@@ -89,7 +89,8 @@ def by_determinants(found: Solution, block: Block) -> None:
 def by_pivots(found: Solution, block: Block, taken: Sequence[Place], rest: Solve) -> None:
     """Eliminate by pivots at (row, column), solve what is left, and go back."""
     A, b = block.matrix.as_mutable(), list(block.right)
-    rows, columns = list(range(A.rows)), list(range(A.rows))
+    rows, columns = [r for r, _ in taken], list(range(A.rows))
+    rows += [r for r in range(A.rows) if r not in rows]
     for r, c in taken:
         rows.remove(r)
         columns.remove(c)
@@ -102,7 +103,8 @@ def by_pivots(found: Solution, block: Block, taken: Sequence[Place], rest: Solve
                 A[n, k] = found.named("let", "a", A[n, k] - factor * A[r, k])
             b[n] = found.named("let", "b", b[n] - factor * b[r])
     left = A.extract(rows, columns), Matrix([b[n] for n in rows])
-    rest(found, Block(*left, [block.unknowns[c] for c in columns]))
+    if columns:
+        rest(found, Block(*left, [block.unknowns[c] for c in columns]))
     known = list(columns)
     for r, c in reversed(taken):
         other = sum((A[r, k] * block.unknowns[k] for k in known), Integer(0))

@@ -10,6 +10,7 @@ from itertools import permutations
 
 from sympy import Add, Expr, Function, Integer, Matrix, zeros
 
+from derive.lower.apart import apart
 from derive.lower.arrange.block import Block, Solution, Solve
 
 SMALL = 3  # rows that cofactors are worth it for
@@ -64,14 +65,10 @@ def inverse(named: Named, tensor: Matrix) -> Matrix:
     return J
 
 
-def _blocks(tensor: Matrix) -> list[list[int]]:
+def _blocks(tensor: Matrix) -> list[tuple[int, ...]]:
     """Return the groups of axes that products of inertia couple."""
-    groups: list[list[int]] = []
-    for axis in range(tensor.rows):
-        touching = [g for g in groups if any(tensor[axis, other] != 0 for other in g)]
-        groups = [g for g in groups if g not in touching]
-        groups.append(sorted([axis, *(other for g in touching for other in g)]))
-    return sorted(groups)
+    axes = range(tensor.rows)
+    return apart([{n, *(k for k in axes if tensor[n, k] != 0)} for n in axes])
 
 
 def _block_inverse(named: Named, part: Matrix) -> dict[tuple[int, int], Expr]:

@@ -51,12 +51,10 @@ def _solve_block(found: Solution, block: Block) -> None:
     elif matrix.rows <= SMALL:
         by_determinants(found, block)
     else:
-        order = _order(matrix, found.probe)
-        if found.pivots.vanish(matrix, [(r, c) for c, r in enumerate(order)]):
+        taken = [(r, c) for c, r in enumerate(_order(matrix, found.probe))]
+        if found.pivots.vanish(matrix, taken):
             taken = found.pivots.chosen(matrix, block.unknowns, SMALL)
-            by_pivots(found, block, taken, by_determinants)
-        else:
-            _by_elimination(found, block, order)
+        by_pivots(found, block, taken, by_determinants)
 
 
 def _order(matrix: Matrix, probe: Probe) -> list[int]:
@@ -72,24 +70,3 @@ def _order(matrix: Matrix, probe: Probe) -> list[int]:
                 factor = A[r][k] / A[pivot][k]
                 A[r] = [a - factor * p for a, p in zip(A[r], A[pivot], strict=True)]
     return rows
-
-
-def _by_elimination(found: Solution, block: Block, rows: Sequence[int]) -> None:
-    """Eliminate with the pivots of rows in an order."""
-    size = len(rows)
-    A, b = block.matrix.as_mutable(), list(block.right)
-    for k in range(size):
-        pivot = rows[k]
-        inverse = found.named("let", "pivot", 1 / A[pivot, k])
-        for r in rows[k + 1 :]:
-            if A[r, k] == 0:
-                continue
-            factor = found.named("let", "factor", A[r, k] * inverse)
-            for c in range(k + 1, size):
-                A[r, c] = found.named("let", "a", A[r, c] - factor * A[pivot, c])
-            b[r] = found.named("let", "b", b[r] - factor * b[pivot])
-            A[r, k] = Integer(0)
-    for k in reversed(range(size)):
-        r = rows[k]
-        above = sum((A[r, c] * block.unknowns[c] for c in range(k + 1, size)), Integer(0))
-        found.solved(block.unknowns[k], (b[r] - above) / A[r, k])
