@@ -15,7 +15,7 @@ from bench.motion.textbook import RK4
 from bench.motion.wrong import ROUNDOFF, angle, invariants
 from bench.report.case_run import PRECISIONS, Workshop
 from bench.report.hard import Hard, by_precision, program
-from derive.verify.motion_error import exact
+from derive.verify.measure import exact
 from derive.verify.sample import Sample
 
 COUNT, STEP, SEEN = 1_000_000, 0.01, 1000  # steps; s; how often on the way drift is looked at

@@ -14,7 +14,6 @@ from derive.check.agreement import (
     aliasing,
     casadi_bits,
     dense,
-    motion_accuracy,
     replay,
 )
 from derive.check.attitudes import definitions
@@ -32,8 +31,8 @@ from derive.check.turned import turned_axes
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library, library
 from derive.scene import load
+from derive.verify.draw import with_motion
 from derive.verify.kept import stated_figures
-from derive.verify.motion_error import with_motion
 from derive.verify.prove import ProofError, prove
 from derive.verify.sample import Sample, samples
 
@@ -128,9 +127,8 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
     few = spread(each)
     printed = {f["name"]: f.get("error", {}) for f in found.manifest["functions"]}
     stated = {n: e for n, e in printed.items() if isinstance(e, dict)}
-    yield from accuracy(one, each, stated)
+    yield from accuracy(one, each, few, stated)
     yield from near_a_sphere(one, each)
-    yield from motion_accuracy(one, few, stated)
     yield from definitions(one)
     yield from replay(one, each)
     yield from dense(one, few)

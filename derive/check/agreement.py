@@ -8,21 +8,21 @@ import ctypes
 import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from statistics import median
 from typing import Any
 
 import casadi
 import numpy as np
 
-from derive.check.emitted import Emitted, inputs, verdict
+from derive.check.emitted import Emitted, errors_of, inputs, verdict
 from derive.check.verdict import JUDGED, Verdict
 from derive.program.arithmetic import LIBM, Table, working
 from derive.program.largest import largest
 from derive.program.program import Program
-from derive.verify.measure import Errors, errors, references, replayed
-from derive.verify.motion_error import motion_errors
+from derive.verify.draw import Field
+from derive.verify.measure import Errors, replayed, should, should_move
 from derive.verify.sample import Sample
-from derive.verify.scale import sizing
 
 MEDIAN_BOUND, LARGEST_BOUND = 2.0, 16.0
 """In u: what half of the errors keep, and all at a few samples where no largest one is stated."""
@@ -90,27 +90,19 @@ def replay(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
 
 
 def accuracy(
-    emitted: Emitted, each: Sequence[Sample], printed: Mapping[str, Any]
+    emitted: Emitted, each: Sequence[Sample], few: Sequence[Sample], printed: Mapping[str, Any]
 ) -> Iterator[Verdict]:
-    """Yield whether the C is as close to the reference as promised, output by output."""
-    for program, true in references(emitted.library, each):
-        rows = [emitted.results(program, s) for s in each]
-        columns = [np.array(column) for column in zip(*rows, strict=True)]
-        for found in errors(program, columns, true, emitted.precision):
-            yield _accurate(emitted, program, found, each, printed.get(program.name, {}))
+    """Yield whether the C is as close as promised to the reference, motions to their formulas.
 
-
-def motion_accuracy(
-    emitted: Emitted, each: Sequence[Sample], printed: Mapping[str, Any]
-) -> Iterator[Verdict]:
-    """Yield whether rounding in the functions of motion is as small as promised."""
-    smallest = float(np.finfo(emitted.precision.dtype).smallest_normal)
-    by = sizing(emitted.library, smallest)
-    for program in emitted.library.motions:
-        rows = [emitted.results(program, s) for s in each]
-        columns = [list(column) for column in zip(*rows, strict=True)]
-        for found in motion_errors(by, program, columns, each, emitted.precision):
-            yield _accurate(emitted, program, found, each, printed.get(program.name, {}))
+    few : those at which the functions of motion are tried
+    """
+    library = emitted.library
+    of = Field(library, emitted.precision)
+    lectured = ((program, each, true) for program, true in should(of, library.functions, each))
+    moving = ((program, few, should_move(of, program, few)) for program in library.motions)
+    for program, own, true in chain(lectured, moving):
+        for found in errors_of(emitted, program, own, true):
+            yield _accurate(emitted, program, found, own, printed.get(program.name, {}))
 
 
 def _accurate(

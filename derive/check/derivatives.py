@@ -7,7 +7,6 @@ there is no derivative, and nothing is said of CasADi's.
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cache
 from itertools import combinations
 from math import inf
@@ -16,13 +15,15 @@ from typing import Any
 
 import casadi
 from flint import arb, ctx
+from sympy import finite_diff_weights
 
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library
 from derive.program.largest import largest
 from derive.program.program import Program, Quantity
-from derive.program.run import run
-from derive.verify.convergence import BITS, results
+from derive.program.run import results_by_name
+from derive.verify.convergence import BITS
+from derive.verify.measure import results
 from derive.verify.operators import LONG_FLOATS
 from derive.verify.sample import Sample
 
@@ -161,27 +162,15 @@ def differences(library: Library, program: Program, place: Place) -> tuple[list[
 
 def _slope(order: int, values: Sequence[Any], side: int) -> Any:
     """Return a derivative from values at SHIFT, 2 SHIFT, ... to one side, by a polynomial."""
-    terms = (
-        arb(w.numerator) * x / w.denominator for w, x in zip(_weights(order), values, strict=True)
-    )
+    terms = (int(w.p) * x / int(w.q) for w, x in zip(_weights(order), values, strict=True))
     return sum(terms, arb(0)) / (side * SHIFT) ** order
 
 
 @cache
-def _weights(order: int) -> tuple[Fraction, ...]:
+def _weights(order: int) -> list[Any]:
     """Return by which values at 1, 2, ... count in a polynomial's derivative at 0."""
-    found = []
-    for n in POINTS:
-        product: list[Fraction] = [Fraction(1)]
-        for m in POINTS:
-            if m != n:
-                high = [Fraction(0), *product]
-                product = [
-                    (x - m * y) / (n - m)
-                    for x, y in zip(high, [*product, Fraction(0)], strict=True)
-                ]
-        found.append(order * product[order])  # of Lagrange: 1! and 2! times the coefficient
-    return tuple(found)
+    found: list[Any] = finite_diff_weights(order, [*POINTS], 0)[order][-1]
+    return found
 
 
 def _agreed(up: Sequence[Any], down: Sequence[Any]) -> list[float | None]:
@@ -198,7 +187,7 @@ def _results(library: Library, program: Program, place: Place, k: int) -> list[A
     names = [c for q in library.setup.inputs for c in q.components]
     if all(name in known for name in names):
         return list(results(library, program, known).values())
-    return run(program, LONG_FLOATS, [known[c] for q in program.inputs for c in q.components])
+    return list(results_by_name(program, LONG_FLOATS, known).values())
 
 
 def _differentiated(function: Any) -> Callable[[Any, Any], list[Any]]:

@@ -16,6 +16,7 @@ from derive.library.library import Library
 from derive.program.precision import F64, PRECISIONS, Precision
 from derive.program.program import Program
 from derive.verify.kept import Measuring, figures_of
+from derive.verify.measure import Errors, Expected, errors
 from derive.verify.sample import Sample
 from derive.verify.search import SAMPLING, Sampling
 
@@ -57,6 +58,14 @@ class Emitted:
         """Return all components that a function of C gives at a sample."""
         found = self.functions[program.name](inputs(program, sample, self.constants(sample)))
         return [x for q in program.outputs for x in found[q.name]]
+
+
+def errors_of(
+    one: Emitted, program: Program, each: Sequence[Sample], true: Sequence[Sequence[Expected]]
+) -> list[Errors]:
+    """Return how far each output of a function of C is from what it should be."""
+    columns = list(zip(*(one.results(program, s) for s in each), strict=True))
+    return errors(program, columns, true, one.precision)
 
 
 def verdict(one: Emitted, function: str, check: str, outcome: Outcome, says: str) -> Verdict:

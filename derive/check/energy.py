@@ -23,7 +23,8 @@ from derive.scene.results import ENERGIES
 from derive.verify.cloud import Answers, answers
 from derive.verify.cloud.power import Powers, powers
 from derive.verify.cloud.series import DIGITS
-from derive.verify.convergence import results, unit_attitude
+from derive.verify.convergence import unit_attitude
+from derive.verify.measure import results
 from derive.verify.sample import Sample
 from derive.verify.scale import base_of
 

@@ -10,11 +10,12 @@ from derive.check.agreement import ABSURD, MORE
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library
 from derive.program.largest import largest
-from derive.program.precision import PRECISIONS, Precision
+from derive.program.precision import PRECISIONS
 from derive.program.program import Measurement, Program
+from derive.verify.draw import Field
 from derive.verify.scale import measured_outputs
-from derive.verify.search import Best, Field, Worst, field, sampled, worst_of
-from derive.verify.stated import at_rows, at_samples, balls
+from derive.verify.search import Worst, sampled
+from derive.verify.stated import at_rows, at_samples
 
 SEED = "checked"
 KEPT = 4
@@ -32,11 +33,10 @@ def fresh(
     """
     said = {(m.function, m.precision, m.output): m.worst for m in stated}
     for precision in PRECISIONS:
-        of = field(library, precision)
-        best: list[Best] = []
-        for done, best in sampled(of, SEED, samples, KEPT):  # noqa: B007 - the last is kept
+        of = Field(library, precision)
+        found: list[Worst] = []
+        for done, found in sampled(of, SEED, samples, KEPT):  # noqa: B007 - the last is kept
             told(f"{library.known.scene.name}: {precision.name}, {done} of {samples} samples")
-        found = worst_of(of, best)
         for program in library.printed():
             for place, (q, _) in enumerate(measured_outputs(program)):
                 own = [w for w in found if (w.function, w.output) == (program.name, q.name)]
@@ -47,23 +47,15 @@ def fresh(
 def _verdict(
     of: Field, program: Program, place: int, found: Worst, stated: float | None, samples: int
 ) -> Verdict:
-    library, precision = of.ranges.library, of.precision
     seen = largest(found.errors)
     if stated is not None and seen > MORE * stated:
-        seen = _in_balls(library, precision, program, place, found, of)
+        each = at_rows(of, [found.rows], 0)
+        seen = largest(at_samples(of, program, each)[place].largest())
     holds = stated is not None and stated <= ABSURD and seen <= MORE * stated
     says = f"{found.output}: largest {seen:.3g} u at {samples} fresh samples; "
     says += "no figure is stated" if stated is None else f"stated {stated:.2g} u"
     if stated is not None and not holds:
         limit = f"no more than {MORE * stated:.3g} u" if stated <= ABSURD else f"below {ABSURD:g} u"
         says += f", and it must be {limit}"
-    scene = library.known.scene.name
-    return Verdict(scene, program.name, precision.name, "stated error", JUDGED[holds], says)
-
-
-def _in_balls(
-    library: Library, precision: Precision, program: Program, place: int, found: Worst, of: Field
-) -> float:
-    each = at_rows(of.ranges, [found.rows], 0)
-    errors = at_samples(balls(library, precision), program, each)[place]
-    return largest(errors.largest())
+    scene = of.library.known.scene.name
+    return Verdict(scene, program.name, of.precision.name, "stated error", JUDGED[holds], says)

@@ -9,13 +9,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from statistics import median
 
-import numpy as np
-
 from derive.check.agreement import LARGEST_BOUND
-from derive.check.emitted import Emitted, verdict
+from derive.check.emitted import Emitted, errors_of, verdict
 from derive.check.verdict import JUDGED, Verdict
 from derive.program.largest import largest
-from derive.verify.measure import errors, references
+from derive.verify.draw import Field
+from derive.verify.measure import should
 from derive.verify.reference import DIFFERENCES
 from derive.verify.sample import Sample
 
@@ -27,10 +26,9 @@ def near_a_sphere(one: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     own = [_left_alone(one, s) for s in each if s.kind.endswith(KIND)]
     if not own:
         return
-    for program, true in references(one.library, own, DIFFERENCES):
-        rows = [one.results(program, s) for s in own]
-        columns = [np.array(column) for column in zip(*rows, strict=True)]
-        for found in errors(program, columns, true, one.precision):
+    of = Field(one.library, one.precision)
+    for program, true in should(of, one.library.functions, own, DIFFERENCES):
+        for found in errors_of(one, program, own, true):
             each_worst = [largest([median(column)]) for column in zip(*found.rows, strict=True)]
             most = max(each_worst, default=0.0)
             says = f"{found.output}: median of a component at most {most:.2g} u of the differences"

@@ -8,21 +8,21 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 from flint import arb, ctx
 
 from derive.check.agreement import ABSURD, LARGEST_BOUND, MORE
 from derive.check.description import Description, relabelled, turned
-from derive.check.emitted import Emitted, verdict
+from derive.check.emitted import Emitted, errors_of, verdict
 from derive.check.verdict import JUDGED, Verdict
 from derive.mechanics.mechanism import Mechanism, mechanism, problem
 from derive.mechanics.words import MATRICES
 from derive.program.largest import largest
-from derive.program.program import Program
+from derive.program.program import Program, component_names
 from derive.scene.formula import symbols
 from derive.scene.results import written_out
+from derive.verify.draw import Field
 from derive.verify.equations import Equations, equations
-from derive.verify.measure import True_, errors, references
+from derive.verify.measure import Expected, should
 from derive.verify.reference import BITS, reference
 from derive.verify.sample import Sample
 from derive.verify.scale import base_of
@@ -33,6 +33,7 @@ Stated = Mapping[str, Mapping[str, Mapping[str, Mapping[str, Any]]]]
 def turned_axes(one: Emitted, each: Sequence[Sample], stated: Stated) -> Iterator[Verdict]:
     """Yield whether every function is what the machine told along other axes gives."""
     scene = one.library.known.scene
+    of = Field(one.library, one.precision)
     told = {"cyclic relabelling": relabelled(scene), "rotation of axes": turned(scene)}
     for check, description in told.items():
         if description is None or not one.library.functions:
@@ -45,7 +46,7 @@ def turned_axes(one: Emitted, each: Sequence[Sample], stated: Stated) -> Iterato
             base: None if _free_to_choose(anew, base) else equations(anew, problem(anew, base))
             for base in one.library.truths
         }
-        for program, true in references(one.library, each):
+        for program, true in should(of, one.library.functions, each):
             question = asked[base_of(program)]
             if question is None:
                 says = "rows of small motion and what vanishes if steady may be told otherwise"
@@ -71,8 +72,12 @@ def _free_to_choose(known: Mechanism, base: str) -> bool:
 
 
 def _told_back(
-    description: Description, question: Equations, program: Program, sample: Sample, own: True_
-) -> True_:
+    description: Description,
+    question: Equations,
+    program: Program,
+    sample: Sample,
+    own: Sequence[Expected],
+) -> list[Expected]:
     """Return what the other description gives, with the scales of the scene's own.
 
     What vanishes for the scene, or nearly, is a ball around zero where it is a sum along others.
@@ -80,18 +85,20 @@ def _told_back(
     with ctx.workprec(BITS):
         given = description.given({c: arb(x) for c, x in sample.values.items()})
         solved = reference(question, given, ())
-        names = [c for q in program.outputs for c in q.components]
+        names = component_names(program)
         values = description.told_back({c: solved[c].value for c in names})
-        small = {c for c in names if values[c].contains(0) and values[c].overlaps(own[c].value)}
-        found = {c: own[c].value if c in small else values[c] for c in names}
-        return {c: replace(own[c], value=found[c]) for c in names}
+        pairs = [(values[c], true) for c, true in zip(names, own, strict=True)]
+        return [
+            true if x.contains(0) and x.overlaps(true.value) else replace(true, value=x)
+            for x, true in pairs
+        ]
 
 
 def _judged(
     one: Emitted,
     check: str,
     program: Program,
-    at: tuple[Sequence[Sample], Sequence[True_]],
+    at: tuple[Sequence[Sample], Sequence[Sequence[Expected]]],
     stated: Stated,
 ) -> Verdict:
     """Return a verdict on C, which may differ by the stated error and that of its quaternions.
@@ -99,10 +106,8 @@ def _judged(
     These are of length 1 to a rounding only, and each description shows that in another way.
     """
     each, true = at
-    rows = [one.results(program, s) for s in each]
-    columns = [np.array(column) for column in zip(*rows, strict=True)]
     worst, allowed = 0.0, 0.0
-    for found in errors(program, columns, true, one.precision):
+    for found in errors_of(one, program, each, true):
         figures = stated.get(program.name, {}).get(one.precision.name, {}).get(found.output, {})
         most = min(ABSURD, LARGEST_BOUND + MORE * float(figures.get("largest_ulp", 0.0)))
         gap = largest(found.largest())

@@ -17,7 +17,7 @@ from derive.program.arithmetic import pair_of, rounded
 from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, Row
 from derive.program.pair_sine import quarter_turn, series
 from derive.program.precision import F64
-from derive.program.program import Line, Op, Operand, Program, Quantity, every_op
+from derive.program.program import Line, Op, Operand, Program, Quantity, every_op, placed
 from derive.program.status import possible, tried
 
 Text = Callable[[Operand], str]
@@ -228,14 +228,11 @@ def _with_slope(program: Program, text: Text) -> Iterator[str]:
 
 def _outputs(program: Program, ends: Sequence[str]) -> list[dict[str, object]]:
     outputs: list[dict[str, object]] = []
-    place = 0
-    for q in program.outputs:
-        values = ends[place : place + len(q.components)]
+    for q, place in placed(program.outputs):
         pattern = (program.sparsity or {}).get(q.name)
         shape = None
         if pattern is not None:
             size = f"{len(pattern.rows)}, {len(pattern.columns)}"
             shape = f"{size}, {list(pattern.colind)}, {list(pattern.row)}"
-        outputs.append({"name": q.name, "values": values, "sparsity": shape})
-        place += len(q.components)
+        outputs.append({"name": q.name, "values": ends[place], "sparsity": shape})
     return outputs

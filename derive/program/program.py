@@ -5,7 +5,7 @@ is the name of an earlier value or an exact number.
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Literal
@@ -198,6 +198,14 @@ def operands_of(lines: Sequence[Line], results: Sequence[Operand | None] = ()) -
 def component_names(program: Program) -> list[str]:
     """Return the components of all outputs in order."""
     return [c for q in program.outputs for c in q.components]
+
+
+def placed(quantities: Iterable[Quantity]) -> Iterator[tuple[Quantity, slice]]:
+    """Yield quantities, and where the components of each stand among all of them."""
+    start = 0
+    for q in quantities:
+        yield q, slice(start, start + len(q.components))
+        start += len(q.components)
 
 
 def read_by(program: Program) -> set[str]:

@@ -5,7 +5,7 @@ from types import MappingProxyType
 from typing import Any
 
 from derive.program.indexed import Assign, Even, Integers, Loop, Row, value_at
-from derive.program.program import Arithmetic, Line, Op, Operand, Program
+from derive.program.program import Arithmetic, Line, Op, Operand, Program, component_names
 
 NOWHERE: Mapping[str, int] = MappingProxyType({})
 
@@ -20,6 +20,14 @@ def run(program: Program, arithmetic: Arithmetic, values: Sequence[Any]) -> list
     known = dict(zip(names, values, strict=True)) | numbers_of(program, arithmetic)
     run_lines(program.ops, arithmetic, known)
     return values_of(program.results, arithmetic, known)
+
+
+def results_by_name(
+    program: Program, arithmetic: Arithmetic, known: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the results of ``program`` by component, from values known by name."""
+    given = [known[c] for q in program.inputs for c in q.components]
+    return dict(zip(component_names(program), run(program, arithmetic, given), strict=True))
 
 
 def numbers_of(program: Program, arithmetic: Arithmetic) -> dict[str, Any]:

@@ -73,15 +73,14 @@ def in_columns(plan: Plan, table: Table, known: Mapping[str, Any]) -> list[Any]:
 class Arithmetics:
     """What a program of floats is run in, and what it is held against.
 
-    made, true_made : set-up in pairs of the precision; and of doubles, of which nothing is rounded
-    own, paired     : floats of the precision, and pairs of them rounded once
+    made, true_made : pairs of the precision, as of set-up; and of doubles, with nothing rounded
+    own             : floats of the precision
     true            : double for float, pairs of doubles for double
     """
 
     dtype: type
     made: Table
     own: Table
-    paired: Table
     true_made: Table
     true: Table
 
@@ -106,9 +105,9 @@ def arithmetics(dtype: type) -> Arithmetics:
     """Return the arithmetics of a precision: of float or of double."""
     made = _with_numbers(extended(dtype))
     own = _with_numbers(working(dtype) | {n: _correctly(n, dtype) for n in LIBM})
-    true_made = _with_numbers(_unrounded())
+    true_made = _with_numbers({**extended(np.float64), **UNROUNDED})
     true = true_made if dtype is np.float64 else doubles()
-    return Arithmetics(dtype, made, own, made, true_made, true)
+    return Arithmetics(dtype, made, own, true_made, true)
 
 
 @cache
@@ -120,11 +119,6 @@ def doubles() -> Table:
 def _with_numbers(table: Table) -> Table:
     """Return a table that works each constant out once."""
     return table | {"number": cache(table["number"])}
-
-
-def _unrounded() -> Table:
-    """Return pairs of doubles as if they were numbers of all digits: nothing is left below."""
-    return {**extended(np.float64), **UNROUNDED}
 
 
 def _correctly(name: str, dtype: type) -> Callable[..., Any]:
@@ -204,7 +198,7 @@ def found_and_true(plan: Plan, at: Known, by: Arithmetics) -> list[tuple[Column,
     count = len(next(iter(at.own.values())))
     if plan.program.arithmetic == "pairs":
         given = {name: (x, x * 0) for name, x in at.own.items()}
-        found = [x[0] for x in in_columns(plan, by.paired, given)]
+        found = [x[0] for x in in_columns(plan, by.made, given)]
     else:
         found = in_columns(plan, by.own, at.own)
     single = by.dtype is np.float32

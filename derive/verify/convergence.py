@@ -16,8 +16,8 @@ from derive.library.library import Library
 from derive.mechanics.mechanism import problem
 from derive.mechanics.rotation import free_rotation
 from derive.program.largest import largest
-from derive.program.program import Program, component_names
-from derive.program.run import run
+from derive.program.program import placed
+from derive.program.run import results_by_name
 from derive.scene.wanted import SPLITTINGS, TAYLOR, step_of
 from derive.verify.equations import Equations, equations
 from derive.verify.operators import LONG_FLOATS
@@ -192,10 +192,8 @@ def unit_attitude(library: Library, values: dict[str, Any]) -> dict[str, Any]:
 
 def _turning(library: Library, rates: State, state: State) -> float:
     """Return the fastest relative rate, 1/s, among the quantities of the state."""
-    fastest, place = 1e-30, 0
-    for q in library.known.words.states:
-        own = slice(place, place + len(q.components))
-        place = own.stop
+    fastest = 1e-30
+    for _, own in placed(library.known.words.states):
         fast, size = (max(abs(float(x)) for x in each[own]) for each in (rates, state))
         fastest = max(fastest, fast / size if size else 0.0)
     return fastest
@@ -204,23 +202,13 @@ def _turning(library: Library, rates: State, state: State) -> float:
 def stepped(library: Library, name: str, values: Mapping[str, Any], h: Any) -> dict[str, Any]:
     """Return what a step gives at a length ``h``, in balls, from the scene's parameters on."""
     known = dict(values) | {"time_step": h, "time": h}
-    known |= _results(library.setup, known)
+    known |= results_by_name(library.setup, LONG_FLOATS, known)
     for program in library.motions:
         if program.name in (f"plan_{name.removeprefix('step_')}", name):
             carried = [q for q in program.inputs if q.role == "remainder"]
             known |= {c: arb(0) for q in carried for c in q.components}
-            known |= _results(program, known)
+            known |= results_by_name(program, LONG_FLOATS, known)
     return known
-
-
-def results(library: Library, program: Program, values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a program gives, in balls, from the scene's parameters on."""
-    return _results(program, {**values, **_results(library.setup, values)})
-
-
-def _results(program: Program, known: Mapping[str, Any]) -> dict[str, Any]:
-    given = [known[c] for q in program.inputs for c in q.components]
-    return dict(zip(component_names(program), run(program, LONG_FLOATS, given), strict=True))
 
 
 def _distance(found: Sequence[Any], should: Sequence[Any]) -> float:

@@ -13,7 +13,8 @@ from flint import arb, ctx
 from derive.library.library import Library
 from derive.program.largest import largest
 from derive.program.program import Program
-from derive.verify.convergence import BITS, results, unit_attitude
+from derive.verify.convergence import BITS, unit_attitude
+from derive.verify.measure import results
 
 SHIFT = arb(2) ** -130  # exact
 GAP = 1e-70

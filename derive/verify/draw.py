@@ -4,10 +4,11 @@ The bits are Philox's, whose stream NumPy keeps; numbers are made of them by bas
 sample is complete when times are in reach and a plan is made; what completes it is worked out.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from hashlib import sha256
+from random import Random
 from typing import Any
 
 import numpy as np
@@ -15,23 +16,21 @@ import numpy as np
 from derive.library.library import Library
 from derive.motion.compensated import REMAINDER
 from derive.program.precision import Precision
-from derive.program.program import Quantity, component_names
+from derive.program.program import Quantity, component_names, placed
 from derive.scene import SceneError
-from derive.scene.formula import evaluate
-from derive.scene.machine import Entries
 from derive.verify.columns import Column, Known, Plan, arithmetics, in_columns, known, planned
-from derive.verify.hard_bodies import inverted, without_wheels
-from derive.verify.motion_error import OMEGA_DOT, bounds_of_times, fresh_quantities, telling
-from derive.verify.sample import varying
+from derive.verify.equations import Equations, equations
+from derive.verify.hard_bodies import admissible, solvable
+from derive.verify.sample import Sample, source, uniform, varying
 
-Columns = Mapping[str, Column]
-"""A column of doubles a component; ``held`` makes them floats of the precision."""
-
-SLACK = 1e-12
-"""Of the triangle inequality, relative to the trace: a disc obeys it with equality."""
 FEWEST = 1 / 64
 """Where fewer bodies than this obey the triangle inequality, any definite tensor will do."""
 TRIES = 400
+REACH = 0.3
+"""Turn in rad, by omega and by its rate, that a sampled step covers at most."""
+LONG = 1000.0
+"""So many such steps make the longest time that a flow is sampled at."""
+OMEGA_DOT = ("omega_dot_x", "omega_dot_y", "omega_dot_z")
 
 
 @dataclass
@@ -51,13 +50,17 @@ class Dice:
 
 
 @dataclass(frozen=True)
-class Ranges:
-    """What is drawn for a scene, in one precision: quantities, and which bodies are admitted."""
+class Field:
+    """The functions of a scene in one precision: where they are sampled, and what says what."""
 
     library: Library
     precision: Precision
-    quantities: tuple[Quantity, ...]
-    lenient: bool  # a tensor that breaks the triangle inequality will do
+
+    @cached_property
+    def quantities(self) -> tuple[Quantity, ...]:
+        """Return what is drawn: parameters, what varies, and what motions are given besides."""
+        known = self.library.known
+        return (*known.words.parameters, *varying(known), *fresh_quantities(self.library))
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -74,6 +77,57 @@ class Ranges:
         """Return the high ends, component by component."""
         return np.array([_ends(q)[1] for q in self.quantities for _ in q.components])
 
+    @cached_property
+    def bodies(self) -> Any:
+        """Return what tells bodies: the triangle inequality too, if enough of the ranges keep it.
+
+        A tensor that breaks it will do where the ranges hold hardly any other.
+        """
+        tried = held(self, _anywhere(self, Dice("bodies"), 4096))
+        fits = admissible(self.library.known, dict(zip(self.names, tried, strict=True)))
+        return solvable if np.mean(fits) < FEWEST else admissible
+
+    @cached_property
+    def plans(self) -> tuple[Plan, ...]:
+        """Return every function, with the places at which its values can go."""
+        return tuple(map(planned, self.library.printed()))
+
+    @cached_property
+    def setup(self) -> Plan:
+        """Return what makes the constants."""
+        return planned(self.library.setup)
+
+    @cached_property
+    def rate(self) -> Plan | None:
+        """Return a function that tells how fast omega changes, if there is one."""
+        every = (*self.library.rates, *self.library.functions)
+        telling = (f for f in every if any(q.name == "omega_dot" for q in f.outputs))
+        return next(map(planned, telling), None)
+
+    @cached_property
+    def plan(self) -> Plan | None:
+        """Return what makes the plan of a step, if there is one."""
+        return next((planned(f) for f in self.library.motions if f.makes("plan")), None)
+
+    @cached_property
+    def asked(self) -> Mapping[str, Equations]:
+        """Return the equations behind every function of the lecture, by its name."""
+        truths = self.library.truths
+        return {base: equations(self.library.known, fact) for base, fact in truths.items()}
+
+    @property
+    def smallest(self) -> float:
+        """Return the smallest normal number, below which floats are spaced alike."""
+        return float(np.finfo(self.precision.dtype).smallest_normal)
+
+
+def fresh_quantities(library: Library) -> list[Quantity]:
+    """Return what only the functions of motion are given, but for a plan, which is made."""
+    known = {c for q in library.known.words.every() for c in q.components}
+    known |= set(component_names(library.setup))
+    given = {q.name: q for f in library.motions for q in f.inputs}
+    return [q for q in given.values() if not known & set(q.components) and q.role != "plan"]
+
 
 def _ends(q: Quantity) -> tuple[float, float]:
     """Return the ends of a range; a remainder is drawn as a part of u times its state."""
@@ -81,16 +135,7 @@ def _ends(q: Quantity) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def ranges(library: Library, precision: Precision) -> Ranges:
-    """Return what is drawn for all functions of a scene."""
-    words = library.known.words
-    every = (*words.parameters, *varying(library.known), *fresh_quantities(library))
-    strict = Ranges(library, precision, tuple(every), lenient=False)
-    tried = _anywhere(strict, Dice("bodies"), 4096)
-    return Ranges(library, precision, strict.quantities, np.mean(admitted(strict, tried)) < FEWEST)
-
-
-def drawn(of: Ranges, dice: Dice, count: int) -> Column:
+def drawn(of: Field, dice: Dice, count: int) -> Column:
     """Return raw samples, a row a component, of admissible bodies.
 
     Raises SceneError where the ranges of the parameters hold no body.
@@ -109,17 +154,14 @@ def drawn(of: Ranges, dice: Dice, count: int) -> Column:
     )
 
 
-def _anywhere(of: Ranges, dice: Dice, count: int) -> Column:
+def _anywhere(of: Field, dice: Dice, count: int) -> Column:
     across = (of.highs - of.lows)[:, None]
     return on_the_sphere(of, of.lows[:, None] + across * dice.uniform(len(of.names), count))
 
 
-def on_the_sphere(of: Ranges, rows: Column) -> Column:
+def on_the_sphere(of: Field, rows: Column) -> Column:
     """Return rows with every attitude of the states of unit length."""
-    place = 0
-    for q in of.quantities:
-        span = slice(place, place + len(q.components))
-        place += len(q.components)
+    for q, span in placed(of.quantities):
         if q in of.library.known.words.states and q.name == "attitude":
             w, x, y, z = rows[span]
             size = np.sqrt(w * w + x * x + y * y + z * z)
@@ -127,71 +169,19 @@ def on_the_sphere(of: Ranges, rows: Column) -> Column:
     return rows
 
 
-def admitted(of: Ranges, rows: Column) -> Any:
+def admitted(of: Field, rows: Column) -> Any:
     """Return which samples are of bodies that can be, wheels included."""
-    numbers: dict[str, Any] = dict(zip(of.names, held(of, rows), strict=True))
-    numbers |= {n: float(x) for n, x in of.library.known.words.numbers.items()}
-    fits = np.ones(rows.shape[1], bool)
-    for one in inverted(of.library.known):
-        with np.errstate(all="ignore"):
-            whole, rest = _matrix(one.whole, numbers), _matrix(without_wheels(one), numbers)
-            half = (whole[0][0] + whole[1][1] + whole[2][2]) / 2
-            second = [[(half if i == k else 0.0) - whole[i][k] for k in range(3)] for i in range(3)]
-            size = np.abs(whole[0][0]) + np.abs(whole[1][1]) + np.abs(whole[2][2])
-            fits = fits & _semidefinite(rest, size)
-            fits = fits if of.lenient else fits & _semidefinite(second, size)
+    fits = of.bodies(of.library.known, dict(zip(of.names, held(of, rows), strict=True)))
     return np.broadcast_to(fits, (rows.shape[1],))
 
 
-def _matrix(entries: Entries, numbers: Mapping[str, Any]) -> list[list[Any]]:
-    xx, yy, zz, xy, xz, yz = (_value(f, numbers) for f in entries)
-    return [[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]
-
-
-def _value(formula: Any, numbers: Mapping[str, Any]) -> Any:
-    table = arithmetics(np.float64).own
-    return np.asarray(evaluate(formula, numbers, table | {"number": float, "power": _power}))
-
-
-def _power(x: Any, n: int) -> Any:
-    product = x * 0 + 1.0
-    for _ in range(abs(n)):
-        product = product * x
-    return product if n >= 0 else 1 / product
-
-
-def _semidefinite(m: Any, size: Any) -> Any:
-    (a, d, e), (_, b, f), (_, _, c) = m
-    a, b, c = (x + SLACK * size for x in (a, b, c))
-    minors = (a * b - d * d, a * c - e * e, b * c - f * f)
-    whole = a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e)
-    fits = (a >= 0) & (b >= 0) & (c >= 0) & (whole >= 0)
-    return fits & (minors[0] >= 0) & (minors[1] >= 0) & (minors[2] >= 0)
-
-
-def held(of: Ranges, rows: Column) -> Column:
+def held(of: Field, rows: Column) -> Column:
     """Return numbers as floats of the precision, in double."""
     return rows.astype(of.precision.dtype).astype(np.float64)
 
 
-@dataclass(frozen=True)
-class Completing:
-    """The programs that complete a sample: set-up, the rate of omega, and the plan of a step."""
-
-    setup: Plan
-    rate: Plan | None
-    plan: Plan | None
-
-
-def completing(library: Library) -> Completing:
-    """Return what completes the samples of a scene."""
-    plans = [f for f in library.motions if f.makes("plan")]
-    rate, plan = (planned(p[0]) if p else None for p in (telling(library), plans))
-    return Completing(planned(library.setup), rate, plan)
-
-
-def complete(of: Ranges, by: Completing, rows: Column) -> Known:
-    """Return samples with times in reach, the plan, and the constants."""
+def complete(of: Field, rows: Column) -> Known:
+    """Return samples with remainders of their states, times in reach, the plan, and constants."""
     dtype = of.precision.dtype
     own: dict[str, Column] = dict(zip(of.names, rows.astype(dtype), strict=True))
     own |= {
@@ -200,18 +190,23 @@ def complete(of: Ranges, by: Completing, rows: Column) -> Known:
         for c in q.components
         if q.role == "remainder"
     }
-    table = arithmetics(of.precision.dtype)
+    return completed(of, own)
+
+
+def completed(of: Field, own: dict[str, Column]) -> Known:
+    """Return samples, by component, with times in reach, the plan, and the constants."""
+    dtype, table = of.precision.dtype, arithmetics(of.precision.dtype)
     with np.errstate(all="ignore"):
-        made = known(by.setup, own, table)
+        made = known(of.setup, own, table)
         if "omega_x" in own and {"time_step", "time"} & own.keys():
-            own = _in_reach(of, own, _omega_rate(by.rate, made, table))
-            made = known(by.setup, own, table)
-        if by.plan is not None:
-            found = in_columns(by.plan, table.own, made.own)
-            count = rows.shape[1]
-            columns: Any = (np.broadcast_to(x, (count,)).astype(of.precision.dtype) for x in found)
-            own |= dict(zip(component_names(by.plan.program), columns, strict=True))
-            made = known(by.setup, own, table)
+            own = _in_reach(own, _omega_rate(of.rate, made, table))
+            made = known(of.setup, own, table)
+        if of.plan is not None:
+            count = len(next(iter(own.values())))
+            found = in_columns(of.plan, table.own, made.own)
+            columns: Any = (np.broadcast_to(x, (count,)).astype(dtype) for x in found)
+            own |= dict(zip(component_names(of.plan.program), columns, strict=True))
+            made = known(of.setup, own, table)
     return made
 
 
@@ -224,13 +219,43 @@ def _omega_rate(rate: Plan | None, made: Known, table: Any) -> Any:
     return np.max(np.nan_to_num(np.broadcast_arrays(*own)), axis=0)
 
 
-def _in_reach(of: Ranges, own: dict[str, Column], fast: Any) -> dict[str, Column]:
+def _in_reach(own: dict[str, Column], fast: Any) -> dict[str, Column]:
+    """Return samples with times in which the body turns by no more than a step can take."""
     wide = {n: own[n].astype(np.float64) for n in own if n.startswith("omega_") or "time" in n}
     omega = np.max([np.abs(wide[f"omega_{axis}"]) for axis in "xyz"], axis=0)
-    step, time = bounds_of_times(omega, fast)
-    limits = {"time_step": step, "time": time}
+    step = REACH / np.maximum(np.maximum(omega, np.sqrt(fast)), 1e-300)
+    limits = {"time_step": step, "time": LONG * step}
     return own | {
-        c: np.clip(wide[c], -limit, limit).astype(of.precision.dtype)
+        c: np.clip(wide[c], -limit, limit).astype(own[c].dtype)
         for c, limit in limits.items()
         if c in own
     }
+
+
+def with_motion(
+    library: Library, each: Sequence[Sample], precision: Precision
+) -> tuple[Sample, ...]:
+    """Return the samples with values for all that only the functions of motion are given."""
+    if not library.motions or not each:
+        return tuple(each)
+    of, dice = Field(library, precision), source(library.known, precision, "motion").dice
+    fresh = [(c, q) for q in fresh_quantities(library) for c in q.components]
+    rows = [s.values | {c: _drawn(of, dice, s, c, q) for c, q in fresh} for s in each]
+    columns: dict[str, Column] = {
+        c: np.array([row[c] for row in rows], precision.dtype) for c in rows[0]
+    }
+    at = completed(of, columns).own
+    names = (*columns, *(component_names(of.plan.program) if of.plan else ()))
+    numbers = zip(*(at[c].tolist() for c in names), strict=True)
+    return tuple(
+        replace(s, values=dict(zip(names, own, strict=True)))
+        for s, own in zip(each, numbers, strict=True)
+    )
+
+
+def _drawn(of: Field, dice: Random, sample: Sample, component: str, q: Quantity) -> float:
+    """Return a number on a range; a remainder is what rounding may leave of its state."""
+    if q.role != "remainder":
+        return uniform(dice, q)
+    state = sample.values[component.removeprefix(f"{REMAINDER}_")]
+    return of.precision.unit_roundoff * abs(state) * (2 * dice.random() - 1)

@@ -8,18 +8,23 @@ the moments and products themselves.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
 from random import Random
-from typing import TypeGuard
+from typing import Any, TypeGuard
+
+import numpy as np
 
 from derive.mechanics.mechanism import Mechanism
 from derive.program.added import added
 from derive.program.arithmetic import rounded
 from derive.program.precision import Precision
-from derive.scene.formula import FLOATS, ZERO, Formula, evaluate
+from derive.scene.formula import ZERO, Formula, evaluate
 from derive.scene.machine import Above, Demand, Entries, Tensor
-from derive.scene.numbers import Matrix, semidefinite, triangle
+from derive.verify.columns import arithmetics
 
 Triple = tuple[float, float, float]
+SLACK = 1e-12
+"""Of the triangle inequality, relative to the trace: a disc obeys it with equality."""
 OWN_AXES = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 TURN = (0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6)  # a rotation, exact in decimals
 
@@ -125,21 +130,30 @@ def _turned(moments: Triple, turn: Sequence[float]) -> tuple[float, ...]:
     return tuple(own)
 
 
-def admissible(known: Mechanism, values: Mapping[str, float]) -> bool:
-    """Tell whether a scene's parameters describe bodies, wheels included."""
-    wholes = (_tensor(known, values, t.whole) for t in inverted(known))
-    return solvable(known, values) and all(map(triangle, wholes))
+def admissible(known: Mechanism, values: Mapping[str, Any]) -> Any:
+    """Tell whether a scene's parameters describe bodies, wheels included; of columns, which do.
+
+    A body keeps the triangle inequality: its second moments are not negative.
+    """
+    fits = solvable(known, values)
+    for tensor in inverted(known):
+        whole, size = _tensor(known, values, tensor.whole), _size(known, values, tensor)
+        half = (whole[0][0] + whole[1][1] + whole[2][2]) / 2
+        second = [[(half if i == k else 0.0) - whole[i][k] for k in range(3)] for i in range(3)]
+        fits = fits & _semidefinite(second, size)
+    return fits
 
 
-def solvable(known: Mechanism, values: Mapping[str, float]) -> bool:
+def solvable(known: Mechanism, values: Mapping[str, Any]) -> Any:
     """Tell whether no tensor that equations divide by has a negative moment.
 
-    That is all that the equations need; a body keeps the triangle inequality besides.
+    That is all that the equations need.
     """
-    return all(
-        semidefinite(_tensor(known, values, without_wheels(t)), _size(known, values, t))
-        for t in inverted(known)
-    )
+    fits = np.True_
+    for tensor in inverted(known):
+        rest = _tensor(known, values, without_wheels(tensor))
+        fits = fits & _semidefinite(rest, _size(known, values, tensor))
+    return fits
 
 
 def without_wheels(tensor: Tensor) -> Entries:
@@ -148,14 +162,33 @@ def without_wheels(tensor: Tensor) -> Entries:
     return tuple(whole if own is None else own for own, whole in pairs)
 
 
-def _size(known: Mechanism, values: Mapping[str, float], tensor: Tensor) -> Fraction:
+def _size(known: Mechanism, values: Mapping[str, Any], tensor: Tensor) -> Any:
     whole = _tensor(known, values, tensor.whole)
-    return sum((abs(whole[i][i]) for i in range(3)), Fraction(0))
+    return np.abs(whole[0][0]) + np.abs(whole[1][1]) + np.abs(whole[2][2])
 
 
-def _tensor(known: Mechanism, values: Mapping[str, float], entries: Entries) -> Matrix:
-    numbers = dict(values) | {n: float(x) for n, x in known.words.numbers.items()}
-    xx, yy, zz, xy, xz, yz = (
-        Fraction(0) if f is None else Fraction(evaluate(f, numbers, FLOATS)) for f in entries
-    )
-    return (xx, -xy, -xz), (-xy, yy, -yz), (-xz, -yz, zz)
+def _tensor(known: Mechanism, values: Mapping[str, Any], entries: Entries) -> list[list[Any]]:
+    numbers = {**values, **{n: float(x) for n, x in known.words.numbers.items()}}
+    table = arithmetics(np.float64).own | {"number": float, "power": _power}
+    with np.errstate(all="ignore"):
+        xx, yy, zz, xy, xz, yz = (
+            np.float64(0) if f is None else np.asarray(evaluate(f, numbers, table)) for f in entries
+        )
+    return [[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]
+
+
+def _power(x: Any, n: int) -> Any:
+    product = x * 0 + 1.0
+    for _ in range(abs(n)):
+        product = product * x
+    return product if n >= 0 else 1 / product
+
+
+def _semidefinite(m: list[list[Any]], size: Any) -> Any:
+    """Tell whether no principal minor is negative, but for rounding beside ``size``."""
+    (a, d, e), (_, b, f), (_, _, c) = m
+    with np.errstate(all="ignore"):
+        a, b, c = (x + SLACK * size for x in (a, b, c))
+        whole = a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e)
+        minors = (a, b, c, whole, a * b - d * d, a * c - e * e, b * c - f * f)
+        return reduce(np.logical_and, [minor >= 0 for minor in minors])

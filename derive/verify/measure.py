@@ -1,9 +1,11 @@
 """How far off every output of every function is, by replaying the programs in floats.
 
 The figures stand in the comment blocks and the JSON. The replay is vectorised over samples and the
-same on every machine: float operations in numpy, sine and cosine correctly rounded. An error is
-counted in u (2^-53, 2^-24) times the largest product in the output's equation; none counts
-as smaller than the smallest normal number, below which floats are spaced alike.
+same on every machine: float operations in numpy, sine and cosine correctly rounded. A function of
+the lecture should return what its equations say; one of motion what the same program gives in
+balls, set-up included: what a step leaves out by its order is another matter, which tests measure.
+An error is counted in u (2^-53, 2^-24) times what ``scale`` says, the largest product in the
+output's equation; none counts as smaller than the smallest normal number.
 """
 
 import math
@@ -12,7 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from flint import arb
+from flint import arb, ctx
 from numpy.typing import NDArray
 
 from derive.library.library import Library
@@ -20,17 +22,17 @@ from derive.program.arithmetic import Table, extended, paired
 from derive.program.largest import largest
 from derive.program.precision import Precision
 from derive.program.program import Program, component_names
-from derive.program.run import run
-from derive.verify.equations import equations
-from derive.verify.reference import BALLS, reference
+from derive.program.run import results_by_name, run
+from derive.verify.columns import arithmetics, known, planned
+from derive.verify.draw import Field
+from derive.verify.operators import LONG_FLOATS
+from derive.verify.reference import BALLS, BITS, reference
 from derive.verify.sample import Sample
-from derive.verify.scale import base_of, columns_of
+from derive.verify.scale import around, base_of, columns_of, measured_outputs, motion_scales
 from derive.verify.solution import Known
 from derive.verify.valuation import Arithmetic
 
 DIGITS = 2  # of a printed figure, rounded up
-
-True_ = Mapping[str, Known]
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,19 @@ class Errors:
         return [largest(row) if row else 0.0 for row in self.rows]
 
 
+@dataclass(frozen=True)
+class Expected:
+    """What a component should be, its largest product, and how far small ones are magnified.
+
+    whole : it is an angle, the same a turn later
+    """
+
+    value: Any
+    scale: float
+    gain: float = 0.0
+    whole: bool = False
+
+
 def upwards(x: float) -> float:
     """Return ``x`` rounded up to two digits.
 
@@ -59,18 +74,61 @@ def upwards(x: float) -> float:
     return math.ceil(x * unit) / unit if step < 0 else math.ceil(x / unit) * unit
 
 
-def references(
-    library: Library, each: Sequence[Sample], arithmetic: Arithmetic = BALLS
-) -> Iterator[tuple[Program, list[True_]]]:
-    """Yield each function with what it should return, sample by sample."""
-    asked = {base: equations(library.known, fact) for base, fact in library.truths.items()}
-    for base, question in asked.items():
-        own = [f for f in library.functions if base_of(f) == base]
+def should(
+    by: Field, functions: Sequence[Program], each: Sequence[Sample], arithmetic: Arithmetic = BALLS
+) -> Iterator[tuple[Program, list[list[Expected]]]]:
+    """Yield each function of the lecture with what its components should be, sample by sample."""
+    for base, asked in by.asked.items():
+        own = [f for f in functions if base_of(f) == base]
         columns = tuple(dict.fromkeys(c for f in own for c in columns_of(f)))
-        true: list[True_] = (
-            [reference(question, s.values, columns, arithmetic) for s in each] if own else []
-        )
-        yield from ((program, true) for program in own)
+        true = [reference(asked, s.values, columns, arithmetic) for s in each if own]
+        yield from ((program, [_expected(program, at) for at in true]) for program in own)
+
+
+def _expected(program: Program, true: Mapping[str, Known]) -> list[Expected]:
+    """Return what each component of a function of the lecture should be."""
+    zero: tuple[Any, float] = (arb(0), 0.0)
+    found: list[Expected] = []
+    for q in program.outputs:
+        pattern = (program.sparsity or {}).get(q.name)
+        if pattern is None:
+            own = [true[c] for c in q.components]
+            found += [Expected(known.value, known.scale, known.gain) for known in own]
+            continue
+        for i, k in pattern.places():
+            row = true[pattern.rows[i]]
+            value, scale = row.slopes.get(pattern.columns[k], zero)
+            found.append(Expected(value, scale, row.gain))
+    return found
+
+
+def should_move(by: Field, program: Program, each: Sequence[Sample]) -> list[list[Expected]]:
+    """Return what each component of a function of motion should be, sample by sample."""
+    dtype = by.precision.dtype
+    true = [[x.mid() for x in exact(by.library, program, s)] for s in each]
+    own: dict[str, Any] = {c: np.array([s.values[c] for s in each], dtype) for c in each[0].values}
+    with np.errstate(all="ignore"):
+        wide = known(by.setup, own, arithmetics(dtype)).wide
+        values = [np.array([float(row[k]) for row in true]) for k in range(len(true[0]))]
+        scales = [np.broadcast_to(x, len(each)).tolist()
+                  for x in motion_scales(by, planned(program), wide, values)]  # fmt: skip
+    return [
+        [Expected(x, size, whole=w) for x, size, w in zip(row, at, around(program), strict=True)]
+        for row, at in zip(true, zip(*scales, strict=True), strict=True)
+    ]
+
+
+def exact(library: Library, program: Program, sample: Sample) -> list[Any]:
+    """Return the results of a program at a sample, in balls, from the scene's parameters on."""
+    with ctx.workprec(BITS):
+        values = {name: arb(x) for name, x in sample.values.items()}
+        return list(results(library, program, values).values())
+
+
+def results(library: Library, program: Program, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a program gives, in balls, from the scene's parameters on."""
+    constants = results_by_name(library.setup, LONG_FLOATS, values)
+    return results_by_name(program, LONG_FLOATS, {**values, **constants})
 
 
 def replayed(
@@ -102,50 +160,38 @@ def _replay(program: Program, table: Table, known: Mapping[str, NDArray[Any]]) -
 
 
 def errors(
-    program: Program, results: Sequence[Any], true: Sequence[True_], precision: Precision
-) -> Iterator[Errors]:
-    """Yield the errors of each output of a function, from its results by component."""
-    columns = [np.broadcast_to(r, len(true)).tolist() for r in results]
-    place = 0
-    for q in program.outputs:
-        own = columns[place : place + len(q.components)]
-        place += len(q.components)
-        rows = tuple(
+    program: Program,
+    returned: Sequence[Any],
+    true: Sequence[Sequence[Expected]],
+    precision: Precision,
+) -> list[Errors]:
+    """Return the errors of each measured output of a function, from its results by component."""
+    columns = [np.broadcast_to(r, len(true)).tolist() for r in returned]
+    return [
+        Errors(
+            program.name,
+            q.name,
             tuple(
-                error(column[n], should, precision)
-                for column, should in zip(own, expected(program, q.name, here), strict=True)
-            )
-            for n, here in enumerate(true)
+                tuple(
+                    error(column[n], one, precision)
+                    for column, one in zip(columns[span], row[span], strict=True)
+                )
+                for n, row in enumerate(true)
+            ),
         )
-        yield Errors(program.name, q.name, rows)
+        for q, span in measured_outputs(program)
+    ]
 
 
-@dataclass(frozen=True)
-class Expected:
-    """What a component should be, its largest product, and how far small ones are magnified."""
-
-    value: Any
-    scale: float
-    gain: float
-
-
-def expected(program: Program, output: str, true: True_) -> list[Expected]:
-    """Return what each component of an output should be."""
-    pattern = (program.sparsity or {}).get(output)
-    if pattern is None:
-        (q,) = (q for q in program.outputs if q.name == output)
-        own = [true[c] for c in q.components]
-        return [Expected(known.value, known.scale, known.gain) for known in own]
-    zero: tuple[Any, float] = (arb(0), 0.0)
-    entries = [(true[pattern.rows[i]], pattern.columns[k]) for i, k in pattern.places()]
-    slopes = [(row.slopes.get(column, zero), row.gain) for row, column in entries]
-    return [Expected(value, scale, gain) for (value, scale), gain in slopes]
-
-
-def error(found: float, should: Expected, precision: Precision) -> float:
+def error(found: float, true: Expected, precision: Precision) -> float:
     """Return how far ``found`` is from what it should be, in u of the largest product."""
-    if not math.isfinite(found):
-        return math.inf
+    if not (math.isfinite(found) and true.value.is_finite() and math.isfinite(true.scale)):
+        return math.inf  # samples lie where every function has a value
     smallest = float(np.finfo(precision.dtype).smallest_normal)
-    wrong = (arb(found) - should.value).mid() / arb(max(should.scale, smallest * should.gain))
-    return abs(float(wrong)) / precision.unit_roundoff
+    with ctx.workprec(BITS):
+        gap = arb(found) - true.value
+        if true.whole:
+            turn = 2 * arb.pi()
+            gap -= turn * round(float(gap / turn))
+        wrong = gap.mid() / arb(max(true.scale, smallest * true.gain))
+        return abs(float(wrong)) / precision.unit_roundoff

@@ -16,7 +16,7 @@ from flint import arb, ctx, fmpq, fmpq_mat
 from derive.library.library import Library
 from derive.program.program import Op, Program, component_names, read_by
 from derive.program.recorded import needed
-from derive.program.run import run
+from derive.program.run import results_by_name
 from derive.scene.wanted import JACOBIAN
 from derive.verify.equations import Equations, equations
 from derive.verify.operators import IN_FRACTIONS, IrrationalError
@@ -123,7 +123,7 @@ def _dice(library: Library, number: int) -> Iterator[tuple[str, Any]]:
 
 
 def _prove_at(library: Library, asked: Mapping[str, Equations], at: Point) -> None:
-    constants = constants_at(lectured(library), at)
+    constants = results_by_name(lectured(library), at.arithmetic, at.values)
     for name, question in asked.items():
         functions = [
             f for f in (*library.functions, *library.rates) if f.name.removesuffix(JACOBIAN) == name
@@ -149,28 +149,13 @@ def lectured(library: Library) -> Program:
     return replace(setup, outputs=outputs, ops=needed(setup.ops, results), results=results)
 
 
-def constants_at(setup: Program, at: Point) -> dict[str, Any]:
-    """Return the constants that set-up makes at a point."""
-    names = [c for q in setup.outputs for c in q.components]
-    return dict(zip(names, _run(setup, at, {}), strict=True))
-
-
-def _run(program: Program, at: Point, constants: Mapping[str, Any]) -> list[Any]:
-    known = {**at.values, **constants}
-    given = [  # constants of motion alone are not made here, and not read either
-        known.get(c) if q.role == "constants" else known[c]
-        for q in program.inputs
-        for c in q.components
-    ]
-    return run(program, at.arithmetic, given)
-
-
 def first_fault(
     program: Program, true: Mapping[str, Known], constants: Mapping[str, Any], at: Point
 ) -> tuple[str, Any] | None:
     """Return the first output component that is not what the equations say, and by how much."""
-    names = [c for q in program.outputs for c in q.components]
-    results = dict(zip(names, _run(program, at, constants), strict=True))
+    given = {c: None for q in program.inputs if q.role == "constants" for c in q.components}
+    # constants of motion alone are not made, and not read either
+    results = results_by_name(program, at.arithmetic, {**given, **at.values, **constants})
     for name, should in _expected(program, true).items():
         gap = results.get(name, 0) - should
         if not _vanishes(gap):

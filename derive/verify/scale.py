@@ -7,18 +7,16 @@ largest component. No scale knows how a program is arranged.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import reduce
 from typing import Any
 
 import numpy as np
 
-from derive.library.library import Library
 from derive.motion.runge_kutta.system import FLOW, NEXT
-from derive.program.program import Program, Quantity, component_names
+from derive.program.program import Program, Quantity, component_names, placed
 from derive.scene.wanted import JACOBIAN
-from derive.verify.columns import Column, Plan, doubles, in_columns, planned
-from derive.verify.equations import Equations, equations
+from derive.verify.columns import Column, Plan, doubles, in_columns
+from derive.verify.draw import Field
 from derive.verify.operators import IN_DOUBLES
 from derive.verify.solution import Known as Solved
 from derive.verify.solution import solution
@@ -33,7 +31,6 @@ NOTHING = 1e-60
 """A part this much smaller than the rest of a plan is what rounding left, and has no true value."""
 
 Wide = Mapping[str, Column]
-Outputs = Sequence[tuple[Quantity, Sequence[Column]]]
 
 
 def _inverse(rows: Sequence[Sequence[Any]]) -> list[list[Any]]:
@@ -75,31 +72,9 @@ DOUBLES: dict[str, Callable[..., Any]] = {
 """Doubles in columns, for what needs two digits: how large terms are."""
 
 
-@dataclass(frozen=True)
-class Sizing:
-    """The equations of a scene that tell how large its terms are, and its smallest float."""
-
-    library: Library
-    setup: Plan
-    asked: Mapping[str, Equations]
-    smallest: float
-
-
-def sizing(library: Library, smallest: float) -> Sizing:
-    """Return what the terms of a scene's functions are sized by."""
-    asked = {base: equations(library.known, fact) for base, fact in library.truths.items()}
-    return Sizing(library, planned(library.setup), asked, smallest)
-
-
 def measured_outputs(program: Program) -> list[tuple[Quantity, slice]]:
     """Return the outputs that have a true value, and where their components stand."""
-    found, place = [], 0
-    for q in program.outputs:
-        span = slice(place, place + len(q.components))
-        place = span.stop
-        if q.name not in UNMEASURED:
-            found.append((q, span))
-    return found
+    return [(q, span) for q, span in placed(program.outputs) if q.name not in UNMEASURED]
 
 
 def around(program: Program) -> list[bool]:
@@ -117,7 +92,7 @@ def columns_of(program: Program) -> tuple[str, ...]:
     return tuple(c for pattern in (program.sparsity or {}).values() for c in pattern.columns)
 
 
-def lecture_scales(by: Sizing, program: Program, wide: Wide) -> list[Column]:
+def lecture_scales(by: Field, program: Program, wide: Wide) -> list[Column]:
     """Return the largest product in the equation of each component of a function of the lecture."""
     found = solution(by.asked[base_of(program)], wide, columns_of(program), DOUBLES)
     scales: list[Column] = []
@@ -133,23 +108,19 @@ def lecture_scales(by: Sizing, program: Program, wide: Wide) -> list[Column]:
     return scales
 
 
-def _floored(by: Sizing, row: Solved, scale: Any) -> Any:
+def _floored(by: Field, row: Solved, scale: Any) -> Any:
     return np.maximum(scale, by.smallest * row.gain)
 
 
-def motion_scales(by: Sizing, plan: Plan, wide: Wide, true: Sequence[Column]) -> list[Column]:
+def motion_scales(by: Field, plan: Plan, wide: Wide, true: Sequence[Column]) -> list[Column]:
     """Return the scale of each component of a function of motion, from its true values."""
     program, sizes = plan.program, [np.abs(x) for x in true]
-    place = 0
-    grouped: list[tuple[Quantity, Sequence[Column]]] = []
-    for q in program.outputs:
-        grouped.append((q, sizes[place : place + len(q.components)]))
-        place += len(q.components)
     if program.name == FLOW:
-        return _magnified(by, plan, wide, grouped)
+        return _magnified(by, plan, wide, sizes)
     added = _added(by, wide) if any(q.name.endswith(NEXT) for q in program.outputs) else {}
     scales: list[Column] = []
-    for q, own in grouped:
+    for q, span in placed(program.outputs):
+        own = sizes[span]
         before = [added[c] for c in _states_of(q) if c in added]
         most = reduce(np.maximum, (*own, *before), np.asarray(by.smallest))
         if q.role == "plan":
@@ -164,7 +135,7 @@ def _states_of(q: Quantity) -> list[str]:
     return [c.replace(NEXT, "") for c in q.components] if q.name.endswith(NEXT) else []
 
 
-def _added(by: Sizing, wide: Wide) -> dict[str, Column]:
+def _added(by: Field, wide: Wide) -> dict[str, Column]:
     """Return the largest term of each state in a step: it, and what the step adds to it.
 
     What is added is sized twice: a rate may be made of states that themselves begin at zero.
@@ -182,26 +153,26 @@ def _added(by: Sizing, wide: Wide) -> dict[str, Column]:
     return largest
 
 
-def _magnified(by: Sizing, plan: Plan, wide: Wide, grouped: Outputs) -> list[Column]:
+def _magnified(by: Field, plan: Plan, wide: Wide, sizes: Sequence[Column]) -> list[Column]:
     """Return kappa times the largest component of each output: what its inputs' changes make."""
     inputs = (*by.setup.program.inputs, *plan.program.inputs)
     names = {c: None for q in inputs for c in q.components if q.role != "constants"}
     start = _values(by, plan, wide)
-    total = [np.asarray(by.smallest) for _ in grouped]
+    spans = [span for _, span in placed(plan.program.outputs)]
+    total = [np.asarray(by.smallest) for _ in spans]
     for c in names:
         moved = _values(by, plan, dict(wide) | {c: wide[c] * (1 + CHANGED)})
         change = [np.abs(a - b) / CHANGED for a, b in zip(moved, start, strict=True)]
-        place = 0
-        for n, (q, _) in enumerate(grouped):
-            total[n] = total[n] + reduce(np.maximum, change[place : place + len(q.components)])
-            place += len(q.components)
-    scales: list[Column] = []
-    for (_, own), grown in zip(grouped, total, strict=True):
-        scales += [np.maximum(grown, reduce(np.maximum, own))] * len(own)
-    return scales
+        total = [grown + reduce(np.maximum, change[span])
+                 for grown, span in zip(total, spans, strict=True)]  # fmt: skip
+    return [
+        np.maximum(grown, reduce(np.maximum, sizes[span]))
+        for grown, span in zip(total, spans, strict=True)
+        for _ in sizes[span]
+    ]
 
 
-def _values(by: Sizing, plan: Plan, wide: Wide) -> list[Any]:
+def _values(by: Field, plan: Plan, wide: Wide) -> list[Any]:
     made = in_columns(by.setup, doubles(), wide)
     known = dict(wide) | dict(zip(component_names(by.setup.program), made, strict=True))
     return in_columns(plan, doubles(), known)

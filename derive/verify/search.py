@@ -7,32 +7,14 @@ pairs of doubles see; what is stated is measured at these samples in balls (see 
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
-from derive.library.library import Library
 from derive.program.pair_sine import PI
-from derive.program.precision import Precision
-from derive.verify.columns import Column, Known, Plan, arithmetics, found_and_true, planned
-from derive.verify.draw import (
-    Completing,
-    Dice,
-    Ranges,
-    admitted,
-    complete,
-    completing,
-    drawn,
-    on_the_sphere,
-    ranges,
-)
-from derive.verify.scale import (
-    Sizing,
-    around,
-    lecture_scales,
-    measured_outputs,
-    motion_scales,
-    sizing,
-)
+from derive.verify.columns import Column, Known, Plan, arithmetics, found_and_true
+from derive.verify.draw import Dice, Field, admitted, complete, drawn, on_the_sphere
+from derive.verify.scale import around, lecture_scales, measured_outputs, motion_scales
 
 CHUNK = 8192
 TURN = 2 * float(PI)
@@ -71,42 +53,30 @@ def sampled_at(samples: int) -> Sampling:
     return Sampling(samples=max(samples, 1), batch=max(1, samples // (2 * SAMPLING.rounds)))
 
 
-QUICK = Sampling(samples=2048, rounds=4, batch=512)
-
-
-@dataclass(frozen=True)
+@dataclass
 class Worst:
-    """The worst samples of an output, errors in u and raw columns, and the median of all."""
+    """The worst samples so far of an output, and errors for its median.
+
+    errors : (kept,) in u, the largest first      rows : (raw components, kept)
+    """
 
     function: str
     output: str
-    errors: Column  # (kept,), the largest first
-    rows: Column  # (raw components, kept)
-    median: float
+    errors: Column
+    rows: Column
+    middle: list[Column]
 
+    @property
+    def median(self) -> float:
+        """Return the median of the errors at the first samples."""
+        return float(np.median(np.concatenate(self.middle)))
 
-@dataclass(frozen=True)
-class Field:
-    """All that is needed to tell the errors of a scene's functions at columns of samples."""
-
-    precision: Precision
-    ranges: Ranges
-    completing: Completing
-    sizing: Sizing
-    plans: tuple[Plan, ...]
-    lectured: frozenset[str]
-
-
-def field(library: Library, precision: Precision) -> Field:
-    """Return what tells the errors of a scene's functions in one precision."""
-    return Field(
-        precision,
-        ranges(library, precision),
-        completing(library),
-        sizing(library, float(np.finfo(precision.dtype).smallest_normal)),
-        tuple(map(planned, library.printed())),
-        frozenset(f.name for f in library.functions),
-    )
+    def add(self, found: Column, rows: Column, kept: int) -> None:
+        """Take in the errors of more samples."""
+        worst = np.concatenate([self.errors, found.max(axis=0)])
+        order = np.argsort(-worst, kind="stable")[:kept]
+        every = np.concatenate([self.rows, rows], axis=1)
+        self.errors, self.rows = worst[order], every[:, order]
 
 
 def errors_at(of: Field, plan: Plan, at: Known) -> list[Column]:
@@ -114,12 +84,12 @@ def errors_at(of: Field, plan: Plan, at: Known) -> list[Column]:
     by = arithmetics(of.precision.dtype)
     with np.errstate(all="ignore"):
         pairs = found_and_true(plan, at, by)
-        if plan.program.name in of.lectured:
-            scales = lecture_scales(of.sizing, plan.program, at.wide)
+        if plan.program in of.library.functions:
+            scales = lecture_scales(of, plan.program, at.wide)
         else:
             single = of.precision.dtype is np.float32
             true = [t if single else t[0] for _, t in pairs]
-            scales = motion_scales(of.sizing, plan, at.wide, true)
+            scales = motion_scales(of, plan, at.wide, true)
         off = [
             np.abs(_apart(by.off(f, t), whole)) / scale / of.precision.unit_roundoff
             for (f, t), scale, whole in zip(pairs, scales, around(plan.program), strict=True)
@@ -133,65 +103,42 @@ def _apart(gaps: Column, whole: object) -> Column:
     return gaps - TURN * np.round(gaps / TURN) if whole else gaps
 
 
-@dataclass
-class Best:
-    """The worst samples so far of each output of one program, and errors for the medians."""
-
-    kept: int
-    errors: list[Column]
-    rows: list[Column]
-    middle: list[list[Column]]
-
-    def add(self, found: Sequence[Column], rows: Column) -> None:
-        for n, own in enumerate(found):
-            worst = np.concatenate([self.errors[n], own.max(axis=0)])
-            order = np.argsort(-worst, kind="stable")[: self.kept]
-            every = np.concatenate([self.rows[n], rows], axis=1)
-            self.errors[n], self.rows[n] = worst[order], every[:, order]
-
-
-def _best(plan: Plan, kept: int, height: int) -> Best:
-    count = len(measured_outputs(plan.program))
-    return Best(
-        kept,
-        [np.zeros(0) for _ in range(count)],
-        [np.zeros((height, 0)) for _ in range(count)],
-        [[] for _ in range(count)],
-    )
-
-
-def sampled(of: Field, seed: str, count: int, kept: int) -> Iterator[tuple[int, list[Best]]]:
-    """Yield how many samples are done, and the worst so far of each program."""
-    scene = of.ranges.library.known.scene.name
-    dice = Dice(f"derive: {scene} {of.precision.name} {seed}")
-    best = [_best(plan, kept, len(of.ranges.names)) for plan in of.plans]
+def sampled(of: Field, seed: str, count: int, kept: int) -> Iterator[tuple[int, list[Worst]]]:
+    """Yield how many samples are done, and the worst so far of each output of each function."""
+    dice = Dice(f"derive: {of.library.known.scene.name} {of.precision.name} {seed}")
+    height = len(of.names)
+    best = [
+        Worst(plan.program.name, q.name, np.zeros(0), np.zeros((height, 0)), [])
+        for plan in of.plans
+        for q, _ in measured_outputs(plan.program)
+    ]
     done = 0
     while done < count:
-        rows = drawn(of.ranges, dice, min(CHUNK, count - done))
-        at = complete(of.ranges, of.completing, rows)
-        for plan, own in zip(of.plans, best, strict=True):
-            found = errors_at(of, plan, at)
-            own.add(found, rows)
+        rows = drawn(of, dice, min(CHUNK, count - done))
+        at = complete(of, rows)
+        every = chain.from_iterable(errors_at(of, plan, at) for plan in of.plans)
+        for own, found in zip(best, every, strict=True):
+            own.add(found, rows, kept)
             if done < MIDDLE:
-                for middle, errors in zip(own.middle, found, strict=True):
-                    middle.append(errors.ravel())
+                own.middle.append(found.ravel())
         done += rows.shape[1]
         yield done, best
 
 
-def searched(of: Field, plan: Plan, best: Best, by: Sampling) -> None:
-    """Look for worse samples of a program from the worst on."""
-    scene, name = of.ranges.library.known.scene.name, plan.program.name
+def searched(of: Field, plan: Plan, best: Sequence[Worst], by: Sampling) -> None:
+    """Look for worse samples of a function from the worst of its outputs on."""
+    scene, name = of.library.known.scene.name, plan.program.name
     dice = Dice(f"derive: {scene} {of.precision.name} search {name}")
     for turn in range(by.rounds):
-        parents = np.concatenate(best.rows, axis=1)
+        parents = np.concatenate([own.rows for own in best], axis=1)
         for done in range(0, by.batch, CHUNK):
             count = min(CHUNK, by.batch - done)
-            rows = _changed(of.ranges, dice, parents, count, turn / by.rounds)
-            best.add(errors_at(of, plan, complete(of.ranges, of.completing, rows)), rows)
+            rows = _changed(of, dice, parents, count, turn / by.rounds)
+            for own, found in zip(best, errors_at(of, plan, complete(of, rows)), strict=True):
+                own.add(found, rows, by.kept)
 
 
-def _changed(of: Ranges, dice: Dice, parents: Column, count: int, share: float) -> Column:
+def _changed(of: Field, dice: Dice, parents: Column, count: int, share: float) -> Column:
     """Return samples beside some of the parents, the nearer the more of the search is done."""
     which = (dice.uniform(count) * parents.shape[1]).astype(int)
     start = parents[:, which]
@@ -205,22 +152,11 @@ def _changed(of: Ranges, dice: Dice, parents: Column, count: int, share: float) 
     return np.where(admitted(of, rows), rows, start)
 
 
-def worst(library: Library, precision: Precision, by: Sampling) -> list[Worst]:
+def worst(of: Field, by: Sampling) -> list[Worst]:
     """Return the worst samples of every output of every function in one precision."""
-    of = field(library, precision)
-    best: list[Best] = []
+    best: list[Worst] = []
     for _, best in sampled(of, "measured", by.samples, by.kept):  # noqa: B007 - the last is kept
         pass
-    for plan, own in zip(of.plans, best, strict=True):
-        searched(of, plan, own, by)
-    return worst_of(of, best)
-
-
-def worst_of(of: Field, best: Sequence[Best]) -> list[Worst]:
-    """Return the worst samples of every output of every function, as they are known by now."""
-    found = []
-    for plan, own in zip(of.plans, best, strict=True):
-        for n, (q, _) in enumerate(measured_outputs(plan.program)):
-            middle = float(np.median(np.concatenate(own.middle[n])))
-            found.append(Worst(plan.program.name, q.name, own.errors[n], own.rows[n], middle))
-    return found
+    for plan in of.plans:
+        searched(of, plan, [own for own in best if own.function == plan.program.name], by)
+    return best

@@ -5,7 +5,7 @@ ones, and the worst that the search found. The median is of the samples of the r
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,28 +14,10 @@ from derive.program.arithmetic import working
 from derive.program.largest import largest
 from derive.program.precision import PRECISIONS, Precision
 from derive.program.program import Measurement, Program
-from derive.verify.draw import Ranges, complete, completing, ranges
-from derive.verify.measure import Errors, errors, replayed, upwards
-from derive.verify.motion_error import motion_errors, with_motion
-from derive.verify.reference import reference
+from derive.verify.draw import Field, complete, with_motion
+from derive.verify.measure import Errors, errors, replayed, should, should_move, upwards
 from derive.verify.sample import Sample, samples
-from derive.verify.scale import Sizing, base_of, columns_of, sizing
 from derive.verify.search import Sampling, Worst, worst
-
-
-@dataclass(frozen=True)
-class Balls:
-    """What measures a function in balls at given samples."""
-
-    library: Library
-    precision: Precision
-    sizing: Sizing
-
-
-def balls(library: Library, precision: Precision) -> Balls:
-    """Return what measures the functions of a scene in balls."""
-    smallest = float(np.finfo(precision.dtype).smallest_normal)
-    return Balls(library, precision, sizing(library, smallest))
 
 
 def figures(library: Library, by: Sampling) -> tuple[Measurement, ...]:
@@ -44,17 +26,16 @@ def figures(library: Library, by: Sampling) -> tuple[Measurement, ...]:
 
 
 def _of_precision(library: Library, precision: Precision, by: Sampling) -> Iterator[Measurement]:
-    found = worst(library, precision, by)
-    measure = balls(library, precision)
-    raw = ranges(library, precision)
+    of = Field(library, precision)
+    found = worst(of, by)
     plain = samples(library.known, precision, by.balls, by.corners).each
     moving = samples(library.known, precision, by.motion_balls, by.motion_corners).each
-    moving = with_motion(library, moving, precision) if library.motions else ()
+    moving = with_motion(library, moving, precision)
     for program in library.printed():
         own = [w for w in found if w.function == program.name]
         hard = plain if program in library.functions else moving
-        each = (*hard, *at_rows(raw, [w.rows for w in own], len(hard)))
-        for errors_, w in zip(at_samples(measure, program, each), own, strict=True):
+        each = (*hard, *at_rows(of, [w.rows for w in own], len(hard)))
+        for errors_, w in zip(at_samples(of, program, each), own, strict=True):
             yield _measurement(errors_, w, precision, each, by, len(hard))
 
 
@@ -82,13 +63,13 @@ def _measurement(
     )
 
 
-def at_rows(of: Ranges, rows: Sequence[np.ndarray], first: int) -> list[Sample]:
+def at_rows(of: Field, rows: Sequence[np.ndarray], first: int) -> list[Sample]:
     """Return raw columns as samples, complete, each once, numbered from ``first`` on."""
     every = np.concatenate([np.zeros((len(of.names), 0)), *rows], axis=1)
     once = list(dict.fromkeys(map(tuple, every.T.tolist())))
     if not once:
         return []
-    at = complete(of, completing(of.library), np.array(once).T)
+    at = complete(of, np.array(once).T)
     columns = {name: column.tolist() for name, column in at.own.items()}
     return [
         Sample(first + n, "found", {name: column[n] for name, column in columns.items()})
@@ -96,19 +77,11 @@ def at_rows(of: Ranges, rows: Sequence[np.ndarray], first: int) -> list[Sample]:
     ]
 
 
-def at_samples(by: Balls, program: Program, each: Sequence[Sample]) -> list[Errors]:
+def at_samples(by: Field, program: Program, each: Sequence[Sample]) -> list[Errors]:
     """Return the errors of each measured output of a function, measured in balls."""
-    library, precision = by.library, by.precision
-    lectured = program in library.functions
-    only = replace(
-        library,
-        functions=(program,) if lectured else (),
-        motions=() if lectured else (program,),
-    )
-    found = replayed(only, each, precision, working(precision.dtype))[program.name]
-    if not lectured:
-        columns = [np.broadcast_to(c, len(each)).tolist() for c in found]
-        return list(motion_errors(by.sizing, program, columns, each, precision))
-    asked = by.sizing.asked[base_of(program)]
-    true = [reference(asked, s.values, columns_of(program)) for s in each]
-    return list(errors(program, found, true, precision))
+    only = replace(by.library, functions=(), motions=(program,))
+    found = replayed(only, each, by.precision, working(by.precision.dtype))[program.name]
+    if program not in by.library.functions:
+        return errors(program, found, should_move(by, program, each), by.precision)
+    ((_, true),) = should(by, (program,), each)
+    return errors(program, found, true, by.precision)

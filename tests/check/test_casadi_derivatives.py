@@ -16,7 +16,7 @@ from derive.library.library import Library, library
 from derive.program.precision import F64
 from derive.program.program import Op
 from derive.scene import catalogue, load
-from derive.verify.motion_error import with_motion
+from derive.verify.draw import with_motion
 from derive.verify.sample import Sample, samples
 
 QUICK = ("attitude", "t_handle_flip", "tumbling_disc")

@@ -19,7 +19,7 @@ from derive.emit.casadi_text import casadi_file
 from derive.library.library import Library, library
 from derive.program.precision import F64
 from derive.scene import load, parse_scene
-from derive.verify.motion_error import with_motion
+from derive.verify.draw import with_motion
 from derive.verify.sample import samples
 from tests.check.test_casadi_inlined import called_with_sx, expanded
 

@@ -24,7 +24,7 @@ from derive.emit.casadi_text import casadi_file
 from derive.library.library import library
 from derive.program.precision import F64
 from derive.scene import load, parse_scene
-from derive.verify.motion_error import with_motion
+from derive.verify.draw import with_motion
 from derive.verify.sample import samples
 
 U = 2.0**-53

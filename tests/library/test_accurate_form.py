@@ -20,8 +20,8 @@ from derive.program.program import Program
 from derive.program.run import run
 from derive.scene import SceneError, load, parse_scene
 from derive.scene.wanted import ATTITUDES, OF_MACHINES, WANTED, moves
-from derive.verify.measure import replayed
-from derive.verify.motion_error import exact, with_motion
+from derive.verify.draw import with_motion
+from derive.verify.measure import exact, replayed
 from derive.verify.sample import Sample, samples
 from derive.verify.scale import measured_outputs
 from tests.check.mutants import printed

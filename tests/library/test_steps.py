@@ -14,8 +14,8 @@ from derive.program.precision import F32, F64, Precision
 from derive.program.program import component_names
 from derive.scene import CATALOGUE, SceneError, parse_scene
 from derive.scene.wanted import OF_MACHINES
+from derive.verify.draw import with_motion
 from derive.verify.measure import replayed
-from derive.verify.motion_error import with_motion
 from derive.verify.sample import Sample, samples
 
 TWO_HUBS = """

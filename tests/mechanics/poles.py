@@ -17,13 +17,13 @@ from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.probe import DIGITS, Probe, point
 from derive.mechanics.valued import Array, Valued
 from derive.program.precision import F64
-from derive.program.program import Quantity
+from derive.program.program import Quantity, placed
 from derive.verify.columns import Column
-from derive.verify.draw import Dice, Ranges, admitted, complete, drawn
+from derive.verify.draw import Dice, Field, admitted, complete, drawn
 from derive.verify.equations import equations
 from derive.verify.reference import NoValueError, reference
 from derive.verify.scale import STATE_RATE, base_of, measured_outputs
-from derive.verify.search import errors_at, field
+from derive.verify.search import errors_at
 
 ALLOWED = 1e6  # u of the largest term: a pole loses ten digits, cancellation in what is regular six
 NEAR = (0.0, 1e-12, -1e-9, 1e-6, -1e-3)
@@ -45,15 +45,15 @@ class Pole:
 
 def poles(made: Library) -> list[Pole]:
     """Return the worst place of each function at which it should be right and is not."""
-    of = field(made, F64)
-    at = complete(of.ranges, of.completing, points(of.ranges))
+    of = Field(made, F64)
+    at = complete(of, points(of))
     found = []
     for plan in of.plans:
         program, errors = plan.program, errors_at(of, plan, at)
         worst = np.max([own.max(axis=0) for own in errors], axis=0)
         order = np.argsort(-worst, kind="stable")
         for n in order[worst[order] > ALLOWED]:
-            place = {name: float(at.own[name][n]) for name in of.ranges.names}
+            place = {name: float(at.own[name][n]) for name in of.names}
             if regular(made, base_of(program), place):
                 k = int(np.argmax([own[:, n].max() for own in errors]))
                 output = measured_outputs(program)[k][0].name
@@ -62,7 +62,7 @@ def poles(made: Library) -> list[Pole]:
     return found
 
 
-def points(of: Ranges) -> Column:
+def points(of: Field) -> Column:
     """Return raw samples at and beside the places where sines, cosines and divisors vanish."""
     dice = Dice("derive: poles")
     base = drawn(of, dice, OTHERS)
@@ -83,11 +83,11 @@ def points(of: Ranges) -> Column:
     return rows[:, admitted(of, rows)]
 
 
-def _owners(of: Ranges) -> list[Quantity]:
+def _owners(of: Field) -> list[Quantity]:
     return [q for q in of.quantities for _ in q.components]
 
 
-def _special(of: Ranges, k: int, q: Quantity, base: Column) -> Iterator[Column]:
+def _special(of: Field, k: int, q: Quantity, base: Column) -> Iterator[Column]:
     """Yield values of a component: zero, quarters of a turn, and what others of its unit are."""
     if q.unit != "rad":
         yield from [np.zeros(OTHERS)] if of.lows[k] <= 0 <= of.highs[k] else []
@@ -100,12 +100,9 @@ def _special(of: Ranges, k: int, q: Quantity, base: Column) -> Iterator[Column]:
             yield from (base[n], -base[n])
 
 
-def _on_spheres(of: Ranges, rows: Column) -> Column:
+def _on_spheres(of: Field, rows: Column) -> Column:
     """Return rows with attitudes of norm 1; four zeros are none, and become the identity."""
-    place = 0
-    for q in of.quantities:
-        span = slice(place, place + len(q.components))
-        place += len(q.components)
+    for q, span in placed(of.quantities):
         if q.is_quaternion:
             size = np.linalg.norm(rows[span], axis=0)
             rows[span] = rows[span] / np.where(size > 0, size, 1.0)

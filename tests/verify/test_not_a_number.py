@@ -30,8 +30,8 @@ from derive.program.program import Op, Program
 from derive.scene import Scene
 from derive.verify.cloud import Answers, answers
 from derive.verify.convergence import Order
+from derive.verify.draw import with_motion
 from derive.verify.measure import Errors
-from derive.verify.motion_error import with_motion
 from derive.verify.sample import Sample, samples
 from derive.verify.search import Sampling
 from derive.verify.stated import figures

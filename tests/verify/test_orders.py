@@ -14,7 +14,7 @@ from derive.program.recorded import needed
 from derive.scene import catalogue, load, parse_scene
 from derive.scene.wanted import STEP_DERIVATIVES, moves
 from derive.verify.convergence import Order, closed, course, exactness, order
-from derive.verify.motion_error import with_motion
+from derive.verify.draw import with_motion
 from derive.verify.sample import Sample, samples
 from tests.made import library_of, scene_of, thinned
 

@@ -10,12 +10,12 @@ from derive.program.arithmetic import working
 from derive.program.largest import largest
 from derive.program.precision import F32, F64, Precision
 from derive.verify.columns import arithmetics
-from derive.verify.draw import Dice, complete, completing, drawn, ranges
+from derive.verify.draw import Dice, Field, complete, drawn
 from derive.verify.kept import Measuring, figures_of, stated_figures
 from derive.verify.measure import replayed
 from derive.verify.sample import Sample
-from derive.verify.search import Sampling, errors_at, field, worst
-from derive.verify.stated import at_rows, at_samples, balls, figures
+from derive.verify.search import Sampling, errors_at, worst
+from derive.verify.stated import at_rows, at_samples, figures
 from tests.made import library_of, thinned
 
 FEW = Sampling(samples=8192, rounds=8, batch=1024, balls=4, corners=1)
@@ -37,7 +37,7 @@ def test_fresh_samples_keep_the_stated_errors(measured):
 
 
 def test_a_figure_below_two_thirds_of_what_samples_find_is_noticed(measured):
-    seen = worst(library_of(SCENE), F32, replace(FEW, samples=4096, rounds=0))
+    seen = worst(Field(library_of(SCENE), F32), replace(FEW, samples=4096, rounds=0))
     found = max(w.errors[0] for w in seen if w.function == "kinetic_energy")
     lowered = [replace(m, worst=0.65 * found) if m.function == "kinetic_energy" else m
                for m in measured]  # fmt: skip
@@ -65,12 +65,12 @@ def test_a_figure_that_is_missing_or_absurd_fails(measured):
     "scene", thinned(["free_body", "tumbling_disc", "attitude", "sleeping_top"], 2)
 )
 def test_pairs_of_doubles_find_the_errors_that_balls_do(scene: str, precision: Precision) -> None:
-    library, of = library_of(scene), field(library_of(scene), precision)
-    rows = drawn(of.ranges, Dice("beside balls"), 6)
-    at = complete(of.ranges, of.completing, rows)
-    each = at_rows(of.ranges, [rows], 0)
+    of = Field(library_of(scene), precision)
+    rows = drawn(of, Dice("beside balls"), 6)
+    at = complete(of, rows)
+    each = at_rows(of, [rows], 0)
     for plan in of.plans:
-        in_balls = at_samples(balls(library, precision), plan.program, each)
+        in_balls = at_samples(of, plan.program, each)
         for columns, found in zip(errors_at(of, plan, at), in_balls, strict=True):
             # float: double leaves 2^-29 of a u, times what a flow magnifies; double: pairs, less
             assert columns.max(axis=0) == pytest.approx(found.largest(), rel=1e-3, abs=1e-3)
@@ -78,18 +78,18 @@ def test_pairs_of_doubles_find_the_errors_that_balls_do(scene: str, precision: P
 
 def test_the_search_finds_more_than_samples_do():
     by = replace(FEW, samples=512)
-    plain = worst(library_of(SCENE), F64, replace(by, rounds=0))
-    far = worst(library_of(SCENE), F64, by)
+    plain = worst(Field(library_of(SCENE), F64), replace(by, rounds=0))
+    far = worst(Field(library_of(SCENE), F64), by)
     assert sum(w.errors[0] for w in far) > 1.2 * sum(w.errors[0] for w in plain)
 
 
 def test_samples_are_of_bodies_within_the_ranges():
-    of = ranges(library_of("free_body"), F32)
+    of = Field(library_of("free_body"), F32)
     rows = drawn(of, Dice("within"), 300)
     assert rows.shape == (len(of.names), 300)
     assert np.all(rows >= of.lows[:, None])
     assert np.all(rows <= of.highs[:, None])
-    at = complete(of, completing(of.library), rows)
+    at = complete(of, rows)
     xx, yy, zz = (at.wide[f"I_{axis}{axis}"] for axis in "xyz")
     assert np.all(xx + yy >= zz * (1 - 1e-6))  # floats of a body drawn in double
 
@@ -138,7 +138,7 @@ def test_an_angle_next_to_half_a_turn_may_come_out_at_either_end():
     for n, values in enumerate(zip(*turned, strict=True)):
         rows.append(Sample(n, "found", dict(zip(names, values, strict=True))))
     (program,) = (f for f in library.printed() if f.name == "quaternion_to_euler_zxz")
-    (found,) = at_samples(balls(library, F32), program, rows)
+    (found,) = at_samples(Field(library, F32), program, rows)
     assert largest(found.largest()) < 8
     only = replace(library, functions=(), motions=(program,))
     first = replayed(only, rows, F32, working(np.float32))[program.name][0]

@@ -5,10 +5,11 @@ import pytest
 
 from derive.program.precision import PRECISIONS, Precision
 from derive.scene import catalogue
-from derive.verify.columns import arithmetics, known, planned
+from derive.verify.columns import arithmetics, known
+from derive.verify.draw import Field
 from derive.verify.sample import samples
-from derive.verify.search import errors_at, field
-from derive.verify.stated import at_samples, balls
+from derive.verify.search import errors_at
+from derive.verify.stated import at_samples
 from tests.made import library_of, thinned
 
 SAMPLES = 12
@@ -23,12 +24,12 @@ def test_errors_in_columns_are_those_in_balls(case: tuple[str, Precision]) -> No
     if not made.functions:
         pytest.skip(f"{name} wants formulas of motion alone")
     each = samples(made.known, precision, SAMPLES, 0).each[:SAMPLES]
-    of = field(made, precision)
+    of = Field(made, precision)
     columns = {n: np.array([s.values[n] for s in each], precision.dtype) for n in each[0].values}
-    at = known(planned(made.setup), columns, arithmetics(precision.dtype))
+    at = known(of.setup, columns, arithmetics(precision.dtype))
     compared = 0
-    for plan in (p for p in of.plans if p.program.name in of.lectured):
-        exact = at_samples(balls(made, precision), plan.program, each)
+    for plan in (p for p in of.plans if p.program in made.functions):
+        exact = at_samples(of, plan.program, each)
         for quick, slow in zip(errors_at(of, plan, at), exact, strict=True):
             wanted = np.array(slow.largest(), float)
             assert np.max(quick, axis=0) == pytest.approx(wanted, rel=SAME, abs=SAME)

@@ -7,13 +7,22 @@ the constants, which all stages share, so that it costs a few operations a step 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 
 from derive.motion.runge_kutta.matrices import Matrix, zeros
-from derive.program.program import Op, Operand, Program, Quantity, Sparsity, every_op, operands_of
+from derive.program.program import (
+    Op,
+    Operand,
+    Program,
+    Quantity,
+    Sparsity,
+    every_op,
+    operands_of,
+    placed,
+)
 from derive.program.recorded import called
 from derive.program.tape import Number, Tape, free_prefix, number
 
@@ -59,23 +68,17 @@ class System:
 
     def place(self, quantity: str) -> slice | None:
         """Return where a state's components stand among all, None if there is no such state."""
-        return next((place for q, place in self._places() if q.name == quantity), None)
+        return next((place for q, place in placed(self.states) if q.name == quantity), None)
 
     @property
     def quaternions(self) -> tuple[slice, ...]:
         """Return where attitudes stand among the components."""
-        return tuple(place for q, place in self._places() if q.is_quaternion)
+        return tuple(place for q, place in placed(self.states) if q.is_quaternion)
 
     @property
     def quaternion(self) -> slice | None:
         """Return where the attitude stands of a state that has a single one, else None."""
         return self.quaternions[0] if len(self.quaternions) == 1 else None
-
-    def _places(self) -> Iterator[tuple[Quantity, slice]]:
-        start = 0
-        for q in self.states:
-            yield q, slice(start, start + len(q.components))
-            start += len(q.components)
 
 
 def next_of(q: Quantity) -> Quantity:
