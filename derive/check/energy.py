@@ -131,14 +131,14 @@ def _emitted(one: Emitted, program: Program, others: Rates) -> Rates:
 
 def power_gaps(made: Library, rates: Rates, program: Program, sample: Sample) -> list[Any]:
     """Return how far the rates of a program's energies are from powers, beside their terms."""
-    scene = made.known.scene
     with ctx.workprec(BITS):
         at = unit_attitude(made, {c: arb(x) for c, x in sample.values.items()})
-        with mp.workdps(DIGITS):
-            cloud = answers(scene, {name: digits(x) for name, x in at.items()})
-        if cloud.contradiction > AGREE:
+        cloud = _in_balance(made, program, {name: digits(x) for name, x in at.items()})
+        if cloud is None:
             return []
-        velocity = {**_velocities(cloud, at), **rates(sample, at)}
+        velocity = _velocities(cloud, at)
+        if cloud.machine is made.known.scene:
+            velocity |= rates(sample, at)
         if not all(arb(v).is_finite() for v in velocity.values()):
             return [mpf("inf")]
         found = _slopes(made, program, at, velocity)
@@ -150,6 +150,20 @@ def power_gaps(made: Library, rates: Rates, program: Program, sample: Sample) ->
             if name in ENERGIES
             for terms in ([*_negative(acting, name), *map(digits, found[name])],)
         ]
+
+
+def _in_balance(made: Library, program: Program, given: Mapping[str, Any]) -> Answers | None:
+    """Return a cloud whose loads and motion do not contradict each other, None if none is so.
+
+    Where the motion is prescribed, loads that are known too cannot hold: those it needs do.
+    """
+    known = made.known
+    for machine in (known.scene, known.posed(base_of(program)).scene):
+        with mp.workdps(DIGITS):
+            cloud = answers(machine, given)
+        if cloud.contradiction <= AGREE:
+            return cloud
+    return None
 
 
 def _negative(acting: Powers, name: str) -> list[Any]:

@@ -10,7 +10,7 @@ from derive.library.saving import Saving
 
 
 def print_costs(results: Sequence[Made]) -> None:
-    """Print the operations and errors of every function, then what was found not to be needed."""
+    """Print the operations and errors of every function, then what was found not to matter."""
     columns = ("float: median", "largest", "double: median", "largest")
     table = Table("scene", "function", "+ - * /", "div", *columns, box=None)
     for row in (row for result in results for row in result.costs):
@@ -27,10 +27,10 @@ def _print_savings(savings: Sequence[Saving]) -> None:
     """Print what each answer of a machine was found not to need, and the operations it saves."""
     if not savings:
         return
-    columns = ("unknowns left out", "cancels", "never enters", "+ - * /", "body by body")
+    columns = ("unknowns left out", "cancels", "+ - * /", "body by body")
     table = Table("scene", "function", *columns, box=None)
     for s in savings:
         plain = "" if s.plain is None else str(s.plain)
-        lists = [" ".join(names) for names in (s.unknowns, s.cancels, s.absent)]
+        lists = [" ".join(names) for names in (s.unknowns, s.cancels)]
         table.add_row(s.scene, s.function, *lists, str(s.operations), plain)
     console.print(table)

@@ -163,7 +163,7 @@ def _in_groups(
 
 def _jacobian_quantity(pattern: Sparsity) -> Quantity:
     parts = tuple(f"d({pattern.rows[i]})/d({pattern.columns[k]})" for i, k in pattern.places())
-    says = "nonzeros of the Jacobian, in compressed-column order"
+    says = "nonzeros of the Jacobian, in compressed-column order, each in its own unit"
     return Quantity("jacobian", parts, (len(parts),), "", "", None, None, says)
 
 

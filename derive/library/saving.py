@@ -24,7 +24,6 @@ class Saving:
     function: str
     unknowns: tuple[str, ...]
     cancels: tuple[str, ...]
-    absent: tuple[str, ...]
     operations: int
     plain: int | None
 
@@ -55,7 +54,6 @@ def savings(library: Library) -> Iterator[Saving]:
             base,
             found["unknowns left out"] if balanced else (),
             found["cancels"],
-            found["never enters"],
             program.flops(),
             _plain(known, base) if balanced else None,
         )

@@ -174,7 +174,7 @@ def _dmv(setting: Setting) -> tuple[Program, ...]:
     names = tuple(f"plan_{name}" for name, _, _ in entries)
     plan = Quantity(
         "plan", names, (len(names),), "", "", None, None,
-        "what a motion without torque and a length of step keep", "plan",
+        "what a motion without torque and a length of step keep, each in its own unit", "plan",
     )  # fmt: skip
     says = "Plan many steps of one length from an angular velocity; call it once."
     ends = (omega, step), (plan,)

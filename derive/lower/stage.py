@@ -162,7 +162,7 @@ def setup(
     # a tape may hold what no constant rests on
     whole = needed(ops, (*made, *given, *(rule.value for rule in rules)))
     names = (*constants.names.values(), *(n for part in parts for n in part.names.values()))
-    says = "constants made of parameters only, for the functions of this scene"
+    says = "constants of this scene, made of parameters only, each in its own unit"
     output = Quantity("constants", names, (len(names),), "", "", None, None, says, "constants")
     return Program(
         "setup",

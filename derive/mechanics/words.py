@@ -147,8 +147,7 @@ def _with_rates(moving: Iterable[Moving]) -> Iterator[Quantity]:
     for m in moving:
         found.setdefault(m.vector or m.name, []).append(_of(m))
         for rate in m.given:
-            named = replace(_of(rate), meaning=rate.meaning or f"rate of {m.vector or m.name}")
-            found.setdefault(m.of_vector(rate.name), []).append(named)
+            found.setdefault(m.of_vector(rate.name), []).append(_of(rate))
     for name, parts in found.items():
         yield _joined(name, parts)
 
@@ -168,6 +167,8 @@ def _outputs(machine: Scene) -> Iterator[Quantity]:
         first = next(u for u in machine.unknowns if u.name == f"{group}_x")
         parts = tuple(f"{group}_{a}" for a in AXES)
         says = first.meaning.removesuffix(" along x")
+        if len({u.unit for u in machine.unknowns if u.name in parts}) > 1:
+            first, says = replace(first, unit=""), f"{says}, each in its own unit"
         yield Quantity(group, parts, (3,), first.unit, "", None, None, says)
     vectors: dict[str, list[Quantity]] = {}
     for m in (*machine.coordinates, *machine.speeds):
@@ -179,10 +180,9 @@ def _outputs(machine: Scene) -> Iterator[Quantity]:
             if m.vector:
                 vectors.setdefault(m.answer, []).append(one)
     yield from (_joined(vector, each) for vector, each in vectors.items())
-    for q in _states(machine):
-        own, parts = f"{q.name}_rate", tuple(f"{c}_rate" for c in q.components)
-        unit = PER_SECOND.get(q.unit, f"{q.unit}/s").replace("rad/s^2/s", "rad/s^3")
-        yield Quantity(own, parts, q.shape, unit, "", None, None, f"rate of {q.name}")
+    results = {r.name for r in machine.results}
+    rates = [_rate_of(q) for q in _states(machine)]
+    yield from (q for q in rates if q.name not in results)
     for name in ENERGIES:
         yield _scalar(name, "J", None, None, name.replace("_", " "))
     says = f"angular momentum along {machine.momentum.frame}"
@@ -190,12 +190,21 @@ def _outputs(machine: Scene) -> Iterator[Quantity]:
     yield Quantity("angular_momentum", parts, (3,), "kg m^2/s", "", None, None, says)
     for r in machine.results:
         yield _scalar(r.name, r.unit, None, None, r.meaning)
+    yield from (q for q in rates if q.name in results)  # by this name the result is meant
     yield from _matrices(machine)
     count = len(machine.steady.unknown) if machine.steady else 1
     parts = tuple(f"steady_{n + 1}" for n in range(count)) if count > 1 else ("steady",)
     unit = machine.steady.unit if machine.steady else ""
-    yield Quantity("steady", parts, (count,) if count > 1 else (), unit, "", None, None,
-                   "what vanishes in a steady motion")  # fmt: skip
+    free_of = "" if unit else ", without factors that never vanish, so in no unit"
+    says = f"what vanishes in a steady motion{free_of}"
+    yield Quantity("steady", parts, (count,) if count > 1 else (), unit, "", None, None, says)
+
+
+def _rate_of(q: Quantity) -> Quantity:
+    """Return the rate of a state."""
+    parts = tuple(f"{c}_rate" for c in q.components)
+    unit = PER_SECOND.get(q.unit, f"{q.unit}/s").replace("rad/s^2/s", "rad/s^3")
+    return Quantity(f"{q.name}_rate", parts, q.shape, unit, "", None, None, f"rate of {q.name}")
 
 
 def _matrices(machine: Scene) -> Iterator[Quantity]:
@@ -203,7 +212,7 @@ def _matrices(machine: Scene) -> Iterator[Quantity]:
     for name, by in MATRICES.items():
         parts = tuple(f"{name}_{i + 1}_{k + 1}" for k in range(len(names))
                       for i in range(len(names)))  # fmt: skip
-        says = f"forces by {by}, column by column, for {', '.join(names)}"
+        says = f"forces by {by}, column by column, for {', '.join(names)}, each in its own unit"
         yield Quantity(name, parts, (len(parts),), "", "", None, None, says)
 
 

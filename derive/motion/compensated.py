@@ -24,7 +24,7 @@ REMAINDER = "remainder"
 def remainder(states: Sequence[Quantity]) -> Quantity:
     """Return the quantity that carries what rounding left of earlier steps: zeros at the start."""
     parts = tuple(f"remainder_{c}" for q in states for c in q.components)
-    says = "what rounding left of earlier steps, zeros at the start"
+    says = "what rounding left of earlier steps, each in its own unit, zeros at the start"
     return Quantity(REMAINDER, parts, (len(parts),), "", "", None, None, says, "remainder")
 
 

@@ -70,8 +70,8 @@ KINDS: Mapping[str, tuple[Entry, ...]] = {
     "principal": MOMENTS,
     "axisymmetric": (
         AXIS,
-        Entry("axial", "formula", "about the axis", "kg m^2"),
-        Entry("transverse", "formula", "across it", "kg m^2"),
+        Entry("axial", "formula", "about the axis; a single body needs it", "kg m^2"),
+        Entry("transverse", "formula", "across it; a single body needs it", "kg m^2"),
     ),
     "spherical": (ACROSS,),
     "rod": (AXIS, ACROSS),
@@ -107,15 +107,19 @@ CENTRE_OR_APEX = Entry(
     "about", "word", "where the point lies", default="centre", words=("centre", "apex")
 )
 CENTRE = Entry("centre", "three formulas", "of mass", "m")
+OWN_TURNS, SPIN = "from the axes to the body's own", "relative to the axes, about `axis`"
 BODY = (
     CENTRE,
-    Entry("turned", "turns", "from the axes to the body's own", scope="places"),
-    Entry("spin", "formula", "relative to the axes, about `axis`", "rad/s", "motions"),
-)
+    Entry("turned", "turns through coordinates", OWN_TURNS, scope="places"),
+    Entry("spin", "formula", f"{SPIN}, of a sphere about that from the point to its centre",
+          "rad/s", "motions"),
+)  # fmt: skip
 """What a single body may say besides its kind or shape."""
 MEMBER = (
     Entry("frame", "frame", "that carries it", default=REQUIRED),
-    *BODY,
+    CENTRE,
+    Entry("turned", "turns", OWN_TURNS, scope="places"),
+    Entry("spin", "formula", SPIN, "rad/s", "motions"),
     Entry("axial_speed", "formula", "the whole angular velocity about `axis`", "rad/s", "motions"),
     Entry("angular_velocity", "three formulas", "of a ball in its frame", "rad/s", "motions"),
     ABOUT,
@@ -174,9 +178,10 @@ TIME = Entry("time", "bounds", "that a flow goes on for, s", default={"range": [
 AXES_OF_ONE = (
     Entry("fixed_in", "word", "axes of the body", words=("body",)),
     Entry("attitude", "word", "free body axes: a state, scalar first", words=("quaternion",)),
-    Entry("turned", "turns", "from the inertial axes, each about the axes so far", scope="places"),
+    Entry("turned", "turns through coordinates",
+          "from the inertial axes, each about the axes so far", scope="places"),
     Entry("angular_velocity", "three formulas", "Omega, along themselves", "rad/s", "motions"),
-)
+)  # fmt: skip
 WHEEL = (
     Entry("name", "any", "letters and digits", default=REQUIRED),
     Entry("axis", "three formulas", "a unit vector along the body's axes", default=REQUIRED),

@@ -149,6 +149,7 @@ READERS: Mapping[str, Callable[[_One], Any]] = {
     "formula above 0": lambda one: positive(one.formula(), one.label, one.by.parameters),
     "three formulas": lambda one: triple(one.value, one.label, one.scope, dimension(one.row.unit)),
     "turns": _turns,
+    "turns through coordinates": _turns,
     "range": lambda one: interval(one.value, one.label),
     "number": lambda one: rational(one.value, one.label),
     "count": _count,

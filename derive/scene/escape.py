@@ -20,12 +20,12 @@ def visible(text: str) -> str:
 
 
 def brief(value: object) -> str:
-    """Return a formula or a name as a sentence shows it, cut off if it is long.
+    """Return a formula, as it was written, or a name as a sentence shows it, cut off if it is long.
 
     >>> brief("m*g"), len(brief("m" * 200))
     ('m*g', 60)
     """
-    text = str(value)
+    text = getattr(value, "as_written", str(value))
     return text if len(text) <= LONGEST_SHOWN else f"{text[: LONGEST_SHOWN - 3]}..."
 
 

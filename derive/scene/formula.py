@@ -10,7 +10,7 @@ import math
 import operator
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
@@ -28,15 +28,24 @@ class FormulaError(ValueError):
 
 @dataclass(frozen=True)
 class Formula:
-    """A number, a symbol or an operator on formulas; ``power`` has its exponent in ``number``."""
+    """A number, a symbol or an operator on formulas; ``power`` has its exponent in ``number``.
+
+    written : its text in the scene, "" if it does not stand there; formulas are the same without
+    """
 
     operator: str
     operands: tuple[Formula, ...] = ()
     name: str = ""
     number: Fraction = Fraction(0)
+    written: str = field(default="", compare=False)
 
     def __str__(self) -> str:
         return _text(self)[0]
+
+    @property
+    def as_written(self) -> str:
+        """Return its text as the user wrote it, where it stands in the scene."""
+        return self.written or str(self)
 
     def __add__(self, other: Formula) -> Formula:
         if self == ZERO or other == ZERO:

@@ -11,7 +11,7 @@ that no text, however hostile, exhausts time or the stack.
 """
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from derive.scene.escape import brief
@@ -31,11 +31,15 @@ _TOKEN = re.compile(
 
 @dataclass(frozen=True)
 class Token:
-    """One word of a formula: its kind (number, symbol, sign or end), text and place from 1."""
+    """One word of a formula: its kind (number, symbol, sign or end), text and place from 1.
+
+    ahead : the whole formula from here on
+    """
 
     kind: str
     text: str
     place: int
+    ahead: str
 
 
 Tokens = list[Token]
@@ -68,9 +72,9 @@ def _tokens(text: str) -> Tokens:
         if match is None:
             raise FormulaError(f"at {place + 1}: {text[place]!r} is no part of a formula")
         if match.lastgroup != "space":
-            tokens.append(Token(str(match.lastgroup), match.group(), place + 1))
+            tokens.append(Token(str(match.lastgroup), match.group(), place + 1, text[place:]))
         place = match.end()
-    return [*tokens, Token("end", "", len(text) + 1)]
+    return [*tokens, Token("end", "", len(text) + 1, "")]
 
 
 def _expected(what: str, found: Token) -> FormulaError:
@@ -86,37 +90,50 @@ def _height(formula: Formula) -> int:
     return height
 
 
+def _as_written(formula: Formula, start: Token, tokens: Tokens) -> Formula:
+    """Return what was read since ``start`` with its text in one line."""
+    text = start.ahead[: len(start.ahead) - len(tokens[-1].ahead)]
+    return replace(formula, written=" ".join(text.split()))
+
+
 def _sum(tokens: Tokens, depth: int) -> Formula:
+    start = tokens[-1]
     formula = _product(tokens, depth)
     while tokens[-1].text in ("+", "-"):
         sign = tokens.pop().text
         term = _product(tokens, depth)
-        formula = formula + term if sign == "+" else formula - term
+        made = formula + term if sign == "+" else formula - term
+        formula = _as_written(made, start, tokens)
     return formula
 
 
 def _product(tokens: Tokens, depth: int) -> Formula:
+    start = tokens[-1]
     formula = _signed(tokens, depth)
     while tokens[-1].text in ("*", "/"):
         sign = tokens.pop()
         factor = _signed(tokens, depth)
         if sign.text == "/" and factor == ZERO:
             raise FormulaError(f"at {sign.place}: divides by zero")
-        formula = formula * factor if sign.text == "*" else formula / factor
+        made = formula * factor if sign.text == "*" else formula / factor
+        formula = _as_written(made, start, tokens)
     return formula
 
 
 def _signed(tokens: Tokens, depth: int) -> Formula:
-    if tokens[-1].text != "-":
+    start = tokens[-1]
+    if start.text != "-":
         return _power(tokens, depth)
     tokens.pop()
     if tokens[-1].text == "-":
         raise _expected("one sign", tokens[-1])
-    return -_power(tokens, depth)
+    return _as_written(-_power(tokens, depth), start, tokens)
 
 
 def _power(tokens: Tokens, depth: int) -> Formula:
+    start = tokens[-1]
     base = _atom(tokens, depth)
+    base = base if start.text == "(" else _as_written(base, start, tokens)
     if tokens[-1].text not in ("^", "**"):
         return base
     tokens.pop()
@@ -128,7 +145,7 @@ def _power(tokens: Tokens, depth: int) -> Formula:
         raise _expected("a whole number as exponent", exponent)
     if tokens[-1].text in ("^", "**"):
         raise _expected("one power at a time (use parentheses)", tokens[-1])
-    return base ** (sign * int(exponent.text))
+    return _as_written(base ** (sign * int(exponent.text)), start, tokens)
 
 
 def _atom(tokens: Tokens, depth: int) -> Formula:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 
 from derive.scene import entries
 from derive.scene.entry import REQUIRED, Entry
-from derive.scene.shape import ROUND
+from derive.scene.shape import ROUND, SHAPES
 
 HEAD = """\
 # Every entry of a scene file
@@ -20,6 +20,14 @@ left out, unless it is required.
 """
 MASS = entries.WHOLE_MASS
 COLUMNS = "| entry | holds | unit | default | meaning |\n|---|---|---|---|---|"
+
+
+def _shape(shape: str) -> str:
+    """Return what the table of a shape is called."""
+    whose = "a body" if shape in SHAPES else "a body of a machine, not of a single one"
+    return f'`shape = "{shape}"` of {whose}'
+
+
 TABLES: Mapping[str, tuple[Entry, ...]] = {
     "`[parameters]` NAME": entries.PARAMETER,
     "`[coordinates]` NAME": entries.COORDINATE,
@@ -29,11 +37,8 @@ TABLES: Mapping[str, tuple[Entry, ...]] = {
     "`rolls` of a frame": entries.ROLLS,
     "`[bodies.NAME]`, besides a kind or a shape": entries.MEMBER,
     **{f'`kind = "{kind}"` of a body': rows for kind, rows in entries.KINDS.items()},
-    **{
-        f'`shape = "{shape}"` of a body, with `mass`': entries.round_entries(shape)
-        for shape in ROUND
-    },
-    **{f'`shape = "{name}"` of a body': (MASS, *rows) for name, rows in entries.SAID.items()},
+    **{f"{_shape(shape)}, with `mass`": entries.round_entries(shape) for shape in ROUND},
+    **{_shape(shape): (MASS, *rows) for shape, rows in entries.SAID.items()},
     "`[loads.NAME]`, force and couple": entries.FORCE,
     "`[loads.NAME]`, weight": entries.WEIGHT,
     "`[loads.NAME]`, spring and damper": entries.SPRING,
@@ -46,7 +51,7 @@ TABLES: Mapping[str, tuple[Entry, ...]] = {
     "`[body]`, besides a kind or a shape": entries.BODY,
     "`[point]` of a single body": entries.POINT,
     "`[known]` of a single body": entries.KNOWN,
-    "`[[wheels]]` of a single body": entries.WHEEL,
+    "`[[wheels]]` of a single body, about its mass centre or a fixed point": entries.WHEEL,
     "`[position]` of a single body": entries.POSITION,
 }
 

@@ -116,7 +116,10 @@ def _entry(entry: object, known_: Sequence[str]) -> tuple[str, tuple[str, ...]]:
         if colon and answer in OF_MACHINES:
             rule = f"within '{brief(name)}', but a step stands alone"
             raise SceneError(f"wanted has '{answer}' {rule}")
-        if answer not in known_:
+        if answer == "steady" and len(answers) > 1:
+            rule = f"within '{brief(name)}', but what vanishes in a steady motion stands alone"
+            raise SceneError(f"wanted has 'steady' {rule}")
+        if answer not in known_ or (answer != name and answer in OF_MACHINES):
             hint = resembling(answer, known_)
             shown_ = answer if colon else name
             raise SceneError(f"wanted has '{brief(shown_)}', which is no answer{hint}")

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 from derive.scene.declaration import SceneError, ShortForm, Turning
 from derive.scene.doubtful import in_degrees
+from derive.scene.escape import brief
 from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.moving import check_moving
 from derive.scene.numbers import (
@@ -86,7 +87,7 @@ def _symmetry(scene: ShortForm) -> None:
     for name, length in zip(("x", "y", "z"), body.centre or (), strict=False):
         if name != body.axis and length != ZERO:
             rule = f"must lie on the axis of spin '{body.axis}'"
-            raise SceneError(f"body.centre {rule}, not at {name} = '{length}'")
+            raise SceneError(f"body.centre {rule}, not at {name} = '{brief(length)}'")
 
 
 def _turns(scene: ShortForm) -> None:

@@ -8,6 +8,7 @@ from typing import Any, Literal
 from derive.scene.declaration import Input, Moving, Parameter, SceneError
 from derive.scene.entries import COORDINATE, INPUT, MEANING, PARAMETER, RANGE, SPEED
 from derive.scene.entry import Reading, entries_of
+from derive.scene.escape import brief
 from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.names import identifier
 from derive.scene.scopes import ARTICLE, PER_SECOND, Scalars
@@ -91,7 +92,8 @@ def _parameter(name: str, given: Table) -> Parameter:
     if (said["range"] is None) == (said["value"] is None):
         raise SceneError(f"{given.label} needs either a range or a value")
     low, high = said["range"] or (said["value"], said["value"])
-    return Parameter(name, said["unit"], low, high, said["meaning"] or "", said["value"])
+    says = said["meaning"] or f"parameter {name}"
+    return Parameter(name, said["unit"], low, high, says, said["value"])
 
 
 def _spelling(given: Table, kind: str) -> str:
@@ -122,19 +124,20 @@ def _coordinate(
         if said["acceleration"] is not None:
             raise SceneError(f"{given.label} is free, so its acceleration is found, not given")
         bounds = {"range": [-1, 1]} if rate is None else rate
-        made = _given_rate(name, given, "rate", bounds, "dot", own)
+        made = _given_rate(name, vector, given, "rate", bounds, own)
     else:
         if rate is None:
             raise SceneError(
                 f"{given.label} needs rate = {{ range = [low, high] }}, 0 or a formula"
             )
         if isinstance(rate, dict):
-            made = _given_rate(name, given, "rate", rate, "dot", own)
-            second = _input_or_zero(name, given, "acceleration", "0", PER_SECOND[own])
+            made = _given_rate(name, vector, given, "rate", rate, own)
+            second = _input_or_zero(name, vector, given, "acceleration", "0", PER_SECOND[own])
         else:
             made = formula(rate, f"{given.label}: rate", scope, dimension(own))
             if said["acceleration"] not in (None, 0):
-                raise SceneError(f"{given.label}: its acceleration follows from the rate '{made}'")
+                rule = f"its acceleration follows from the rate '{brief(made)}'"
+                raise SceneError(f"{given.label}: {rule}")
     by_moved = isinstance(made, Formula) and not moved.isdisjoint(symbols(made))
     state = free or (said["motion"] or ("free" if by_moved else "")) == "free"
     return _moving(name, vector, spelling, said, "coordinate", (free, state), (made, second))
@@ -150,29 +153,30 @@ def _moving(
     rates_: tuple[Input | Formula | None, Input | Formula | None],
 ) -> Moving:
     low, high = said["range"]
-    says = said["meaning"] or ""
+    says = said["meaning"] or f"{kind} {vector or name}"
     return Moving(name, unit, low, high, says, kind, *free_and_state, *rates_, vector)
 
 
-def _input_or_zero(name: str, given: Table, key: str, zero: str, unit: str) -> Input | Formula:
+def _input_or_zero(
+    name: str, vector: str, given: Table, key: str, zero: str, unit: str
+) -> Input | Formula:
     """Return what prescribes a motion last: an input of a range, or nothing that changes.
 
     zero : how a file says so
     """
     value = given.entries.get(key)
     if isinstance(value, dict):
-        dots = "ddot" if key == "acceleration" else "dot"
-        return _given_rate(name, given, key, value, dots, unit)
+        return _given_rate(name, vector, given, key, value, unit)
     if value == 0 and value is not None:
         return ZERO
     found = "" if value is None else f", not {shown(value)}"
     raise SceneError(f"{given.label} needs {key} = {{ range = [low, high] }} or {zero}{found}")
 
 
-def _given_rate(name: str, given: Table, key: str, value: object, dots: str, unit: str) -> Input:
+def _given_rate(name: str, vector: str, given: Table, key: str, value: object, unit: str) -> Input:
     said = entries_of(table(value, given.of(key)), (RANGE, MEANING), Reading())
-    low, high = said["range"]
-    return Input(f"{name}_{dots}", unit, low, high, said["meaning"] or "")
+    (low, high), dots = said["range"], "ddot" if key == "acceleration" else "dot"
+    return Input(f"{name}_{dots}", unit, low, high, said["meaning"] or f"{key} of {vector or name}")
 
 
 def _speed(name: str, given: Table, vector: str) -> Moving:
@@ -183,7 +187,7 @@ def _speed(name: str, given: Table, vector: str) -> Moving:
     if free and value is not None:
         raise SceneError(f"{given.label} is free, so its rate is found, not given")
     if not free:
-        rate = _input_or_zero(name, given, "rate", "rate = 0", PER_SECOND[spelling])
+        rate = _input_or_zero(name, vector, given, "rate", "rate = 0", PER_SECOND[spelling])
     return _moving(name, vector, spelling, said, "speed", (free, free), (rate, None))
 
 

@@ -5,7 +5,7 @@ Every function here raises SceneError with a sentence that begins at the table's
 
 import difflib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
 
@@ -243,7 +243,9 @@ def measured(value: object, label: str, scope: Scope) -> tuple[Formula, Dimensio
 
 def _read(value: object, label: str) -> Formula:
     try:
-        return parse(value) if isinstance(value, str) else number(rational(value, label))
+        if isinstance(value, str):
+            return parse(value)
+        return replace(number(rational(value, label)), written=str(value))
     except FormulaError as error:
         raise SceneError(f"{label} = {shown(value)}: {error}") from None
 

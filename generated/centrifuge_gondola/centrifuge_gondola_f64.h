@@ -43,7 +43,7 @@ typedef struct {
  *            I_xz  kg m^2  -15 .. 15  product, +sum x z dm
  *            e_x  m  0 .. 0.1  mass centre from the pivot, along x
  *            e_z  m  -0.2 .. -0.1  mass centre from the pivot, along z
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
  *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -54,16 +54,16 @@ int centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz
     double e_x, double e_z, centrifuge_gondola_constants_f64 *constants);
 
 /* Force of pivot.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            yaw  rad  -3 .. 3  arm
  *            yaw_dot  rad/s  1 .. 3  rate of yaw
- *            yaw_ddot  rad/s^2  -1 .. 1  rate of yaw
+ *            yaw_ddot  rad/s^2  -1 .. 1  acceleration of yaw
  *            pitch  rad  -1 .. 1  gimbal
  *            pitch_dot  rad/s  -1 .. 1  rate of pitch
- *            pitch_ddot  rad/s^2  -1 .. 1  rate of pitch
+ *            pitch_ddot  rad/s^2  -1 .. 1  acceleration of pitch
  *            spin  rad  -1 .. 1  roll
  *            spin_dot  rad/s  -1 .. 1  rate of spin
- *            spin_ddot  rad/s^2  -1 .. 1  rate of spin
+ *            spin_ddot  rad/s^2  -1 .. 1  acceleration of spin
  *            a_x  m/s^2  -50 .. 50  acceleration of the pivot along x
  *            a_y  m/s^2  -5 .. 5  acceleration of the pivot along y
  * Returned:  F[3]  N  force of pivot
@@ -82,16 +82,16 @@ void centrifuge_gondola_F_f64(const centrifuge_gondola_constants_f64 *constants,
     double spin_dot, double spin_ddot, double a_x, double a_y, double F[3]);
 
 /* Couple of pivot.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            yaw  rad  -3 .. 3  arm
  *            yaw_dot  rad/s  1 .. 3  rate of yaw
- *            yaw_ddot  rad/s^2  -1 .. 1  rate of yaw
+ *            yaw_ddot  rad/s^2  -1 .. 1  acceleration of yaw
  *            pitch  rad  -1 .. 1  gimbal
  *            pitch_dot  rad/s  -1 .. 1  rate of pitch
- *            pitch_ddot  rad/s^2  -1 .. 1  rate of pitch
+ *            pitch_ddot  rad/s^2  -1 .. 1  acceleration of pitch
  *            spin  rad  -1 .. 1  roll
  *            spin_dot  rad/s  -1 .. 1  rate of spin
- *            spin_ddot  rad/s^2  -1 .. 1  rate of spin
+ *            spin_ddot  rad/s^2  -1 .. 1  acceleration of spin
  *            a_x  m/s^2  -50 .. 50  acceleration of the pivot along x
  *            a_y  m/s^2  -5 .. 5  acceleration of the pivot along y
  * Returned:  M[3]  N m  couple of pivot

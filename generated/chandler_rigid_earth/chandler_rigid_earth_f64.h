@@ -29,7 +29,7 @@ typedef struct {
  * Given:     A  kg m^2  0.8 .. 0.802  equatorial moment; in any unit, as C
  *            C  kg m^2  0.803 .. 0.805  polar moment; only A/(C - A) matters
  *            rate  rad/s  7.2e-05 .. 7.4e-05  rate of the Earth
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -40,7 +40,7 @@ int chandler_rigid_earth_setup_f64(double A, double C, double rate,
     chandler_rigid_earth_constants_f64 *constants);
 
 /* Period of the wobble.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  period_days  d  period of the wobble
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]

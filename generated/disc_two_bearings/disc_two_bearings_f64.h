@@ -34,7 +34,7 @@ typedef struct {
  *            W  rad/s  4 .. 8  precession, about the vertical
  *            d  m  0.08 .. 0.12  distance of the bearings
  *            g  m/s^2  9.7 .. 9.9  gravity
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
  *            body is not positive; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -45,7 +45,7 @@ int disc_two_bearings_setup_f64(double m, double r, double w, double W, double d
     disc_two_bearings_constants_f64 *constants);
 
 /* (R_up + R_down)*d/2.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  couple  N m  (R_up + R_down)*d/2
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
@@ -64,7 +64,7 @@ int disc_two_bearings_setup_f64(double m, double r, double w, double W, double d
 void disc_two_bearings_couple_f64(const disc_two_bearings_constants_f64 *constants, double *couple);
 
 /* Force of B.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  R_up  N  force of B
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
@@ -83,7 +83,7 @@ void disc_two_bearings_couple_f64(const disc_two_bearings_constants_f64 *constan
 void disc_two_bearings_R_up_f64(const disc_two_bearings_constants_f64 *constants, double *R_up);
 
 /* Force of A.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  R_down  N  force of A
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture

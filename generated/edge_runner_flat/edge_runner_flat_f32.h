@@ -35,7 +35,7 @@ typedef struct {
  *            r  m  0.4 .. 0.8  its radius
  *            L  m  0.7 .. 1.2  from the hinge to the middle of the roller
  *            g  m/s^2  9.7 .. 9.9  gravity
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
  *            body is not positive; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -46,7 +46,7 @@ int edge_runner_flat_setup_f32(float m, float r, float L, float g,
     edge_runner_flat_constants_f32 *constants);
 
 /* Force of ground.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 5  speed of the driven shaft
  * Returned:  N  N  force of ground
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
@@ -66,7 +66,7 @@ int edge_runner_flat_setup_f32(float m, float r, float L, float g,
 void edge_runner_flat_N_f32(const edge_runner_flat_constants_f32 *constants, float W, float *N);
 
 /* N/(m*g).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 5  speed of the driven shaft
  * Returned:  gyro_gain  1  N/(m*g)
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
@@ -87,7 +87,7 @@ void edge_runner_flat_gyro_gain_f32(const edge_runner_flat_constants_f32 *consta
     float *gyro_gain);
 
 /* -W*L/r.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 5  speed of the driven shaft
  * Returned:  spin_rel  rad/s  -W*L/r
  * Error: median 0.43, largest 2 u of the largest component, by rounding alone (of spin_rel; 200000
@@ -98,7 +98,7 @@ void edge_runner_flat_spin_rel_f32(const edge_runner_flat_constants_f32 *constan
     float *spin_rel);
 
 /* Force of hinge.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 5  speed of the driven shaft
  * Returned:  hinge_radial  N  force of hinge
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
@@ -115,7 +115,7 @@ void edge_runner_flat_hinge_radial_f32(const edge_runner_flat_constants_f32 *con
     float *hinge_radial);
 
 /* Force of hinge.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 5  speed of the driven shaft
  * Returned:  hinge_z  N  force of hinge
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]

@@ -173,7 +173,7 @@ int eulers_disk_setup_f32(float m, float r, float tilt, float g,
 #endif
 #endif
 
-/* What vanishes in a steady motion. */
+/* What vanishes in a steady motion, without factors that never vanish, so in no unit. */
 void eulers_disk_steady_f32(const eulers_disk_constants_f32 *constants, float W, float *steady)
 {
     const float t0 = W * W;

@@ -185,7 +185,7 @@ int eulers_disk_setup_f64(double m, double r, double tilt, double g,
 #endif
 #endif
 
-/* What vanishes in a steady motion. */
+/* What vanishes in a steady motion, without factors that never vanish, so in no unit. */
 void eulers_disk_steady_f64(const eulers_disk_constants_f64 *constants, double W, double *steady)
 {
     const double t0 = W * W;

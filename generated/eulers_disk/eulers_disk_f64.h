@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 77a7f72989174643.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 3ad7c1857d3d81e1.
  */
 #ifndef EULERS_DISK_F64_H
 #define EULERS_DISK_F64_H
@@ -33,7 +33,7 @@ typedef struct {
  *            r  m  0.03 .. 0.05  radius
  *            tilt  rad  0.05 .. 0.5  between disc and floor
  *            g  m/s^2  9.7 .. 9.9  gravity
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
  *            body is not positive; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -43,10 +43,10 @@ typedef struct {
 int eulers_disk_setup_f64(double m, double r, double tilt, double g,
     eulers_disk_constants_f64 *constants);
 
-/* What vanishes in a steady motion.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+/* What vanishes in a steady motion, without factors that never vanish, so in no unit.
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  10 .. 200  precession
- * Returned:  steady  what vanishes in a steady motion
+ * Returned:  steady  what vanishes in a steady motion, without factors that never vanish, so in no unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
  *            step moving_point_form]
@@ -64,7 +64,7 @@ int eulers_disk_setup_f64(double m, double r, double tilt, double g,
 void eulers_disk_steady_f64(const eulers_disk_constants_f64 *constants, double W, double *steady);
 
 /* -W*cos(tilt).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  10 .. 200  precession
  * Returned:  spin_rel  rad/s  -W*cos(tilt)
  * Error: median 0.39, largest 1.6 u of the largest component, by rounding alone (of spin_rel;
@@ -75,7 +75,7 @@ void eulers_disk_spin_rel_f64(const eulers_disk_constants_f64 *constants, double
     double *spin_rel);
 
 /* -ground_z*r*cos(tilt).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  tipping  N m  -ground_z*r*cos(tilt)
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]

@@ -67,7 +67,7 @@ typedef struct {
  *            I_xy  kg m^2  -0.2 .. 0.2  product of inertia, +sum x y dm
  *            I_xz  kg m^2  -0.2 .. 0.2  product of inertia, +sum x z dm
  *            I_yz  kg m^2  -0.2 .. 0.2  product of inertia, +sum y z dm
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -78,7 +78,7 @@ int free_body_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_
     free_body_constants_f32 *constants);
 
 /* Rate of the angular velocity from the moment (forward dynamics).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
  * Returned:  omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
@@ -97,11 +97,11 @@ void free_body_acceleration_f32(const free_body_constants_f32 *constants, const 
     const float moment[3], float omega_dot[3]);
 
 /* Rate of the angular velocity from the moment (forward dynamics), with its Jacobian.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
  * Returned:  omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
- *            jacobian[18]  nonzeros of the Jacobian, in compressed-column order
+ *            jacobian[18]  nonzeros of the Jacobian, in compressed-column order, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
@@ -121,7 +121,7 @@ void free_body_acceleration_jacobian_dense_f32(const free_body_constants_f32 *co
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[18]);
 
 /* External moment that the motion needs (inverse dynamics).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
  * Returned:  moment[3]  N m  along B  external moment about the centre of mass
@@ -140,7 +140,7 @@ void free_body_moment_f32(const free_body_constants_f32 *constants, const float 
     const float omega_dot[3], float moment[3]);
 
 /* Angular momentum from the angular velocity.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
@@ -154,7 +154,7 @@ void free_body_angular_momentum_f32(const free_body_constants_f32 *constants, co
     float angular_momentum[3]);
 
 /* Rate of the angular momentum, seen from the axes and from the inertial frame.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
  * Returned:  rate_in_axes[3]  N m  along B  rate of angular momentum seen from the axes
@@ -170,7 +170,7 @@ void free_body_angular_momentum_rate_f32(const free_body_constants_f32 *constant
     const float omega[3], const float omega_dot[3], float rate_in_axes[3], float rate_absolute[3]);
 
 /* Kinetic energy.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]

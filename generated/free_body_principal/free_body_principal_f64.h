@@ -44,7 +44,7 @@ typedef struct {
  * Given:     I_xx  kg m^2  1.2 .. 1.6  principal moment of inertia about x
  *            I_yy  kg m^2  1.4 .. 1.8  principal moment of inertia about y
  *            I_zz  kg m^2  1.6 .. 2  principal moment of inertia about z
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -55,7 +55,7 @@ int free_body_principal_setup_f64(double I_xx, double I_yy, double I_zz,
     free_body_principal_constants_f64 *constants);
 
 /* Rate of the angular velocity from the moment (forward dynamics).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
  * Returned:  omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
@@ -74,11 +74,11 @@ void free_body_principal_acceleration_f64(const free_body_principal_constants_f6
     const double omega[3], const double moment[3], double omega_dot[3]);
 
 /* Rate of the angular velocity from the moment (forward dynamics), with its Jacobian.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
  * Returned:  omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
- *            jacobian[9]  nonzeros of the Jacobian, in compressed-column order
+ *            jacobian[9]  nonzeros of the Jacobian, in compressed-column order, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
@@ -98,7 +98,7 @@ void free_body_principal_acceleration_jacobian_dense_f64(const free_body_princip
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18]);
 
 /* External moment that the motion needs (inverse dynamics).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
  * Returned:  moment[3]  N m  along B  external moment about the centre of mass
@@ -117,7 +117,7 @@ void free_body_principal_moment_f64(const free_body_principal_constants_f64 *con
     const double omega[3], const double omega_dot[3], double moment[3]);
 
 /* Angular momentum from the angular velocity.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
@@ -131,7 +131,7 @@ void free_body_principal_angular_momentum_f64(const free_body_principal_constant
     const double omega[3], double angular_momentum[3]);
 
 /* Kinetic energy.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]

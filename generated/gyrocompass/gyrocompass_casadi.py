@@ -326,7 +326,7 @@ def _period_s():
 
 
 def linearised():
-    """Forces by acceleration, column by column, for alpha, forces by velocity, gyroscopic terms included, column by column, for alpha and forces by displacement, column by column, for alpha. Inputs: parameters, ."""
+    """Forces by acceleration, column by column, for alpha, each in its own unit, forces by velocity, gyroscopic terms included, column by column, for alpha, each in its own unit and forces by displacement, column by column, for alpha, each in its own unit. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_linearised(), "gyrocompass_linearised"))
 
 

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 ae706bcac61a6fb7.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 d6cbab634767408e.
  */
 #ifndef GYROCOMPASS_F32_H
 #define GYROCOMPASS_F32_H
@@ -35,7 +35,7 @@ typedef struct {
  *            w3  rad/s  1000 .. 3000  spin, all of omega along the axis
  *            lat  rad  0.2 .. 1.2  latitude
  *            we  rad/s  7e-05 .. 7.5e-05  rate of the Earth
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
  *            body is not positive; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -46,7 +46,7 @@ int gyrocompass_setup_f32(float m, float r, float w3, float lat, float we,
     gyrocompass_constants_f32 *constants);
 
 /* Acceleration of alpha.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            alpha  rad  -0.5 .. 0.5  axis from north
  * Returned:  alpha_ddot  rad/s^2  acceleration of alpha
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
@@ -64,7 +64,7 @@ void gyrocompass_alpha_ddot_f32(const gyrocompass_constants_f32 *constants, floa
     float *alpha_ddot);
 
 /* Period about north.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  period_s  s  period about north
  * Error: median 0.34, largest 1 u of the largest component, by rounding alone (of period_s; 200000
  *            samples of the ranges, 65536 searched from the worst, 120 hard ones).
@@ -72,11 +72,11 @@ void gyrocompass_alpha_ddot_f32(const gyrocompass_constants_f32 *constants, floa
  */
 void gyrocompass_period_s_f32(const gyrocompass_constants_f32 *constants, float *period_s);
 
-/* Forces by acceleration, column by column, for alpha, forces by velocity, gyroscopic terms included, column by column, for alpha and forces by displacement, column by column, for alpha.
- * Given:     constants  constants made of parameters only, for the functions of this scene
- * Returned:  mass_matrix[1]  forces by acceleration, column by column, for alpha
- *            damping_matrix[1]  forces by velocity, gyroscopic terms included, column by column, for alpha
- *            stiffness_matrix[1]  forces by displacement, column by column, for alpha
+/* Forces by acceleration, column by column, for alpha, each in its own unit, forces by velocity, gyroscopic terms included, column by column, for alpha, each in its own unit and forces by displacement, column by column, for alpha, each in its own unit.
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
+ * Returned:  mass_matrix[1]  forces by acceleration, column by column, for alpha, each in its own unit
+ *            damping_matrix[1]  forces by velocity, gyroscopic terms included, column by column, for alpha, each in its own unit
+ *            stiffness_matrix[1]  forces by displacement, column by column, for alpha, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
  *            step moving_point_form]

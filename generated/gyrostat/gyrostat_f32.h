@@ -85,7 +85,7 @@ typedef struct {
  *            C_1  kg m^2  0.005 .. 0.02  axial moment of wheel 1
  *            C_2  kg m^2  0.005 .. 0.02  axial moment of wheel 2
  *            C_3  kg m^2  0.005 .. 0.02  axial moment of wheel 3
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -96,7 +96,7 @@ int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_x
     float C_1, float C_2, float C_3, gyrostat_constants_f32 *constants);
 
 /* Rate of the state from the state and the inputs (forward dynamics).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            theta  rad  -1.4 .. 1.4  pitch
  *            phi  rad  -3.14 .. 3.14  roll
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
@@ -127,7 +127,7 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
     float wheel_accelerations[3]);
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            theta  rad  -1.4 .. 1.4  pitch
  *            phi  rad  -3.14 .. 3.14  roll
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
@@ -137,7 +137,7 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
  * Returned:  coordinate_rates[3]  rad/s  rates of psi, theta, phi
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  *            wheel_accelerations[3]  rad/s^2  wheel axes  wheel acceleration relative to the carrier
- *            jacobian[84]  nonzeros of the Jacobian, in compressed-column order
+ *            jacobian[84]  nonzeros of the Jacobian, in compressed-column order, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
  *            step moving_point_form]
@@ -166,7 +166,7 @@ void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *consta
     float wheel_accelerations[3], float jacobian[135]);
 
 /* Kinetic energy.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
  * Returned:  kinetic_energy  J  kinetic energy
@@ -185,7 +185,7 @@ void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const 
     const float wheel_speeds[3], float *kinetic_energy);
 
 /* Angular momentum from the angular velocity.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum

@@ -48,7 +48,7 @@ typedef struct {
  *            I_yy  kg m^2  1.4 .. 1.8  principal moment about y, at the fixed point
  *            I_zz  kg m^2  1.6 .. 2  principal moment about z, at the fixed point
  *            w  N m  1 .. 3  weight times the mass centre's distance along z
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -59,7 +59,7 @@ int heavy_body_setup_f32(float I_xx, float I_yy, float I_zz, float w,
     heavy_body_constants_f32 *constants);
 
 /* Kinetic energy.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
@@ -73,7 +73,7 @@ void heavy_body_kinetic_energy_f32(const heavy_body_constants_f32 *constants, co
     float *kinetic_energy);
 
 /* One step of the rotation by splitting it into turns about two axes (order 2).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step
@@ -91,7 +91,7 @@ void heavy_body_step_split2_f32(const heavy_body_constants_f32 *constants, const
     const float omega[3], float time_step, float attitude_next[4], float omega_next[3]);
 
 /* One step of the rotation by splitting it into turns about two axes (order 4).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step
@@ -109,7 +109,7 @@ void heavy_body_step_split_f32(const heavy_body_constants_f32 *constants, const 
     const float omega[3], float time_step, float attitude_next[4], float omega_next[3]);
 
 /* One classic Runge-Kutta step (order 4).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step
@@ -135,7 +135,7 @@ void heavy_body_step_rk4_f32(const heavy_body_constants_f32 *constants, const fl
     const float omega[3], float time_step, float attitude_next[4], float omega_next[3]);
 
 /* One step by a Taylor series of order 20.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step

@@ -37,7 +37,7 @@ typedef struct {
  *            m  kg  0.2 .. 1  mass
  *            g  m/s^2  9.7 .. 9.9  gravity
  *            l  m  0.02 .. 0.06  distance of the mass centre from the fixed point
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -48,7 +48,7 @@ int heavy_top_setup_f32(float A, float C, float m, float g, float l,
     heavy_top_constants_f32 *constants);
 
 /* Rate of the state from the state and the inputs (forward dynamics).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            theta  rad  0.2 .. 2.9  nutation, from the vertical to the top's axis
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  coordinate_rates[3]  rad/s  rates of psi, theta, phi
@@ -70,12 +70,12 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
     const float omega[3], float coordinate_rates[3], float omega_dot[3]);
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            theta  rad  0.2 .. 2.9  nutation, from the vertical to the top's axis
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  coordinate_rates[3]  rad/s  rates of psi, theta, phi
  *            omega_dot[3]  rad/s^2  along xyz  rate of the components of omega along the axes
- *            jacobian[13]  nonzeros of the Jacobian, in compressed-column order
+ *            jacobian[13]  nonzeros of the Jacobian, in compressed-column order, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
@@ -97,7 +97,7 @@ void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *cons
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[36]);
 
 /* Kinetic energy.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
@@ -115,7 +115,7 @@ void heavy_top_kinetic_energy_f32(const heavy_top_constants_f32 *constants, cons
     float *kinetic_energy);
 
 /* Angular momentum from the angular velocity.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]

@@ -30,7 +30,7 @@ typedef struct {
  *            blade_length  m  0.9 .. 1.3  length of a blade
  *            p  rad/s  200 .. 300  spin
  *            W  rad/s  0.2 .. 0.8  rate of yaw
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
  *            body is not positive; 4 an inertia is none that a body can have; 5 a constant is not
  *            finite.
@@ -42,7 +42,7 @@ int propeller_3_blade_setup_f64(double blade_mass, double blade_length, double p
     propeller_3_blade_constants_f64 *constants);
 
 /* Couple of hub.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  M[3]  N m  couple of hub
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]

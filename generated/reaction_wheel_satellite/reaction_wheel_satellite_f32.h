@@ -45,7 +45,7 @@ typedef struct {
  *            J_xz  kg m^2  -0.1 .. 0.1  product, +sum x z dm
  *            J_yz  kg m^2  -0.1 .. 0.1  product, +sum y z dm
  *            I_w  kg m^2  0.001 .. 0.003  axial moment of a wheel
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -56,7 +56,7 @@ int reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float
     float J_yz, float I_w, reaction_wheel_satellite_constants_f32 *constants);
 
 /* Acceleration of w_x, acceleration of w_y and acceleration of w_z.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w_x  rad/s  -0.5 .. 0.5  omega of the body along x
  *            w_y  rad/s  -0.5 .. 0.5  omega of the body along y
  *            w_z  rad/s  -0.5 .. 0.5  omega of the body along z
@@ -88,7 +88,7 @@ void reaction_wheel_satellite_body_f32(const reaction_wheel_satellite_constants_
     float u_3, float *w_x_dot, float *w_y_dot, float *w_z_dot);
 
 /* Acceleration of s_1, acceleration of s_2 and acceleration of s_3.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w_x  rad/s  -0.5 .. 0.5  omega of the body along x
  *            w_y  rad/s  -0.5 .. 0.5  omega of the body along y
  *            w_z  rad/s  -0.5 .. 0.5  omega of the body along z

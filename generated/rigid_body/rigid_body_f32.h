@@ -71,7 +71,7 @@ typedef struct {
  *            I_xy  kg m^2  -0.2 .. 0.2  product of inertia, +sum x y dm
  *            I_xz  kg m^2  -0.2 .. 0.2  product of inertia, +sum x z dm
  *            I_yz  kg m^2  -0.2 .. 0.2  product of inertia, +sum y z dm
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
  *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -82,7 +82,7 @@ int rigid_body_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xy
     float I_yz, rigid_body_constants_f32 *constants);
 
 /* Rate of the state from the state and the inputs (forward dynamics).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            velocity[3]  m/s  along N  -50 .. 50  velocity of the centre of mass
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
@@ -113,7 +113,7 @@ void rigid_body_state_rate_f32(const rigid_body_constants_f32 *constants, const 
     float position_rate[3], float attitude_rate[4], float velocity_rate[3], float omega_dot[3]);
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            velocity[3]  m/s  along N  -50 .. 50  velocity of the centre of mass
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
@@ -123,7 +123,7 @@ void rigid_body_state_rate_f32(const rigid_body_constants_f32 *constants, const 
  *            attitude_rate[4]  1/s  N from B  rate of the attitude quaternion
  *            velocity_rate[3]  m/s^2  along N  rate of the velocity
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
- *            jacobian[66]  nonzeros of the Jacobian, in compressed-column order
+ *            jacobian[66]  nonzeros of the Jacobian, in compressed-column order, each in its own unit
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
@@ -152,7 +152,7 @@ void rigid_body_state_rate_jacobian_dense_f32(const rigid_body_constants_f32 *co
     float omega_dot[3], float jacobian[247]);
 
 /* Kinetic energy.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            velocity[3]  m/s  along N  -50 .. 50  velocity of the centre of mass
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
@@ -167,7 +167,7 @@ void rigid_body_kinetic_energy_f32(const rigid_body_constants_f32 *constants,
     const float velocity[3], const float omega[3], float *kinetic_energy);
 
 /* External moment that the motion needs (inverse dynamics).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
  * Returned:  moment[3]  N m  along B  external moment about the centre of mass

@@ -64,7 +64,7 @@ typedef struct {
  *            I_xy  kg m^2  -0.2 .. 0.2  product of inertia, +sum x y dm
  *            I_xz  kg m^2  -0.2 .. 0.2  product of inertia, +sum x z dm
  *            I_yz  kg m^2  -0.2 .. 0.2  product of inertia, +sum y z dm
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
  *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -75,7 +75,7 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
     double I_xz, double I_yz, rigid_body_steps_constants_f64 *constants);
 
 /* One classic Runge-Kutta step (order 4).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            position[3]  m  along N  -100 .. 100  position of the centre of mass
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            velocity[3]  m/s  along N  -50 .. 50  velocity of the centre of mass
@@ -111,7 +111,7 @@ void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constan
     double position_next[3], double attitude_next[4], double velocity_next[3], double omega_next[3]);
 
 /* One classic Runge-Kutta step (order 4), with its Jacobian.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            position[3]  m  along N  -100 .. 100  position of the centre of mass
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            velocity[3]  m/s  along N  -50 .. 50  velocity of the centre of mass
@@ -123,7 +123,7 @@ void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constan
  *            attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            velocity_next[3]  m/s  along N  velocity of the centre of mass, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- *            jacobian[145]  nonzeros of the Jacobian, in compressed-column order
+ *            jacobian[145]  nonzeros of the Jacobian, in compressed-column order, each in its own unit
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]

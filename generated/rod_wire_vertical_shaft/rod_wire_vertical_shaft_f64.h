@@ -33,7 +33,7 @@ typedef struct {
  *            beta  rad  0.8 .. 1.2  from the horizontal
  *            w  rad/s  10 .. 20  speed of the axle
  *            g  m/s^2  9 .. 33  gravity
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
  *            body is not positive; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -44,7 +44,7 @@ int rod_wire_vertical_shaft_setup_f64(double W, double L, double beta, double w,
     rod_wire_vertical_shaft_constants_f64 *constants);
 
 /* Force of wire.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  T  N  force of wire
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
@@ -64,7 +64,7 @@ void rod_wire_vertical_shaft_T_f64(const rod_wire_vertical_shaft_constants_f64 *
     double *T);
 
 /* Force of pin along x.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  A_x  N  force of pin along x
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
@@ -85,7 +85,7 @@ void rod_wire_vertical_shaft_A_x_f64(const rod_wire_vertical_shaft_constants_f64
     double *A_x);
 
 /* Force of pin along z.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  A_z  N  force of pin along z
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Error: median 0, largest 0 u of the largest product or sum in the equation (of A_z; 200000

@@ -34,7 +34,7 @@ typedef struct {
  *            r  m  0.1 .. 0.2  radius of the base
  *            a  rad  0.4 .. 0.6  half angle, with tan(a) = r/h
  *            g  m/s^2  9.7 .. 9.9  gravity
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
  *            body is not positive; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -45,7 +45,7 @@ int rolling_cone_setup_f32(float m, float h, float r, float a, float g,
     rolling_cone_constants_f32 *constants);
 
 /* Kinetic energy.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 20  rate at which the contact line turns
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
@@ -63,7 +63,7 @@ void rolling_cone_kinetic_energy_f32(const rolling_cone_constants_f32 *constants
     float *kinetic_energy);
 
 /* Where the plane presses, from the apex.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 20  rate at which the contact line turns
  * Returned:  x_N  m  where the plane presses, from the apex
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
@@ -84,7 +84,7 @@ void rolling_cone_kinetic_energy_f32(const rolling_cone_constants_f32 *constants
 void rolling_cone_x_N_f32(const rolling_cone_constants_f32 *constants, float W, float *x_N);
 
 /* What vanishes in a steady motion.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 20  rate at which the contact line turns
  * Returned:  steady  m  what vanishes in a steady motion
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]

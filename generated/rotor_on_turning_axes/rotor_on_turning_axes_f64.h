@@ -32,7 +32,7 @@ typedef struct {
 /* Make the constants of this scene from its parameters; call it once.
  * Given:     A  kg m^2  0.6 .. 1  transverse moment of inertia
  *            C  kg m^2  0.8 .. 1.1  axial moment of inertia
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -43,15 +43,15 @@ int rotor_on_turning_axes_setup_f64(double A, double C,
     rotor_on_turning_axes_constants_f64 *constants);
 
 /* External moment that the motion needs (inverse dynamics).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W_x  rad/s  -1 .. 1  turn rate of the bearings about the shaft
- *            W_x_dot  rad/s^2  -1 .. 1
+ *            W_x_dot  rad/s^2  -1 .. 1  rate of W_x
  *            W_y  rad/s  -1 .. 1  turn rate of the bearings about y
- *            W_y_dot  rad/s^2  -1 .. 1
+ *            W_y_dot  rad/s^2  -1 .. 1  rate of W_y
  *            W_z  rad/s  -1 .. 1  turn rate of the bearings about z
- *            W_z_dot  rad/s^2  -1 .. 1
+ *            W_z_dot  rad/s^2  -1 .. 1  rate of W_z
  *            p  rad/s  -500 .. 500  spin of the rotor in its bearings
- *            p_dot  rad/s^2  -50 .. 50
+ *            p_dot  rad/s^2  -50 .. 50  rate of p
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
@@ -69,7 +69,7 @@ void rotor_on_turning_axes_moment_f64(const rotor_on_turning_axes_constants_f64 
     double p_dot, double moment[3]);
 
 /* Angular momentum from the angular velocity.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W_x  rad/s  -1 .. 1  turn rate of the bearings about the shaft
  *            W_y  rad/s  -1 .. 1  turn rate of the bearings about y
  *            W_z  rad/s  -1 .. 1  turn rate of the bearings about z
@@ -90,15 +90,15 @@ void rotor_on_turning_axes_angular_momentum_f64(const rotor_on_turning_axes_cons
     double W_x, double W_y, double W_z, double p, double angular_momentum[3]);
 
 /* Rate of the angular momentum, seen from the axes and from the inertial frame.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W_x  rad/s  -1 .. 1  turn rate of the bearings about the shaft
- *            W_x_dot  rad/s^2  -1 .. 1
+ *            W_x_dot  rad/s^2  -1 .. 1  rate of W_x
  *            W_y  rad/s  -1 .. 1  turn rate of the bearings about y
- *            W_y_dot  rad/s^2  -1 .. 1
+ *            W_y_dot  rad/s^2  -1 .. 1  rate of W_y
  *            W_z  rad/s  -1 .. 1  turn rate of the bearings about z
- *            W_z_dot  rad/s^2  -1 .. 1
+ *            W_z_dot  rad/s^2  -1 .. 1  rate of W_z
  *            p  rad/s  -500 .. 500  spin of the rotor in its bearings
- *            p_dot  rad/s^2  -50 .. 50
+ *            p_dot  rad/s^2  -50 .. 50  rate of p
  * Returned:  rate_in_axes[3]  N m  along xyz  rate of angular momentum seen from the axes
  *            rate_absolute[3]  N m  along xyz  rate of angular momentum seen from the inertial frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
@@ -118,7 +118,7 @@ void rotor_on_turning_axes_angular_momentum_rate_f64(const rotor_on_turning_axes
     double p_dot, double rate_in_axes[3], double rate_absolute[3]);
 
 /* Kinetic energy.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W_x  rad/s  -1 .. 1  turn rate of the bearings about the shaft
  *            W_y  rad/s  -1 .. 1  turn rate of the bearings about y
  *            W_z  rad/s  -1 .. 1  turn rate of the bearings about z

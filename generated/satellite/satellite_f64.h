@@ -51,7 +51,7 @@ typedef struct {
  * Given:     I_xx  kg m^2  1.2 .. 1.6  principal moment of inertia about x
  *            I_yy  kg m^2  1.4 .. 1.8  principal moment of inertia about y
  *            I_zz  kg m^2  1.6 .. 2  principal moment of inertia about z
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -61,7 +61,7 @@ typedef struct {
 int satellite_setup_f64(double I_xx, double I_yy, double I_zz, satellite_constants_f64 *constants);
 
 /* Rate of the state from the state and the inputs (forward dynamics).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
@@ -86,7 +86,7 @@ void satellite_state_rate_f64(const satellite_constants_f64 *constants, const do
     const double omega[3], const double moment[3], double attitude_rate[4], double omega_dot[3]);
 
 /* One classic Runge-Kutta step (order 4).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
@@ -114,14 +114,14 @@ void satellite_step_rk4_f64(const satellite_constants_f64 *constants, const doub
     double omega_next[3]);
 
 /* One classic Runge-Kutta step (order 4), with its Jacobian.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
  *            time_step  s  0 .. 0.02  length of the step
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- *            jacobian[58]  nonzeros of the Jacobian, in compressed-column order
+ *            jacobian[58]  nonzeros of the Jacobian, in compressed-column order, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
@@ -148,14 +148,14 @@ void satellite_step_rk4_jacobian_dense_f64(const satellite_constants_f64 *consta
     double attitude_next[4], double omega_next[3], double jacobian[70]);
 
 /* One classic Runge-Kutta step (order 4), with its Jacobian over the tangent space of the attitude.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
  *            time_step  s  0 .. 0.02  length of the step
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- *            jacobian[45]  nonzeros of the Jacobian over attitude errors delta, q exp(delta / 2), in compressed-column order
+ *            jacobian[45]  nonzeros of the Jacobian over attitude errors delta, q exp(delta / 2), in compressed-column order, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
@@ -182,14 +182,14 @@ void satellite_step_rk4_tangent_dense_f64(const satellite_constants_f64 *constan
     double attitude_next[4], double omega_next[3], double jacobian[54]);
 
 /* One classic Runge-Kutta step (order 4), with its derivatives by the parameters.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
  *            time_step  s  0 .. 0.02  length of the step
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- *            jacobian[21]  nonzeros of the derivatives by the parameters, in compressed-column order
+ *            jacobian[21]  nonzeros of the derivatives by the parameters, in compressed-column order, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
@@ -216,7 +216,7 @@ void satellite_step_rk4_sensitivity_dense_f64(const satellite_constants_f64 *con
     double attitude_next[4], double omega_next[3], double jacobian[21]);
 
 /* One commutator-free Lie-group step: the attitude turns by exponentials (order 4).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
@@ -245,7 +245,7 @@ void satellite_step_lie_f64(const satellite_constants_f64 *constants, const doub
     double omega_next[3]);
 
 /* One step of the rotation by splitting it into turns about two axes (order 4).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
@@ -265,7 +265,7 @@ void satellite_step_split_f64(const satellite_constants_f64 *constants, const do
     double omega_next[3]);
 
 /* One step by a Taylor series of order 20.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass

@@ -38,7 +38,7 @@ typedef struct {
  *            g  m/s^2  9.7 .. 9.9  gravity
  *            turn  rad/s  0.4 .. 1.2  rate of turning, about z, up
  *            pitch  rad/s  0.7 .. 2  rate of pitching, about y
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
  *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -49,7 +49,7 @@ int ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, f
     float turn, float pitch, ship_turbine_three_motions_constants_f32 *constants);
 
 /* Force of A_rolling and force of B_rolling.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  A_roll  N  force of A_rolling
  *            B_roll  N  force of B_rolling
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
@@ -70,7 +70,7 @@ void ship_turbine_three_motions_roll_case_f32(const ship_turbine_three_motions_c
     float *A_roll, float *B_roll);
 
 /* Force of A_turning and force of B_turning.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  A_turn  N  force of A_turning
  *            B_turn  N  force of B_turning
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
@@ -91,7 +91,7 @@ void ship_turbine_three_motions_turn_case_f32(const ship_turbine_three_motions_c
     float *A_turn, float *B_turn);
 
 /* Force of A_pitching and force of B_pitching.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  A_pitch  N  force of A_pitching
  *            B_pitch  N  force of B_pitching
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
@@ -112,7 +112,7 @@ void ship_turbine_three_motions_pitch_case_f32(const ship_turbine_three_motions_
     float *A_pitch, float *B_pitch);
 
 /* B*A_pitch_side - a*B_pitch_side.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  pitch_horizontal_couple  N m  b*A_pitch_side - a*B_pitch_side
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture

@@ -36,7 +36,7 @@ typedef struct {
  *            a  m  0.5 .. 0.7  to the forward bearing A
  *            b  m  0.8 .. 1  to the aft bearing B
  *            g  m/s^2  9.7 .. 9.9  gravity
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 4 an inertia is
  *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -47,7 +47,7 @@ int ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, dou
     double b, double g, ship_turbine_turn_port_constants_f64 *constants);
 
 /* Force of A and force of B.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  R_A  N  force of A
  *            R_B  N  force of B
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
@@ -68,7 +68,7 @@ void ship_turbine_turn_port_reactions_f64(const ship_turbine_turn_port_constants
     double *R_A, double *R_B);
 
 /* A*R_A - b*R_B.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  gyro_moment  N m  a*R_A - b*R_B
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture

@@ -31,7 +31,7 @@ typedef struct {
  *            r  m  0.1 .. 0.3  its radius
  *            skew  rad  0.01 .. 0.1  between its normal and the shaft
  *            b  m  0.2 .. 0.3  from the disc to each bearing
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
  *            body is not positive; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -42,7 +42,7 @@ int skewed_disc_setup_f32(float m, float r, float skew, float b,
     skewed_disc_constants_f32 *constants);
 
 /* B*(B_y - A_y), b*(A_x - B_x) and couple of A.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w  rad/s  200 .. 400  speed of the shaft
  * Returned:  M_x  N m  b*(B_y - A_y)
  *            M_y  N m  b*(A_x - B_x)
@@ -65,7 +65,7 @@ void skewed_disc_M_f32(const skewed_disc_constants_f32 *constants, float w, floa
     float *M_z);
 
 /* A_x.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w  rad/s  200 .. 400  speed of the shaft
  * Returned:  bearing_force  N  A_x
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 cf5e84643bf35b33.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 62dbf8c51ab90e7d.
  */
 #ifndef SLEEPING_TOP_F32_H
 #define SLEEPING_TOP_F32_H
@@ -43,7 +43,7 @@ typedef struct {
  *            l  m  0.05 .. 0.07  length of the stem
  *            n  rad/s  20 .. 200  spin, all of omega along the axis
  *            g  m/s^2  9.7 .. 9.9  gravity
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 2 a mass is not positive; 3 a length of a
  *            body is not positive; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -53,11 +53,11 @@ typedef struct {
 int sleeping_top_setup_f32(float m, float r, float l, float n, float g,
     sleeping_top_constants_f32 *constants);
 
-/* Forces by acceleration, column by column, for alpha, beta, forces by velocity, gyroscopic terms included, column by column, for alpha, beta and forces by displacement, column by column, for alpha, beta.
- * Given:     constants  constants made of parameters only, for the functions of this scene
- * Returned:  mass_matrix[4]  forces by acceleration, column by column, for alpha, beta
- *            damping_matrix[4]  forces by velocity, gyroscopic terms included, column by column, for alpha, beta
- *            stiffness_matrix[4]  forces by displacement, column by column, for alpha, beta
+/* Forces by acceleration, column by column, for alpha, beta, each in its own unit, forces by velocity, gyroscopic terms included, column by column, for alpha, beta, each in its own unit and forces by displacement, column by column, for alpha, beta, each in its own unit.
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
+ * Returned:  mass_matrix[4]  forces by acceleration, column by column, for alpha, beta, each in its own unit
+ *            damping_matrix[4]  forces by velocity, gyroscopic terms included, column by column, for alpha, beta, each in its own unit
+ *            stiffness_matrix[4]  forces by displacement, column by column, for alpha, beta, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
  *            step moving_point_form]
@@ -73,7 +73,7 @@ void sleeping_top_linearised_f32(const sleeping_top_constants_f32 *constants, fl
     float damping_matrix[4], float stiffness_matrix[4]);
 
 /* Acceleration of alpha and acceleration of beta.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            alpha  rad  -0.3 .. 0.3  tilt about x
  *            alpha_dot  rad/s  -1 .. 1  rate of alpha
  *            beta  rad  -0.3 .. 0.3  tilt about the new y
@@ -99,7 +99,7 @@ void sleeping_top_accelerations_f32(const sleeping_top_constants_f32 *constants,
     float alpha_dot, float beta, float beta_dot, float *alpha_ddot, float *beta_ddot);
 
 /* Energy.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            alpha  rad  -0.3 .. 0.3  tilt about x
  *            alpha_dot  rad/s  -1 .. 1  rate of alpha
  *            beta  rad  -0.3 .. 0.3  tilt about the new y
@@ -119,7 +119,7 @@ void sleeping_top_energy_f32(const sleeping_top_constants_f32 *constants, float 
     float alpha_dot, float beta, float beta_dot, float *energy);
 
 /* One classic Runge-Kutta step (order 4).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            alpha  rad  -0.3 .. 0.3  tilt about x
  *            alpha_dot  rad/s  -1 .. 1  rate of alpha
  *            beta  rad  -0.3 .. 0.3  tilt about the new y

@@ -56,7 +56,7 @@ typedef struct {
  * Given:     I_xx  kg m^2  0.28 .. 0.32  smallest principal moment
  *            I_yy  kg m^2  0.34 .. 0.36  middle principal moment
  *            I_zz  kg m^2  0.38 .. 0.42  largest principal moment
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -67,7 +67,7 @@ int t_handle_flip_setup_f32(float I_xx, float I_yy, float I_zz,
     t_handle_flip_constants_f32 *constants);
 
 /* Kinetic energy.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -15 .. 15  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
@@ -81,7 +81,7 @@ void t_handle_flip_kinetic_energy_f32(const t_handle_flip_constants_f32 *constan
     const float omega[3], float *kinetic_energy);
 
 /* Angular momentum from the angular velocity.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -15 .. 15  angular velocity of the body in the inertial frame
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
@@ -95,7 +95,7 @@ void t_handle_flip_angular_momentum_f32(const t_handle_flip_constants_f32 *const
     const float omega[3], float angular_momentum[3]);
 
 /* Attitude and angular velocity after any time without torque (exact solution).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -15 .. 15  angular velocity of the body in the inertial frame
  *            time  s  -60 .. 60  time from the given to the new state

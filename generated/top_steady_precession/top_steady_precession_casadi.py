@@ -262,7 +262,7 @@ def _from_parameters(hot, name):
 
 
 def steady():
-    """What vanishes in a steady motion. Inputs: parameters, W."""
+    """What vanishes in a steady motion, without factors that never vanish, so in no unit. Inputs: parameters, W."""
     return _built(lambda: _from_parameters(_steady(), "top_steady_precession_steady"))
 
 

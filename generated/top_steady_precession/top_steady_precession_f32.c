@@ -171,7 +171,7 @@ int top_steady_precession_setup_f32(float r, float l, float theta, float n, floa
 #endif
 #endif
 
-/* What vanishes in a steady motion. */
+/* What vanishes in a steady motion, without factors that never vanish, so in no unit. */
 void top_steady_precession_steady_f32(const top_steady_precession_constants_f32 *constants, float W,
     float *steady)
 {

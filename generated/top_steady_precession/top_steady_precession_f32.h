@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 2ced6768cc952340.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 1178c358fd040a6b.
  */
 #ifndef TOP_STEADY_PRECESSION_F32_H
 #define TOP_STEADY_PRECESSION_F32_H
@@ -33,7 +33,7 @@ typedef struct {
  *            theta  rad  0.3 .. 1  from the vertical
  *            n  rad/s  200 .. 300  spin, all of omega along the axis
  *            g  m/s^2  9.7 .. 9.9  gravity
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 3 a length of a body is not positive; 5 a
  *            constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -43,10 +43,10 @@ typedef struct {
 int top_steady_precession_setup_f32(float r, float l, float theta, float n, float g,
     top_steady_precession_constants_f32 *constants);
 
-/* What vanishes in a steady motion.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+/* What vanishes in a steady motion, without factors that never vanish, so in no unit.
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  0.1 .. 200  rate of precession
- * Returned:  steady  what vanishes in a steady motion
+ * Returned:  steady  what vanishes in a steady motion, without factors that never vanish, so in no unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
  *            step moving_point_form]

@@ -183,7 +183,7 @@ int top_steady_precession_setup_f64(double r, double l, double theta, double n, 
 #endif
 #endif
 
-/* What vanishes in a steady motion. */
+/* What vanishes in a steady motion, without factors that never vanish, so in no unit. */
 void top_steady_precession_steady_f64(const top_steady_precession_constants_f64 *constants,
     double W, double *steady)
 {

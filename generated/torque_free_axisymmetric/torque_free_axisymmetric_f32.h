@@ -32,7 +32,7 @@ typedef struct {
 /* Make the constants of this scene from its parameters; call it once.
  * Given:     A  kg m^2  0.75 .. 1  transverse moment of inertia
  *            C  kg m^2  1.1 .. 1.5  axial moment of inertia
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -43,7 +43,7 @@ int torque_free_axisymmetric_setup_f32(float A, float C,
     torque_free_axisymmetric_constants_f32 *constants);
 
 /* Rate of the axis about L.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w_x  rad/s  0 .. 0.1  omega along x
  *            w_y  rad/s  1 .. 2  omega along y, across the axis
  *            w_z  rad/s  5 .. 7  omega along the axis
@@ -61,7 +61,7 @@ void torque_free_axisymmetric_precession_f32(const torque_free_axisymmetric_cons
     float w_x, float w_y, float w_z, float *precession);
 
 /* Rate of omega in the body.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w_z  rad/s  5 .. 7  omega along the axis
  * Returned:  body_rate  rad/s  rate of omega in the body
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
@@ -79,7 +79,7 @@ void torque_free_axisymmetric_body_rate_f32(const torque_free_axisymmetric_const
     float w_z, float *body_rate);
 
 /* Tangent, axis from L.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w_x  rad/s  0 .. 0.1  omega along x
  *            w_y  rad/s  1 .. 2  omega along y, across the axis
  *            w_z  rad/s  5 .. 7  omega along the axis
@@ -109,7 +109,7 @@ void torque_free_axisymmetric_tan_theta_f32(const torque_free_axisymmetric_const
 void torque_free_axisymmetric_tan_beta_f32(float w_x, float w_y, float w_z, float *tan_beta);
 
 /* Sqrt(angular_momentum_x^2 + angular_momentum_y^2 + angular_momentum_z^2).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w_x  rad/s  0 .. 0.1  omega along x
  *            w_y  rad/s  1 .. 2  omega along y, across the axis
  *            w_z  rad/s  5 .. 7  omega along the axis

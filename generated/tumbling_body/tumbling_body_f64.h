@@ -103,7 +103,7 @@ typedef struct {
  * Given:     I_xx  kg m^2  1.2 .. 1.6  principal moment of inertia about x
  *            I_yy  kg m^2  1.4 .. 1.8  principal moment of inertia about y
  *            I_zz  kg m^2  1.6 .. 2  principal moment of inertia about z
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -114,7 +114,7 @@ int tumbling_body_setup_f64(double I_xx, double I_yy, double I_zz,
     tumbling_body_constants_f64 *constants);
 
 /* Kinetic energy.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
@@ -128,7 +128,7 @@ void tumbling_body_kinetic_energy_f64(const tumbling_body_constants_f64 *constan
     const double omega[3], double *kinetic_energy);
 
 /* Attitude and angular velocity after any time without torque (exact solution).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time  s  -10 .. 10  time from the given to the new state
@@ -149,10 +149,10 @@ void tumbling_body_flow_exact_f64(const tumbling_body_constants_f64 *constants,
     double omega_next[3]);
 
 /* Plan many steps of one length from an angular velocity; call it once.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step
- * Returned:  plan[13]  what a motion without torque and a length of step keep
+ * Returned:  plan[13]  what a motion without torque and a length of step keep, each in its own unit
  * Error: median 0.43, largest 8.3 u of the largest component, by rounding alone (of plan; 200000
  *            samples of the ranges, 65536 searched from the worst, 78 hard ones).
  * Cost: 43 add, 21 sub, 101 mul, 6 div, 1 abs, 1 less, 1 select, 1 splitter.
@@ -164,13 +164,13 @@ void tumbling_body_plan_dmv_f64(const tumbling_body_constants_f64 *constants, co
     double time_step, double plan[13]);
 
 /* One step of a torque-free rotation, as plan_dmv laid it out (order 10).
- * Given:     plan[13]  what a motion without torque and a length of step keep
+ * Given:     plan[13]  what a motion without torque and a length of step keep, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
- *            remainder[7]  what rounding left of earlier steps, zeros at the start
+ *            remainder[7]  what rounding left of earlier steps, each in its own unit, zeros at the start
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- *            remainder_next[7]  what rounding left of earlier steps, zeros at the start, next
+ *            remainder_next[7]  what rounding left of earlier steps, each in its own unit, zeros at the start, next
  * Error: median 0.19, largest 2.1 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
@@ -184,7 +184,7 @@ void tumbling_body_step_dmv_f64(const double plan[13], const double attitude[4],
     double remainder_next[7]);
 
 /* One step of the rotation by splitting it into turns about two axes (order 2).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step
@@ -203,7 +203,7 @@ void tumbling_body_step_split2_f64(const tumbling_body_constants_f64 *constants,
     double omega_next[3]);
 
 /* One step of the rotation by splitting it into turns about two axes (order 4).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step
@@ -222,7 +222,7 @@ void tumbling_body_step_split_f64(const tumbling_body_constants_f64 *constants,
     double omega_next[3]);
 
 /* One step of the rotation by splitting it into turns about two axes (order 6).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step
@@ -241,7 +241,7 @@ void tumbling_body_step_split6_f64(const tumbling_body_constants_f64 *constants,
     double omega_next[3]);
 
 /* One classic Runge-Kutta step (order 4).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step
@@ -268,13 +268,13 @@ void tumbling_body_step_rk4_f64(const tumbling_body_constants_f64 *constants,
     double omega_next[3]);
 
 /* One classic Runge-Kutta step (order 4), with its Jacobian.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- *            jacobian[37]  nonzeros of the Jacobian, in compressed-column order
+ *            jacobian[37]  nonzeros of the Jacobian, in compressed-column order, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
@@ -301,7 +301,7 @@ void tumbling_body_step_rk4_jacobian_dense_f64(const tumbling_body_constants_f64
     double omega_next[3], double jacobian[49]);
 
 /* One commutator-free Lie-group step: the attitude turns by exponentials (order 4).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step
@@ -329,7 +329,7 @@ void tumbling_body_step_lie_f64(const tumbling_body_constants_f64 *constants,
     double omega_next[3]);
 
 /* One step by a Taylor series of order 20.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step

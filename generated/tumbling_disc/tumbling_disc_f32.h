@@ -32,7 +32,7 @@ typedef struct {
 /* Make the constants of this scene from its parameters; call it once.
  * Given:     A  kg m^2  1 .. 2  transverse moment of inertia
  *            C  kg m^2  1.5 .. 1.9  axial moment of inertia
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -42,7 +42,7 @@ typedef struct {
 int tumbling_disc_setup_f32(float A, float C, tumbling_disc_constants_f32 *constants);
 
 /* Attitude and angular velocity after any time without torque (exact solution).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time  s  -10 .. 10  time from the given to the new state
@@ -63,10 +63,10 @@ void tumbling_disc_flow_exact_f32(const tumbling_disc_constants_f32 *constants,
     float omega_next[3]);
 
 /* Plan many steps of one length from an angular velocity; call it once.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step
- * Returned:  plan[6]  what a motion without torque and a length of step keep
+ * Returned:  plan[6]  what a motion without torque and a length of step keep, each in its own unit
  * Error: median 0.7, largest 11 u of the largest component, by rounding alone (of plan; 200000
  *            samples of the ranges, 65536 searched from the worst, 78 hard ones).
  * Cost: 3 add, 3 sub, 26 mul, 1 div, 1 sqrt, 4 sin, 1 cos, 1 less, 2 select.
@@ -78,13 +78,13 @@ void tumbling_disc_plan_dmv_f32(const tumbling_disc_constants_f32 *constants, co
     float time_step, float plan[6]);
 
 /* One step of a torque-free rotation, as plan_dmv laid it out (order 10).
- * Given:     plan[6]  what a motion without torque and a length of step keep
+ * Given:     plan[6]  what a motion without torque and a length of step keep, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
- *            remainder[7]  what rounding left of earlier steps, zeros at the start
+ *            remainder[7]  what rounding left of earlier steps, each in its own unit, zeros at the start
  * Returned:  attitude_next[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1, next
  *            omega_next[3]  rad/s  along B  angular velocity of the body in the inertial frame, next
- *            remainder_next[7]  what rounding left of earlier steps, zeros at the start, next
+ *            remainder_next[7]  what rounding left of earlier steps, each in its own unit, zeros at the start, next
  * Error: median 0.18, largest 1.3 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
@@ -97,7 +97,7 @@ void tumbling_disc_step_dmv_f32(const float plan[6], const float attitude[4], co
     const float remainder[7], float attitude_next[4], float omega_next[3], float remainder_next[7]);
 
 /* One step of the rotation by splitting it into turns about two axes (order 4).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step
@@ -116,7 +116,7 @@ void tumbling_disc_step_split_f32(const tumbling_disc_constants_f32 *constants,
     float omega_next[3]);
 
 /* One classic Runge-Kutta step (order 4).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step

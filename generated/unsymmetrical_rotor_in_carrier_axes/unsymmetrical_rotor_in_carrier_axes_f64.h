@@ -36,7 +36,7 @@ typedef struct {
  * Given:     I_xx  kg m^2  1.7 .. 1.9  moment of inertia about the shaft
  *            I_yy  kg m^2  1.6 .. 1.8  moment of inertia across the shaft and the blades
  *            I_zz  kg m^2  0.3 .. 0.5  moment of inertia along the blades
- * Returned:  constants  constants made of parameters only, for the functions of this scene
+ * Returned:  constants  constants of this scene, made of parameters only, each in its own unit
  * Returns: 0 all is right; 1 a parameter is not finite; 4 an inertia is none that a body can have;
  *            5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
@@ -47,12 +47,12 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, doub
     unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants);
 
 /* External moment that the motion needs (inverse dynamics).
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            gamma  rad  -3.14 .. 3.14  angle of the rotor on its shaft
- *            gamma_dot  rad/s  -300 .. 300
- *            gamma_ddot  rad/s^2  -50 .. 50
+ *            gamma_dot  rad/s  -300 .. 300  rate of gamma
+ *            gamma_ddot  rad/s^2  -50 .. 50  acceleration of gamma
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
- *            W_dot  rad/s^2  -1 .. 1
+ *            W_dot  rad/s^2  -1 .. 1  rate of W
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
@@ -69,14 +69,14 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in
     double gamma, double gamma_dot, double gamma_ddot, double W, double W_dot, double moment[3]);
 
 /* External moment that the motion needs (inverse dynamics), with its Jacobian.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            gamma  rad  -3.14 .. 3.14  angle of the rotor on its shaft
- *            gamma_dot  rad/s  -300 .. 300
- *            gamma_ddot  rad/s^2  -50 .. 50
+ *            gamma_dot  rad/s  -300 .. 300  rate of gamma
+ *            gamma_ddot  rad/s^2  -50 .. 50  acceleration of gamma
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
- *            W_dot  rad/s^2  -1 .. 1
+ *            W_dot  rad/s^2  -1 .. 1  rate of W
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
- *            jacobian[11]  nonzeros of the Jacobian, in compressed-column order
+ *            jacobian[11]  nonzeros of the Jacobian, in compressed-column order, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
@@ -99,9 +99,9 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(const unsymme
     double jacobian[15]);
 
 /* Angular momentum from the angular velocity.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            gamma  rad  -3.14 .. 3.14  angle of the rotor on its shaft
- *            gamma_dot  rad/s  -300 .. 300
+ *            gamma_dot  rad/s  -300 .. 300  rate of gamma
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
  * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
@@ -119,12 +119,12 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(const unsymmetrica
     double gamma, double gamma_dot, double W, double angular_momentum[3]);
 
 /* Rate of the angular momentum, seen from the axes and from the inertial frame.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            gamma  rad  -3.14 .. 3.14  angle of the rotor on its shaft
- *            gamma_dot  rad/s  -300 .. 300
- *            gamma_ddot  rad/s^2  -50 .. 50
+ *            gamma_dot  rad/s  -300 .. 300  rate of gamma
+ *            gamma_ddot  rad/s^2  -50 .. 50  acceleration of gamma
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
- *            W_dot  rad/s^2  -1 .. 1
+ *            W_dot  rad/s^2  -1 .. 1  rate of W
  * Returned:  rate_in_axes[3]  N m  along xyz  rate of angular momentum seen from the axes
  *            rate_absolute[3]  N m  along xyz  rate of angular momentum seen from the inertial frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
@@ -143,9 +143,9 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(const unsymme
     double rate_in_axes[3], double rate_absolute[3]);
 
 /* Kinetic energy.
- * Given:     constants  constants made of parameters only, for the functions of this scene
+ * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            gamma  rad  -3.14 .. 3.14  angle of the rotor on its shaft
- *            gamma_dot  rad/s  -300 .. 300
+ *            gamma_dot  rad/s  -300 .. 300  rate of gamma
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]

@@ -114,6 +114,12 @@ def test_a_scene_page_says_all_that_a_reader_needs(name: str) -> None:
     )
 
 
+def test_no_heading_of_a_page_stands_over_nothing() -> None:
+    empty = re.compile(r"<h([23])[^>]*>([^<]*)</h[23]>\s*(?=<h[1-3]|</section)")
+    pages = {name: page(name) for name in ("heavy_top", "sleeping_top", "rigid_body_steps")}
+    assert {name: empty.findall(text) for name, text in pages.items() if empty.findall(text)} == {}
+
+
 def test_a_function_that_was_not_measured_says_so() -> None:
     assert "has not been measured" in scene_page(library_of("heavy_top"), ())
     assert "has not been measured" not in page("heavy_top")

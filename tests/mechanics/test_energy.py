@@ -14,7 +14,7 @@ from derive.scene import SceneError, load, parse_scene
 from derive.verify.sample import Sample, samples
 from tests.check.mutants import first_sign_flipped
 from tests.check.replayed import Replayed
-from tests.made import thinned
+from tests.made import library_of, thinned
 
 SCENES = Path(__file__).parent / "scenes"
 TRIALS = Path(__file__).parents[1] / "data" / "trials"
@@ -59,6 +59,16 @@ def test_an_energy_of_other_loads_is_noticed(row: tuple[str, str, str, str]) -> 
     assert old in right.text
     made = library(parse_scene(right.text.replace(old, new), name))
     assert outcomes(replace(made, known=replace(made.known, scene=right))) == {"FAILS"}
+
+
+@pytest.mark.parametrize(("spoilt", "outcome"), [(0, "holds"), (1, "FAILS")])
+def test_a_prescribed_motion_changes_its_energy_by_the_power_of_what_it_needs(
+    spoilt: int, outcome: str
+) -> None:
+    made = library_of("unsymmetrical_rotor_in_carrier_axes")
+    energy = made["kinetic_energy"]
+    wrong = first_sign_flipped(energy) if spoilt else energy
+    assert outcomes(replace(made, functions=(wrong,))) == {outcome}
 
 
 @pytest.mark.parametrize(("flipped", "outcome"), [(0, "holds"), (1, "FAILS")])

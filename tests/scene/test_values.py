@@ -52,9 +52,9 @@ def sentence(factor: str = "1", result: str = "pin_x") -> str:
 @pytest.mark.parametrize(
     ("factor", "says"),
     [
-        ("sqrt(q - 0.0005)", "the square root of 'q - 1/2000' needs what is not negative"),
-        ("1/(q - 0.3)", "the divisor 'q - 3/10' must not vanish, but does at q = 0.3"),
-        ("(q - 0.3)^-2", "the divisor 'q - 3/10' must not vanish, but does at q = 0.3"),
+        ("sqrt(q - 0.0005)", "the square root of 'q - 0.0005' needs what is not negative"),
+        ("1/(q - 0.3)", "the divisor 'q - 0.3' must not vanish, but does at q = 0.3"),
+        ("(q - 0.3)^-2", "the divisor 'q - 0.3' must not vanish, but does at q = 0.3"),
         ("1/(q^2 - 0.6*q + 0.09)", "must not vanish, but does at q = 0."),
         ("1/(sin(7*q) + 1)", "must not vanish, but does at q = 0.67319"),
         ("sqrt((q - 0.3141)^2 - 1e-7)", "needs what is not negative"),

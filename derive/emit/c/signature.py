@@ -71,7 +71,8 @@ def declaration(name: str, arguments: Sequence[str]) -> str:
 def dense(program: Program) -> Program:
     """Return the description of the dense convenience: the same, with the whole matrix last."""
     pattern = next(iter((program.sparsity or {}).values()))
-    size, says = len(pattern.rows) * len(pattern.columns), "the whole Jacobian, column by column"
+    size = len(pattern.rows) * len(pattern.columns)
+    says = "the whole Jacobian, column by column, each in its own unit"
     whole = Quantity("jacobian", (), (size,), "", "", None, None, says)
     outputs = (*program.outputs[:-1], whole)
     return Program(f"{program.name}_dense", program.says, program.inputs, outputs, (), ())

@@ -134,7 +134,7 @@ def _with_slopes(how: Method, system: System, kind: str) -> Recorded:
     after_step = [f"{name}_next" for name in rows]
     pattern, nonzeros = compressed(matrix, after_step, columns, lambda x: x.exact == 0)
     parts = tuple(f"d({pattern.rows[i]})/d({pattern.columns[k]})" for i, k in pattern.places())
-    says = f"nonzeros of the {JACOBIANS[kind]}, in compressed-column order"
+    says = f"nonzeros of the {JACOBIANS[kind]}, in compressed-column order, each in its own unit"
     jacobian = Quantity("jacobian", parts, (len(parts),), "", "", None, None, says)
     return Recorded(tape, [*after, *nonzeros], (), (jacobian,), {"jacobian": pattern})
 
