@@ -1,19 +1,27 @@
 """What each wanted answer is made of: unknowns, energies, momenta, results, small motion."""
 
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 from sympy import Expr, Integer, Matrix, Symbol
 
 from derive.lecture.stated import stated
-from derive.mechanics.balances import Balance, Balances, Row
-from derive.mechanics.bodies import centre, centre_velocity, kinetic_energy, mass, momentum
+from derive.mechanics.balances import Balances, Row
+from derive.mechanics.bodies import (
+    centre,
+    centre_velocity,
+    energy_form,
+    kinetic_energy,
+    mass,
+    momentum,
+)
 from derive.mechanics.choice import (
     unbalanced,
 )
 from derive.mechanics.frames import ZERO, Frames
-from derive.mechanics.linearised import linearised, require_free
+from derive.mechanics.linearised import Linearised, linearised, require_free
 from derive.mechanics.loads import potential_energy
 from derive.mechanics.matter import without_factors
 from derive.mechanics.probe import NOTHING, POINTS, independent
@@ -22,21 +30,9 @@ from derive.mechanics.regular import Regular
 from derive.mechanics.words import MATRICES, rate_names
 from derive.program.program import Quantity
 from derive.scene import Input, Scene, SceneError
-from derive.scene.formula import Formula
+from derive.scene.formula import Formula, symbols
 from derive.scene.results import written_out
 from derive.scene.wanted import JACOBIAN
-
-FRAME_STEPS = ("angular_velocities_add", "acceleration_seen_from_axes")
-
-
-def balance_steps(balances: Iterable[Balance]) -> tuple[str, ...]:
-    """Return the lecture steps that balances are written by; a mass centre needs no other form."""
-    each = tuple(balances)
-    moments = [balance for balance in each if balance.kind == "moment"]
-    force = ("mass_centre_motion",) if len(moments) < len(each) else ()
-    general = ("general_form",) if moments else ()
-    other = ("moving_point_form", "any_point_form")
-    return force + general + (() if all(b.central for b in moments) else other)
 
 
 @dataclass
@@ -58,9 +54,7 @@ class Answers:
         answers = {
             s: e for q, own in parts.items() for s, e in zip(self._symbols(q), own, strict=True)
         }
-        steps = tuple(s for name in names for s in STEPS.get(name, ()))
-        if "state_rate" in names and any(q.is_quaternion for q in self._states):
-            steps += ("quaternion_rate_scalar", "quaternion_rate_vector")
+        steps = [s for name in names for s in self._steps(name)]
         found = self._asked(base, quantities, answers, steps)
         return replace(found, says=SAYS[base]) if (base,) == names and base in SAYS else found
 
@@ -75,7 +69,7 @@ class Answers:
         base: str,
         outputs: tuple[Quantity, ...],
         answers: Mapping[Symbol, Expr],
-        steps: tuple[str, ...],
+        steps: Sequence[str],
     ) -> Problem:
         sheet = self.frames.sheet
         used = {s for e in (*answers.values(), *sheet.needed(answers.values()).values())
@@ -85,11 +79,39 @@ class Answers:
         written = tuple(self.balances.written(row) for row in rows)
         definitions = sheet.needed([*written, *answers.values()])
         held = tuple(row.balance for row in rows)
-        motion = FRAME_STEPS if definitions else ()
+        every = (*self._balanced(rows), *steps, *sheet.steps([*written, *answers.values()]))
         says = f"{_listed([q.meaning for q in outputs])}."
         says = says[:1].upper() + says[1:]
         return Problem(base, says, outputs, answers, definitions, written,
-                        unknowns, held, (*balance_steps(held), *steps, *motion))  # fmt: skip
+                       unknowns, held, tuple(dict.fromkeys(every)))  # fmt: skip
+
+    def _balanced(self, rows: Iterable[Row]) -> tuple[str, ...]:
+        """Return the lecture steps that balances are written by."""
+        return tuple(dict.fromkeys(s for row in rows for s in self.balances.steps(row)))
+
+    def _steps(self, name: str) -> tuple[str, ...]:
+        """Return the lecture steps that an answer follows by, beside balances."""
+        result = next((r for r in self.machine.results if r.name == name), None)
+        if result is not None:
+            every = symbols(written_out(result.formula, self.machine.results))
+            parts = dict.fromkeys(ANSWER.sub("", s) for s in every)
+            return tuple(s for part in parts for s in self._steps(part))
+        if name in ("kinetic_energy", "energy"):
+            return tuple(energy_form(self.frames, body.name) for body in self.machine.bodies)
+        if (
+            name == "angular_momentum_rate"
+            and self.frames.Omega[self.machine.momentum.frame] == ZERO
+        ):
+            return ("rate_in_axes",)
+        if name == "state_rate":
+            turns = any(q.is_quaternion for q in self._states)
+            return ("quaternion_rate_scalar", "quaternion_rate_vector") if turns else ()
+        if name in ("linearised", *MATRICES):
+            return (
+                *self._balanced(self._small.rows),
+                *self.frames.sheet.steps(self._small.written),
+            )
+        return STEPS.get(name, ())
 
     def _answer(self, name: str) -> dict[Quantity, list[Expr]]:
         if name == "state_rate" and not self._states:
@@ -178,8 +200,11 @@ class Answers:
     @cached_property
     def matrices(self) -> Mapping[str, list[Expr]]:
         """Return the entries of the matrices of small motion, column by column."""
-        made = linearised(self.machine, self.balances)
-        return {name: list(made[name].T) for name in MATRICES}
+        return {name: list(self._small.matrices[name].T) for name in MATRICES}
+
+    @cached_property
+    def _small(self) -> Linearised:
+        return linearised(self.machine, self.balances)
 
     def energy(self, name: str) -> Expr:
         """Return an energy of all bodies; what is not asked for may not exist."""
@@ -218,7 +243,7 @@ class Answers:
         written = [split(self.balances.written(row))[0] for row in rows]
         answers = dict(zip(self._symbols(q), written, strict=True))
         held = tuple(row.balance for row in rows)
-        found = self._asked(base, (q,), answers, balance_steps(held))
+        found = self._asked(base, (q,), answers, self._balanced(rows))
         found = replace(found, balances=held)
         still = substituted(found, dict.fromkeys(self._velocities, Integer(0)))
         sought = {self.frames.sheet.symbols[name] for name in steady.unknown}
@@ -262,12 +287,11 @@ SAYS = {
     "inertial frame.",
 }
 STEPS = {
-    "kinetic_energy": ("koenig",),
-    "energy": ("koenig",),
     "angular_momentum": ("angular_momentum",),
     "angular_momentum_rate": ("rate_in_axes", "transport_theorem"),
-    "linearised": ("general_form", "moving_point_form", "any_point_form"),
 }
+ANSWER = re.compile("(_[xyz]|(_[0-9]+){2})$")
+"""How the name of a component of an answer ends."""
 
 
 def _listed(parts: list[str]) -> str:

@@ -14,7 +14,7 @@ from mpmath import mp
 from sympy import Expr, Integer, Matrix, Symbol
 
 from derive.lecture.stated import stated
-from derive.mechanics.bodies import carries, moment_about
+from derive.mechanics.bodies import carries, form_about, moment_about
 from derive.mechanics.frames import ZERO, Frames, Point
 from derive.mechanics.loads import Wrench
 from derive.mechanics.own_axes import called
@@ -233,6 +233,24 @@ class Balances:
         rest, slopes = sheet.split(total)
         kept = {u: c for u, c in slopes.items() if self.unknowns.index(u) in row.holds}
         return sheet.linear("balance", rest + sum((c * u for u, c in kept.items()), Integer(0)))
+
+    def steps(self, row: Row) -> tuple[str, ...]:
+        """Return the lecture steps by which a balance is written."""
+        point, frames = row.balance.point, self.frames
+        if point is None:
+            return ("mass_centre_motion",)
+        found = dict[str, None]()
+        for body in row.balance.bodies:
+            own = self.sides.efforts[body]
+            if carries(frames, body, point):
+                found[form_about(frames, body, point[1])] = None
+                continue
+            central = row.balance.central or all(part == ZERO for part in own.force.values())
+            if central or own.moment != ZERO:
+                found["general_form"] = None
+            if not central:
+                found["any_point_form"] = None
+        return tuple(found)
 
     def at(self, row: Row, valued: Valued) -> Array:
         """Return the coefficients of a balance at another place: the rest, then the unknowns."""

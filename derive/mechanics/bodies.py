@@ -8,8 +8,10 @@ from sympy import Expr, Matrix, zeros
 
 from derive.lecture.stated import stated
 from derive.mechanics.frames import ZERO, Frames, Parts, Point
+from derive.mechanics.probe import vanishes
 from derive.mechanics.turning import reduced
 from derive.mechanics.words import inertia_name, mass_name
+from derive.scene.machine import INERTIAL
 
 
 @dataclass(frozen=True)
@@ -82,13 +84,31 @@ def moment_about(frames: Frames, body: str, at: Matrix) -> Matrix:
 
     at : the point, along the body's own axes from their origin
     """
-    own, (_, G) = frames.own(body), centre(frames, body)
-    known = {"m": mass(frames, body), "rho_G": G - at}
+    known = {"m": mass(frames, body), "rho_G": centre(frames, body)[1] - at}
     I_P = stated("parallel_axes", known | {"I_G": tensor(frames, body)})
+    known["a_A"] = _accelerated(frames, body, at)
+    return _moment(frames, body, f"{body}.about", I_P, known)
+
+
+def _accelerated(frames: Frames, body: str, at: Matrix) -> Matrix:
+    """Return the acceleration of a point that a body carries, along its axes."""
+    own = frames.own(body)
     parts = frames.accelerated(own, at, frames.acceleration[own])
     a_A = sum((frames.carried(part, name, own) for name, part in parts.items()), ZERO)
-    known["a_A"] = frames.sheet.column(f"{body}.a_A", a_A)
-    return _moment(frames, body, f"{body}.about", I_P, known)
+    return frames.sheet.column(f"{body}.a_A", a_A)
+
+
+def form_about(frames: Frames, body: str, at: Matrix) -> str:
+    """Return the lecture step by which ``moment_about`` stands.
+
+    A point at rest, G, and one that accelerates along the line to G need no further term.
+    """
+    term = (centre(frames, body)[1] - at).cross(_accelerated(frames, body, at))
+    return (
+        "general_form"
+        if all(vanishes(frames.words, part) for part in term)
+        else "moving_point_form"
+    )
 
 
 def _moment(
@@ -136,18 +156,35 @@ def centre_velocity(frames: Frames, body: str) -> Matrix:
     own, at = centre(frames, body)
     known = {"rho_i": at, "rho_i_dot": frames.sheet.rate_of_column(at), "Omega": frames.Omega[own]}
     v = frames.velocity(own) + stated("velocity_seen_from_axes", known)
-    return frames.sheet.column(f"{body}.v_G", v)
+    return frames.sheet.column(f"{body}.v_G", v, "" if at == ZERO else "velocity_seen_from_axes")
+
+
+def turns_about_fixed_point(frames: Frames, body: str) -> bool:
+    """Tell whether a body carries the origin of its axes, and that is a fixed place."""
+    own = frames.own(body)
+    at_rest = frames.placed(own, INERTIAL) and frames.velocity(own) == ZERO
+    return at_rest and carries(frames, body, (own, ZERO))
 
 
 def kinetic_energy(frames: Frames, body: str) -> Expr:
     """Return the kinetic energy of a body; along which axes v_G is does not matter to it."""
     own, at = centre(frames, body)
-    v_G = frames.origin_velocity(own)[1] if at == ZERO else centre_velocity(frames, body)
     known = {
         "m": mass(frames, body),
-        "v_G": frames.sheet.column(f"{body}.v_G", v_G),
         "I": tensor(frames, body),
         "omega": frames.sheet.column(f"{body}.omega", frames.turning_of_body(body)),
     }
-    energy: Expr = stated("koenig", known)
+    if turns_about_fixed_point(frames, body):
+        about = {"I_G": known["I"], "rho_G": at, "m": known["m"]}
+        known["I"] = stated("parallel_axes", about)
+    else:
+        v_G = frames.origin_velocity(own)[1] if at == ZERO else centre_velocity(frames, body)
+        known["v_G"] = frames.sheet.column(f"{body}.v_G", v_G)
+    energy: Expr = stated(energy_form(frames, body), known)
     return energy
+
+
+def energy_form(frames: Frames, body: str) -> str:
+    """Return the lecture step by which the kinetic energy of a body stands."""
+    fixed = turns_about_fixed_point(frames, body)
+    return "kinetic_energy_about_point" if fixed else "koenig"

@@ -9,7 +9,7 @@ from sympy import Expr, Matrix, expand_trig, eye, zeros
 from derive.lecture.stated import stated
 from derive.mechanics.own_axes import frames_of_bodies, own_axes
 from derive.mechanics.sheet import AXES, Sheet
-from derive.mechanics.turning import turn_matrix, unit_vector
+from derive.mechanics.turning import ADDED, added, turn_matrix, unit_vector
 from derive.mechanics.words import Words
 from derive.scene import Scene, SceneError
 from derive.scene.declaration import Turning
@@ -61,11 +61,14 @@ class Frames:
         found: dict[str, Matrix] = {INERTIAL: ZERO}
         for name, frame in self.each.items():
             if name != INERTIAL:
-                found[name] = self.sheet.column(f"{name}.Omega", self._turning(frame, found))
+                total, step = self._turning(frame, found)
+                found[name] = self.sheet.column(f"{name}.Omega", total, step)
         return found
 
-    def _turning(self, frame: Frame, found: Mapping[str, Matrix]) -> Matrix:
+    def _turning(self, frame: Frame, found: Mapping[str, Matrix]) -> tuple[Matrix, str]:
+        """Return the angular velocity of a frame, and the lecture step that adds it up, if any."""
         total = found[frame.parent]
+        adds = ""
         if frame.angular_velocity is not None:
             own = self.words.column(frame.angular_velocity)
             R = self.rotations[frame.name]
@@ -74,12 +77,14 @@ class Frames:
                     f"frame '{frame.name}' has no attitude in '{frame.parent}', which turns; "
                     "give turned or attitude"
                 )
-            return _added(R if R is not None else eye(3), total, own)
+            adds = "" if total == ZERO else ADDED
+            return added(R if R is not None else eye(3), total, own), adds
         for turn in frame.turned:
             R, rate = self._one_turn(turn)
             own = stated("rate_of_simple_turn", {"angle_dot": rate, "e": unit_vector(turn.axis)})
-            total = _added(R, total, own)
-        return total
+            adds = adds if total == ZERO else ADDED
+            total = added(R, total, own)
+        return total, adds
 
     def _one_turn(self, turn: Turning) -> tuple[Matrix, Expr]:
         angle = self.words.expression(turn.angle)
@@ -104,7 +109,7 @@ class Frames:
         if frame.acceleration is not None:
             raise SceneError(f"frame '{name}' has an acceleration, but its velocity is not given")
         if frame.rolls is not None:
-            return self.sheet.column(f"{name}.v", self._rolling(frame))
+            return self.sheet.column(f"{name}.v", self._rolling(frame), "velocity_of_particle")
         along, here = self.origin_velocity(name)
         return self.sheet.column(f"{name}.v", self.carried(here, along, name))
 
@@ -145,13 +150,14 @@ class Frames:
         if frame.velocity is not None or frame.rolls is not None:
             v = self.velocity(name)
             known = {"any": v, "any_dot": self.sheet.rate_of_column(v), "Omega": self.Omega[name]}
-            return {name: self.sheet.column(f"{name}.a", transported(known))}
+            return {name: self.sheet.column(f"{name}.a", transported(known), "transport_theorem")}
         offset = self.words.column(frame.origin)
         return self.accelerated(frame.parent, offset, found[frame.parent])
 
     def accelerated(self, name: str, offset: Matrix, origin: Parts) -> Parts:
         """Return the acceleration of a point placed in a frame, by that of the frame's origin."""
-        own = self.sheet.column(f"{name}.a_seen", self.acceleration_seen(name, offset))
+        seen = self.acceleration_seen(name, offset)
+        own = self.sheet.column(f"{name}.a_seen", seen, "acceleration_seen_from_axes")
         if own == ZERO:
             return origin
         return dict(origin) | {name: origin.get(name, ZERO) + own}
@@ -292,9 +298,3 @@ def transported(known: Mapping[str, Matrix]) -> Matrix:
     """Return the rate of any vector seen from the inertial frame."""
     v, v_dot, Omega = known["any"], known["any_dot"], known["Omega"]
     return stated("transport_theorem", {"l": v, "l_dot": v_dot, "Omega": Omega})
-
-
-def _added(R: Matrix, first: Matrix, own: Matrix) -> Matrix:
-    if first == ZERO:
-        return own
-    return stated("angular_velocities_add", {"R_2": R, "Omega": first, "Omega_2": own})

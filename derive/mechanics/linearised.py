@@ -32,8 +32,20 @@ class Small:
     slopes: Mapping[Symbol, Expr]
 
 
-def linearised(machine: Scene, balances: Balances) -> dict[str, Matrix]:
-    """Return the three matrices, (n, n), of the free coordinates and speeds in order.
+@dataclass(frozen=True)
+class Linearised:
+    """The matrices of small motion, (n, n) each, and the balances that they are made of.
+
+    written : the balances as expressions that are zero
+    """
+
+    matrices: Mapping[str, Matrix]
+    rows: tuple[Row, ...]
+    written: tuple[Expr, ...]
+
+
+def linearised(machine: Scene, balances: Balances) -> Linearised:
+    """Return the three matrices of the free coordinates and speeds in order.
 
     Each row is the one in which its own coordinate has the most mass, counted positive.
     """
@@ -65,7 +77,8 @@ def linearised(machine: Scene, balances: Balances) -> dict[str, Matrix]:
     }
     made = {name: table.reduced(column) for name, column in columns.items()}
     own = _own_rows(made["mass_matrix"], balances)
-    return {name: _in_order(matrix, own) for name, matrix in made.items()}
+    matrices = {name: _in_order(matrix, own) for name, matrix in made.items()}
+    return Linearised(matrices, tuple(rows), tuple(written))
 
 
 def require_free(machine: Scene, answer: str, way_out: str = "") -> None:

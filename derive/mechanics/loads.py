@@ -8,7 +8,7 @@ from sympy import Expr, Integer, Matrix, Rational, sqrt
 from derive.lecture.stated import stated
 from derive.mechanics.bodies import centre, mass, tensor
 from derive.mechanics.frames import ZERO, Frames, Point
-from derive.mechanics.probe import NOTHING, POINTS, at_rest, point
+from derive.mechanics.probe import NOTHING, at_rest, point, vanishes
 from derive.scene import SceneError
 from derive.scene.machine import INERTIAL, Force, Gradient, Load, Spring, Weight
 
@@ -136,7 +136,7 @@ def potential_energy(frames: Frames) -> Expr:
 
 def _keeps(frames: Frames, load: str, what: str, values: list[Expr]) -> None:
     """Refuse the energy of a load that changes in the inertial frame by itself."""
-    if not all(_vanishes(frames, frames.sheet.rate(_held(frames, v))) for v in values):
+    if not all(vanishes(frames.words, frames.sheet.rate(_held(frames, v))) for v in values):
         rule = f"has no potential energy, for its {what} change with the motion"
         raise SceneError(f"load '{load}' {rule}; ask for kinetic_energy and add it in results")
 
@@ -151,20 +151,10 @@ def _level(frames: Frames, load: str, g: Matrix, name: str) -> str:
     start = frames.anchor(name)
     if start != INERTIAL:
         climbs = frames.carried(frames.velocity(start), start, INERTIAL)
-        if not _vanishes(frames, (g.T * climbs)[0]):
+        if not vanishes(frames.words, (g.T * climbs)[0]):
             raise SceneError(
                 f"load '{load}': the height of frame '{start}' is not known, for only the motion "
                 "of its origin is given; say where it is by origin, with a coordinate if need be, "
                 "or ask for kinetic_energy and add the weight's energy in results"
             )
     return start
-
-
-def _vanishes(frames: Frames, value: Expr) -> bool:
-    """Tell whether a value is zero whatever the machine does."""
-    for number in range(POINTS):
-        probe = point(frames.words, number)
-        probe.define(frames.sheet.needed([value]))
-        if abs(probe.value(value)) > NOTHING:
-            return False
-    return True

@@ -80,6 +80,17 @@ def point(words: Words, number: int) -> Probe:
     return Probe(values)
 
 
+def vanishes(words: Words, value: Expr) -> bool:
+    """Tell whether a value is zero whatever a machine does, and its unknowns are."""
+    rest, slopes = words.sheet.split(value)
+    for number in range(POINTS):
+        probe = point(words, number)
+        probe.define(words.sheet.needed([value]))
+        if any(abs(probe.value(part)) > NOTHING for part in (rest, *slopes.values())):
+            return False
+    return True
+
+
 def at_rest(words: Words) -> Probe:
     """Return the first trial point with everything that varies at zero where it may be zero."""
     found, book = point(words, 0), words.vocabulary

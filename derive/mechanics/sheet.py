@@ -16,7 +16,10 @@ AXES = "xyz"
 
 @dataclass
 class Sheet:
-    """Symbols by name, definitions in order, rates of what moves, and the unknowns."""
+    """Symbols by name, definitions in order, rates of what moves, and the unknowns.
+
+    because : the lecture steps that named quantities follow by
+    """
 
     symbols: dict[str, Symbol]
     rates: dict[Symbol, Expr]
@@ -25,6 +28,7 @@ class Sheet:
     definitions: dict[Symbol, Expr] = field(default_factory=dict)
     labels: dict[Expr, Symbol] = field(default_factory=dict)
     parts: dict[Expr, tuple[Expr, Mapping[Symbol, Expr]]] = field(default_factory=dict)
+    because: dict[Symbol, list[str]] = field(default_factory=dict)
 
     def symbol(self, name: str) -> Symbol:
         """Return the symbol of a name, a new one if there is none yet."""
@@ -32,8 +36,11 @@ class Sheet:
             self.symbols[name] = Symbol(f"s{len(self.symbols):04d}")
         return self.symbols[name]
 
-    def named(self, label: str, value: Expr) -> Expr:
-        """Return a symbol for ``value``, unless it is plain already or holds an unknown."""
+    def named(self, label: str, value: Expr, step: str = "") -> Expr:
+        """Return a symbol for ``value``, unless it is plain already or holds an unknown.
+
+        step : of the lecture, by which it is so
+        """
         if _plain(value) or value.free_symbols & self.unknowns:
             return value
         if value not in self.labels:
@@ -42,19 +49,26 @@ class Sheet:
                 name, place = f"{label}#{place + 1}", place + 1
             self.labels[value] = self.symbol(name)
             self.definitions[self.labels[value]] = value
+        self.because.setdefault(self.labels[value], []).extend([step] if step else [])
         return self.labels[value]
 
-    def linear(self, label: str, value: Expr) -> Expr:
+    def linear(self, label: str, value: Expr, step: str = "") -> Expr:
         """Return ``value`` with its rest and every coefficient of an unknown named."""
         rest, slopes = self.split(value)
-        total = self.named(label, rest)
+        total = self.named(label, rest, step)
         for unknown, slope in slopes.items():
-            total += self.named(f"{label}.by.{self.label(unknown)}", slope) * unknown
+            total += self.named(f"{label}.by.{self.label(unknown)}", slope, step) * unknown
         return total
 
-    def column(self, label: str, values: Matrix) -> Matrix:
+    def column(self, label: str, values: Matrix, step: str = "") -> Matrix:
         """Return a column with every component named, unknowns kept outside."""
-        return Matrix([self.linear(f"{label}.{a}", v) for a, v in zip(AXES, values, strict=True)])
+        each = zip(AXES, values, strict=True)
+        return Matrix([self.linear(f"{label}.{a}", v, step) for a, v in each])
+
+    def steps(self, values: Iterable[Expr]) -> tuple[str, ...]:
+        """Return the lecture steps that the named quantities below ``values`` follow by."""
+        below = self.needed(values)
+        return tuple(dict.fromkeys(s for named in below for s in self.because.get(named, ())))
 
     def label(self, symbol: Symbol) -> str:
         """Return the name of a symbol."""

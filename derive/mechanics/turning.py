@@ -1,7 +1,10 @@
 """Single turns about axes: their matrices, and sines and cosines brought to one form."""
 
-from sympy import Expr, Integer, Matrix, Pow, cos, eye, sin
+from sympy import Expr, Integer, Matrix, Pow, cos, eye, sin, zeros
 
+from derive.lecture.stated import stated
+
+ADDED = "angular_velocities_add"
 PLACE = {"x": 0, "y": 1, "z": 2}
 
 
@@ -42,3 +45,10 @@ def reduced(expression: Expr) -> Expr:
         lambda e: (1 - cos(e.base.args[0]) ** 2) ** (e.exp // 2) * e.base ** (e.exp % 2),
     )
     return lowered.expand()
+
+
+def added(R: Matrix, first: Matrix, own: Matrix) -> Matrix:
+    """Return the angular velocity of axes by that of their parent and their own in it."""
+    if first == zeros(3, 1):
+        return own
+    return stated(ADDED, {"R_2": R, "Omega": first, "Omega_2": own})

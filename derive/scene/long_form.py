@@ -169,6 +169,8 @@ def _frame(scene: ShortForm) -> Frame:
     if scene.position is not None:
         x, y, z = (symbol(f"position_{a}") for a in AXES)
         return replace(frame, origin=(x, y, z))
+    if scene.point.kind == "fixed":
+        return frame
     if scene.point.acceleration is None:
         return replace(frame, velocity=NOWHERE)
     x, y, z = scene.point.acceleration.formulas or (symbol(f"point_acceleration_{a}") for a in AXES)

@@ -95,19 +95,15 @@ void centrifuge_gondola_F_f32(const centrifuge_gondola_constants_f32 *constants,
  *            a_x  m/s^2  -50 .. 50  acceleration of the pivot along x
  *            a_y  m/s^2  -5 .. 5  acceleration of the pivot along y
  * Returned:  M[3]  N m  couple of pivot
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
  *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.96, largest 21 u of the largest product or sum in the equation (of M; 200000
  *            samples of the ranges, 65536 searched from the worst, 120 hard ones).
  * Cost: 15 add, 18 sub, 56 mul, 3 sin, 3 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N, rigid,
+ *            strong_third_law, third_law.
  */
 void centrifuge_gondola_M_f32(const centrifuge_gondola_constants_f32 *constants, float yaw,
     float yaw_dot, float yaw_ddot, float pitch, float pitch_dot, float pitch_ddot, float spin,

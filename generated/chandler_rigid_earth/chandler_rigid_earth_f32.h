@@ -43,16 +43,12 @@ int chandler_rigid_earth_setup_f32(float A, float C, float rate,
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  period_days  d  period of the wobble
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.0012, largest 0.0051 u of the largest product or sum in the equation (of
  *            period_days; 200000 samples of the ranges, 65536 searched from the worst, 114 hard
  *            ones).
  * Cost: no operations.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
+ *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void chandler_rigid_earth_period_days_f32(const chandler_rigid_earth_constants_f32 *constants,
     float *period_days);

@@ -48,18 +48,11 @@ int disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, flo
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  couple  N m  (R_up + R_down)*d/2
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of couple; 200000
  *            samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
+ *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void disc_two_bearings_couple_f32(const disc_two_bearings_constants_f32 *constants, float *couple);
 
@@ -67,18 +60,11 @@ void disc_two_bearings_couple_f32(const disc_two_bearings_constants_f32 *constan
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  R_up  N  force of B
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of R_up; 200000
  *            samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
+ *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void disc_two_bearings_R_up_f32(const disc_two_bearings_constants_f32 *constants, float *R_up);
 
@@ -86,18 +72,11 @@ void disc_two_bearings_R_up_f32(const disc_two_bearings_constants_f32 *constants
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  R_down  N  force of A
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.22, largest 0.91 u of the largest product or sum in the equation (of R_down;
  *            200000 samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
+ *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void disc_two_bearings_R_down_f32(const disc_two_bearings_constants_f32 *constants, float *R_down);
 

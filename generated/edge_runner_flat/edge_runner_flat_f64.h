@@ -50,18 +50,11 @@ int edge_runner_flat_setup_f64(double m, double r, double L, double g,
  *            W  rad/s  1 .. 5  speed of the driven shaft
  * Returned:  N  N  force of ground
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.42, largest 2.4 u of the largest product or sum in the equation (of N; 200000
  *            samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 1 add, 2 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
+ *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void edge_runner_flat_N_f64(const edge_runner_flat_constants_f64 *constants, double W, double *N);
 
@@ -70,18 +63,11 @@ void edge_runner_flat_N_f64(const edge_runner_flat_constants_f64 *constants, dou
  *            W  rad/s  1 .. 5  speed of the driven shaft
  * Returned:  gyro_gain  1  N/(m*g)
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.41, largest 2.2 u of the largest product or sum in the equation (of gyro_gain;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 1 add, 2 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
+ *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void edge_runner_flat_gyro_gain_f64(const edge_runner_flat_constants_f64 *constants, double W,
     double *gyro_gain);
@@ -102,15 +88,13 @@ void edge_runner_flat_spin_rel_f64(const edge_runner_flat_constants_f64 *constan
  *            W  rad/s  1 .. 5  speed of the driven shaft
  * Returned:  hinge_radial  N  force of hinge
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.52, largest 2.9 u of the largest product or sum in the equation (of
  *            hinge_radial; 200000 samples of the ranges, 65536 searched from the worst, 114 hard
  *            ones).
  * Cost: 2 mul.
- * Rests on: axes_are_orthonormal, composed_turns, constant_mass, further_axes_are_right_handed,
- *            newton, rate_seen_from_N, third_law.
+ * Rests on: axes_are_orthonormal, constant_mass, newton, rate_seen_from_N, third_law.
  */
 void edge_runner_flat_hinge_radial_f64(const edge_runner_flat_constants_f64 *constants, double W,
     double *hinge_radial);
@@ -120,15 +104,11 @@ void edge_runner_flat_hinge_radial_f64(const edge_runner_flat_constants_f64 *con
  *            W  rad/s  1 .. 5  speed of the driven shaft
  * Returned:  hinge_z  N  force of hinge
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.52, largest 2.9 u of the largest product or sum in the equation (of hinge_z;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 2 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
+ *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void edge_runner_flat_hinge_z_f64(const edge_runner_flat_constants_f64 *constants, double W,
     double *hinge_z);

@@ -48,12 +48,7 @@ int eulers_disk_setup_f64(double m, double r, double tilt, double g,
  *            W  rad/s  10 .. 200  precession
  * Returned:  steady  what vanishes in a steady motion, without factors that never vanish, so in no unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.31, largest 2.2 u of the largest product or sum in the equation (of steady;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 1 sub, 2 mul.
@@ -78,14 +73,10 @@ void eulers_disk_spin_rel_f64(const eulers_disk_constants_f64 *constants, double
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  tipping  N m  -ground_z*r*cos(tilt)
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.36, largest 1 u of the largest product or sum in the equation (of tipping;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: no operations.
- * Rests on: axes_are_orthonormal, composed_turns, constant_mass, further_axes_are_right_handed,
- *            newton, rate_seen_from_N, third_law.
+ * Rests on: constant_mass, newton, third_law.
  */
 void eulers_disk_tipping_f64(const eulers_disk_constants_f64 *constants, double *tipping);
 

@@ -51,8 +51,6 @@ int gyrocompass_setup_f32(float m, float r, float w3, float lat, float we,
  * Returned:  alpha_ddot  rad/s^2  acceleration of alpha
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.55, largest 3.2 u of the largest product or sum in the equation (of alpha_ddot;
  *            200000 samples of the ranges, 65536 searched from the worst, 120 hard ones).
  * Cost: 1 sub, 2 mul, 1 sin, 1 cos.
@@ -66,9 +64,14 @@ void gyrocompass_alpha_ddot_f32(const gyrocompass_constants_f32 *constants, floa
 /* Period about north.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  period_s  s  period about north
- * Error: median 0.34, largest 1 u of the largest component, by rounding alone (of period_s; 200000
- *            samples of the ranges, 65536 searched from the worst, 120 hard ones).
+ * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * Error: median 0.34, largest 1 u of the largest product or sum in the equation (of period_s;
+ *            200000 samples of the ranges, 65536 searched from the worst, 120 hard ones).
  * Cost: no operations.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void gyrocompass_period_s_f32(const gyrocompass_constants_f32 *constants, float *period_s);
 
@@ -78,14 +81,13 @@ void gyrocompass_period_s_f32(const gyrocompass_constants_f32 *constants, float 
  *            damping_matrix[1]  forces by velocity, gyroscopic terms included, column by column, for alpha, each in its own unit
  *            stiffness_matrix[1]  forces by displacement, column by column, for alpha, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of mass_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst, 120 hard ones).
  * Cost: no operations.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
- *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void gyrocompass_linearised_f32(const gyrocompass_constants_f32 *constants, float mass_matrix[1],
     float damping_matrix[1], float stiffness_matrix[1]);

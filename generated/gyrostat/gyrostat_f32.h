@@ -107,12 +107,7 @@ int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_x
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  *            wheel_accelerations[3]  rad/s^2  wheel axes  wheel acceleration relative to the carrier
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.72, largest 14 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot infinite, no number or beyond all measure.
@@ -139,12 +134,7 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
  *            wheel_accelerations[3]  rad/s^2  wheel axes  wheel acceleration relative to the carrier
  *            jacobian[84]  nonzeros of the Jacobian, in compressed-column order, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.72, largest 14 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all
@@ -172,14 +162,12 @@ void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *consta
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.68, largest 8.4 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 162 hard
  *            ones).
  * Cost: 5 add, 6 sub, 17 mul.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, rate_seen_from_N, rigid.
+ *            constant_mass, further_axes_are_right_handed, rigid.
  */
 void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const float omega[3],
     const float wheel_speeds[3], float *kinetic_energy);
@@ -191,14 +179,12 @@ void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const 
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.51, largest 6.3 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 162
  *            hard ones).
  * Cost: 3 add, 6 sub, 12 mul.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            further_axes_are_right_handed, rate_seen_from_N, rigid.
+ *            further_axes_are_right_handed, rigid.
  */
 void gyrostat_angular_momentum_f32(const gyrostat_constants_f32 *constants, const float omega[3],
     const float wheel_speeds[3], float angular_momentum[3]);

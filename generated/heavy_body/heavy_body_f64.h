@@ -62,12 +62,12 @@ int heavy_body_setup_f64(double I_xx, double I_yy, double I_zz, double w,
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
- * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
+ * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
  * Error: median 0.5, largest 3.6 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 150 hard
  *            ones).
  * Cost: 2 add, 6 mul.
- * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
+ * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
  */
 void heavy_body_kinetic_energy_f64(const heavy_body_constants_f64 *constants, const double omega[3],
     double *kinetic_energy);
@@ -118,18 +118,14 @@ void heavy_body_step_split_f64(const heavy_body_constants_f64 *constants, const 
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.36, largest 3.8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 76 add, 24 sub, 144 mul, 1 div, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void heavy_body_step_rk4_f64(const heavy_body_constants_f64 *constants, const double attitude[4],
     const double omega[3], double time_step, double attitude_next[4], double omega_next[3]);
@@ -146,10 +142,9 @@ void heavy_body_step_rk4_f64(const heavy_body_constants_f64 *constants, const do
  *            product of what the step adds, by rounding alone (of omega_next at a hard sample, at
  *            rest; 200000 samples of the ranges, 65536 searched from the worst, 78 hard ones).
  * Cost: 3062 add, 1125 sub, 4296 mul, 22 div, 21 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void heavy_body_step_taylor_f64(const heavy_body_constants_f64 *constants, const double attitude[4],
     const double omega[3], double time_step, double attitude_next[4], double omega_next[3],

@@ -45,15 +45,11 @@ int propeller_3_blade_setup_f32(float blade_mass, float blade_length, float p, f
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  M[3]  N m  couple of hub
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0, largest 1 u of the largest product or sum in the equation (of M; 200000 samples
  *            of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
+ *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void propeller_3_blade_M_f32(const propeller_3_blade_constants_f32 *constants, float M[3]);
 

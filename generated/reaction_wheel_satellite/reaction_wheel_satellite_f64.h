@@ -70,18 +70,11 @@ int reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, do
  *            w_y_dot  rad/s^2  acceleration of w_y
  *            w_z_dot  rad/s^2  acceleration of w_z
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.74, largest 9.7 u of the largest product or sum in the equation (of w_y_dot;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 6 add, 14 sub, 26 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
+ *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void reaction_wheel_satellite_body_f64(const reaction_wheel_satellite_constants_f64 *constants,
     double w_x, double w_y, double w_z, double s_1, double s_2, double s_3, double u_1, double u_2,
@@ -102,18 +95,11 @@ void reaction_wheel_satellite_body_f64(const reaction_wheel_satellite_constants_
  *            s_2_dot  rad/s^2  acceleration of s_2
  *            s_3_dot  rad/s^2  acceleration of s_3
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.51, largest 7.4 u of the largest product or sum in the equation (of s_2_dot;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 6 add, 17 sub, 29 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
+ *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void reaction_wheel_satellite_wheels_f64(const reaction_wheel_satellite_constants_f64 *constants,
     double w_x, double w_y, double w_z, double s_1, double s_2, double s_3, double u_1, double u_2,

@@ -96,17 +96,13 @@ int rigid_body_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xy
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.69, largest 9.7 u of the largest product or sum in the equation (of
  *            velocity_rate; 200000 samples of the ranges, 65536 searched from the worst, 162 hard
  *            ones).
  * Cost: 21 add, 16 sub, 59 mul, 1 neg.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void rigid_body_state_rate_f32(const rigid_body_constants_f32 *constants, const float attitude[4],
     const float velocity[3], const float omega[3], const float force[3], const float moment[3],
@@ -128,17 +124,13 @@ void rigid_body_state_rate_f32(const rigid_body_constants_f32 *constants, const 
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.65, largest 7.5 u of the largest product or sum in the equation (of
  *            velocity_rate; 200000 samples of the ranges, 65536 searched from the worst, 162 hard
  *            ones).
  * Cost: 43 add, 30 sub, 98 mul, 11 neg.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void rigid_body_state_rate_jacobian_f32(const rigid_body_constants_f32 *constants,
     const float attitude[4], const float velocity[3], const float omega[3], const float force[3],
@@ -172,15 +164,11 @@ void rigid_body_kinetic_energy_f32(const rigid_body_constants_f32 *constants,
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
  * Returned:  moment[3]  N m  along B  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.44, largest 14 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
  * Cost: 7 add, 10 sub, 23 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
+ *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void rigid_body_moment_f32(const rigid_body_constants_f32 *constants, const float omega[3],
     const float omega_dot[3], float moment[3]);

@@ -141,43 +141,39 @@ static rolling_cone_pair_f32 rolling_cone_cos_f32(rolling_cone_pair_f32 a)
 int rolling_cone_setup_f32(float m, float h, float r, float a, float g,
     rolling_cone_constants_f32 *constants)
 {
-    const rolling_cone_pair_f32 s0 = rolling_cone_mul_f32((rolling_cone_pair_f32){h, 0.0F}, (rolling_cone_pair_f32){h, 0.0F});
-    const rolling_cone_pair_f32 s1 = rolling_cone_mul_f32((rolling_cone_pair_f32){m, 0.0F}, s0);
-    const rolling_cone_pair_f32 s2 = rolling_cone_cos_f32((rolling_cone_pair_f32){a, 0.0F});
-    const rolling_cone_pair_f32 s3 = rolling_cone_mul_f32(s2, s2);
-    const rolling_cone_pair_f32 s4 = rolling_cone_mul_f32(s1, s3);
-    const rolling_cone_pair_f32 s5 = rolling_cone_mul_f32(s4, (rolling_cone_pair_f32){0.28125F, 0.0F});
-    const rolling_cone_pair_f32 s6 = rolling_cone_mul_f32((rolling_cone_pair_f32){r, 0.0F}, (rolling_cone_pair_f32){r, 0.0F});
-    const rolling_cone_pair_f32 s7 = rolling_cone_mul_f32(s6, (rolling_cone_pair_f32){0.150000006F, (-5.96046457e-09F)});
-    const rolling_cone_pair_f32 s8 = rolling_cone_mul_f32((rolling_cone_pair_f32){m, 0.0F}, s7);
-    const rolling_cone_pair_f32 s9 = rolling_cone_mul_f32(s1, (rolling_cone_pair_f32){0.0375000015F, (-1.49011614e-09F)});
-    const rolling_cone_pair_f32 s10 = rolling_cone_add_f32(s8, s9);
-    const rolling_cone_pair_f32 s11 = rolling_cone_mul_f32(s10, s3);
-    const rolling_cone_pair_f32 s12 = rolling_cone_mul_f32(s11, (rolling_cone_pair_f32){0.5F, 0.0F});
-    const rolling_cone_pair_f32 s13 = rolling_cone_add_f32(s5, s12);
-    const rolling_cone_pair_f32 s14 = rolling_cone_sin_f32((rolling_cone_pair_f32){a, 0.0F});
-    const rolling_cone_pair_f32 s15 = rolling_cone_div_f32((rolling_cone_pair_f32){1.0F, 0.0F}, s14);
-    const rolling_cone_pair_f32 s16 = rolling_cone_sub_f32(s14, s15);
-    const rolling_cone_pair_f32 s17 = rolling_cone_mul_f32(s16, s16);
-    const rolling_cone_pair_f32 s18 = rolling_cone_mul_f32(s17, s8);
-    const rolling_cone_pair_f32 s19 = rolling_cone_add_f32(s13, s18);
-    const rolling_cone_pair_f32 s20 = rolling_cone_mul_f32(s2, s14);
-    const rolling_cone_pair_f32 s21 = rolling_cone_mul_f32(s0, (rolling_cone_pair_f32){0.600000024F, (-2.38418583e-08F)});
-    const rolling_cone_pair_f32 s22 = rolling_cone_add_f32(s7, s21);
-    const rolling_cone_pair_f32 s23 = rolling_cone_mul_f32(s20, s22);
-    const rolling_cone_pair_f32 s24 = rolling_cone_mul_f32(s2, s16);
-    const rolling_cone_pair_f32 s25 = rolling_cone_mul_f32(s24, s6);
-    const rolling_cone_pair_f32 s26 = rolling_cone_mul_f32(s25, (rolling_cone_pair_f32){0.300000012F, (-1.19209291e-08F)});
-    const rolling_cone_pair_f32 s27 = rolling_cone_sub_f32(s23, s26);
-    const rolling_cone_pair_f32 s28 = rolling_cone_div_f32(s27, (rolling_cone_pair_f32){g, 0.0F});
-    const rolling_cone_pair_f32 s29 = rolling_cone_mul_f32((rolling_cone_pair_f32){h, 0.0F}, s2);
-    const rolling_cone_pair_f32 s30 = rolling_cone_mul_f32(s29, (rolling_cone_pair_f32){0.75F, 0.0F});
-    const rolling_cone_pair_f32 s31 = rolling_cone_div_f32((rolling_cone_pair_f32){h, 0.0F}, s2);
-    const rolling_cone_pair_f32 s32 = rolling_cone_sub_f32(s30, s31);
-    constants->k1 = s19.high;
-    constants->k2 = s28.high;
-    constants->k3 = s30.high;
-    constants->k4 = s32.high;
+    const rolling_cone_pair_f32 s0 = rolling_cone_cos_f32((rolling_cone_pair_f32){a, 0.0F});
+    const rolling_cone_pair_f32 s1 = rolling_cone_mul_f32(s0, s0);
+    const rolling_cone_pair_f32 s2 = rolling_cone_mul_f32((rolling_cone_pair_f32){h, 0.0F}, (rolling_cone_pair_f32){0.600000024F, (-2.38418583e-08F)});
+    const rolling_cone_pair_f32 s3 = rolling_cone_mul_f32((rolling_cone_pair_f32){h, 0.0F}, s2);
+    const rolling_cone_pair_f32 s4 = rolling_cone_mul_f32((rolling_cone_pair_f32){m, 0.0F}, s3);
+    const rolling_cone_pair_f32 s5 = rolling_cone_mul_f32((rolling_cone_pair_f32){r, 0.0F}, (rolling_cone_pair_f32){r, 0.0F});
+    const rolling_cone_pair_f32 s6 = rolling_cone_mul_f32(s5, (rolling_cone_pair_f32){0.150000006F, (-5.96046457e-09F)});
+    const rolling_cone_pair_f32 s7 = rolling_cone_mul_f32((rolling_cone_pair_f32){m, 0.0F}, s6);
+    const rolling_cone_pair_f32 s8 = rolling_cone_add_f32(s4, s7);
+    const rolling_cone_pair_f32 s9 = rolling_cone_mul_f32(s1, s8);
+    const rolling_cone_pair_f32 s10 = rolling_cone_mul_f32(s9, (rolling_cone_pair_f32){0.5F, 0.0F});
+    const rolling_cone_pair_f32 s11 = rolling_cone_sin_f32((rolling_cone_pair_f32){a, 0.0F});
+    const rolling_cone_pair_f32 s12 = rolling_cone_div_f32((rolling_cone_pair_f32){1.0F, 0.0F}, s11);
+    const rolling_cone_pair_f32 s13 = rolling_cone_sub_f32(s11, s12);
+    const rolling_cone_pair_f32 s14 = rolling_cone_mul_f32(s13, s13);
+    const rolling_cone_pair_f32 s15 = rolling_cone_mul_f32(s14, s7);
+    const rolling_cone_pair_f32 s16 = rolling_cone_add_f32(s10, s15);
+    const rolling_cone_pair_f32 s17 = rolling_cone_mul_f32(s0, s11);
+    const rolling_cone_pair_f32 s18 = rolling_cone_add_f32(s3, s6);
+    const rolling_cone_pair_f32 s19 = rolling_cone_mul_f32(s17, s18);
+    const rolling_cone_pair_f32 s20 = rolling_cone_mul_f32(s0, s13);
+    const rolling_cone_pair_f32 s21 = rolling_cone_mul_f32(s20, s5);
+    const rolling_cone_pair_f32 s22 = rolling_cone_mul_f32(s21, (rolling_cone_pair_f32){0.300000012F, (-1.19209291e-08F)});
+    const rolling_cone_pair_f32 s23 = rolling_cone_sub_f32(s19, s22);
+    const rolling_cone_pair_f32 s24 = rolling_cone_div_f32(s23, (rolling_cone_pair_f32){g, 0.0F});
+    const rolling_cone_pair_f32 s25 = rolling_cone_mul_f32(s0, (rolling_cone_pair_f32){h, 0.0F});
+    const rolling_cone_pair_f32 s26 = rolling_cone_mul_f32(s25, (rolling_cone_pair_f32){0.75F, 0.0F});
+    const rolling_cone_pair_f32 s27 = rolling_cone_div_f32((rolling_cone_pair_f32){h, 0.0F}, s0);
+    const rolling_cone_pair_f32 s28 = rolling_cone_sub_f32(s26, s27);
+    constants->k1 = s16.high;
+    constants->k2 = s24.high;
+    constants->k3 = s26.high;
+    constants->k4 = s28.high;
     if (!(m - m >= 0.0F)
         || !(h - h >= 0.0F)
         || !(r - r >= 0.0F)
@@ -192,10 +188,10 @@ int rolling_cone_setup_f32(float m, float h, float r, float a, float g,
         || h <= 0.0F) {
         return 3;
     }
-    if (!(s19.high - s19.high >= 0.0F)
-        || !(s28.high - s28.high >= 0.0F)
-        || !(s30.high - s30.high >= 0.0F)
-        || !(s32.high - s32.high >= 0.0F)) {
+    if (!(s16.high - s16.high >= 0.0F)
+        || !(s24.high - s24.high >= 0.0F)
+        || !(s26.high - s26.high >= 0.0F)
+        || !(s28.high - s28.high >= 0.0F)) {
         return 5;
     }
     return 0;

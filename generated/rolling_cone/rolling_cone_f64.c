@@ -153,43 +153,39 @@ static rolling_cone_pair_f64 rolling_cone_cos_f64(rolling_cone_pair_f64 a)
 int rolling_cone_setup_f64(double m, double h, double r, double a, double g,
     rolling_cone_constants_f64 *constants)
 {
-    const rolling_cone_pair_f64 s0 = rolling_cone_mul_f64((rolling_cone_pair_f64){h, 0.0}, (rolling_cone_pair_f64){h, 0.0});
-    const rolling_cone_pair_f64 s1 = rolling_cone_mul_f64((rolling_cone_pair_f64){m, 0.0}, s0);
-    const rolling_cone_pair_f64 s2 = rolling_cone_cos_f64((rolling_cone_pair_f64){a, 0.0});
-    const rolling_cone_pair_f64 s3 = rolling_cone_mul_f64(s2, s2);
-    const rolling_cone_pair_f64 s4 = rolling_cone_mul_f64(s1, s3);
-    const rolling_cone_pair_f64 s5 = rolling_cone_mul_f64(s4, (rolling_cone_pair_f64){0.28125, 0.0});
-    const rolling_cone_pair_f64 s6 = rolling_cone_mul_f64((rolling_cone_pair_f64){r, 0.0}, (rolling_cone_pair_f64){r, 0.0});
-    const rolling_cone_pair_f64 s7 = rolling_cone_mul_f64(s6, (rolling_cone_pair_f64){0.15, 5.551115123125783e-18});
-    const rolling_cone_pair_f64 s8 = rolling_cone_mul_f64((rolling_cone_pair_f64){m, 0.0}, s7);
-    const rolling_cone_pair_f64 s9 = rolling_cone_mul_f64(s1, (rolling_cone_pair_f64){0.0375, 1.3877787807814458e-18});
-    const rolling_cone_pair_f64 s10 = rolling_cone_add_f64(s8, s9);
-    const rolling_cone_pair_f64 s11 = rolling_cone_mul_f64(s10, s3);
-    const rolling_cone_pair_f64 s12 = rolling_cone_mul_f64(s11, (rolling_cone_pair_f64){0.5, 0.0});
-    const rolling_cone_pair_f64 s13 = rolling_cone_add_f64(s5, s12);
-    const rolling_cone_pair_f64 s14 = rolling_cone_sin_f64((rolling_cone_pair_f64){a, 0.0});
-    const rolling_cone_pair_f64 s15 = rolling_cone_div_f64((rolling_cone_pair_f64){1.0, 0.0}, s14);
-    const rolling_cone_pair_f64 s16 = rolling_cone_sub_f64(s14, s15);
-    const rolling_cone_pair_f64 s17 = rolling_cone_mul_f64(s16, s16);
-    const rolling_cone_pair_f64 s18 = rolling_cone_mul_f64(s17, s8);
-    const rolling_cone_pair_f64 s19 = rolling_cone_add_f64(s13, s18);
-    const rolling_cone_pair_f64 s20 = rolling_cone_mul_f64(s2, s14);
-    const rolling_cone_pair_f64 s21 = rolling_cone_mul_f64(s0, (rolling_cone_pair_f64){0.6, 2.2204460492503132e-17});
-    const rolling_cone_pair_f64 s22 = rolling_cone_add_f64(s7, s21);
-    const rolling_cone_pair_f64 s23 = rolling_cone_mul_f64(s20, s22);
-    const rolling_cone_pair_f64 s24 = rolling_cone_mul_f64(s2, s16);
-    const rolling_cone_pair_f64 s25 = rolling_cone_mul_f64(s24, s6);
-    const rolling_cone_pair_f64 s26 = rolling_cone_mul_f64(s25, (rolling_cone_pair_f64){0.3, 1.1102230246251566e-17});
-    const rolling_cone_pair_f64 s27 = rolling_cone_sub_f64(s23, s26);
-    const rolling_cone_pair_f64 s28 = rolling_cone_div_f64(s27, (rolling_cone_pair_f64){g, 0.0});
-    const rolling_cone_pair_f64 s29 = rolling_cone_mul_f64((rolling_cone_pair_f64){h, 0.0}, s2);
-    const rolling_cone_pair_f64 s30 = rolling_cone_mul_f64(s29, (rolling_cone_pair_f64){0.75, 0.0});
-    const rolling_cone_pair_f64 s31 = rolling_cone_div_f64((rolling_cone_pair_f64){h, 0.0}, s2);
-    const rolling_cone_pair_f64 s32 = rolling_cone_sub_f64(s30, s31);
-    constants->k1 = s19.high;
-    constants->k2 = s28.high;
-    constants->k3 = s30.high;
-    constants->k4 = s32.high;
+    const rolling_cone_pair_f64 s0 = rolling_cone_cos_f64((rolling_cone_pair_f64){a, 0.0});
+    const rolling_cone_pair_f64 s1 = rolling_cone_mul_f64(s0, s0);
+    const rolling_cone_pair_f64 s2 = rolling_cone_mul_f64((rolling_cone_pair_f64){h, 0.0}, (rolling_cone_pair_f64){0.6, 2.2204460492503132e-17});
+    const rolling_cone_pair_f64 s3 = rolling_cone_mul_f64((rolling_cone_pair_f64){h, 0.0}, s2);
+    const rolling_cone_pair_f64 s4 = rolling_cone_mul_f64((rolling_cone_pair_f64){m, 0.0}, s3);
+    const rolling_cone_pair_f64 s5 = rolling_cone_mul_f64((rolling_cone_pair_f64){r, 0.0}, (rolling_cone_pair_f64){r, 0.0});
+    const rolling_cone_pair_f64 s6 = rolling_cone_mul_f64(s5, (rolling_cone_pair_f64){0.15, 5.551115123125783e-18});
+    const rolling_cone_pair_f64 s7 = rolling_cone_mul_f64((rolling_cone_pair_f64){m, 0.0}, s6);
+    const rolling_cone_pair_f64 s8 = rolling_cone_add_f64(s4, s7);
+    const rolling_cone_pair_f64 s9 = rolling_cone_mul_f64(s1, s8);
+    const rolling_cone_pair_f64 s10 = rolling_cone_mul_f64(s9, (rolling_cone_pair_f64){0.5, 0.0});
+    const rolling_cone_pair_f64 s11 = rolling_cone_sin_f64((rolling_cone_pair_f64){a, 0.0});
+    const rolling_cone_pair_f64 s12 = rolling_cone_div_f64((rolling_cone_pair_f64){1.0, 0.0}, s11);
+    const rolling_cone_pair_f64 s13 = rolling_cone_sub_f64(s11, s12);
+    const rolling_cone_pair_f64 s14 = rolling_cone_mul_f64(s13, s13);
+    const rolling_cone_pair_f64 s15 = rolling_cone_mul_f64(s14, s7);
+    const rolling_cone_pair_f64 s16 = rolling_cone_add_f64(s10, s15);
+    const rolling_cone_pair_f64 s17 = rolling_cone_mul_f64(s0, s11);
+    const rolling_cone_pair_f64 s18 = rolling_cone_add_f64(s3, s6);
+    const rolling_cone_pair_f64 s19 = rolling_cone_mul_f64(s17, s18);
+    const rolling_cone_pair_f64 s20 = rolling_cone_mul_f64(s0, s13);
+    const rolling_cone_pair_f64 s21 = rolling_cone_mul_f64(s20, s5);
+    const rolling_cone_pair_f64 s22 = rolling_cone_mul_f64(s21, (rolling_cone_pair_f64){0.3, 1.1102230246251566e-17});
+    const rolling_cone_pair_f64 s23 = rolling_cone_sub_f64(s19, s22);
+    const rolling_cone_pair_f64 s24 = rolling_cone_div_f64(s23, (rolling_cone_pair_f64){g, 0.0});
+    const rolling_cone_pair_f64 s25 = rolling_cone_mul_f64(s0, (rolling_cone_pair_f64){h, 0.0});
+    const rolling_cone_pair_f64 s26 = rolling_cone_mul_f64(s25, (rolling_cone_pair_f64){0.75, 0.0});
+    const rolling_cone_pair_f64 s27 = rolling_cone_div_f64((rolling_cone_pair_f64){h, 0.0}, s0);
+    const rolling_cone_pair_f64 s28 = rolling_cone_sub_f64(s26, s27);
+    constants->k1 = s16.high;
+    constants->k2 = s24.high;
+    constants->k3 = s26.high;
+    constants->k4 = s28.high;
     if (!(m - m >= 0.0)
         || !(h - h >= 0.0)
         || !(r - r >= 0.0)
@@ -204,10 +200,10 @@ int rolling_cone_setup_f64(double m, double h, double r, double a, double g,
         || h <= 0.0) {
         return 3;
     }
-    if (!(s19.high - s19.high >= 0.0)
-        || !(s28.high - s28.high >= 0.0)
-        || !(s30.high - s30.high >= 0.0)
-        || !(s32.high - s32.high >= 0.0)) {
+    if (!(s16.high - s16.high >= 0.0)
+        || !(s24.high - s24.high >= 0.0)
+        || !(s26.high - s26.high >= 0.0)
+        || !(s28.high - s28.high >= 0.0)) {
         return 5;
     }
     return 0;

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 04cfd425df00dd5d.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 25d2f152d66723df.
  */
 #ifndef ROLLING_CONE_F64_H
 #define ROLLING_CONE_F64_H
@@ -22,8 +22,8 @@ extern "C" {
 
 /* Constants made of parameters only, by rolling_cone_setup_f64. */
 typedef struct {
-    double k1; /* 9/32*m*h^2*cos(a)^2 + 1/2*cos(a)^2*(3/20*m*r^2 + 3/80*m*h^2) + 3/20*m*r^2*(sin(a) - 1/sin(a))^2 */
-    double k2; /* (sin(a)*cos(a)*(3/20*r^2 + 3/5*h^2) - 3/10*r^2*cos(a)*(sin(a) - 1/sin(a)))/g */
+    double k1; /* 1/2*cos(a)^2*(3/5*m*h^2 + 3/20*m*r^2) + 3/20*m*r^2*(sin(a) - 1/sin(a))^2 */
+    double k2; /* (sin(a)*cos(a)*(3/5*h^2 + 3/20*r^2) - 3/10*r^2*cos(a)*(sin(a) - 1/sin(a)))/g */
     double k3; /* 3/4*h*cos(a) */
     double k4; /* 3/4*h*cos(a) - h/cos(a) */
 } rolling_cone_constants_f64;
@@ -39,7 +39,7 @@ typedef struct {
  *            body is not positive; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
- * Cost: once; 31 operations on pairs.
+ * Cost: once; 27 operations on pairs.
  */
 int rolling_cone_setup_f64(double m, double h, double r, double a, double g,
     rolling_cone_constants_f64 *constants);
@@ -48,16 +48,14 @@ int rolling_cone_setup_f64(double m, double h, double r, double a, double g,
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 20  rate at which the contact line turns
  * Returned:  kinetic_energy  J  kinetic energy
- * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
+ * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.52, largest 3 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 114 hard
  *            ones).
  * Cost: 2 mul.
- * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, rate_seen_from_N, rigid.
+ * Rests on: A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
+ *            composed_turns, further_axes_are_right_handed, rigid.
  */
 void rolling_cone_kinetic_energy_f64(const rolling_cone_constants_f64 *constants, double W,
     double *kinetic_energy);
@@ -68,12 +66,7 @@ void rolling_cone_kinetic_energy_f64(const rolling_cone_constants_f64 *constants
  * Returned:  x_N  m  where the plane presses, from the apex
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.48, largest 3.2 u of the largest product or sum in the equation (of x_N; 200000
  *            samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 1 add, 2 mul.
@@ -89,12 +82,7 @@ void rolling_cone_x_N_f64(const rolling_cone_constants_f64 *constants, double W,
  * Returned:  steady  m  what vanishes in a steady motion
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.31, largest 3 u of the largest product or sum in the equation (of steady; 200000
  *            samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 1 add, 2 mul.

@@ -54,15 +54,11 @@ int rotor_on_turning_axes_setup_f64(double A, double C,
  *            p_dot  rad/s^2  -50 .. 50  rate of p
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.51, largest 3.9 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst, 144 hard ones).
  * Cost: 2 add, 2 sub, 7 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
+ *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void rotor_on_turning_axes_moment_f64(const rotor_on_turning_axes_constants_f64 *constants,
     double W_x, double W_x_dot, double W_y, double W_y_dot, double W_z, double W_z_dot, double p,
@@ -76,15 +72,11 @@ void rotor_on_turning_axes_moment_f64(const rotor_on_turning_axes_constants_f64 
  *            p  rad/s  -500 .. 500  spin of the rotor in its bearings
  * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum
  * Postcondition: l = I omega   [lecture step angular_momentum]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.37, largest 2 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 144
  *            hard ones).
  * Cost: 1 add, 3 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            further_axes_are_right_handed, rate_seen_from_N, rigid.
+ * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void rotor_on_turning_axes_angular_momentum_f64(const rotor_on_turning_axes_constants_f64 *constants,
     double W_x, double W_y, double W_z, double p, double angular_momentum[3]);
@@ -103,15 +95,11 @@ void rotor_on_turning_axes_angular_momentum_f64(const rotor_on_turning_axes_cons
  *            rate_absolute[3]  N m  along xyz  rate of angular momentum seen from the inertial frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.51, largest 3.8 u of the largest product or sum in the equation (of
  *            rate_absolute; 200000 samples of the ranges, 65536 searched from the worst, 144 hard
  *            ones).
  * Cost: 2 add, 2 sub, 7 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            further_axes_are_right_handed, rate_seen_from_N, rigid.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
  */
 void rotor_on_turning_axes_angular_momentum_rate_f64(const rotor_on_turning_axes_constants_f64 *constants,
     double W_x, double W_x_dot, double W_y, double W_y_dot, double W_z, double W_z_dot, double p,
@@ -125,15 +113,11 @@ void rotor_on_turning_axes_angular_momentum_rate_f64(const rotor_on_turning_axes
  *            p  rad/s  -500 .. 500  spin of the rotor in its bearings
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.76, largest 4.9 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 144 hard
  *            ones).
  * Cost: 3 add, 5 mul.
- * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, rate_seen_from_N, rigid.
+ * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
  */
 void rotor_on_turning_axes_kinetic_energy_f64(const rotor_on_turning_axes_constants_f64 *constants,
     double W_x, double W_y, double W_z, double p, double *kinetic_energy);

@@ -70,16 +70,12 @@ int satellite_setup_f32(float I_xx, float I_yy, float I_zz, satellite_constants_
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.46, largest 5 u of the largest product or sum in the equation (of attitude_rate;
  *            200000 samples of the ranges, 65536 searched from the worst, 150 hard ones).
  * Cost: 7 add, 4 sub, 24 mul, 1 neg.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void satellite_state_rate_f32(const satellite_constants_f32 *constants, const float attitude[4],
     const float omega[3], const float moment[3], float attitude_rate[4], float omega_dot[3]);
@@ -95,18 +91,14 @@ void satellite_state_rate_f32(const satellite_constants_f32 *constants, const fl
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.26, largest 5.8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 71 add, 22 sub, 117 mul, 1 div, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void satellite_step_rk4_f32(const satellite_constants_f32 *constants, const float attitude[4],
     const float omega[3], const float moment[3], float time_step, float attitude_next[4],
@@ -124,18 +116,14 @@ void satellite_step_rk4_f32(const satellite_constants_f32 *constants, const floa
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.26, largest 6.7 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 328 add, 110 sub, 458 mul, 2 div, 12 neg, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void satellite_step_rk4_jacobian_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
@@ -158,18 +146,14 @@ void satellite_step_rk4_jacobian_dense_f32(const satellite_constants_f32 *consta
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.26, largest 5.4 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 304 add, 89 sub, 394 mul, 6 div, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void satellite_step_rk4_tangent_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
@@ -192,18 +176,14 @@ void satellite_step_rk4_tangent_dense_f32(const satellite_constants_f32 *constan
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.26, largest 6.8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 254 add, 170 sub, 479 mul, 2 div, 3 neg, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void satellite_step_rk4_sensitivity_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
@@ -225,19 +205,15 @@ void satellite_step_rk4_sensitivity_dense_f32(const satellite_constants_f32 *con
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.38, largest 5 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 95 add, 61 sub, 156 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void satellite_step_lie_f32(const satellite_constants_f32 *constants, const float attitude[4],
     const float omega[3], const float moment[3], float time_step, float attitude_next[4],
@@ -276,10 +252,9 @@ void satellite_step_split_f32(const satellite_constants_f32 *constants, const fl
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Cost: 2396 add, 916 sub, 3419 mul, 22 div, 20 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void satellite_step_taylor_f32(const satellite_constants_f32 *constants, const float attitude[4],
     const float omega[3], const float moment[3], float time_step, float attitude_next[4],

@@ -48,12 +48,7 @@ int skewed_disc_setup_f64(double m, double r, double skew, double b,
  *            M_y  N m  b*(A_x - B_x)
  *            M_z  N m  couple of A
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.52, largest 3 u of the largest product or sum in the equation (of M_y; 200000
  *            samples of the ranges, 65536 searched from the worst, 120 hard ones).
  * Cost: 2 mul.
@@ -69,12 +64,7 @@ void skewed_disc_M_f64(const skewed_disc_constants_f64 *constants, double w, dou
  *            w  rad/s  200 .. 400  speed of the shaft
  * Returned:  bearing_force  N  A_x
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.52, largest 2.9 u of the largest product or sum in the equation (of
  *            bearing_force; 200000 samples of the ranges, 65536 searched from the worst, 120 hard
  *            ones).

@@ -59,15 +59,14 @@ int sleeping_top_setup_f32(float m, float r, float l, float n, float g,
  *            damping_matrix[4]  forces by velocity, gyroscopic terms included, column by column, for alpha, beta, each in its own unit
  *            stiffness_matrix[4]  forces by displacement, column by column, for alpha, beta, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 5.6e-05, largest 1 u of the largest product or sum in the equation (of
  *            mass_matrix; 200000 samples of the ranges, 65536 searched from the worst, 114 hard
  *            ones).
  * Cost: no operations.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
- *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
+ *            reference_point, rigid, strong_third_law, third_law.
  */
 void sleeping_top_linearised_f32(const sleeping_top_constants_f32 *constants, float mass_matrix[4],
     float damping_matrix[4], float stiffness_matrix[4]);
@@ -81,12 +80,7 @@ void sleeping_top_linearised_f32(const sleeping_top_constants_f32 *constants, fl
  * Returned:  alpha_ddot  rad/s^2  acceleration of alpha
  *            beta_ddot  rad/s^2  acceleration of beta
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.73, largest 7.5 u of the largest product or sum in the equation (of beta_ddot;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Singular: at beta = pi/2 + k pi, alpha_ddot infinite, no number or beyond all measure.
@@ -105,15 +99,13 @@ void sleeping_top_accelerations_f32(const sleeping_top_constants_f32 *constants,
  *            beta  rad  -0.3 .. 0.3  tilt about the new y
  *            beta_dot  rad/s  -1 .. 1  rate of beta
  * Returned:  energy  J  energy
- * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
+ * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.43, largest 3.9 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 3 add, 6 mul, 2 cos.
- * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, rate_seen_from_N, rigid.
+ * Rests on: A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
+ *            composed_turns, further_axes_are_right_handed, rigid.
  */
 void sleeping_top_energy_f32(const sleeping_top_constants_f32 *constants, float alpha,
     float alpha_dot, float beta, float beta_dot, float *energy);
@@ -130,12 +122,7 @@ void sleeping_top_energy_f32(const sleeping_top_constants_f32 *constants, float 
  *            beta_next  rad  tilt about the new y, next
  *            beta_dot_next  rad/s  rate of beta, next
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.4, largest 6.1 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of beta_dot_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 42 hard ones).

@@ -48,12 +48,7 @@ int top_steady_precession_setup_f64(double r, double l, double theta, double n, 
  *            W  rad/s  0.1 .. 200  rate of precession
  * Returned:  steady  what vanishes in a steady motion, without factors that never vanish, so in no unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
- *            step moving_point_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.52, largest 3.7 u of the largest product or sum in the equation (of steady;
  *            200000 samples of the ranges, 65536 searched from the worst, 120 hard ones).
  * Cost: 2 sub, 2 mul.

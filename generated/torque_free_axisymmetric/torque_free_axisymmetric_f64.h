@@ -48,14 +48,12 @@ int torque_free_axisymmetric_setup_f64(double A, double C,
  *            w_y  rad/s  1 .. 2  omega along y, across the axis
  *            w_z  rad/s  5 .. 7  omega along the axis
  * Returned:  precession  rad/s  rate of the axis about L
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Postcondition: l = I omega   [lecture step angular_momentum]
  * Error: median 0.77, largest 6 u of the largest product or sum in the equation (of precession;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Singular: at w_x = w_y = 0, precession infinite, no number or beyond all measure.
  * Cost: 3 add, 7 mul, 1 div, 3 sqrt.
- * Rests on: axes_are_orthonormal, composed_turns, further_axes_are_right_handed, rate_seen_from_N.
+ * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void torque_free_axisymmetric_precession_f64(const torque_free_axisymmetric_constants_f64 *constants,
     double w_x, double w_y, double w_z, double *precession);
@@ -65,15 +63,11 @@ void torque_free_axisymmetric_precession_f64(const torque_free_axisymmetric_cons
  *            w_z  rad/s  5 .. 7  omega along the axis
  * Returned:  body_rate  rad/s  rate of omega in the body
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.14, largest 0.73 u of the largest product or sum in the equation (of body_rate;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 1 mul.
- * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
- *            reference_point, rigid, strong_third_law, third_law.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
+ *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void torque_free_axisymmetric_body_rate_f64(const torque_free_axisymmetric_constants_f64 *constants,
     double w_z, double *body_rate);
@@ -84,14 +78,12 @@ void torque_free_axisymmetric_body_rate_f64(const torque_free_axisymmetric_const
  *            w_y  rad/s  1 .. 2  omega along y, across the axis
  *            w_z  rad/s  5 .. 7  omega along the axis
  * Returned:  tan_theta  1  tangent, axis from L
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Postcondition: l = I omega   [lecture step angular_momentum]
  * Error: median 0.62, largest 4.4 u of the largest product or sum in the equation (of tan_theta;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Singular: at w_z = 0, tan_theta infinite, no number or beyond all measure.
  * Cost: 1 add, 5 mul, 1 div, 1 sqrt.
- * Rests on: axes_are_orthonormal, composed_turns, further_axes_are_right_handed, rate_seen_from_N.
+ * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void torque_free_axisymmetric_tan_theta_f64(const torque_free_axisymmetric_constants_f64 *constants,
     double w_x, double w_y, double w_z, double *tan_theta);
@@ -114,13 +106,11 @@ void torque_free_axisymmetric_tan_beta_f64(double w_x, double w_y, double w_z, d
  *            w_y  rad/s  1 .. 2  omega along y, across the axis
  *            w_z  rad/s  5 .. 7  omega along the axis
  * Returned:  L  kg m^2/s  sqrt(angular_momentum_x^2 + angular_momentum_y^2 + angular_momentum_z^2)
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * Postcondition: l = I omega   [lecture step angular_momentum]
  * Error: median 0.43, largest 2.9 u of the largest product or sum in the equation (of L; 200000
  *            samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 2 add, 6 mul, 1 sqrt.
- * Rests on: axes_are_orthonormal, composed_turns, further_axes_are_right_handed, rate_seen_from_N.
+ * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void torque_free_axisymmetric_L_f64(const torque_free_axisymmetric_constants_f64 *constants,
     double w_x, double w_y, double w_z, double *L);

@@ -250,18 +250,14 @@ void tumbling_body_step_split6_f32(const tumbling_body_constants_f32 *constants,
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.26, largest 3.9 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 63 add, 18 sub, 111 mul, 1 div, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void tumbling_body_step_rk4_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
@@ -278,18 +274,14 @@ void tumbling_body_step_rk4_f32(const tumbling_body_constants_f32 *constants,
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.26, largest 6.3 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 265 add, 98 sub, 398 mul, 2 div, 9 neg, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void tumbling_body_step_rk4_jacobian_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
@@ -310,19 +302,15 @@ void tumbling_body_step_rk4_jacobian_dense_f32(const tumbling_body_constants_f32
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.39, largest 4.1 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 87 add, 57 sub, 150 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void tumbling_body_step_lie_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
@@ -340,10 +328,9 @@ void tumbling_body_step_lie_f32(const tumbling_body_constants_f32 *constants,
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Cost: 2394 add, 915 sub, 3416 mul, 22 div, 1 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void tumbling_body_step_taylor_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],

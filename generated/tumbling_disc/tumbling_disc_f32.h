@@ -125,18 +125,14 @@ void tumbling_disc_step_split_f32(const tumbling_disc_constants_f32 *constants,
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
- *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.26, largest 3.6 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst, 78 hard ones).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 52 add, 22 sub, 88 mul, 1 div, 1 sqrt.
- * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal,
- *            composed_turns, constant_mass, further_axes_are_right_handed, newton,
- *            quaternion_of_axes, rate_seen_from_N, reference_point, rigid, strong_third_law,
- *            third_law, unit_quaternion.
+ * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
+ *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
+ *            strong_third_law, third_law, unit_quaternion.
  */
 void tumbling_disc_step_rk4_f32(const tumbling_disc_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],

@@ -14,11 +14,16 @@ from derive.emit.notation.glyph import glyph
 from derive.lecture.chapters import LECTURE
 from derive.lecture.step import Step
 from derive.lower.arrange.matching import matched
-from derive.mechanics.answers import FRAME_STEPS, balance_steps
 from derive.mechanics.mechanism import Mechanism, dropped
 from derive.mechanics.problem import Problem
 from derive.mechanics.turning import reduced
 
+OF_BALANCES = ("mass_centre_motion", "general_form", "moving_point_form", "any_point_form")
+OF_MOTION = (
+    *("angular_velocities_add", "velocity_of_particle", "velocity_seen_from_axes"),
+    *("acceleration_seen_from_axes", "transport_theorem"),
+)
+"""Steps by which balances stand, and what they name in between."""
 LONGEST, SHORT = 45, 12
 """Operations of an equation that is shown whole, and of a part put into one that is longer."""
 # Letters of the lecture for the quantities that every scene calls by a word.
@@ -141,9 +146,10 @@ def passages(known: Mechanism, base: str) -> tuple[Passage, ...]:
     found = {value: s for s, value in reversed(answers.items()) if value in question.unknowns}
     balanced = [(found.get(u, u), *sides) for u, *sides in _balanced(question, rows, _loads(known))]
     given = [(s, s, value) for s, value in answers.items() if s not in found.values()]
-    every, of_motion = dict.fromkeys(question.steps), FRAME_STEPS if motion else ()
-    of_rows = tuple(s for s in (*balance_steps(question.balances), *FRAME_STEPS) if s in every)
-    of_rows = tuple(s for s in of_rows if s not in of_motion) if rows else ()
+    every = question.steps
+    of_motion = tuple(s for s in every if s in OF_MOTION) if motion else ()
+    of_rows = tuple(s for s in every if s in (*OF_BALANCES, *OF_MOTION)) if rows else ()
+    of_rows = tuple(s for s in of_rows if s not in of_motion)
     others = tuple(s for s in every if s not in (*of_motion, *of_rows))
     groups = ((of_motion, motion), (of_rows, balanced), (others, given))
     names = written_names(known)
