@@ -7,7 +7,6 @@ library that the C is linked with, all other operations are IEEE's.
 import ctypes
 import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import chain
 from statistics import median
 from typing import Any
@@ -15,7 +14,7 @@ from typing import Any
 import casadi
 import numpy as np
 
-from derive.check.emitted import Emitted, errors_of, inputs, verdict
+from derive.check.emitted import Emitted, errors_of, from_parameters, inputs, verdict
 from derive.check.verdict import JUDGED, Verdict
 from derive.program.arithmetic import LIBM, Table, working
 from derive.program.largest import largest
@@ -140,69 +139,36 @@ def _stated(printed: Mapping[str, Any], emitted: Emitted, output: str, figure: s
 
 def casadi_bits(emitted: Emitted, module: Any, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether CasADi's functions give the bits of double C, from parameters on."""
-    library, makes = emitted.library, None
-    if library.constants:
-        makes = module.setup()
-        differ = [s.number for s in each if not _same_setup(emitted, module, makes, s)]
-        yield verdict(
-            emitted,
-            library.setup.name,
-            "CasADi's bits",
-            JUDGED[not differ],
-            _differing(differ, each),
-        )
-    for program in library.printed():
-        built = _built(module, program)
+    library = emitted.library
+    for program in [library.setup] * bool(library.constants) + list(library.printed()):
         if program.unrolled is not None:
             says = "the C has loops and rounds elsewhere; CasADi's is the unrolled step"
             yield verdict(emitted, program.name, "CasADi's bits", "skipped", says)
             continue
-        differ = [s.number for s in each if not _same(emitted, built, s)]
-        yield verdict(
-            emitted, program.name, "CasADi's bits", JUDGED[not differ], _differing(differ, each)
-        )
-        yield from _same_patterns(emitted, program, built.whole)
-
-
-@dataclass(frozen=True)
-class _Built:
-    """A function of a CasADi module from parameters, and from constants if it uses any."""
-
-    program: Program
-    parameters: tuple[str, ...]
-    whole: Any
-    hot: Any
-
-
-def _built(module: Any, program: Program) -> _Built:
-    whole = getattr(module, program.name)()
-    if not any(q.role == "constants" for q in program.inputs):
-        return _Built(program, (), whole, whole)
-    hot = getattr(module, f"{program.name}_hot")()
-    return _Built(program, tuple(module.PARAMETERS), whole, hot)
+        whole = getattr(module, program.name)()
+        from_constants = any(q.role == "constants" for q in program.inputs)
+        hot = getattr(module, f"{program.name}_hot")() if from_constants else None
+        differ = []
+        for s in each:
+            found = [from_parameters(module, whole, program, s)]
+            found += [_from_constants(emitted, hot, program, s)] if hot else []
+            ours = emitted.results(program, s)
+            if not all(same_values([x for own in outputs for x in own], ours) for outputs in found):
+                differ.append(s.number)
+        says = _differing(differ, each)
+        yield verdict(emitted, program.name, "CasADi's bits", JUDGED[not differ], says)
+        yield from _same_patterns(emitted, program, whole)
 
 
 def _differing(differ: Sequence[int], each: Sequence[Sample]) -> str:
     return f"{len(differ)} differ, first {differ[0]}" if differ else f"{len(each)} samples"
 
 
-def _numbers(function: Any, given: Sequence[Any]) -> list[float]:
-    return [x for output in function.call([casadi.DM(v) for v in given]) for x in output.nonzeros()]
-
-
-def _same_setup(emitted: Emitted, module: Any, makes: Any, sample: Sample) -> bool:
-    given = [sample.values[name] for name in module.PARAMETERS]
-    return same_values(_numbers(makes, [given]), emitted.constants(sample)["constants"])
-
-
-def _same(emitted: Emitted, built: _Built, sample: Sample) -> bool:
-    given = inputs(built.program, sample, emitted.constants(sample))
-    ours = emitted.results(built.program, sample)
-    rest = [given[q.name] for q in built.program.inputs if q.role != "constants"]
-    first = [[sample.values[name] for name in built.parameters]] if built.parameters else []
-    return same_values(_numbers(built.hot, list(given.values())), ours) and same_values(
-        _numbers(built.whole, [*first, *rest]), ours
-    )
+def _from_constants(
+    emitted: Emitted, hot: Any, program: Program, sample: Sample
+) -> list[list[float]]:
+    given = inputs(program, sample, emitted.constants(sample))
+    return [y.nonzeros() for y in hot.call([casadi.DM(v) for v in given.values()])]
 
 
 def _same_patterns(emitted: Emitted, program: Program, function: Any) -> Iterator[Verdict]:

@@ -7,6 +7,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import casadi
+
 from derive.check.call import Function, functions
 from derive.check.compiler import Compiler, compiled
 from derive.check.verdict import Outcome, Verdict
@@ -116,6 +118,19 @@ def casadi_module(library: Library, found: Files, workshop: Path) -> ModuleType:
     """Return the scene's CasADi file as a module."""
     name = f"{library.known.scene.name}_casadi"
     return imported(name, found.texts[f"{name}.py"], workshop)
+
+
+def from_parameters(
+    module: Any, function: Any, program: Program, sample: Sample
+) -> list[list[float]]:
+    """Return what a function of a CasADi file, or set-up itself, gives from parameters on."""
+    names = [q.components for q in program.inputs if q.role != "constants"]
+    if program.makes("constants"):
+        names = [module.PARAMETERS]
+    elif len(names) < len(program.inputs):
+        names = [module.PARAMETERS, *names]
+    given = [casadi.DM([sample.values[c] for c in own]) for own in names]
+    return [list(y.nonzeros()) for y in function.call(given)]
 
 
 def is_double(emitted: Emitted) -> bool:

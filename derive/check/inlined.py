@@ -9,6 +9,7 @@ from typing import Any
 
 import casadi
 
+from derive.check.emitted import from_parameters
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library
 from derive.program.largest import largest
@@ -32,20 +33,12 @@ def inlined(library: Library, module: Any, each: Sequence[Sample]) -> Iterator[V
         differ = [
             f"{q.name} at sample {s.number}"
             for s in plain
-            for q in _differing(program, _results(module, function, program, s),
-                                _results(module, anew, program, s))
+            for q in _differing(program, from_parameters(module, function, program, s),
+                                from_parameters(module, anew, program, s))
         ]  # fmt: skip
         says = f"{differ[0]} is not what it is elsewhere" if differ else f"{len(plain)} samples"
         scene, outcome = library.known.scene.name, JUDGED[not differ]
         yield Verdict(scene, program.name, "f64", "CasADi's inlined", outcome, says)
-
-
-def _results(module: Any, function: Any, program: Program, sample: Sample) -> list[list[float]]:
-    names = [list(q.components) for q in program.inputs if q.role != "constants"]
-    if len(names) < len(program.inputs) or program.makes("constants"):
-        names = [list(module.PARAMETERS), *(names if not program.makes("constants") else ())]
-    given = [casadi.DM([sample.values[c] for c in own]) for own in names]
-    return [list(y.nonzeros()) for y in function.call(given)]
 
 
 def _differing(

@@ -8,7 +8,7 @@ from derive.motion.exact.diagonal import principal_axes
 from derive.motion.exact.inertia import Inertia
 from derive.program.operations import at_most, both, either, select, splitter
 from derive.program.pairs import two_product, two_sum
-from derive.program.tape import Number, Tape, named, number
+from derive.program.tape import Number, Tape, named, number, seen_from
 
 Vector = Sequence[Number]
 Change = Callable[[Vector], list[Number]]
@@ -37,10 +37,7 @@ def axes_of(tape: Tape, body: Inertia) -> Axes:
         case "spherical":
             return counted_from(0, body)
         case "axisymmetric":
-            return counted_from(("xyz".index(body.axis or "z") + 1) % 3, body)
-    exact = [m.exact for m in body.tensor[:3] if m.exact is not None]
-    if len(exact) == 3:
-        return counted_from((exact.index(sorted(exact)[1]) - 1) % 3, body)
+            return counted_from(body.places[0], body)
     return _chosen(tape, body)
 
 
@@ -79,11 +76,10 @@ def _chosen(tape: Tape, body: Inertia) -> Axes:
 
 def _flag(tape: Tape, name: str, truth: Number, says: str) -> tuple[Number, Number]:
     """Return a truth of set-up, and the same for a function: set-up hands on numbers only."""
+    if truth.exact is not None:
+        return truth, truth
     flag = named(name, select(truth, 1, 0), says)
-    if flag.tape is None or not isinstance(flag.operand, str):
-        raise TypeError(f"'{name}' is decided by numbers")
-    operands = (Fraction(0), flag.tape.constant(flag.operand))
-    return truth, Number(tape, tape.record("less", operands))
+    return truth, Number(tape, tape.record("less", (Fraction(0), seen_from(tape, flag))))
 
 
 def _between(p: Number, q: Number, r: Number) -> Number:

@@ -14,8 +14,22 @@ absolute = partial(operation, "abs")
 power_of_two = partial(operation, "power_of_two")  # one at or next to x > 0
 less = partial(operation, "less")
 at_most = partial(operation, "at_most")
-both = partial(operation, "both")
-either = partial(operation, "either")
+
+
+def both(a: Number, b: Number) -> Number:
+    """Return whether two truths hold; one that is known decides now."""
+    known, other = (a, b) if a.exact is not None else (b, a)
+    if known.exact is None:
+        return operation("both", a, b)
+    return other if known.exact else known
+
+
+def either(a: Number, b: Number) -> Number:
+    """Return whether one of two truths holds; one that is known decides now."""
+    known, other = (a, b) if a.exact is not None else (b, a)
+    if known.exact is None:
+        return operation("either", a, b)
+    return known if known.exact else other
 
 
 def splitter(tape: Tape) -> Number:
@@ -30,8 +44,10 @@ def unit_roundoff(tape: Tape) -> Number:
 
 def select(condition: Number, yes: Number | int | Fraction, no: Number | int | Fraction) -> Number:
     """Return ``yes`` where ``condition`` is true, else ``no``; both are worked out."""
-    if number(yes) == number(no):
+    if number(yes) == number(no) or condition.exact:
         return number(yes)
+    if condition.exact == 0:
+        return number(no)
     return operation("select", condition, yes, no)
 
 

@@ -124,12 +124,18 @@ def number(x: Number | int | Fraction) -> Number:
 
 
 def operation(operator: str, *values: Number | int | Fraction) -> Number:
-    """Record an operation on the highest of its operands' tapes."""
+    """Record an operation on the highest of its operands' tapes; do it, if all are exact numbers.
+
+    A truth is then 1 or 0.
+    """
     numbers = [number(v) for v in values]
     tapes = [n.tape for n in numbers if n.tape is not None]
     hot = [t for t in tapes if t.below is not None]
-    if not tapes:
+    does = OPERATORS[operator].exact
+    if not tapes and does is None:
         raise ValueError(f"{operator} of exact numbers alone is no operation of a program")
+    if not tapes and does is not None:
+        return number(Fraction(does(*(n.exact for n in numbers))))
     tape = (hot or tapes)[0]
     return Number(tape, tape.record(operator, tuple(seen_from(tape, n) for n in numbers)))
 

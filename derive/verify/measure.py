@@ -28,8 +28,14 @@ from derive.verify.draw import Field
 from derive.verify.operators import LONG_FLOATS
 from derive.verify.reference import BALLS, BITS, reference
 from derive.verify.sample import Sample
-from derive.verify.scale import around, base_of, columns_of, measured_outputs, motion_scales
-from derive.verify.solution import Known
+from derive.verify.scale import (
+    around,
+    base_of,
+    columns_of,
+    entries,
+    measured_outputs,
+    motion_scales,
+)
 from derive.verify.valuation import Arithmetic
 
 DIGITS = 2  # of a printed figure, rounded up
@@ -82,24 +88,8 @@ def should(
         own = [f for f in functions if base_of(f) == base]
         columns = tuple(dict.fromkeys(c for f in own for c in columns_of(f)))
         true = [reference(asked, s.values, columns, arithmetic) for s in each if own]
-        yield from ((program, [_expected(program, at) for at in true]) for program in own)
-
-
-def _expected(program: Program, true: Mapping[str, Known]) -> list[Expected]:
-    """Return what each component of a function of the lecture should be."""
-    zero: tuple[Any, float] = (arb(0), 0.0)
-    found: list[Expected] = []
-    for q in program.outputs:
-        pattern = (program.sparsity or {}).get(q.name)
-        if pattern is None:
-            own = [true[c] for c in q.components]
-            found += [Expected(known.value, known.scale, known.gain) for known in own]
-            continue
-        for i, k in pattern.places():
-            row = true[pattern.rows[i]]
-            value, scale = row.slopes.get(pattern.columns[k], zero)
-            found.append(Expected(value, scale, row.gain))
-    return found
+        for program in own:
+            yield program, [[Expected(*of) for of in entries(program, at)] for at in true]
 
 
 def should_move(by: Field, program: Program, each: Sequence[Sample]) -> list[list[Expected]]:

@@ -6,11 +6,12 @@ component, before and after, or the largest product of what the step adds. A flo
 largest component. No scale knows how a program is arranged.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import reduce
 from typing import Any
 
 import numpy as np
+from flint import arb
 
 from derive.motion.runge_kutta.system import FLOW, NEXT
 from derive.program.program import Program, Quantity, component_names, placed
@@ -92,24 +93,22 @@ def columns_of(program: Program) -> tuple[str, ...]:
     return tuple(c for pattern in (program.sparsity or {}).values() for c in pattern.columns)
 
 
-def lecture_scales(by: Field, program: Program, wide: Wide) -> list[Column]:
-    """Return the largest product in the equation of each component of a function of the lecture."""
-    found = solution(by.asked[base_of(program)], wide, columns_of(program), DOUBLES)
-    scales: list[Column] = []
+def entries(program: Program, found: Mapping[str, Solved]) -> Iterator[tuple[Any, Any, Any]]:
+    """Yield value, largest product and gain of each component of a function of the lecture."""
     for q in program.outputs:
         pattern = (program.sparsity or {}).get(q.name)
         if pattern is None:
-            scales += [_floored(by, found[c], found[c].scale) for c in q.components]
+            yield from ((found[c].value, found[c].scale, found[c].gain) for c in q.components)
             continue
         for i, k in pattern.places():
             row = found[pattern.rows[i]]
-            _, scale = row.slopes.get(pattern.columns[k], (None, 0.0))
-            scales.append(_floored(by, row, scale))
-    return scales
+            yield (*row.slopes.get(pattern.columns[k], (arb(0), 0.0)), row.gain)
 
 
-def _floored(by: Field, row: Solved, scale: Any) -> Any:
-    return np.maximum(scale, by.smallest * row.gain)
+def lecture_scales(by: Field, program: Program, wide: Wide) -> list[Column]:
+    """Return the largest product in the equation of each component of a function of the lecture."""
+    found = solution(by.asked[base_of(program)], wide, columns_of(program), DOUBLES)
+    return [np.maximum(scale, by.smallest * gain) for _, scale, gain in entries(program, found)]
 
 
 def motion_scales(by: Field, plan: Plan, wide: Wide, true: Sequence[Column]) -> list[Column]:

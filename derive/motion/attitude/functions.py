@@ -1,6 +1,6 @@
 """The formulas for attitudes as functions with a name: what goes in, what comes out."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -21,7 +21,7 @@ HALF_TURN = Fraction("3.14159")
 
 @dataclass(frozen=True)
 class AttitudeFunction:
-    """One formula: ``formula`` takes a tape, and each input as numbers, and returns the output.
+    """One formula: ``formula`` takes each input as numbers, and returns the output.
 
     within : the promise, in u: no component is further off than this times the largest one
     """
@@ -43,13 +43,9 @@ def attitude_program(name: str) -> Program:
     function = next(f for f in FUNCTIONS if f.name == name)
     tape = Tape("t", below=Tape("p"))
     given = [[tape.input(c) for c in q.components] for q in function.inputs]
-    results = tuple(value.operand for value in function.formula(tape, *given))
+    results = tuple(value.operand for value in function.formula(*given))
     ops = needed(tape.ops, results)
     return Program(name, function.says, function.inputs, function.outputs, ops, results)
-
-
-def _plain(formula: Formula, _tape: Tape, *given: Sequence[Number]) -> list[Number]:
-    return formula(*given)
 
 
 def _quaternion(name: str, frame: str, meaning: str) -> Quantity:
@@ -99,9 +95,7 @@ def _euler(sequence: str) -> tuple[AttitudeFunction, AttitudeFunction]:
     angles, name = _angles(sequence), f"euler_{sequence}"
     says = f"Euler angles {sequence} of an attitude quaternion; the third is 0 at gimbal lock"
     inverse = f"attitude quaternion of Euler angles {sequence}"
-    there, back = (
-        partial(_plain, partial(f, sequence)) for f in (euler.from_quaternion, euler.to_quaternion)
-    )
+    there, back = (partial(f, sequence) for f in (euler.from_quaternion, euler.to_quaternion))
     return (
         AttitudeFunction(f"quaternion_to_{name}", says, (ATTITUDE,), (angles,), there, 6),
         AttitudeFunction(f"quaternion_from_{name}", inverse, (angles,), (ATTITUDE,), back, 5),
@@ -116,16 +110,14 @@ def _of(
     within: int,
     says: str,
 ) -> AttitudeFunction:
-    """Return a function whose formula needs no tape."""
-    made = partial(_plain, formula)
-    return AttitudeFunction(f"quaternion_{name}", says, inputs, (output,), made, within)
+    return AttitudeFunction(f"quaternion_{name}", says, inputs, (output,), formula, within)
 
 
 FUNCTIONS: tuple[AttitudeFunction, ...] = (
     _of(quaternion.product, "product", (LEFT, RIGHT), PRODUCT, 4,
         "product of two quaternions: the rotation of the second, then that of the first"),
-    AttitudeFunction("quaternion_exp", "unit quaternion of a rotation vector",
-                     (TURN,), (ATTITUDE,), quaternion.exponential, 6),
+    _of(quaternion.exponential, "exp", (TURN,), ATTITUDE, 6,
+        "unit quaternion of a rotation vector"),
     _of(quaternion.logarithm, "log", (ANY_LENGTH,), TURN, 5,
         "rotation vector of a quaternion of any length, angle at most pi; 0 for the quaternion 0"),
     _of(quaternion.normalise, "normalise", (ANY_LENGTH,), ATTITUDE, 4,

@@ -10,7 +10,7 @@ from fractions import Fraction
 
 from derive.program.operations import absolute, less, power_of_two, select, splitter, sqrt
 from derive.program.pairs import two_sum
-from derive.program.tape import Number, Tape
+from derive.program.tape import Number
 
 FAR = Fraction(2**60)
 """Larger numbers are brought down by this before their power of two is asked for: the way to a
@@ -62,9 +62,7 @@ def length_of(values: Sequence[Number]) -> Number:
     return size * sqrt(squares([v / size for v in values]))
 
 
-def length_and_rest(
-    tape: Tape, v: Sequence[Number], vanishing: Number
-) -> tuple[Number, Number, Number]:
+def length_and_rest(v: Sequence[Number], vanishing: Number) -> tuple[Number, Number, Number]:
     """Return the rounded length h of ``v``, l with h + l right to u times the root of u, and h^2.
 
     ``v`` is scaled already. Where ``vanishing`` is true h is 1 and l means nothing;
@@ -74,7 +72,7 @@ def length_and_rest(
     Every product that must be exact is one of short numbers: fused operations give the same.
     Source: Dekker, Numer. Math. 18 (1971) 224, halves; Knuth, TAOCP 2, 4.2.2, sums.
     """
-    shift = splitter(tape) - 1
+    shift = splitter(next(c.tape for c in v if c.tape is not None)) - 1
     (x, x_low), (y, y_low), (z, z_low) = (_halves(c, shift) for c in v)
     partial, first = two_sum(x * x, y * y)
     total, second = two_sum(partial, z * z)

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from derive.motion.attitude.lengths import FAR, largest, length_and_rest, size_of, squares
 from derive.program.operations import absolute, atan2, cos, less, power_of_two, select, sin, sqrt
-from derive.program.tape import Number, Tape
+from derive.program.tape import Number
 
 TINY = Fraction(1, 2**30)
 """Below, a rotation vector v has sin(|v|/2)/|v| = 1/2 and cos(|v|/2) = 1 to the last bit."""
@@ -40,7 +40,7 @@ def product(a: Sequence[Number], b: Sequence[Number]) -> list[Number]:
     ]
 
 
-def exponential(tape: Tape, v: Sequence[Number]) -> list[Number]:
+def exponential(v: Sequence[Number]) -> list[Number]:
     """Return the unit quaternion (4) of a rotation vector ``v`` (3) in rad: exp(v / 2).
 
     Within 6 u for |v| from zero and denormal up to 2^26 (double) or 2^12 (float), and up to pi
@@ -51,7 +51,7 @@ def exponential(tape: Tape, v: Sequence[Number]) -> list[Number]:
     tiny = less(m, TINY)
     scale = power_of_two(select(less(FAR, m), m * (1 / FAR), 1))
     y = [c / scale for c in v]
-    h, low, square = length_and_rest(tape, y, tiny)
+    h, low, square = length_and_rest(y, tiny)
     half = scale * Fraction(1, 2)
     sine, cosine = sin(h * half), cos(h * half)
     rest = low * half

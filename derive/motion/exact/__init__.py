@@ -52,9 +52,9 @@ def principal(body: Inertia) -> tuple[Three, tuple[Row, Row, Row]]:
     if body.kind == "spherical":
         return (number(1), number(1), number(1)), (axes[0], axes[1], axes[2])
     if body.kind == "axisymmetric":
-        k = "xyz".index(body.axis or "z")
-        ratio = body.tensor[k] / body.tensor[(k + 1) % 3]
-        return (number(1), number(1), ratio), (axes[(k + 1) % 3], axes[(k + 2) % 3], axes[k])
+        i, j, k = body.places
+        ratio = body.tensor[k] / body.tensor[i]
+        return (number(1), number(1), ratio), (axes[i], axes[j], axes[k])
     found = principal_axes(body)
     one, two, three = found.moments
     return (one / two, number(1), three / two), found.axes
@@ -65,9 +65,8 @@ def _along_body(body: Inertia, omega: Three, time: Number) -> Motion:
     if body.kind == "spherical":
         return spun(omega, time), list(omega)
     if body.kind == "axisymmetric":
-        axis = "xyz".index(body.axis or "z")
-        across = body.tensor[(axis + 1) % 3]
-        return precess((across, body.tensor[axis]), axis, omega, time)
+        i, _, k = body.places
+        return precess((body.tensor[i], body.tensor[k]), k, omega, time)
     found = principal_axes(body)
     rows = [_named(k, row) for k, row in enumerate(found.axes, start=1)]
     a, b, c = (_dot(row, omega) for row in rows)

@@ -15,7 +15,7 @@ from math import isqrt
 from derive.motion.exact.inertia import Inertia
 from derive.program.operations import absolute, less, power_of_two, select, sqrt
 from derive.program.recorded import repeat
-from derive.program.tape import Number, Tape, number
+from derive.program.tape import Number, number
 
 BITS = 192  # kept of an exact root, and of exact numbers from turn to turn
 PASSES = 8  # over the three pairs of axes; six reach 2^-106 from any tensor tried
@@ -44,7 +44,7 @@ def principal_axes(body: Inertia) -> PrincipalAxes:
     Source: cyclic rotations of Jacobi, Crelle 30 (1846) 51, in the form of Golub and Van Loan 8.5.
     """
     xx, yy, zz, *products = body.tensor
-    size = _power_of_two(xx + yy + zz)
+    size = power_of_two(xx + yy + zz)
     moments, products = [m / size for m in (xx, yy, zz)], [p / size for p in products]
     rows = [[number(int(i == j)) for j in range(3)] for i in range(3)]
     if body.kind == "general":
@@ -62,26 +62,10 @@ def root(x: Number) -> Number:
     return number(Fraction(isqrt(int(x.exact * 4**shift)), 2**shift))
 
 
-def where_less(a: Number, b: Number, yes: Number, no: Number) -> Number:
-    """Return ``yes`` where a < b, else ``no``; exact numbers decide it now."""
-    if a.exact is not None and b.exact is not None:
-        return yes if a.exact < b.exact else no
-    return select(less(a, b), yes, no)
-
-
 def quotient(a: Number, b: Number, otherwise: int) -> Number:
     """Return a / b for b > 0, and ``otherwise`` where b is 0."""
-    if b.exact is not None:
-        return a / b if b.exact > 0 else number(otherwise)
-    divisor = where_less(number(0), b, b, number(1))
-    return where_less(number(0), b, a / divisor, number(otherwise))
-
-
-def _power_of_two(x: Number) -> Number:
-    if x.exact is None:
-        return power_of_two(x)
-    bits = x.exact.numerator.bit_length() - x.exact.denominator.bit_length()
-    return number(Fraction(2) ** bits)
+    some = less(0, b)
+    return select(some, a / select(some, b, 1), otherwise)
 
 
 def _in_order(
@@ -90,26 +74,24 @@ def _in_order(
     """Return moments and axes with those of i and j exchanged where the first is larger."""
     m, r = list(moments), list(rows)
     a, b = moments[i], moments[j]
-    m[i], m[j] = where_less(b, a, b, a), where_less(b, a, a, b)
-    r[i] = [where_less(b, a, q, p) for p, q in zip(rows[i], rows[j], strict=True)]
-    r[j] = [where_less(b, a, -p, q) for p, q in zip(rows[i], rows[j], strict=True)]
+    other = less(b, a)
+    m[i], m[j] = select(other, b, a), select(other, a, b)
+    r[i] = [select(other, q, p) for p, q in zip(rows[i], rows[j], strict=True)]
+    r[j] = [select(other, -p, q) for p, q in zip(rows[i], rows[j], strict=True)]
     return m, r
 
 
 def _turned_to_principal(
     moments: Sequence[Number], products: Sequence[Number], rows: Sequence[Row]
 ) -> tuple[list[Number], list[Row]]:
-    start = [*moments, *products, *(x for row in rows for x in row)]
-    tapes = [x.tape for x in start if x.tape is not None]
-    end = _numbers_turned(start) if not tapes else _values_turned(tapes[0], start)
-    return end[:3], [end[6:9], end[9:12], end[12:15]]
-
-
-def _numbers_turned(start: Sequence[Number]) -> list[Number]:
-    values = list(start)
-    for p, q, r in TURNS * PASSES:
-        values = [_shortened(x) for x in _turn(p, q, r, values)]
-    return values
+    values = [*moments, *products, *(x for row in rows for x in row)]
+    tapes = [x.tape for x in values if x.tape is not None]
+    if tapes:
+        values = repeat(tapes[0], PASSES, values, lambda carried: (_pass(carried), None))
+    else:
+        for _ in range(PASSES):
+            values = _pass(values)
+    return values[:3], [values[6:9], values[9:12], values[12:15]]
 
 
 def _shortened(x: Number) -> Number:
@@ -119,15 +101,11 @@ def _shortened(x: Number) -> Number:
     return number(round(x.exact * unit) / unit)
 
 
-def _values_turned(tape: Tape, start: Sequence[Number]) -> list[Number]:
-    return repeat(tape, PASSES, start, lambda carried: (_pass(carried), None))
-
-
 def _pass(carried: Sequence[Number]) -> list[Number]:
     """Return moments, products (xy, xz, yz) and rows after one turn in each pair of axes."""
     values = list(carried)
     for p, q, r in TURNS:
-        values = _turn(p, q, r, values)
+        values = [_shortened(x) for x in _turn(p, q, r, values)]
     return values
 
 
@@ -137,9 +115,9 @@ def _turn(p: int, q: int, r: int, values: Sequence[Number]) -> list[Number]:
     pq, rp, rq = (_place(p, q), _place(r, p), _place(r, q))
     across = values[q] - values[p]
     size = root(across * across + 4 * values[pq] * values[pq])
-    divisor = where_less(across, number(0), across - size, across + size)
-    vanishes = quotient(number(1), _magnitude(divisor), 0)
-    tangent = where_less(number(0), divisor, vanishes, -vanishes) * (2 * values[pq])
+    divisor = select(less(across, 0), across - size, across + size)
+    vanishes = quotient(number(1), absolute(divisor), 0)
+    tangent = select(less(0, divisor), vanishes, -vanishes) * (2 * values[pq])
     cosine = 1 / root(1 + tangent * tangent)
     sine = tangent * cosine
     new[p] = values[p] - tangent * values[pq]
@@ -156,7 +134,3 @@ def _turn(p: int, q: int, r: int, values: Sequence[Number]) -> list[Number]:
 
 def _place(i: int, j: int) -> int:
     return {(0, 1): 3, (0, 2): 4, (1, 2): 5}[(min(i, j), max(i, j))]
-
-
-def _magnitude(x: Number) -> Number:
-    return absolute(x) if x.exact is None else number(abs(x.exact))

@@ -23,6 +23,12 @@ class Inertia:
     kind: Literal["general", "principal", "axisymmetric", "spherical"]
     axis: Literal["x", "y", "z"] | None
 
+    @property
+    def places(self) -> tuple[int, int, int]:
+        """Return the places of two axes across the axis of revolution, and its own."""
+        k = "xyz".index(self.axis or "z")
+        return (k + 1) % 3, (k + 2) % 3, k
+
 
 def as_symmetric(tensor: Tensor) -> Inertia:
     """Return the most special body that has this tensor: equal moments are the same number."""
@@ -55,7 +61,5 @@ def in_order(moments: Sequence[Number]) -> tuple[Number, Number, Number]:
 
 
 def _swapped(x: Number, y: Number) -> tuple[Number, Number]:
-    if x.exact is not None and y.exact is not None:
-        return (y, x) if y.exact < x.exact else (x, y)
     first = less(y, x)
     return select(first, y, x), select(first, x, y)

@@ -26,7 +26,7 @@ def plan_revolution(
     body: Inertia, omega: Sequence[Number], time_step: Number, about: About
 ) -> Plan:
     """Return what every step of a body of revolution has in common: name, value, meaning."""
-    i, j, k = order(body)
+    i, j, k = body.places
     across, own = body.tensor[i], body.tensor[k]
     along = named("ratio", own / across, "moment about the axis over the other") * omega[k]
     sine, versed = about([omega[i], omega[j], along], time_step)
@@ -86,7 +86,7 @@ def change_of_revolution(
     body: Inertia, plan: Mapping[str, Number], omega: Sequence[Number]
 ) -> tuple[list[Number], list[Number]]:
     """Return the vector part of a step's attitude change, and the change of omega."""
-    i, j, k = order(body)
+    i, j, k = body.places
     turn, change = list(omega), [number(0)] * 3
     turn[i] = plan["keep"] * omega[i] + plan["turn"] * omega[j]
     turn[j] = plan["keep"] * omega[j] - plan["turn"] * omega[i]
@@ -104,9 +104,3 @@ def less_than_one(forward: Number, v: Sequence[Number]) -> Number:
     square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
     size = 1 + sqrt(1 - square)
     return select(less(0, forward), square / size, size)
-
-
-def order(body: Inertia) -> tuple[int, int, int]:
-    """Return the places of two axes across the axis of revolution, and its own."""
-    k = AXES.index(body.axis or "z")
-    return (k + 1) % 3, (k + 2) % 3, k

@@ -57,7 +57,7 @@ def step_slopes(tape: Tape, system: System) -> tuple[Row, Matrix]:
     attitude, _ = _places(system)
     start = _start(tape, system)
     gain = _gain(tape, system, start)
-    turned = finished(start[attitude], whole_turn(tape, gain.vectors))
+    turned = finished(start[attitude], whole_turn(gain.vectors))
     found = added(start, gain.state).replaced(attitude, turned)
     return found.values, found.slopes
 
@@ -73,7 +73,7 @@ def by_errors(tape: Tape, system: System) -> tuple[Row, Matrix]:
     begin = _start(tape, system)
     start = Varying(begin.values, lifted(begin.values[attitude], attitude, begin.slopes))
     gain = _gain(tape, system, start)
-    turn = whole_turn(tape, gain.vectors)
+    turn = whole_turn(gain.vectors)
     found = added(start, gain.state).replaced(attitude, finished(start[attitude], turn))
     errors = [list(row) for row in turn.slopes]
     for row, entries in zip(errors, between(conjugate(turn.values), turn.values), strict=True):
@@ -88,7 +88,7 @@ def increments(tape: Tape, system: System) -> tuple[Row, Row]:
     attitude, _ = _places(system)
     start = _start(tape, system)
     gain = _gain(tape, system, start)
-    w, *vector = whole_turn(tape, gain.vectors).values
+    w, *vector = whole_turn(gain.vectors).values
     found = gain.state.values
     found[attitude] = hamilton(start.values[attitude], [w - 1, *vector])
     return start.values, found
@@ -109,7 +109,7 @@ def _gain(tape: Tape, system: System, start: Varying) -> Gain:
     for part in (1, 1, 2):
         state = added(start, weighed([part], [rates[-1]]))
         turns = [weighed([half], [one[omega]]) for one in states]
-        states.append(state.replaced(attitude, _stage(tape, start[attitude], turns)))
+        states.append(state.replaced(attitude, _stage(start[attitude], turns)))
         rates.append(_rates(tape, system, states[-1], half))
     turns = [weighed([h], [state[omega]]) for state in states]
     vectors = [weighed(weights, turns) for weights in (FIRST, FIRST[::-1])]
@@ -135,9 +135,9 @@ def _rates(tape: Tape, system: System, state: Varying, factor: Number) -> Varyin
     return Varying(rates, plus(direct, product([row[:n] for row in slopes], state.slopes)))
 
 
-def _stage(tape: Tape, q: Varying, turns: list[Varying]) -> Varying:
+def _stage(q: Varying, turns: list[Varying]) -> Varying:
     """Return the attitude of the stage that follows as many ``turns``, each h/2 times a rate."""
     if len(turns) < 3:
-        return turned(tape, q, turns[-1])
+        return turned(q, turns[-1])
     first, _, third = turns
-    return turned(tape, turned(tape, q, first), weighed([2, -1], [third, first]))
+    return turned(turned(q, first), weighed([2, -1], [third, first]))

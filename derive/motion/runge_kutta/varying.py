@@ -21,7 +21,7 @@ from derive.motion.runge_kutta.matrices import (
     zeros,
 )
 from derive.program.operations import less, select, sqrt
-from derive.program.tape import Number, Tape, number
+from derive.program.tape import Number, number
 
 TINY = Fraction(1, 2**40)
 """Below, the squared angle of a turn leaves nothing of what is multiplied by it."""
@@ -69,13 +69,13 @@ def added(a: Varying, b: Varying) -> Varying:
     return Varying(values, plus(a.slopes, b.slopes))
 
 
-def turned(tape: Tape, q: Varying, vector: Varying) -> Varying:
+def turned(q: Varying, vector: Varying) -> Varying:
     """Return q exp(v / 2) for a rotation vector v (3), rad, along body axes.
 
     Its derivative is dq exp(v / 2) + q exp(v / 2) (0, J dv) / 2, J the right Jacobian of SO(3)
     (Sola 2017, eq. 143).
     """
-    turn = exponential(tape, vector.values)
+    turn = exponential(vector.values)
     after = hamilton(q.values, turn)
     half = times(Fraction(1, 2), product(right_jacobian(vector.values, turn), vector.slopes))
     slopes = plus(product(right_matrix(turn), q.slopes), product(tangent_matrix(after), half))
@@ -104,7 +104,7 @@ def right_jacobian(v: Row, turn: Row) -> Matrix:
     ]
 
 
-def whole_turn(tape: Tape, vectors: Sequence[Varying]) -> Varying:
+def whole_turn(vectors: Sequence[Varying]) -> Varying:
     """Return exp(v1 / 2) exp(v2 / 2) ... , its slopes as the turn (3, rad) that they are.
 
     These are along body axes after the turn, as an error of attitude is.
@@ -112,7 +112,7 @@ def whole_turn(tape: Tape, vectors: Sequence[Varying]) -> Varying:
     whole = [number(1), *[number(0)] * 3]
     bent = zeros(3, len(vectors[0].slopes[0]))
     for vector in vectors:
-        turn = exponential(tape, vector.values)
+        turn = exponential(vector.values)
         own = product(right_jacobian(vector.values, turn), vector.slopes)
         bent = plus(product(between(conjugate(turn), turn), bent), own)
         whole = hamilton(whole, turn)

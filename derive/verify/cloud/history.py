@@ -1,6 +1,6 @@
 """Where every frame and particle of a machine is in time, from its declared angles and rates."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -89,37 +89,18 @@ class History:
         return found
 
     def _in_parent(self, frame: Frame) -> Array:
-        if frame.angular_velocity is not None:
-            return self._turned_at_a_rate(frame)
+        if frame.angular_velocity is not None:  # along its own axes
+            skew = self._skew(frame.angular_velocity)
+            return _carried_on(each(series, self._start(frame)), lambda R: R @ skew)
         R = turn("x", series(0))
         for one in frame.turned:
             R = R @ turn(one.axis, self.value(one.angle))
         return R
 
-    def _turned_at_a_rate(self, frame: Frame) -> Array:
-        """Return the axes that R_dot = R [Omega]x carries on from where they are."""
-        assert frame.angular_velocity is not None  # noqa: S101
-        x, y, z = self.column(frame.angular_velocity)
-        zero = series(0)
-        skew = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]], dtype=object)
-        R = each(lambda v: series(v), self._start(frame))
-        for _ in range(2):
-            rate = R @ skew
-            R = np.array([[rate[i, k].integral(R[i, k].value) for k in range(3)]
-                          for i in range(3)], dtype=object)  # fmt: skip
-        return R
-
-    def _carried_on(self, rate: tuple[Formula, ...]) -> Array:
-        """Return the turn of a ball in its frame: R_dot = [w]x R, from where it is."""
+    def _skew(self, rate: tuple[Formula, ...]) -> Array:
         x, y, z = self.column(rate)
         zero = series(0)
-        skew = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]], dtype=object)
-        R = turn("x", zero)
-        for _ in range(2):
-            moved = skew @ R
-            R = np.array([[moved[i, k].integral(R[i, k].value) for k in range(3)]
-                          for i in range(3)], dtype=object)  # fmt: skip
-        return R
+        return np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]], dtype=object)
 
     def _start(self, frame: Frame) -> Array:
         if not frame.attitude:
@@ -167,8 +148,9 @@ class History:
         R = self.rotations[member.frame]
         for one in member.turned:
             R = R @ turn(one.axis, self.value(one.angle))
-        if member.angular_velocity is not None:
-            return R @ self._carried_on(member.angular_velocity)
+        if member.angular_velocity is not None:  # along the axes of its frame
+            skew = self._skew(member.angular_velocity)
+            return R @ _carried_on(turn("x", series(0)), lambda Q: skew @ Q)
         if member.axis is None or (member.spin is None and member.axial_speed is None):
             return R
         if member.spin is not None:
@@ -227,3 +209,13 @@ class History:
         xx, yy, zz, xy, xz, yz = entries
         half = (xx + yy + zz) / 2
         return mp.matrix([[half - xx, xy, xz], [xy, half - yy, yz], [xz, yz, half - zz]])
+
+
+def _carried_on(start: Array, rate: Callable[[Array], Array]) -> Array:
+    """Return the axes that go on at a rate from where they are."""
+    R = start
+    for _ in range(2):
+        moved = rate(R)
+        R = np.array([[moved[i, k].integral(R[i, k].value) for k in range(3)]
+                      for i in range(3)], dtype=object)  # fmt: skip
+    return R
