@@ -6,7 +6,7 @@ angle, vectors are turned about it, and the three unit vectors so turned must be
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
-from math import atan, atan2, cos, inf, pi, sin
+from math import atan, atan2, cos, hypot, inf, pi, sin
 from random import Random
 from typing import Any
 
@@ -49,7 +49,7 @@ def definitions(emitted: Emitted) -> Iterator[Verdict]:
 def _drawn(dice: Random, name: str) -> Array:
     """Return a sample of an input: quaternions of length 1, matrices that turn."""
     four: Array = np.array([dice.gauss(0, 1) for _ in range(4)])
-    unit: Array = four / np.linalg.norm(four)
+    unit: Array = four / _size(four)
     match name:
         case "matrix":
             return _columns(unit)
@@ -66,8 +66,8 @@ def _gap(name: str, found: Array, given: list[Array]) -> float:
     """Return how far what is found is from what it means, beside the length of that or 1."""
     of_found, of_given = _meaning(name.removeprefix("quaternion_"))
     a, b = of_found(found), of_given(*given)
-    sizes = np.maximum(np.linalg.norm(b, axis=-1), 1.0)
-    apart = np.ravel(np.linalg.norm(a - b, axis=-1) / sizes).tolist()
+    pairs = zip(np.atleast_2d(a), np.atleast_2d(b), strict=True)
+    apart = [_size(x - y) / max(_size(y), 1.0) for x, y in pairs]
     besides = BESIDES.get(name.removeprefix("quaternion_"))
     return largest([*apart, *([besides(found, *given)] if besides else [])])
 
@@ -121,13 +121,13 @@ def _in_turn(sequence: str, angles: Array) -> Array:
 def _rodrigues(axis: Array, angle: float, vectors: Array) -> Array:
     """Return vectors turned about an axis: e (e v) + (v - e (e v)) cos + (e x v) sin."""
     e = axis / (_size(axis) or 1.0)
-    along = np.multiply.outer(vectors @ e, e)
+    along = np.multiply.outer((vectors * e).sum(axis=-1), e)
     found: Array = along + (vectors - along) * cos(angle) + np.cross(e, vectors) * sin(angle)
     return found
 
 
 def _size(v: Array) -> float:
-    return float(np.linalg.norm(v))
+    return hypot(*v)
 
 
 MEANT: Mapping[str, tuple[Meaning, Meaning]] = {
@@ -147,7 +147,7 @@ MEANT: Mapping[str, tuple[Meaning, Meaning]] = {
 def _cosine(left: Array, right: Array) -> float:
     """Return the cosine of half the angle of two turns in a row, by spherical trigonometry."""
     a, b = left[1:], right[1:]
-    between = float(a @ b) / (_size(a) * _size(b) or 1.0)
+    between = float((a * b).sum()) / (_size(a) * _size(b) or 1.0)
     alpha, beta = atan2(_size(a), left[0]), atan2(_size(b), right[0])
     return cos(alpha) * cos(beta) - sin(alpha) * sin(beta) * between
 

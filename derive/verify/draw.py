@@ -160,9 +160,9 @@ def _anywhere(of: Field, dice: Dice, count: int) -> Column:
 
 
 def on_the_sphere(of: Field, rows: Column) -> Column:
-    """Return rows with every attitude of the states of unit length."""
+    """Return rows with every quaternion of the states of unit length."""
     for q, span in placed(of.quantities):
-        if q in of.library.known.words.states and q.name == "attitude":
+        if q in of.library.known.words.states and q.is_quaternion:
             w, x, y, z = rows[span]
             size = np.sqrt(w * w + x * x + y * y + z * z)
             rows[span] = rows[span] / np.where(size > 0, size, 1.0)

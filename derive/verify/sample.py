@@ -116,7 +116,7 @@ def _motion(of: Source) -> Values:
     values: Values = {}
     for q in varying(of.known):
         own = [uniform(of.dice, q) for _ in q.components]
-        own = _unit(own) if _is_attitude(q) else own
+        own = _unit(own) if q.is_quaternion else own
         values |= {name: of.held(x) for name, x in zip(q.components, own, strict=True)}
     return values
 
@@ -170,22 +170,17 @@ def _denormal(of: Source, _: int) -> Values | None:
     return _changed(of, lambda q, x: x * tiny if _may_vanish(q) else x)
 
 
-def _is_attitude(q: Quantity) -> bool:
-    return q.is_quaternion
-
-
 def _may_vanish(q: Quantity) -> bool:
     low, high = q.ends
     within = low <= 0 <= high
-    return not _is_attitude(q) and within
+    return not q.is_quaternion and within
 
 
 def _half_turn(of: Source, number: int) -> Values | None:
-    if "attitude" not in of.known.words:
-        return None
-    parts = of.known.words["attitude"].components
-    turn = HALF_TURNS[number % len(HALF_TURNS)]
-    return _ordinary(of) | {name: of.held(x) for name, x in zip(parts, turn, strict=True)}
+    attitudes = [q.components for q in varying(of.known) if q.is_quaternion]
+    turn = [of.held(x) for x in HALF_TURNS[number % len(HALF_TURNS)]]
+    turned = {name: x for parts in attitudes for name, x in zip(parts, turn, strict=True)}
+    return _ordinary(of) | turned if attitudes else None
 
 
 def _range_ends(of: Source, number: int) -> Values | None:
@@ -203,7 +198,7 @@ def _extremes(of: Source, _: int) -> Values | None:
     """Return a sample with every varying value at an end of its range."""
 
     def change(q: Quantity, x: float) -> float:
-        return x if _is_attitude(q) else _end(of, q, of.dice.randrange(2))
+        return x if q.is_quaternion else _end(of, q, of.dice.randrange(2))
 
     return _changed(of, change)
 

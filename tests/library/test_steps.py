@@ -4,6 +4,7 @@ from functools import cache
 from math import fsum
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from derive.check.motion import orders, step_slopes
@@ -14,7 +15,8 @@ from derive.program.precision import F32, F64, Precision
 from derive.program.program import component_names
 from derive.scene import CATALOGUE, SceneError, parse_scene
 from derive.scene.wanted import OF_MACHINES
-from derive.verify.draw import with_motion
+from derive.verify.draw import Dice, Field, complete, with_motion
+from derive.verify.draw import drawn as drawn_in_columns
 from derive.verify.measure import replayed
 from derive.verify.sample import Sample, samples
 
@@ -69,6 +71,17 @@ def two_hubs(*wanted: str, emission: str = "fast") -> Library:
     names = ", ".join(f'"{name}"' for name in wanted)
     text = TWO_HUBS.format(wanted=names, emission=emission)
     return library(parse_scene(text, "two_hubs"))
+
+
+def test_samples_have_every_quaternion_of_length_one_and_at_half_a_turn() -> None:
+    made = two_hubs("step_rk4")
+    of = Field(made, F64)
+    at = complete(of, drawn_in_columns(of, Dice("two hubs"), 64)).wide
+    (turned,) = (s.values for s in samples(made.known, F64, 0, 1).each if s.kind == "half turn")
+    for frame in ("hub", "pod"):
+        parts = [f"attitude_{frame}_{part}" for part in "wxyz"]
+        assert np.allclose(sum(at[part] ** 2 for part in parts), 1, rtol=0, atol=1e-15)
+        assert [turned[part] for part in parts] == [0, 1, 0, 0]
 
 
 @cache

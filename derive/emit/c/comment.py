@@ -65,7 +65,7 @@ def _line(q: Quantity, bounds: str) -> str:
 
 
 def _range(q: Quantity) -> str:
-    if q.low is None or q.high is None or q.name == "attitude":
+    if q.low is None or q.high is None or q.is_quaternion:
         return ""
     return f"{float(q.low):g} .. {float(q.high):g}"
 
