@@ -10,10 +10,10 @@ from derive.mechanics.sheet import Sheet
 from derive.mechanics.vocabulary import ANY, Vocabulary
 from derive.program.program import Quantity
 from derive.scene import Input, Scene
-from derive.scene.declaration import Moving
+from derive.scene.declaration import AXES, Moving
 from derive.scene.formula import Formula
 from derive.scene.machine import Group
-from derive.scene.results import AXES, ENERGIES, groups
+from derive.scene.results import ENERGIES, groups
 from derive.scene.scopes import PER_SECOND
 
 QUATERNION = ("w", "x", "y", "z")

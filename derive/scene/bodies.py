@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Literal, cast
 
-from derive.scene.declaration import Axis, SceneError, Sextuple, Triple
+from derive.scene.declaration import AXES, Axis, SceneError, Sextuple, Triple
 from derive.scene.entries import AXIS, KINDS, MASS, MEMBER, SAID, WHOLE_MASS, round_entries
-from derive.scene.entry import AXES, Entry, Reading, entries_of
+from derive.scene.entry import Entry, Reading, entries_of
 from derive.scene.formula import ZERO, Formula, number
 from derive.scene.machine import Entries, Frame, Member
 from derive.scene.numbers import check_member, positive

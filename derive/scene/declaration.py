@@ -12,6 +12,7 @@ from typing import Literal
 from derive.scene.formula import Formula
 
 Axis = Literal["x", "y", "z"]
+AXES: tuple[Axis, ...] = ("x", "y", "z")
 Triple = tuple[Formula, Formula, Formula]
 Sextuple = tuple[Formula, Formula, Formula, Formula, Formula, Formula]
 

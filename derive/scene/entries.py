@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from decimal import Decimal
 
-from derive.scene.entry import AXES, REQUIRED, Entry
+from derive.scene.declaration import AXES
+from derive.scene.entry import REQUIRED, Entry
 from derive.scene.shape import ROUND
 
 ORIGIN = [0, 0, 0]

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from derive.scene.declaration import Axis, Given, Parameter, SceneError, Turning
+from derive.scene.declaration import AXES, Given, Parameter, SceneError, Turning
 from derive.scene.formula import Formula
 from derive.scene.names import label
 from derive.scene.numbers import positive
@@ -25,7 +25,6 @@ from derive.scene.table import (
 from derive.scene.unit import NONE, dimension
 
 REQUIRED = "required"
-AXES: tuple[Axis, ...] = ("x", "y", "z")
 MOST = 99
 """Of anything that is counted in a file."""
 

@@ -6,34 +6,28 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from derive.scene.interval import (
-    Interval,
-    added,
-    cosine,
-    divided,
-    multiplied,
-    negative,
-    number,
-    raised,
-    root,
-    sine,
-)
+from mpmath import iv
 
 
 @dataclass(frozen=True)
 class Function:
-    """What a function of a formula does: to zero, to a float, to an interval of floats."""
+    """What a function of a formula does: to zero, to a float, to an interval of mpmath's ``iv``."""
 
     at_zero: int
     floats: Callable[[float], float]
-    interval: Callable[[Interval], Interval]
+    interval: Callable[[Any], Any]
+
+
+def _root(a: Any) -> Any:
+    """Return the square root of what of an interval is not negative."""
+    return iv.sqrt(iv.mpf([max(a.a, 0), max(a.b, 0)]))
 
 
 FUNCTIONS: Mapping[str, Function] = {
-    "sin": Function(0, math.sin, sine),
-    "cos": Function(1, math.cos, cosine),
-    "tan": Function(0, math.tan, lambda a: divided(sine(a), cosine(a))),
-    "sqrt": Function(0, math.sqrt, root),
+    "sin": Function(0, math.sin, iv.sin),
+    "cos": Function(1, math.cos, iv.cos),
+    "tan": Function(0, math.tan, iv.tan),
+    "sqrt": Function(0, math.sqrt, _root),
 }
 PLAIN: Mapping[str, Callable[..., Any]] = {
     "add": operator.add,
@@ -44,13 +38,9 @@ PLAIN: Mapping[str, Callable[..., Any]] = {
 }
 """What Python's own signs do to numbers of any kind."""
 INTERVALS: Mapping[str, Any] = {
-    "number": number,
-    "add": added,
-    "sub": lambda a, b: added(a, negative(b)),
-    "mul": multiplied,
-    "div": divided,
-    "neg": negative,
-    "power": raised,
+    "number": lambda exact: iv.mpf(exact.numerator) / exact.denominator,
+    **PLAIN,
+    "power": operator.pow,
     **{name: function.interval for name, function in FUNCTIONS.items()},
 }
-"""An arithmetic for ``derive.scene.formula.evaluate``."""
+"""An arithmetic for ``derive.scene.formula.evaluate``: bounds on a box, rounded outward."""

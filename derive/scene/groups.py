@@ -5,11 +5,10 @@ An input of one function may be the answer of another: the moment, and the rate 
 
 from fractions import Fraction
 
-from derive.scene.declaration import Given, Input, Moving, ShortForm
+from derive.scene.declaration import AXES, Given, Input, Moving, ShortForm
 from derive.scene.machine import Group, Groups
 
-XYZ = ("x", "y", "z")
-QUATERNION = ("w", *XYZ)
+QUATERNION = ("w", *AXES)
 ANY = (Fraction(-1), Fraction(1))
 
 
@@ -29,7 +28,7 @@ def _scalar(entry: Moving | Input) -> Group:
 
 def _vector(name: str, unit: str, frame: str, given: Given | None, meaning: str) -> Group:
     low, high = (given.low, given.high) if given else ANY
-    return Group(name, tuple(f"{name}_{a}" for a in XYZ), unit, frame, low, high, meaning)
+    return Group(name, tuple(f"{name}_{a}" for a in AXES), unit, frame, low, high, meaning)
 
 
 def _quaternion(name: str, unit: str, says: str) -> Group:

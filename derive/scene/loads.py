@@ -4,12 +4,12 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from derive.scene.declaration import SceneError, Triple
+from derive.scene.declaration import AXES, SceneError, Triple
 from derive.scene.entries import FORCE, GRADIENT, SPRING, WEIGHT
-from derive.scene.entry import AXES, Entry, Reading, entries_of
+from derive.scene.entry import Entry, Reading, entries_of
 from derive.scene.machine import Force, Frame, Gradient, Load, Member, Spring, Unknown, Weight
 from derive.scene.names import identifier, label
-from derive.scene.numbers import check_unit
+from derive.scene.numbers import check_unit, ends_of, middle
 from derive.scene.scopes import Scalars
 from derive.scene.table import Scope, Table, formula, shown, table
 from derive.scene.unit import Dimension, dimension
@@ -91,8 +91,8 @@ def _load(reader: _Reader, name: str, given: Table) -> Load:
         every = said["on"] or reader.by.names["body"]
         if rows is WEIGHT:
             return Weight(name, every, said["along"], said["gravity"])
-        scope = reader.scalars.known
-        values = dict.fromkeys(scope.dimensions, 0.0) | dict(reader.scalars.middle())
+        ranges = ends_of((*reader.scalars.parameters, *reader.scalars.moving))
+        values = {**dict.fromkeys(reader.scalars.known.dimensions, 0.0), **middle(ranges)}
         check_unit(said["towards"], given.of("towards"), values)
         return Gradient(name, every, said["along"], said["towards"], said["gravity_gradient"])
     frame, against = said["frame"] or reader.carrier(said["on"]), said["against"] or ""

@@ -9,7 +9,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
 
-from derive.scene.declaration import Input, Moving, ShortForm, Triple, Turning
+from derive.scene.declaration import AXES, Input, Moving, ShortForm, Triple, Turning
 from derive.scene.demands import carrier, of_one_body
 from derive.scene.formula import ONE, ZERO, Formula, apply, symbol
 from derive.scene.groups import groups, turns_freely
@@ -27,7 +27,6 @@ from derive.scene.machine import (
 from derive.scene.rules import singular_attitude
 from derive.scene.shape import moved
 
-AXES = ("x", "y", "z")
 FRAME, BODY = "xyz", "body"
 NOWHERE: Triple = (ZERO, ZERO, ZERO)
 Motion = Literal["sought", "given"]

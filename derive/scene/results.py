@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from derive.scene.declaration import SceneError
+from derive.scene.declaration import AXES, SceneError
 from derive.scene.entries import RESULT
 from derive.scene.entry import Reading, entries_of
 from derive.scene.escape import brief
@@ -20,7 +20,6 @@ FUNCTIONS = (
     *ENERGIES,
     *("angular_momentum", "accelerations", "state_rate", "linearised", "steady"),
 )
-AXES = ("x", "y", "z")
 
 
 def read_results(

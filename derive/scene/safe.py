@@ -7,25 +7,23 @@ whatever its symbols are.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from functools import reduce
-from itertools import islice, product
 from operator import add
 from random import Random
 from typing import Any
+
+from mpmath import iv
 
 from derive.scene.declaration import SceneError
 from derive.scene.escape import at_place, brief
 from derive.scene.formula import FLOATS, Formula, apply, evaluate, symbols
 from derive.scene.functions import INTERVALS
-from derive.scene.interval import Interval
+from derive.scene.numbers import Point, Ranges, middle, points
 
-Point = Mapping[str, float]
-Ranges = Mapping[str, Interval]
-
-CORNERS, BETWEEN, BOXES = 256, 64, 2000
-"""Enough for every corner of eight ranges; points tried between; boxes that a proof may take."""
+BETWEEN, BOXES = 64, 2000
+"""Points tried between; boxes that a proof may take."""
 ROUNDING = 1e-12
 """What is smaller beside its own terms is zero: a dozen roundings of 2^-53 are 1.3e-15."""
 SMALLEST_BOX = 2.0**-36
@@ -40,14 +38,14 @@ def require_values(scene: object) -> None:
     """Refuse a scene with a formula that has no value somewhere on the declared ranges."""
     ranges = ranges_of(scene)
     seen: set[tuple[str, Formula]] = set()
-    for label, formula in _formulas(scene, ""):
+    for label, formula in formulas_of(scene):
         for kind, part in _dangers(formula):
             if (kind, part) not in seen:
                 seen.add((kind, part))
                 _require(label, kind, part, ranges)
 
 
-def ranges_of(scene: object) -> dict[str, Interval]:
+def ranges_of(scene: object) -> Ranges:
     """Return the range of everything in a scene that has one, by its name; pi is a point."""
     return {"pi": (math.pi, math.pi), **dict(_ranges(scene))}
 
@@ -69,7 +67,7 @@ def values_of(formula: Formula, ranges: Ranges) -> list[float]:
     return [_sized(formula, point)[0] for point in _points(box)]
 
 
-def _ranges(value: object) -> Iterator[tuple[str, Interval]]:
+def _ranges(value: object) -> Iterator[tuple[str, tuple[float, float]]]:
     """Yield the range of everything in a scene that has one."""
     for inner in _parts(value):
         low, high = getattr(inner, "low", None), getattr(inner, "high", None)
@@ -87,7 +85,7 @@ def _parts(value: object) -> Iterator[Any]:
         yield from value.values()
 
 
-def _formulas(value: object, label: str) -> Iterator[tuple[str, Formula]]:
+def formulas_of(value: object, label: str = "") -> Iterator[tuple[str, Formula]]:
     """Yield every formula of a scene with what it belongs to."""
     if isinstance(value, Formula):
         yield label, value
@@ -95,13 +93,13 @@ def _formulas(value: object, label: str) -> Iterator[tuple[str, Formula]]:
         word = _WORDS.get(type(value).__name__)
         own = f"{word} '{getattr(value, 'name', '')}'" if word else label
         for f in fields(value):
-            yield from _formulas(getattr(value, f.name), own or f.name)
+            yield from formulas_of(getattr(value, f.name), own or f.name)
     elif isinstance(value, tuple):
         for inner in value:
-            yield from _formulas(inner, label)
+            yield from formulas_of(inner, label)
     elif isinstance(value, dict):
         for key, inner in value.items():
-            yield from _formulas(inner, label if "'" in label else f"{label}.{key}")
+            yield from formulas_of(inner, label if "'" in label else f"{label}.{key}")
 
 
 def _dangers(formula: Formula) -> Iterator[tuple[str, Formula]]:
@@ -162,9 +160,7 @@ def _size(part: Formula, values: Point) -> float:
 
 def _points(box: Ranges) -> Iterator[Point]:
     """Yield the middle, corners, and points between."""
-    yield {n: (low + high) / 2 for n, (low, high) in box.items()}
-    for values in islice(product(*box.values()), CORNERS):
-        yield dict(zip(box, values, strict=True))
+    yield from points(box)
     random = Random(1)  # noqa: S311 (points to try, no secret)
     for _ in range(BETWEEN):
         yield {n: random.uniform(*ends) for n, ends in box.items()}
@@ -176,7 +172,7 @@ def _broken(part: Formula, box: Ranges) -> Point | None:
         found, size = _sized(part, point)
         if found < -ROUNDING * size:
             return point
-    return _searched(part, box, lambda ends: ends[0] >= 0, lambda x, size: x < -ROUNDING * size)
+    return _searched(part, box, lambda ends: ends.a >= 0, lambda x, size: x < -ROUNDING * size)
 
 
 def _zero(part: Formula, box: Ranges) -> Point | None:
@@ -190,7 +186,7 @@ def _zero(part: Formula, box: Ranges) -> Point | None:
             signs.setdefault(found > 0, point)
     if len(signs) == 2:
         return _between(part, signs[False], signs[True])
-    return _searched(part, box, lambda ends: not ends[0] <= 0 <= ends[1], None)
+    return _searched(part, box, lambda ends: 0 not in ends, None)
 
 
 def _between(part: Formula, below: Point, above: Point) -> Point:
@@ -214,19 +210,19 @@ def _searched(part: Formula, box: Ranges, safe: Any, broken: Any) -> Point | Non
         if not waiting:
             return None
         now = waiting.pop()
-        if safe(evaluate(part, now, INTERVALS)):
+        if safe(evaluate(part, {n: iv.mpf(ends) for n, ends in now.items()}, INTERVALS)):
             continue
-        middle = {n: (low + high) / 2 for n, (low, high) in now.items()}
-        if broken is not None and broken(*_sized(part, middle)):
-            return middle
+        here = middle(now)
+        if broken is not None and broken(*_sized(part, here)):
+            return here
         parts = {n: _part(now[n], box[n]) for n in now}
         widest = max(parts, key=parts.__getitem__, default="")
         if not widest or parts[widest] < SMALLEST_BOX:
             if broken is None:
-                return middle
+                return here
             continue
         low, high = now[widest]
-        cut = middle[widest]
+        cut = here[widest]
         halves = [{**now, widest: (low, cut)}, {**now, widest: (cut, high)}]
         waiting += sorted(halves, key=lambda half: _least(part, half), reverse=True)
     return None
@@ -234,10 +230,10 @@ def _searched(part: Formula, box: Ranges, safe: Any, broken: Any) -> Point | Non
 
 def _least(part: Formula, box: Ranges) -> float:
     """Return how far from zero a formula is at the middle of a box: where to look first."""
-    found, _ = _sized(part, {n: (low + high) / 2 for n, (low, high) in box.items()})
+    found, _ = _sized(part, middle(box))
     return math.inf if math.isnan(found) else abs(found)
 
 
-def _part(inner: Interval, outer: Interval) -> float:
+def _part(inner: tuple[float, float], outer: tuple[float, float]) -> float:
     wide = outer[1] - outer[0]
     return (inner[1] - inner[0]) / wide if wide else 0.0

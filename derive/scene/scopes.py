@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from derive.scene.declaration import Input, Moving, Parameter
-from derive.scene.numbers import middle
 from derive.scene.table import Scope
 from derive.scene.unit import NONE, Dimension, dimension
 
@@ -26,10 +25,6 @@ class Scalars:
     def moving(self) -> tuple[Moving, ...]:
         """Return all that moves."""
         return (*self.coordinates, *self.speeds, *self.inputs)
-
-    def middle(self) -> Mapping[str, float]:
-        """Return the middle of every range."""
-        return middle((*self.parameters, *self.moving))
 
     @property
     def declared(self) -> list[tuple[str, str]]:

@@ -10,6 +10,7 @@ from typing import Literal, cast
 
 from derive.scene.bodies import Kind, Substance, of_kind, of_shape
 from derive.scene.declaration import (
+    AXES,
     Axes,
     Body,
     Input,
@@ -31,7 +32,7 @@ from derive.scene.entries import (
     TIME_STEP,
     WHEEL,
 )
-from derive.scene.entry import AXES, Reading, entries_of
+from derive.scene.entry import Reading, entries_of
 from derive.scene.escape import brief
 from derive.scene.formula import ZERO
 from derive.scene.names import distinct

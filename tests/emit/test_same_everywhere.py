@@ -33,7 +33,6 @@ ASKED = {
     "verify/draw.py: mean": "a share of those admitted, compared with a bound",
     "verify/draw.py: prod": "of whole numbers",
     "verify/draw.py: random": "raw words of Philox, the same in every version",
-    "scene/interval.py: sin": "bounds of a formula, with room for rounding",
     "scene/functions.py: sin": "ranges and drawings only: what is measured is evaluated in balls",
     "scene/functions.py: cos": "as sin",
     "scene/functions.py: tan": "as sin",

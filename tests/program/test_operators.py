@@ -20,7 +20,7 @@ BEFORE = {
     "verify/operators.py": '    "tan": Meaning(',
 }
 ROWS = {
-    "scene/functions.py": "Function(0, math.tanh, lambda _: (-1.0, 1.0))",
+    "scene/functions.py": "Function(0, math.tanh, lambda _: iv.mpf([-1, 1]))",
     "program/arithmetic.py": 'Operator("libm", libc="tanh")',
     "lower/derivative.py": """lambda g, v: (
         g.add([g.number(1), g.mul([g.number(-1), g.power(g.call("tanh", *v), 2)])]),

@@ -23,10 +23,10 @@ RULES = [
     "_position",
     "_wheels",
     "_forward",
-    "check_moving",
+    "_moved",
     "check_inertia",
-    "check_axis",
-    "check_carrier",
+    "check_unit",
+    "carrier_doubts",
 ]
 
 
@@ -56,7 +56,7 @@ def test_an_edit_that_breaks_a_rule_is_refused_by_one_sentence(
 def test_a_rule_that_is_left_out_lets_an_edit_pass(
     rule: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(scene_rules, rule, lambda *_: None)
+    monkeypatch.setattr(scene_rules, rule, lambda *_: ())
     assert any(passes(name, old, new) for name, old, new, _ in ROWS)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mpmath import iv
 
 from derive.command.generation import made
 from derive.scene import CATALOGUE, SceneError, parse_scene, safe
@@ -110,7 +111,8 @@ def test_an_interval_holds_every_value_in_it(
 ) -> None:
     formula = parse(text)
     a, b = sorted(ends[:2]), sorted(ends[2:])
-    low, high = evaluate(formula, {"a": tuple(a), "b": tuple(b)}, INTERVALS)
+    box = evaluate(formula, {"a": iv.mpf(a), "b": iv.mpf(b)}, INTERVALS)
+    low, high = float(box.a), float(box.b)
     x = min(max(a[0] + s * (a[1] - a[0]), a[0]), a[1])
     y = min(max(b[0] + t * (b[1] - b[0]), b[0]), b[1])
     try:
