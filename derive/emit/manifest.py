@@ -84,26 +84,19 @@ def _symbols(library: Library, function: str, casadi: str | None) -> dict[str, A
     return symbols | {"casadi": casadi}
 
 
-def _argument(q: Quantity, direction: str, kind: str) -> dict[str, Any]:
+def _argument(q: Quantity, direction: str, alone: str) -> dict[str, Any]:
+    """Return an argument; ``alone`` is the type of one that is a single number."""
+    kind = "struct" if q.role == "constants" else "array" if q.shape else alone
     return {"name": q.name, "direction": direction, "type": kind} | _quantity(q)
 
 
 def _arguments(program: Program) -> list[dict[str, Any]]:
-    given = [_argument(q, "in", _kind(q)) for q in program.inputs]
-    returned = [_argument(q, "out", "array" if q.shape else "pointer") for q in program.outputs]
-    return given + returned
-
-
-def _kind(q: Quantity) -> str:
-    if q.role == "constants":
-        return "struct"
-    return "array" if q.shape else "scalar"
+    given = [_argument(q, "in", "scalar") for q in program.inputs]
+    return [*given, *(_argument(q, "out", "pointer") for q in program.outputs)]
 
 
 def _setup(library: Library) -> dict[str, Any]:
     program = library.setup
-    given = [_argument(q, "in", "scalar") for q in program.inputs]
-    returned = [_argument(q, "out", "struct") for q in program.outputs]
     cost = {"flops_on_pairs": program.flops(), "pair_operations": pair_functions([program])}
     return {
         "name": "setup",
@@ -111,7 +104,7 @@ def _setup(library: Library) -> dict[str, Any]:
         "symbols": _symbols(library, "setup", "setup") | {"casadi_status": "setup_status"},
         "returns": "int: 0, or the first rule that the parameters break; see status",
         "status": {str(number): says for number, says in possible(program).items()},
-        "arguments": given + returned,
+        "arguments": _arguments(program),
         "cost": cost | program.count(),
         "error": SETUP_ERROR,
     }

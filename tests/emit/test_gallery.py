@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from derive.emit.gallery import card, gallery
+from derive.emit.gallery.card import card, gallery
 from derive.emit.gallery.drawing import HEIGHT, WIDTH, drawing
 from derive.library.library import library
 from derive.scene import catalogue, load, parse_scene

@@ -12,8 +12,8 @@ import pytest
 
 from derive.check.compiler import CompilerError, compiled, find_compiler
 from derive.emit.c.signature import Names, prototype
-from derive.emit.c.source import CONTRACTION_OFF
 from derive.emit.c.text import body
+from derive.emit.templates import TEMPLATES
 from derive.motion.runge_kutta import step
 from derive.motion.runge_kutta.compact import compact
 from derive.motion.runge_kutta.system import System
@@ -80,7 +80,8 @@ def c_source(program: Program, precision: Precision) -> str:
     lines = "\n".join(f"    {line}" for line in body(program, precision))
     struct = " ".join(f"{kind} {field};" for field in fields)
     typedef = f"typedef struct {{ {struct} }} body_constants_{precision.name};"
-    return f"{CONTRACTION_OFF}\n#include <math.h>\n{typedef}\n{head};\n{head}\n{{\n{lines}\n}}\n"
+    contraction_off = TEMPLATES.get_template("contraction_off.c.jinja").render()
+    return f"{contraction_off}#include <math.h>\n{typedef}\n{head};\n{head}\n{{\n{lines}\n}}\n"
 
 
 def called(library: Path, program: Program, values: dict[str, Any], precision: Precision) -> Any:

@@ -11,9 +11,9 @@ import pytest
 
 from derive.check.compiler import CompilerError, compiled, find_compiler
 from derive.emit.c.signature import Names, prototype
-from derive.emit.c.source import CONTRACTION_OFF
 from derive.emit.c.text import body
 from derive.emit.casadi_text import plain_lines
+from derive.emit.templates import TEMPLATES
 from derive.motion.taylor.series import TaylorStep, in_loops
 from derive.program.arithmetic import working
 from derive.program.precision import F32, F64, Precision
@@ -27,7 +27,8 @@ from tests.motion.solution import (
 def c_source(step: TaylorStep, precision: Precision) -> str:
     head = prototype(in_loops(step), Names("body"), precision)
     lines = "\n".join(f"    {line}" for line in body(in_loops(step), precision))
-    return f"{CONTRACTION_OFF}\n#include <math.h>\n{head};\n{head}\n{{\n{lines}\n}}\n"
+    contraction_off = TEMPLATES.get_template("contraction_off.c.jinja").render()
+    return f"{contraction_off}#include <math.h>\n{head};\n{head}\n{{\n{lines}\n}}\n"
 
 
 def samples(count: int, dtype: type) -> list[list[Any]]:

@@ -91,22 +91,11 @@ def _error(program: Program, figures: Sequence[Measurement]) -> str:
         return "not measured."
     worst = max(own, key=lambda m: m.worst)
     median = max(m.median for m in own)
+    at = "" if worst.kind in WITHIN else f" at a hard sample, {worst.kind}"
     return (
-        f"median {median:.2g}, largest {worst.worst:.2g} u {of_what(program)} "
-        f"(of {worst.output}{at_what(worst)}; {looked_at(worst)})."
-    )
-
-
-def at_what(m: Measurement) -> str:
-    """Return at what hard sample a figure stands, if it is one."""
-    return "" if m.kind in WITHIN else f" at a hard sample, {m.kind}"
-
-
-def looked_at(m: Measurement) -> str:
-    """Return at how many samples a figure was looked for."""
-    return (
-        f"{m.samples} samples of the ranges, {m.searched} searched from the worst, "
-        f"{m.hard} hard ones"
+        f"median {median:.2g}, largest {worst.worst:.2g} u {of_what(program)} (of {worst.output}"
+        f"{at}; {worst.samples} samples of the ranges, {worst.searched} searched from the worst, "
+        f"{worst.hard} hard ones)."
     )
 
 

@@ -27,26 +27,16 @@ class Names:
 
 def parameters(program: Program, scene: str, precision: Precision) -> list[str]:
     """Return the declared parameters of a function, inputs first, in call order."""
-    if program.makes("constants"):
-        inputs = [f"{precision.scalar} {q.name}" for q in program.inputs]
-        outputs = [f"{scene}_constants_{precision.name} *constants" for _ in program.outputs]
-        return inputs + outputs
-    return [_given(q, scene, precision) for q in program.inputs] + [
-        f"{precision.scalar} {q.name}[{prod(q.shape)}]"
-        if q.shape
-        else f"{precision.scalar} *{q.name}"
-        for q in program.outputs
-    ]
+    given = [_parameter(q, scene, precision, "const ", "") for q in program.inputs]
+    return [*given, *(_parameter(q, scene, precision, "", "*") for q in program.outputs)]
 
 
-def _given(q: Quantity, scene: str, precision: Precision) -> str:
+def _parameter(q: Quantity, scene: str, precision: Precision, const: str, pointer: str) -> str:
     if q.role == "constants":
-        return f"const {scene}_constants_{precision.name} *constants"
-    return (
-        f"const {precision.scalar} {q.name}[{prod(q.shape)}]"
-        if q.shape
-        else f"{precision.scalar} {q.name}"
-    )
+        return f"{const}{scene}_constants_{precision.name} *constants"
+    if q.shape:
+        return f"{const}{precision.scalar} {q.name}[{prod(q.shape)}]"
+    return f"{precision.scalar} {pointer}{q.name}"
 
 
 def prototype(program: Program, names: Names, precision: Precision) -> str:

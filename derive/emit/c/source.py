@@ -9,7 +9,6 @@ from derive.emit.c.comment import comment
 from derive.emit.c.example import example
 from derive.emit.c.scope import declared_in_c, require_free, require_no_symbol
 from derive.emit.c.signature import Names, dense, dense_size, prototype
-from derive.emit.c.status import status
 from derive.emit.c.text import definition, pair_body, pair_functions, table
 from derive.emit.operators import literal
 from derive.emit.templates import TEMPLATES
@@ -22,28 +21,6 @@ from derive.program.program import Measurement, Program
 from derive.scene import argument
 
 JACOBIAN_DENSE = "The whole matrix, column by column."
-
-CONTRACTION_OFF = """
-/* Keep every rounding where it is written, so that all targets return the same bits. */
-#if defined(__clang__)
-#pragma STDC FP_CONTRACT OFF
-#elif defined(__GNUC__)
-#pragma GCC push_options
-#pragma GCC optimize("fp-contract=off", "no-tree-slp-vectorize")
-#endif"""
-
-CONTRACTION_ON = """
-/* With DERIVE_ALLOW_CONTRACTION the compiler may fuse a product and a sum: faster where the target
- * can, never less accurate, but no longer the same bits everywhere. Set-up is never fused. */
-#if defined(DERIVE_ALLOW_CONTRACTION)
-#if defined(__clang__)
-#pragma STDC FP_CONTRACT ON
-#elif defined(__GNUC__)
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC optimize("fp-contract=fast", "no-tree-slp-vectorize")
-#endif
-#endif"""
 
 
 def c_files(library: Library, figures: Sequence[Measurement]) -> dict[str, str]:
@@ -125,8 +102,6 @@ def _source(library: Library, names: Names, precision: Precision) -> str:
         header=names.file(precision, "h"),
         uses_math=_uses_math(library),
         aside=any("I" in names_in(p) for p in (*programs, *library.printed())),
-        contraction_off=CONTRACTION_OFF,
-        contraction_on=CONTRACTION_ON,
         pair_functions=[_pair_function(name, names, precision) for name in pairs],
         scalar=precision.scalar,
         pair=f"{names.scene}_pair_{precision.name}",
@@ -207,7 +182,7 @@ def _sine(precision: Precision) -> dict[str, object]:
 
 
 def _setup_definition(program: Program, names: Names, precision: Precision) -> str:
-    lines = [*pair_body(program, names.scene, precision), *status(program, precision)]
+    lines = pair_body(program, names.scene, precision)
     members = [c for q in program.outputs for c in q.components]
     require_free(names.scene, "setup", members, ())
     require_free(names.scene, "setup", [q.name for q in program.inputs], declared_in_c(lines))

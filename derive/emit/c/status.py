@@ -3,10 +3,8 @@
 The rules are the program's own, and so is the order in which they are tried.
 """
 
-from fractions import Fraction
+from collections.abc import Callable, Iterator
 
-from derive.emit.operators import literal
-from derive.program.precision import Precision
 from derive.program.program import Operand, Program
 from derive.program.status import RIGHT, tried
 
@@ -14,19 +12,10 @@ from derive.program.status import RIGHT, tried
 BROKEN = {"finite": "!({0} - {0} >= {1})", "positive": "{0} <= {1}", "not negative": "{0} < {1}"}
 
 
-def status(program: Program, precision: Precision) -> list[str]:
-    """Return the C lines by which set-up tells whether its parameters are admissible."""
-    names = {c for q in program.inputs for c in q.components}
-    zero = literal(Fraction(0), precision)
-
-    def rounded(operand: Operand) -> str:
-        if isinstance(operand, Fraction):
-            return literal(operand, precision)
-        return operand if operand in names else f"{operand}.high"
-
-    lines = []
+def status(program: Program, rounded: Callable[[Operand], str], zero: str) -> Iterator[str]:
+    """Yield the C lines by which set-up tells whether its parameters are admissible."""
     for number, kept in tried(program):
         tests = (BROKEN[relation].format(rounded(value), zero) for relation, value in kept)
         condition = "\n    || ".join(tests)
-        lines += [f"if ({condition}) {{", f"    return {number};", "}"]
-    return [*lines, f"return {RIGHT};"]
+        yield from (f"if ({condition}) {{", f"    return {number};", "}")
+    yield f"return {RIGHT};"

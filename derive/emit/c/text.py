@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import partial
 
+from derive.emit.c.status import status
 from derive.emit.lines import SIGNS, Language, written
 from derive.emit.operators import WRITTEN, literal, patterns
 from derive.program.arithmetic import TRUTHS, pair_of
@@ -52,8 +53,8 @@ def body(program: Program, precision: Precision) -> list[str]:
 
 def pair_body(program: Program, scene: str, precision: Precision) -> list[str]:
     """Return the lines of a program in pairs of floats: rounded once, at the end."""
-    by_value = {c: c for q in program.inputs for c in q.components}
-    place = by_value if program.makes("constants") else places(program.inputs)
+    place = places(program.inputs)
+    zero = literal(Fraction(0), precision)
     pair = f"{scene}_pair_{precision.name}"
 
     def text(operand: Operand) -> str:
@@ -61,7 +62,7 @@ def pair_body(program: Program, scene: str, precision: Precision) -> list[str]:
             high, low = (literal(part, precision) for part in pair_of(operand, precision.dtype))
             return f"({pair}){{{high}, {low}}}"
         if operand in place:
-            return f"({pair}){{{place[operand]}, {literal(Fraction(0), precision)}}}"
+            return f"({pair}){{{place[operand]}, {zero}}}"
         return operand
 
     def stored(operand: Operand) -> str:
@@ -75,7 +76,8 @@ def pair_body(program: Program, scene: str, precision: Precision) -> list[str]:
     # Of truths, or a choice between two structs.
     own = {n: row.c or row.sign for n, row in WRITTEN.items() if row.rests is None}
     of = _language(text, own, call, pair, precision)
-    return written(of, program.ops) + _stores(program, stored, precision)
+    lines = written(of, program.ops) + _stores(program, stored, precision)
+    return [*lines, *(status(program, stored, zero) if program.makes("constants") else ())]
 
 
 def _language(

@@ -13,21 +13,9 @@ from derive.emit.notation.lines import pieces
 from derive.emit.notation.mathml import line, math, row
 from derive.emit.notation.symbolic import symbolic_layout
 from derive.emit.notation.text import plain
-from derive.emit.notation.tree import NotationError, tree_layout
+from derive.emit.notation.tree import tree_layout
 from derive.lecture.step import Step
 from derive.lecture.vectors import Expression
-
-__all__ = [
-    "NotationError",
-    "equation_mathml",
-    "equation_text",
-    "expression_text",
-    "mathml",
-    "name_mathml",
-    "sympy_equation_mathml",
-    "sympy_mathml",
-    "sympy_text",
-]
 
 LONG = 180  # characters after which a comment names the first claims and counts the others
 
@@ -72,16 +60,6 @@ def mathml(expression: Any) -> str:
 def equation_mathml(step: Step) -> str:
     """Return the equation of a lecture step as MathML, a line a claim."""
     return "\n".join(line(pieces(claim)) for claim in _claims(step))
-
-
-def sympy_text(expression: Expr, names: Mapping[Symbol, str]) -> str:
-    """Return a SymPy expression in plain ASCII, its symbols called as ``names`` says."""
-    return plain(symbolic_layout(expression, names))
-
-
-def sympy_mathml(expression: Expr, names: Mapping[Symbol, str]) -> str:
-    """Return a SymPy expression as inline MathML, its symbols called as ``names`` says."""
-    return math(row(symbolic_layout(expression, names)))
 
 
 def sympy_equation_mathml(left: Expr, right: Expr, names: Mapping[Symbol, str]) -> str:

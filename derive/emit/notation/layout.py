@@ -131,6 +131,11 @@ def operand(part: Layout) -> Layout:
     return group(part) if _LEVELS.get(part.kind, _ATOM) < _ATOM else part
 
 
+def opened(part: Layout) -> Layout:
+    """Return what a minus or the sign of a sum may stand before: a sum is grouped."""
+    return group(part) if part.kind == "sum" else part
+
+
 def group(part: Layout) -> Layout:
     """Return ``part`` in parentheses."""
     return Layout("group", (part,))

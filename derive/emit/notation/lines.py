@@ -9,7 +9,7 @@ from collections.abc import Callable
 from itertools import pairwise
 
 from derive.emit.notation.glyph import GREEK, glyph
-from derive.emit.notation.layout import Layout, group, is_number, operand
+from derive.emit.notation.layout import Layout, group, is_number, opened, operand
 from derive.emit.notation.mathml import SIGNS, TOUCHING, TRANSPOSED, between, row, total_sign
 from derive.program.added import added
 
@@ -73,22 +73,13 @@ def _sum(layout: Layout) -> list[str]:
     found = pieces(first)
     for term in rest:
         minus = term.kind == "negative"
-        bare = _opened(term.parts[0]) if minus else term
+        bare = opened(term.parts[0]) if minus else term
         found += _led(_sign("−" if minus else "+"), bare)
     return found
 
 
 def _negative(layout: Layout) -> list[str]:
-    return _led('<mo form="prefix">−</mo>', _opened(layout.parts[0]))
-
-
-def _opened(part: Layout) -> Layout:
-    return group(part) if part.kind == "sum" else part
-
-
-def _equal(layout: Layout) -> list[str]:
-    left, right = layout.parts
-    return [*pieces(left), *_led(_sign("="), right)]
+    return _led('<mo form="prefix">−</mo>', opened(layout.parts[0]))
 
 
 def _infix(layout: Layout) -> list[str]:
@@ -152,13 +143,13 @@ def _call(layout: Layout) -> list[str]:
 
 
 def _total(layout: Layout) -> list[str]:
-    return _led(total_sign(layout), _opened(layout.parts[0]))
+    return _led(total_sign(layout), opened(layout.parts[0]))
 
 
 _CUT: dict[str, Callable[[Layout], list[str]]] = {
     "sum": _sum,
     "negative": _negative,
-    "equal": _equal,
+    "equal": _infix,
     "infix": _infix,
     "product": _product,
     "group": _group,

@@ -8,11 +8,11 @@ from html import escape
 from itertools import pairwise
 
 from derive.emit.notation.glyph import GREEK, Glyph, glyph
-from derive.emit.notation.layout import Layout
+from derive.emit.notation.layout import Layout, opened
 from derive.scene.functions import FUNCTIONS
 
 _XML = "http://www.w3.org/1998/Math/MathML"
-SIGNS = {"x": "×", ".": "·"}
+SIGNS = {"x": "×", ".": "·", "": "="}
 _UNDER = {
     "body": "<mi>i</mi>",
     "others": "<mi>j</mi><mo>≠</mo><mi>i</mi>",
@@ -100,7 +100,7 @@ def _power(layout: Layout) -> str:
 
 
 def _total(layout: Layout) -> str:
-    return f"<mrow>{total_sign(layout)}{_open(layout.parts[0])}</mrow>"
+    return f"<mrow>{total_sign(layout)}{row(opened(layout.parts[0]))}</mrow>"
 
 
 def total_sign(layout: Layout) -> str:
@@ -141,17 +141,13 @@ def _is_word(factor: Layout) -> bool:
     return base.kind == "name" and len(letters) > 1 and letters != DIFFERENTIAL
 
 
-def _joined(sign: str) -> Callable[[Layout], str]:
-    return lambda layout: f"<mrow>{f'<mo>{sign}</mo>'.join(map(row, layout.parts))}</mrow>"
+def _joined(layout: Layout) -> str:
+    sign = f"<mo>{SIGNS[layout.text]}</mo>"
+    return f"<mrow>{sign.join(map(row, layout.parts))}</mrow>"
 
 
 def _argument(layout: Layout, inside: str) -> str:
     return inside if _is_bare(layout) else _fenced("(", inside, ")")
-
-
-def _open(part: Layout) -> str:
-    """Return a sum in parentheses, anything else as it is."""
-    return _fenced("(", row(part), ")") if part.kind == "sum" else row(part)
 
 
 def _fenced(left: str, inside: str, right: str) -> str:
@@ -163,7 +159,8 @@ def _sum(layout: Layout) -> str:
     text = row(first)
     for term in rest:
         minus = term.kind == "negative"
-        text += f"<mo>{'−' if minus else '+'}</mo>{_open(term.parts[0]) if minus else row(term)}"
+        bare = opened(term.parts[0]) if minus else term
+        text += f"<mo>{'−' if minus else '+'}</mo>{row(bare)}"
     return f"<mrow>{text}</mrow>"
 
 
@@ -212,11 +209,11 @@ def _index(index: str) -> str:
 _FORMS: dict[str, Callable[[Layout], str]] = {
     "name": lambda x: _name(glyph(x.text), x.style),
     "number": lambda x: f"<mn>{x.number}</mn>",
-    "negative": lambda x: f"<mrow><mo>−</mo>{_open(x.parts[0])}</mrow>",
+    "negative": lambda x: f"<mrow><mo>−</mo>{row(opened(x.parts[0]))}</mrow>",
     "sum": _sum,
     "product": _product,
-    "infix": lambda x: _joined(SIGNS[x.text])(x),
-    "equal": _joined("="),
+    "infix": _joined,
+    "equal": _joined,
     "fraction": lambda x: f"<mfrac>{row(x.parts[0])}{row(x.parts[1])}</mfrac>",
     "power": _power,
     "transposed": lambda x: f"<msup>{row(x.parts[0])}{TRANSPOSED}</msup>",

@@ -1,6 +1,6 @@
 """A layout as plain ASCII text, for comments and terminals."""
 
-from derive.emit.notation.layout import Layout, group, is_number, operand
+from derive.emit.notation.layout import Layout, group, is_number, opened, operand
 
 _TOTALS = {"body": "sum"}  # every other sum says what it runs over
 
@@ -14,7 +14,7 @@ def plain(layout: Layout) -> str:
         case "sum":
             return _sum(parts)
         case "negative":
-            return f"-{plain(operand(parts[0]) if parts[0].kind == 'sum' else parts[0])}"
+            return f"-{plain(opened(parts[0]))}"
         case "product":
             return _product(parts)
         case "infix":

@@ -1,6 +1,6 @@
 """The page of a scene: what is given, what each function satisfies, costs and errs, and its C."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from markupsafe import Markup
@@ -139,12 +139,16 @@ def _argument(library: Library, q: Quantity, direction: str) -> Argument:
 
 
 def _accuracy(program: Program, figures: Sequence[Measurement]) -> tuple[Accuracy, ...]:
-    own = {(m.output, m.precision): m for m in figures if m.function == program.name}
-    outputs = [q.name for q in program.outputs if any(key[0] == q.name for key in own)]
-    return tuple(_accuracy_row(output, own) for output in outputs)
-
-
-def _accuracy_row(output: str, own: Mapping[tuple[str, str], Measurement]) -> Accuracy:
-    found = [own.get((output, precision)) for precision in _PRECISIONS]
-    cells = [f"{value:.2g}" for m in found if m for value in (m.median, m.worst)]
-    return Accuracy(output, tuple(cells), max(m.samples for m in found if m))
+    rows: dict[str, list[Measurement]] = {}
+    for precision in _PRECISIONS:
+        for m in figures:
+            if (m.function, m.precision) == (program.name, precision):
+                rows.setdefault(m.output, []).append(m)
+    return tuple(
+        Accuracy(
+            output,
+            tuple(f"{value:.2g}" for m in own for value in (m.median, m.worst)),
+            max(m.samples for m in own),
+        )
+        for output, own in rows.items()
+    )
