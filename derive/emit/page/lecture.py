@@ -1,7 +1,6 @@
 """The lecture as a page: every step numbered, with its sentence, its equation and its reasons."""
 
 import re
-from dataclasses import dataclass
 
 from markupsafe import Markup
 from sympy import Matrix
@@ -55,64 +54,37 @@ _BUILT = {
 }
 
 
-@dataclass(frozen=True)
-class Entry:
-    """One step as the page shows it."""
-
-    count: int
-    step: Step
-    says: Markup
-    equation: Markup
-    along: Markup
-    mark: str
-    needed_by: str
-
-
-@dataclass(frozen=True)
-class Part:
-    """One chapter as the page shows it."""
-
-    place: str
-    title: str
-    says: Markup
-    entries: tuple[Entry, ...]
-
-
 def lecture_page() -> str:
     """Return the text of ``lecture.html``, complete in one file and without scripts."""
-    parts = _parts()
     return TEMPLATES.get_template("lecture.html.jinja").render(
         title=LECTURE.title,
         version=__version__,
-        parts=parts,
+        chapters=CHAPTERS,
+        marks=_MARKS,
         kinds={kind: sum(s.kind == kind for s in LECTURE.steps) for kind in _MARKS},
-        assumed=[e for part in parts for e in part.entries if e.step.kind == "assume"],
+        assumed=[s for s in LECTURE.steps if s.kind == "assume"],
         ends=[(LECTURE[name], LECTURE.assumptions(name)) for name in ENDS],
-        numbers={e.step.name: e.count for part in parts for e in part.entries},
+        numbers={s.name: n for n, s in enumerate(LECTURE.steps, 1)},
         letters=[_letter_row(letter) for letter in TABLE],
+        prose=prose,
+        introduction=_introduction,
+        equation=equation_mathml,
+        in_components=_in_components,
+        needed_by=_needed_by,
     )
 
 
-def _parts() -> list[Part]:
-    parts, count = [], 1
-    for chapter in CHAPTERS:
-        entries = tuple(_entry(count + i, step) for i, step in enumerate(chapter.steps))
-        place = "chapter_" + chapter.title.lower().replace(" ", "_")
-        parts.append(Part(place, chapter.title, _introduction(chapter), entries))
-        count += len(entries)
-    return parts
-
-
-def _entry(count: int, step: Step) -> Entry:
-    equation = Markup(equation_mathml(step))  # noqa: S704 (MathML of checked names)
-    along = _in_components(step) if step.name in IN_COMPONENTS else Markup("")
-    needed_by = next((s.name for s in LECTURE.steps if step.name in s.using), "")
-    shown = needed_by if step.kind == "assume" else ""
-    return Entry(count, step, prose(step.says), equation, along, _MARKS[step.kind], shown)
+def _needed_by(step: Step) -> str:
+    """Return the first step that an assumption is needed by."""
+    if step.kind != "assume":
+        return ""
+    return next((s.name for s in LECTURE.steps if step.name in s.using), "")
 
 
 def _in_components(step: Step) -> Markup:
-    """Return the equations of a step along x, y and z."""
+    """Return the equations along x, y and z of a step that is shown so too."""
+    if step.name not in IN_COMPONENTS:
+        return Markup("")
     lines = [
         sympy_equation_mathml(left, right, {})
         for claim in step.claims
