@@ -108,7 +108,7 @@ def interface(made: Library, found: Files) -> Verdict:
     """Return whether the JSON describes the functions that the scene asks for."""
     name, says = made.known.scene.name, ""
     described = {f["name"]: f["arguments"] for f in found.manifest["functions"]}
-    programs = [*([made.setup] if made.constants else []), *made.printed()]
+    programs = made.emitted()
     for program in programs:
         every = (*program.inputs, *program.outputs)
         meant = {q.name: list(q.components) for q in every if q.role != "constants"}

@@ -25,7 +25,7 @@ LEFT = "remainder_next"
 def inlined(library: Library, module: Any, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether each function gives the same where it is called with SX."""
     plain = [s for s in each if s.kind == "ordinary"][:SAMPLES]
-    programs = [library.setup] * bool(library.constants) + list(library.printed())
+    programs = library.emitted()
     for program in programs if plain else ():
         function = getattr(module, program.name)()
         given = [casadi.SX.sym(f"x{k}", function.sparsity_in(k)) for k in range(function.n_in())]

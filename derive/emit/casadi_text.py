@@ -29,8 +29,7 @@ def casadi_file(library: Library) -> str:
     """Return the text of ``<scene>_casadi.py``."""
     name = library.known.scene.name
     has_setup = bool(library.constants)
-    every = (*library.printed(), *[library.setup] * has_setup)
-    in_pairs = [p for p in every if p.arithmetic == "pairs"]
+    in_pairs = [p for p in library.emitted() if p.arithmetic == "pairs"]
     functions = [_function(p, name) for p in library.printed()]
     return TEMPLATES.get_template("casadi.py.jinja").render(
         first_line=first_line(library),

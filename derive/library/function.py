@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import islice
 
 from sympy import Symbol
 
@@ -79,12 +80,8 @@ def function(scene: Graphed, wanted: Arranged, name: str) -> Program:
 
 
 def _lowered(scene: Graphed, fact: Problem, way: Arrangement) -> Arranged:
-    values = lower(scene.graph, way, scene.by_symbol())
-    outputs, place = [], 0
-    for quantity in fact.outputs:
-        outputs.append(tuple(values[place : place + len(quantity.components)]))
-        place += len(quantity.components)
-    return Arranged(fact, tuple(outputs))
+    values = iter(lower(scene.graph, way, scene.by_symbol()))
+    return Arranged(fact, tuple(tuple(islice(values, len(q.components))) for q in fact.outputs))
 
 
 def _best(scene: Graphed, wanted: Arranged) -> list[Value]:
@@ -151,12 +148,11 @@ def _in_groups(
         block = Block(tuple(v for n in group for v in wanted.outputs[n]), inputs)
         before = [v for each in values.values() for v in each]
         before += [entry for each in rows.values() for row in each for entry in row]
-        own, slopes = best_with_jacobian(graph, block, before)
-        place = 0
+        found, slopes = best_with_jacobian(graph, block, before)
+        own, own_rows = iter(found), iter(slopes)
         for n in group:
-            end = place + len(wanted.outputs[n])
-            values[n], rows[n] = own[place:end], slopes[place:end]
-            place = end
+            size = len(wanted.outputs[n])
+            values[n], rows[n] = list(islice(own, size)), list(islice(own_rows, size))
     order = sorted(values)
     return [v for n in order for v in values[n]], [row for n in order for row in rows[n]]
 

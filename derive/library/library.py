@@ -46,14 +46,9 @@ class Library:
         """Return the functions that are emitted: the lecture's, then those that move the state."""
         return self.functions + self.motions
 
-
-@dataclass(frozen=True)
-class Moved:
-    """What moves a scene's state: its programs, their part of set-up, and what its names mean."""
-
-    programs: tuple[Program, ...]
-    traced: Part
-    meanings: Mapping[str, str]
+    def emitted(self) -> tuple[Program, ...]:
+        """Return what is printed with set-up before it, if there are constants to make."""
+        return (*([self.setup] if self.constants else []), *self.printed())
 
 
 def library(scene: Scene) -> Library:
@@ -73,14 +68,14 @@ def _library(scene: Scene) -> Library:
     bases = dict.fromkeys(map(base_of, (*asked, *hidden)))
     wanted = {base: arranged(terms, base) for base in bases}
     every = {n: function(terms, wanted[base_of(n)], n) for n in (*asked, *hidden)}
-    moved = _moved(terms, every)
-    made = _set_up(terms, moved.traced)
+    motions_, part, meanings = _moved(terms, every)
+    made = _set_up(terms, part)
     if scene.form == "accurate" and made.outputs:
         made = with_low_parts(made)
     functions = _in_parameters(made, tuple(every.values()))
-    moving = _in_parameters(made, moved.programs)
+    moving = _in_parameters(made, motions_)
     if scene.form == "accurate":
-        names = {*terms.constants.names.values(), *moved.traced.names.values()}
+        names = {*terms.constants.names.values(), *part.names.values()}
         functions = tuple(in_pairs(f, names) for f in functions)
         moving = tuple(in_pairs(f, names) if f.name in IN_PAIRS else f for f in moving)
     functions = with_singular(functions, made)
@@ -89,7 +84,7 @@ def _library(scene: Scene) -> Library:
         terms.known,
         made,
         functions[: len(asked)],
-        _constants(made, {**_meanings(terms), **moved.meanings}),
+        _constants(made, {**_meanings(terms), **meanings}),
         {base: one.fact for base, one in wanted.items()},
         rates=functions[len(asked) :],
         motions=moving,
@@ -102,8 +97,10 @@ def _asked(scene: Scene) -> tuple[list[str], list[str]]:
     return asked, [name for name in needs(scene) if name not in asked]
 
 
-def _moved(scene: Graphed, rates: Mapping[str, Program]) -> Moved:
-    """Return what moves the state, its constants beside those that the rates asked for."""
+def _moved(
+    scene: Graphed, rates: Mapping[str, Program]
+) -> tuple[tuple[Program, ...], Part, dict[str, str]]:
+    """Return what moves the state, its part of set-up, and what is said of its own constants."""
     tape = Tape(free_prefix("p", set(scene.taken())))
     setting = Setting(scene, rates, applied_moment(scene), tape)
     programs = motions(setting)
@@ -113,7 +110,7 @@ def _moved(scene: Graphed, rates: Mapping[str, Program]) -> Moved:
     names = {operand: name for operand, name in part.names.items() if name in read}
     says = {operand: said for operand, (_, said) in setting.tape.names.items()}
     meanings = {name: says[operand] for operand, name in names.items()}
-    return Moved(programs, replace(part, names=names), meanings)
+    return programs, replace(part, names=names), meanings
 
 
 def _set_up(scene: Graphed, part: Part) -> Program:

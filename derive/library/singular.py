@@ -54,13 +54,13 @@ class _Trial:
         """Return the inputs that may be set."""
         return tuple(q for q in self.program.inputs if q.role == "value")
 
-    def results(self, columns: Columns, table: Table) -> NDArray[Any]:
+    def results(self, columns: Columns) -> NDArray[Any]:
         """Return the results, a row a component; ``columns`` hold what may be set."""
         given, count = dict(columns), len(next(iter(columns.values())))
         if self.plan is not None and any(q.role == "plan" for q in self.program.inputs):
             made = _run(self.plan, given, self.constants, self.table)
             given |= dict(zip(component_names(self.plan), made, strict=True))
-        found = _run(self.program, given, self.constants, table)
+        found = _run(self.program, given, self.constants, self.table)
         return np.array([np.broadcast_to(np.asarray(r, float), count) for r in found])
 
 
@@ -84,7 +84,7 @@ def _singular(trial: _Trial) -> tuple[Singular, ...]:
     if not trial.free():
         return ()
     generic = _drawn(trial, GENERIC, 1.0)
-    usual = np.abs(trial.results(generic, trial.table))
+    usual = np.abs(trial.results(generic))
     usual = np.where(np.isfinite(usual), usual, 0.0).max(axis=1) + np.finfo(float).tiny
     places = _places(trial)
     found = [(place, hit) for place, hit in zip(places, _hits(trial, places, usual), strict=True)]
@@ -130,7 +130,7 @@ def _hits(trial: _Trial, places: Sequence[Place], usual: NDArray[Any]) -> list[f
     for k, (components, value) in enumerate(places):
         for c in components:
             columns[c][k * OTHERS : (k + 1) * OTHERS] = value
-    results = np.abs(trial.results(columns, trial.table))
+    results = np.abs(trial.results(columns))
     beyond = ~(results / BEYOND <= usual[:, None])
     every = beyond.reshape(len(beyond), len(places), OTHERS).all(axis=2)
     names = component_names(trial.program)
@@ -229,16 +229,11 @@ def _divided_by(program: Program) -> dict[str, set[str]]:
 
 
 def _values(trial: _Trial, operand: str, columns: Columns) -> NDArray[Any]:
-    found: NDArray[Any] = _up_to(trial, operand).results(columns, trial.table)[0]
-    return found
-
-
-def _up_to(trial: _Trial, operand: str) -> _Trial:
-    """Return the trial of one value on the way."""
-    before = next((k for k, op in enumerate(trial.program.ops)
-                   if isinstance(op, Op) and op.result == operand), -1)  # fmt: skip
-    ops = trial.program.ops[: before + 1]
-    return replace(trial, program=replace(trial.program, ops=ops, results=(operand,)))
+    """Return the values of an operand on the way."""
+    ops = trial.program.ops
+    last = next((k for k, op in enumerate(ops) if isinstance(op, Op) and op.result == operand), -1)
+    part = replace(trial.program, ops=ops[: last + 1], results=(operand,))
+    return replace(trial, program=part).results(columns)[0]  # type: ignore[no-any-return]
 
 
 def _zero(trial: _Trial, divisor: str, ends: tuple[Columns, Any, Any]) -> Columns:
@@ -256,7 +251,7 @@ def _zero(trial: _Trial, divisor: str, ends: tuple[Columns, Any, Any]) -> Column
 
 def _at(trial: _Trial, state: Columns, own: set[str], usual: NDArray[Any]) -> list[Singular]:
     """Return what is told of a state, if an output has no value there."""
-    beyond = ~(np.abs(trial.results(state, trial.table)[:, 0]) / BEYOND <= usual)
+    beyond = ~(np.abs(trial.results(state)[:, 0]) / BEYOND <= usual)
     names = component_names(trial.program)
     outputs = _outputs(trial, frozenset(c for c, bad in zip(names, beyond, strict=True) if bad))
     if not outputs:

@@ -21,19 +21,14 @@ RULES: dict[str, Rule] = {
 }
 
 
-def derivative(graph: Graph, value: Value, leaf: Value) -> Value:
-    """Return the partial derivative of ``value`` by an input, a variable or a parameter.
+def slopes_by(graph: Graph, leaf: Value) -> Callable[[Value], Value]:
+    """Return what differentiates values by a leaf, a variable or a parameter, each node once.
 
     >>> g = Graph()
     >>> x = g.variable("x")
-    >>> derivative(g, g.power(x, 3), x) == g.mul([g.number(3), g.power(x, 2)])
+    >>> slopes_by(g, x)(g.power(x, 3)) == g.mul([g.number(3), g.power(x, 2)])
     True
     """
-    return slopes_by(graph, leaf)(value)
-
-
-def slopes_by(graph: Graph, leaf: Value) -> Callable[[Value], Value]:
-    """Return what differentiates values by a leaf, each node of the graph once."""
     memory: dict[int, Value] = {leaf[1]: (Fraction(1), ONE)}
     varies = not graph.fixed[leaf[1]]
 

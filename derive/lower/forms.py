@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
+from itertools import accumulate, product
 from math import prod
 
 from derive.lower.derivative import slopes_by
@@ -149,10 +149,7 @@ def by_euler(
     degrees = powers([degree(m, nodes) for nodes in own] for terms in expanded for m in terms)
     if degrees is None:
         return None
-    starts, place = [], 0
-    for quantity in block.inputs:
-        starts.append(place)
-        place += len(quantity)
+    starts = list(accumulate(map(len, block.inputs), initial=0))
     return tuple(_contracted(graph, block, row, starts, degrees) for row in rows)
 
 

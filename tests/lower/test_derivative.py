@@ -5,11 +5,15 @@ from fractions import Fraction
 import pytest
 from hypothesis import given
 
-from derive.lower.derivative import RULES, derivative
-from derive.lower.graph import ZERO, Graph
+from derive.lower.derivative import RULES, slopes_by
+from derive.lower.graph import ZERO, Graph, Value
 from tests.lower.test_graph import built, expressions, graph_with_leaves, plain, points, value_at
 
 pytestmark = pytest.mark.long
+
+
+def derivative(g: Graph, value: Value, leaf: Value) -> Value:
+    return slopes_by(g, leaf)(value)
 
 
 def slope(tree, point, name: str) -> Fraction:

@@ -63,10 +63,8 @@ def _header(
     figures: Sequence[Measurement],
     digest: str,
 ) -> str:
-    has_setup = bool(library.constants)
-    functions = ([library.setup] if has_setup else []) + list(library.printed())
     described = []
-    for program in functions:
+    for program in library.emitted():
         described.append((comment(program, figures), prototype(program, names, precision)))
         if program.sparsity:
             says = f"/* The same, the whole matrix: {dense_size(program)} entries. */"
@@ -78,7 +76,7 @@ def _header(
         digest=digest,
         guard=names.file(precision, "h").upper().replace(".", "_"),
         constants=library.constants,
-        aside=any("I" in names_in(p) for p in functions),
+        aside=any("I" in names_in(p) for p in library.emitted()),
         setup={"symbol": names.symbol("setup", precision)},
         struct=f"{names.scene}_constants_{precision.name}",
         scalar=precision.scalar,
@@ -94,19 +92,18 @@ def names_in(program: Program) -> set[str]:
 
 
 def _source(library: Library, names: Names, precision: Precision) -> str:
-    has_setup = bool(library.constants)
-    programs = [library.setup] if has_setup else []
-    pairs = pair_functions(p for p in (*programs, *library.printed()) if p.arithmetic == "pairs")
+    programs = library.emitted()
+    pairs = pair_functions(p for p in programs if p.arithmetic == "pairs")
     return TEMPLATES.get_template("source.c.jinja").render(
         first_line=f"/* {first_line(library)}",
         header=names.file(precision, "h"),
-        uses_math=_uses_math(library),
-        aside=any("I" in names_in(p) for p in (*programs, *library.printed())),
+        uses_math=any(kind in MATH for p in programs for kind in p.count()),
+        aside=any("I" in names_in(p) for p in programs),
         pair_functions=[_pair_function(name, names, precision) for name in pairs],
         scalar=precision.scalar,
         pair=f"{names.scene}_pair_{precision.name}",
         setup={"definition": _setup_definition(library.setup, names, precision)}
-        if has_setup
+        if library.constants
         else None,
         functions=_definitions(library, names, precision),
     )
@@ -125,11 +122,6 @@ def _definitions(library: Library, names: Names, precision: Precision) -> list[d
             text = _dense_definition(program, names, precision)
             found.append({"says": f"{program.says} Dense.", "definition": text})
     return found
-
-
-def _uses_math(library: Library) -> bool:
-    programs = (library.setup, *library.printed())
-    return any(kind in MATH for p in programs for kind in p.count())
 
 
 def _pair_function(name: str, names: Names, precision: Precision) -> str:

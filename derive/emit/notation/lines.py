@@ -102,10 +102,10 @@ def _product(layout: Layout) -> list[str]:
     return found
 
 
-def _enclosed(left: str, inside: list[str], right: str) -> list[str]:
+def _enclosed(inside: list[str], right: str) -> list[str]:
     """Return pieces between fences, which stand apart from each other and so cannot stretch."""
     first, *rest = inside
-    each = [f'<mo form="prefix" stretchy="false">{left}</mo>{first}', *rest]
+    each = [f'<mo form="prefix" stretchy="false">(</mo>{first}', *rest]
     return [*each[:-1], each[-1] + right]
 
 
@@ -114,7 +114,7 @@ def _close(text: str) -> str:
 
 
 def _group(layout: Layout) -> list[str]:
-    return _enclosed("(", pieces(layout.parts[0]), _close(")"))
+    return _enclosed(pieces(layout.parts[0]), _close(")"))
 
 
 def _raised(layout: Layout) -> list[str]:
@@ -124,7 +124,7 @@ def _raised(layout: Layout) -> list[str]:
         return [row(layout)]
     above = row(layout.parts[1]) if layout.kind == "power" else TRANSPOSED
     right = f'<msup><mo stretchy="false" rspace="0">)</mo>{above}</msup>'
-    return _enclosed("(", pieces(base.parts[0]), right)
+    return _enclosed(pieces(base.parts[0]), right)
 
 
 def _fraction(layout: Layout) -> list[str]:
@@ -138,7 +138,7 @@ def _call(layout: Layout) -> list[str]:
     if layout.text == "sqrt":
         return [row(layout)]
     (inside,) = layout.parts
-    first, *rest = _enclosed("(", pieces(inside), _close(")"))
+    first, *rest = _enclosed(pieces(inside), _close(")"))
     return [f"<mi>{layout.text}</mi>{first}", *rest]
 
 
