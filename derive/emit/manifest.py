@@ -134,10 +134,10 @@ def _choice(library: Library, program: Program) -> dict[str, Any]:
     base = program.name.removesuffix(JACOBIAN)
     if base not in library.truths:
         return {}
-    found = dropped(library.known, base)
+    found, spoken = dropped(library.known, base), library.known.scene.spoken
     return {
         "depends_on": list(depends_on(library.known, base)),
-        "balances": [str(b) for b in library.known.question(base).balances],
+        "balances": [b.told(spoken) for b in library.known.question(base).balances],
         "not_needed": {why: list(names) for why, names in found.items()},
     }
 

@@ -4,7 +4,7 @@ Whole vectors are valued at trial points in common axes, so that thousands of ba
 looked at; only those that are chosen are written out.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
@@ -40,13 +40,16 @@ class Balance:
     central: bool = False  # about the mass centre of its one body, whatever the spot is called
 
     def __str__(self) -> str:
-        about = f" about {self.spot}" if self.kind == "moment" else ""
-        along = (
-            f"{self.axis} of {called(self.frame)}"
-            if self.axis in AXES
-            else f"the axis of {self.axis}"
-        )
-        return f"{self.kind} on {' + '.join(self.bodies)}{about} along {along}"
+        return self.told({})
+
+    def told(self, spoken: Mapping[str, str]) -> str:
+        """Return the balance in words; ``spoken`` has those for what the user gave no names."""
+        about = f" about {spoken.get(self.spot, self.spot)}" if self.kind == "moment" else ""
+        frame = spoken.get(self.frame, f"of {called(self.frame)}")
+        along = f"{self.axis} {frame}".rstrip()
+        along = along if self.axis in AXES else f"the axis of {self.axis}"
+        bodies = " + ".join(spoken.get(body, body) for body in self.bodies)
+        return f"{self.kind} on {bodies}{about} along {along}"
 
 
 @dataclass(frozen=True)

@@ -127,6 +127,7 @@ class Body:
     turned: tuple[Turning, ...]
     spin: Formula | None
     lengths: Mapping[str, Formula]
+    look: str = ""
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from derive.scene.declaration import AXES, Given, Input, Moving, ShortForm
 from derive.scene.machine import Group, Groups
+from derive.scene.told import POINTS
 
 QUATERNION = ("w", *AXES)
 ANY = (Fraction(-1), Fraction(1))
@@ -106,20 +107,21 @@ def _inputs(scene: ShortForm) -> list[Group]:
 
 
 def _moment(scene: ShortForm) -> Group:
-    about = {"centre_of_mass": "centre of mass", "fixed": "fixed point", "moving": "moving point"}
-    says = f"external moment about the {about[scene.point.kind]}"
+    says = f"external moment about {POINTS[scene.point.kind]}"
     return _vector("moment", "N m", _axes(scene), scene.known["moment"], says)
 
 
 def _outputs(scene: ShortForm) -> list[Group]:
-    axes = _axes(scene)
-    said = (("angular_momentum", "kg m^2/s", "angular momentum"),
-            ("rate_in_axes", "N m", "rate of angular momentum seen from the axes"),
-            ("rate_absolute", "N m", "rate of angular momentum seen from the inertial frame"),
+    axes, about = _axes(scene), f"angular momentum about {POINTS[scene.point.kind]}"
+    said = (("angular_momentum", "kg m^2/s", about),
+            ("rate_in_axes", "N m", f"rate of {about}, seen from the axes"),
+            ("rate_absolute", "N m", f"rate of {about}, seen from the inertial frame"),
             )  # fmt: skip
+    energy = "kinetic energy"
+    if scene.position is None and scene.point.kind == "centre_of_mass":
+        energy = "kinetic energy of turning about the centre of mass"
     found = [_vector(name, unit, axes, None, says) for name, unit, says in said]
-    found.append(Group("kinetic_energy", ("kinetic_energy",), "J", "", None, None,
-                       "kinetic energy"))  # fmt: skip
+    found.append(Group("kinetic_energy", ("kinetic_energy",), "J", "", None, None, energy))
     if _by_formulas(scene.known["moment"]):
         found.append(_moment(scene))
     free = [c.name for c in scene.coordinates if c.free]

@@ -26,6 +26,7 @@ from derive.scene.machine import (
 )
 from derive.scene.rules import singular_attitude
 from derive.scene.shape import moved
+from derive.scene.told import spoken, told
 
 FRAME, BODY = "xyz", "body"
 NOWHERE: Triple = (ZERO, ZERO, ZERO)
@@ -36,7 +37,8 @@ _ANY = (Fraction(-1), Fraction(1))
 def written_out(scene: ShortForm) -> Scene:
     """Return the machine that a scene of a single body is; names of scalars stay what they are."""
     given = long_form(scene, "given")
-    return replace(long_form(scene, "sought"), wanted=scene.wanted, inverse=given)
+    sought = long_form(scene, "sought")
+    return replace(sought, wanted=scene.wanted, inverse=given, told=told(scene))
 
 
 def long_form(scene: ShortForm, motion: Motion) -> Scene:
@@ -67,6 +69,8 @@ def long_form(scene: ShortForm, motion: Motion) -> Scene:
         about={}, steady=None, asked={}, wanted=(), form=scene.form, time_step=scene.time_step,
         time=scene.time, emission=scene.emission, warnings=scene.warnings,
         demands=of_one_body(scene), merging=singular_attitude(scene), groups=groups(scene),
+        spoken=spoken(scene, FRAME, BODY, f"{BODY}.axes"),
+        marks={FRAME: "", f"{BODY}.axes": "B", BODY: "B"},
     )  # fmt: skip
 
 

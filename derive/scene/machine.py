@@ -4,7 +4,7 @@ Formulas are exact trees, units SI. Triples lie along the axes of the frame that
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Literal
 
@@ -220,6 +220,9 @@ class Scene:
     merging : words on where two of three free angles merge in their ranges, "" if nowhere
     groups  : of its quantities, where they are not one scalar each
     inverse : the same bodies where their motion is given, and what moves them is sought
+    told    : what it declares, in sentences, where not by frames, bodies and loads
+    spoken  : what places, axes and bodies are called that the user gave no names
+    marks   : the index by which formulas tell quantities of such axes and bodies
     demands : what its parameters must fulfil, masses first, tensors last
     """
 
@@ -250,6 +253,9 @@ class Scene:
     merging: str = ""
     groups: Groups | None = None
     inverse: "Scene | None" = None
+    told: tuple[str, ...] = ()
+    spoken: Mapping[str, str] = field(default_factory=dict)
+    marks: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def moving(self) -> tuple[Moving, ...]:

@@ -174,7 +174,7 @@ def _body(given: Table, point: str, scalars: Scalars) -> Body:
     _through_coordinates(turned, "body.turned", scalars)
     return Body(
         cast("Kind", made.kind), made.mass, cast("Sextuple", made.inertia), centre, made.axis,
-        turned, spin, made.lengths or {},
+        turned, spin, made.lengths or {}, made.look,
     )  # fmt: skip
 
 

@@ -658,7 +658,7 @@ def _angular_momentum_rate():
 
 
 def kinetic_energy():
-    """Kinetic energy. Inputs: parameters, omega."""
+    """Kinetic energy of turning about the centre of mass. Inputs: parameters, omega."""
     return _built(lambda: _from_parameters(_kinetic_energy(), "free_body_kinetic_energy"))
 
 

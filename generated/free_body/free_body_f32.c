@@ -613,7 +613,7 @@ void free_body_angular_momentum_rate_f32(const free_body_constants_f32 *constant
     rate_absolute[2] = t39;
 }
 
-/* Kinetic energy. */
+/* Kinetic energy of turning about the centre of mass. */
 void free_body_kinetic_energy_f32(const free_body_constants_f32 *constants, const float omega[3],
     float *kinetic_energy)
 {

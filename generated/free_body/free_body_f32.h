@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 07d7fcd724dda8ad.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 1ec452b62bcaeeb7.
  */
 #ifndef FREE_BODY_F32_H
 #define FREE_BODY_F32_H
@@ -130,7 +130,7 @@ void free_body_moment_f32(const free_body_constants_f32 *constants, const float 
 /* Angular momentum from the angular velocity.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
- * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
+ * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum about the centre of mass
  * Postcondition: l = I omega   [lecture step angular_momentum]
  * Error: median 0.48, largest 4.4 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 156
@@ -145,8 +145,8 @@ void free_body_angular_momentum_f32(const free_body_constants_f32 *constants, co
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
- * Returned:  rate_in_axes[3]  N m  along B  rate of angular momentum seen from the axes
- *            rate_absolute[3]  N m  along B  rate of angular momentum seen from the inertial frame
+ * Returned:  rate_in_axes[3]  N m  along B  rate of angular momentum about the centre of mass, seen from the axes
+ *            rate_absolute[3]  N m  along B  rate of angular momentum about the centre of mass, seen from the inertial frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
  * Error: median 0.49, largest 8 u of the largest product or sum in the equation (of rate_absolute;
@@ -157,10 +157,10 @@ void free_body_angular_momentum_f32(const free_body_constants_f32 *constants, co
 void free_body_angular_momentum_rate_f32(const free_body_constants_f32 *constants,
     const float omega[3], const float omega_dot[3], float rate_in_axes[3], float rate_absolute[3]);
 
-/* Kinetic energy.
+/* Kinetic energy of turning about the centre of mass.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
- * Returned:  kinetic_energy  J  kinetic energy
+ * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Error: median 0.53, largest 5.2 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 156 hard

@@ -614,7 +614,7 @@ void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constant
     rate_absolute[2] = t39;
 }
 
-/* Kinetic energy. */
+/* Kinetic energy of turning about the centre of mass. */
 void free_body_kinetic_energy_f64(const free_body_constants_f64 *constants, const double omega[3],
     double *kinetic_energy)
 {

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 5d3af430e39d6b1a.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 d00a588aad11e2d5.
  */
 #ifndef FREE_BODY_F64_H
 #define FREE_BODY_F64_H
@@ -130,7 +130,7 @@ void free_body_moment_f64(const free_body_constants_f64 *constants, const double
 /* Angular momentum from the angular velocity.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
- * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
+ * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum about the centre of mass
  * Postcondition: l = I omega   [lecture step angular_momentum]
  * Error: median 0.48, largest 5.5 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 156
@@ -145,8 +145,8 @@ void free_body_angular_momentum_f64(const free_body_constants_f64 *constants, co
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
- * Returned:  rate_in_axes[3]  N m  along B  rate of angular momentum seen from the axes
- *            rate_absolute[3]  N m  along B  rate of angular momentum seen from the inertial frame
+ * Returned:  rate_in_axes[3]  N m  along B  rate of angular momentum about the centre of mass, seen from the axes
+ *            rate_absolute[3]  N m  along B  rate of angular momentum about the centre of mass, seen from the inertial frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
  * Error: median 0.49, largest 11 u of the largest product or sum in the equation (of
@@ -159,10 +159,10 @@ void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constant
     const double omega[3], const double omega_dot[3], double rate_in_axes[3],
     double rate_absolute[3]);
 
-/* Kinetic energy.
+/* Kinetic energy of turning about the centre of mass.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
- * Returned:  kinetic_energy  J  kinetic energy
+ * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Error: median 0.53, largest 5.4 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 156 hard

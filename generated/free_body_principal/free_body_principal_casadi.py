@@ -346,7 +346,7 @@ def _angular_momentum():
 
 
 def kinetic_energy():
-    """Kinetic energy. Inputs: parameters, omega."""
+    """Kinetic energy of turning about the centre of mass. Inputs: parameters, omega."""
     return _built(lambda: _from_parameters(_kinetic_energy(), "free_body_principal_kinetic_energy"))
 
 

@@ -258,7 +258,7 @@ void free_body_principal_angular_momentum_f32(const free_body_principal_constant
     angular_momentum[2] = t2;
 }
 
-/* Kinetic energy. */
+/* Kinetic energy of turning about the centre of mass. */
 void free_body_principal_kinetic_energy_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], float *kinetic_energy)
 {

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 6a22ec2e551bdd6c.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 620abe1d37e5c836.
  */
 #ifndef FREE_BODY_PRINCIPAL_F32_H
 #define FREE_BODY_PRINCIPAL_F32_H
@@ -107,7 +107,7 @@ void free_body_principal_moment_f32(const free_body_principal_constants_f32 *con
 /* Angular momentum from the angular velocity.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
- * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
+ * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum about the centre of mass
  * Postcondition: l = I omega   [lecture step angular_momentum]
  * Error: median 0.34, largest 1 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 144
@@ -118,10 +118,10 @@ void free_body_principal_moment_f32(const free_body_principal_constants_f32 *con
 void free_body_principal_angular_momentum_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], float angular_momentum[3]);
 
-/* Kinetic energy.
+/* Kinetic energy of turning about the centre of mass.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
- * Returned:  kinetic_energy  J  kinetic energy
+ * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Error: median 0.5, largest 3.7 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 144 hard

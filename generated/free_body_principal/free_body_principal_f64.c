@@ -258,7 +258,7 @@ void free_body_principal_angular_momentum_f64(const free_body_principal_constant
     angular_momentum[2] = t2;
 }
 
-/* Kinetic energy. */
+/* Kinetic energy of turning about the centre of mass. */
 void free_body_principal_kinetic_energy_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], double *kinetic_energy)
 {

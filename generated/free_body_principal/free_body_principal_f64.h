@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 75e58bcfe216f890.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 824af5862fd9a032.
  */
 #ifndef FREE_BODY_PRINCIPAL_F64_H
 #define FREE_BODY_PRINCIPAL_F64_H
@@ -107,7 +107,7 @@ void free_body_principal_moment_f64(const free_body_principal_constants_f64 *con
 /* Angular momentum from the angular velocity.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
- * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
+ * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum about the centre of mass
  * Postcondition: l = I omega   [lecture step angular_momentum]
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 144
@@ -118,10 +118,10 @@ void free_body_principal_moment_f64(const free_body_principal_constants_f64 *con
 void free_body_principal_angular_momentum_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], double angular_momentum[3]);
 
-/* Kinetic energy.
+/* Kinetic energy of turning about the centre of mass.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
- * Returned:  kinetic_energy  J  kinetic energy
+ * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Error: median 0.5, largest 3.7 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 144 hard

@@ -612,7 +612,7 @@ def _state_rate_jacobian():
 
 
 def kinetic_energy():
-    """Kinetic energy. Inputs: parameters, omega, wheel_speeds."""
+    """Kinetic energy of turning about the centre of mass. Inputs: parameters, omega, wheel_speeds."""
     return _built(lambda: _from_parameters(_kinetic_energy(), "gyrostat_kinetic_energy"))
 
 

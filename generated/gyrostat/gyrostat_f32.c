@@ -719,7 +719,7 @@ void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *consta
     }
 }
 
-/* Kinetic energy. */
+/* Kinetic energy of turning about the centre of mass. */
 void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const float omega[3],
     const float wheel_speeds[3], float *kinetic_energy)
 {

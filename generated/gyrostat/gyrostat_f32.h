@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 72a2ed69279c258e.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 d356b2e8b3834a7f.
  */
 #ifndef GYROSTAT_F32_H
 #define GYROSTAT_F32_H
@@ -155,11 +155,11 @@ void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *consta
     const float wheel_torques[3], float coordinate_rates[3], float omega_dot[3],
     float wheel_accelerations[3], float jacobian[135]);
 
-/* Kinetic energy.
+/* Kinetic energy of turning about the centre of mass.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
- * Returned:  kinetic_energy  J  kinetic energy
+ * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.68, largest 8.4 u of the largest product or sum in the equation (of
@@ -176,7 +176,7 @@ void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const 
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
- * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
+ * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum about the centre of mass
  * Postcondition: l = I omega   [lecture step angular_momentum]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.51, largest 6.3 u of the largest product or sum in the equation (of

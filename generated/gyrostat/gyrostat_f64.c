@@ -719,7 +719,7 @@ void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *consta
     }
 }
 
-/* Kinetic energy. */
+/* Kinetic energy of turning about the centre of mass. */
 void gyrostat_kinetic_energy_f64(const gyrostat_constants_f64 *constants, const double omega[3],
     const double wheel_speeds[3], double *kinetic_energy)
 {

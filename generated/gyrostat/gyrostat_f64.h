@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 0bab3327450b825b.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 aa3847b8d9b05652.
  */
 #ifndef GYROSTAT_F64_H
 #define GYROSTAT_F64_H
@@ -155,11 +155,11 @@ void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *consta
     const double wheel_torques[3], double coordinate_rates[3], double omega_dot[3],
     double wheel_accelerations[3], double jacobian[135]);
 
-/* Kinetic energy.
+/* Kinetic energy of turning about the centre of mass.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
- * Returned:  kinetic_energy  J  kinetic energy
+ * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.69, largest 7.6 u of the largest product or sum in the equation (of
@@ -176,7 +176,7 @@ void gyrostat_kinetic_energy_f64(const gyrostat_constants_f64 *constants, const 
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
- * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
+ * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum about the centre of mass
  * Postcondition: l = I omega   [lecture step angular_momentum]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.51, largest 6.9 u of the largest product or sum in the equation (of

@@ -111,7 +111,7 @@ void heavy_top_kinetic_energy_f32(const heavy_top_constants_f32 *constants, cons
 /* Angular momentum from the angular velocity.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along xyz  -10 .. 10  angular velocity of the body in the inertial frame
- * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum
+ * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum about the fixed point
  * Postcondition: l = I omega   [lecture step angular_momentum]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.27, largest 1 u of the largest product or sum in the equation (of

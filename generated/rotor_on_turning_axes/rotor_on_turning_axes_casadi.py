@@ -309,7 +309,7 @@ def _angular_momentum_rate():
 
 
 def kinetic_energy():
-    """Kinetic energy. Inputs: parameters, W_x, W_y, W_z, p."""
+    """Kinetic energy of turning about the centre of mass. Inputs: parameters, W_x, W_y, W_z, p."""
     return _built(lambda: _from_parameters(_kinetic_energy(), "rotor_on_turning_axes_kinetic_energy"))
 
 

@@ -169,7 +169,7 @@ void rotor_on_turning_axes_angular_momentum_rate_f32(const rotor_on_turning_axes
     rate_absolute[2] = t10;
 }
 
-/* Kinetic energy. */
+/* Kinetic energy of turning about the centre of mass. */
 void rotor_on_turning_axes_kinetic_energy_f32(const rotor_on_turning_axes_constants_f32 *constants,
     float W_x, float W_y, float W_z, float p, float *kinetic_energy)
 {

@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 b31dc8b02eac69ad.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 feaef9cd82979c50.
  */
 #ifndef ROTOR_ON_TURNING_AXES_F32_H
 #define ROTOR_ON_TURNING_AXES_F32_H
@@ -70,7 +70,7 @@ void rotor_on_turning_axes_moment_f32(const rotor_on_turning_axes_constants_f32 
  *            W_y  rad/s  -1 .. 1  turn rate of the bearings about y
  *            W_z  rad/s  -1 .. 1  turn rate of the bearings about z
  *            p  rad/s  -500 .. 500  spin of the rotor in its bearings
- * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum
+ * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum about the centre of mass
  * Postcondition: l = I omega   [lecture step angular_momentum]
  * Error: median 0.37, largest 2 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 144
@@ -91,8 +91,8 @@ void rotor_on_turning_axes_angular_momentum_f32(const rotor_on_turning_axes_cons
  *            W_z_dot  rad/s^2  -1 .. 1  rate of W_z
  *            p  rad/s  -500 .. 500  spin of the rotor in its bearings
  *            p_dot  rad/s^2  -50 .. 50  rate of p
- * Returned:  rate_in_axes[3]  N m  along xyz  rate of angular momentum seen from the axes
- *            rate_absolute[3]  N m  along xyz  rate of angular momentum seen from the inertial frame
+ * Returned:  rate_in_axes[3]  N m  along xyz  rate of angular momentum about the centre of mass, seen from the axes
+ *            rate_absolute[3]  N m  along xyz  rate of angular momentum about the centre of mass, seen from the inertial frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
  * Error: median 0.52, largest 3.7 u of the largest product or sum in the equation (of
@@ -105,13 +105,13 @@ void rotor_on_turning_axes_angular_momentum_rate_f32(const rotor_on_turning_axes
     float W_x, float W_x_dot, float W_y, float W_y_dot, float W_z, float W_z_dot, float p,
     float p_dot, float rate_in_axes[3], float rate_absolute[3]);
 
-/* Kinetic energy.
+/* Kinetic energy of turning about the centre of mass.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W_x  rad/s  -1 .. 1  turn rate of the bearings about the shaft
  *            W_y  rad/s  -1 .. 1  turn rate of the bearings about y
  *            W_z  rad/s  -1 .. 1  turn rate of the bearings about z
  *            p  rad/s  -500 .. 500  spin of the rotor in its bearings
- * Returned:  kinetic_energy  J  kinetic energy
+ * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Error: median 0.78, largest 4.9 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 144 hard

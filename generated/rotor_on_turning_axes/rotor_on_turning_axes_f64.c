@@ -169,7 +169,7 @@ void rotor_on_turning_axes_angular_momentum_rate_f64(const rotor_on_turning_axes
     rate_absolute[2] = t10;
 }
 
-/* Kinetic energy. */
+/* Kinetic energy of turning about the centre of mass. */
 void rotor_on_turning_axes_kinetic_energy_f64(const rotor_on_turning_axes_constants_f64 *constants,
     double W_x, double W_y, double W_z, double p, double *kinetic_energy)
 {

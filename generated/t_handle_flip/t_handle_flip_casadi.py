@@ -398,7 +398,7 @@ def _from_parameters(hot, name):
 
 
 def kinetic_energy():
-    """Kinetic energy. Inputs: parameters, omega."""
+    """Kinetic energy of turning about the centre of mass. Inputs: parameters, omega."""
     return _built(lambda: _from_parameters(_kinetic_energy(), "t_handle_flip_kinetic_energy"))
 
 

@@ -253,7 +253,7 @@ int t_handle_flip_setup_f32(float I_xx, float I_yy, float I_zz,
 #endif
 #endif
 
-/* Kinetic energy. */
+/* Kinetic energy of turning about the centre of mass. */
 void t_handle_flip_kinetic_energy_f32(const t_handle_flip_constants_f32 *constants,
     const float omega[3], float *kinetic_energy)
 {

@@ -253,7 +253,7 @@ int t_handle_flip_setup_f64(double I_xx, double I_yy, double I_zz,
 #endif
 #endif
 
-/* Kinetic energy. */
+/* Kinetic energy of turning about the centre of mass. */
 void t_handle_flip_kinetic_energy_f64(const t_handle_flip_constants_f64 *constants,
     const double omega[3], double *kinetic_energy)
 {

@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 705b1a35cf453246.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 7f461f8c014a3be8.
  */
 #ifndef T_HANDLE_FLIP_F64_H
 #define T_HANDLE_FLIP_F64_H
@@ -66,10 +66,10 @@ typedef struct {
 int t_handle_flip_setup_f64(double I_xx, double I_yy, double I_zz,
     t_handle_flip_constants_f64 *constants);
 
-/* Kinetic energy.
+/* Kinetic energy of turning about the centre of mass.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -15 .. 15  angular velocity of the body in the inertial frame
- * Returned:  kinetic_energy  J  kinetic energy
+ * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Error: median 0.5, largest 3.6 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 150 hard
@@ -83,7 +83,7 @@ void t_handle_flip_kinetic_energy_f64(const t_handle_flip_constants_f64 *constan
 /* Angular momentum from the angular velocity.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -15 .. 15  angular velocity of the body in the inertial frame
- * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum
+ * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum about the centre of mass
  * Postcondition: l = I omega   [lecture step angular_momentum]
  * Error: median 0.36, largest 1 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 150

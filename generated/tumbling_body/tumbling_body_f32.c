@@ -708,7 +708,7 @@ int tumbling_body_setup_f32(float I_xx, float I_yy, float I_zz,
 #endif
 #endif
 
-/* Kinetic energy. */
+/* Kinetic energy of turning about the centre of mass. */
 void tumbling_body_kinetic_energy_f32(const tumbling_body_constants_f32 *constants,
     const float omega[3], float *kinetic_energy)
 {

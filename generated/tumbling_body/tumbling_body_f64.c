@@ -708,7 +708,7 @@ int tumbling_body_setup_f64(double I_xx, double I_yy, double I_zz,
 #endif
 #endif
 
-/* Kinetic energy. */
+/* Kinetic energy of turning about the centre of mass. */
 void tumbling_body_kinetic_energy_f64(const tumbling_body_constants_f64 *constants,
     const double omega[3], double *kinetic_energy)
 {

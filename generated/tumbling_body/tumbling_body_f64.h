@@ -12,7 +12,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 c04ab61621d6c972.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 1e7378a884ba700e.
  */
 #ifndef TUMBLING_BODY_F64_H
 #define TUMBLING_BODY_F64_H
@@ -113,10 +113,10 @@ typedef struct {
 int tumbling_body_setup_f64(double I_xx, double I_yy, double I_zz,
     tumbling_body_constants_f64 *constants);
 
-/* Kinetic energy.
+/* Kinetic energy of turning about the centre of mass.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
- * Returned:  kinetic_energy  J  kinetic energy
+ * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Error: median 0.5, largest 3.5 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 150 hard

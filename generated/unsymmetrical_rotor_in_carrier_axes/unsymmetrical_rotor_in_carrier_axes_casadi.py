@@ -406,7 +406,7 @@ def _angular_momentum_rate():
 
 
 def kinetic_energy():
-    """Kinetic energy. Inputs: parameters, gamma, gamma_dot, W."""
+    """Kinetic energy of turning about the centre of mass. Inputs: parameters, gamma, gamma_dot, W."""
     return _built(lambda: _from_parameters(_kinetic_energy(), "unsymmetrical_rotor_in_carrier_axes_kinetic_energy"))
 
 

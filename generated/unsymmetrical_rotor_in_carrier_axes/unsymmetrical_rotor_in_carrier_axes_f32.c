@@ -292,7 +292,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f32(const unsymme
     rate_absolute[2] = t17;
 }
 
-/* Kinetic energy. */
+/* Kinetic energy of turning about the centre of mass. */
 void unsymmetrical_rotor_in_carrier_axes_kinetic_energy_f32(const unsymmetrical_rotor_in_carrier_axes_constants_f32 *constants,
     float gamma, float gamma_dot, float W, float *kinetic_energy)
 {

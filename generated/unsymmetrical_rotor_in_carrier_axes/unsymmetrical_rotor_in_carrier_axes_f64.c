@@ -292,7 +292,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(const unsymme
     rate_absolute[2] = t17;
 }
 
-/* Kinetic energy. */
+/* Kinetic energy of turning about the centre of mass. */
 void unsymmetrical_rotor_in_carrier_axes_kinetic_energy_f64(const unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants,
     double gamma, double gamma_dot, double W, double *kinetic_energy)
 {

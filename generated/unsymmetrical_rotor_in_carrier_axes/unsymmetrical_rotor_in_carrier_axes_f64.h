@@ -11,7 +11,7 @@
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
  * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
  * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 08dd362e1b1e527c.
+ * solved; of motions and attitudes, times the largest component. Body of these files: sha256 75974420a53a628e.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
@@ -99,7 +99,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(const unsymme
  *            gamma  rad  -3.14 .. 3.14  angle of the rotor on its shaft
  *            gamma_dot  rad/s  -300 .. 300  rate of gamma
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
- * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum
+ * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum about the centre of mass
  * Postcondition: l = I omega   [lecture step angular_momentum]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.49, largest 5.6e+02 u of the largest product or sum in the equation (of
@@ -119,8 +119,8 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(const unsymmetrica
  *            gamma_ddot  rad/s^2  -50 .. 50  acceleration of gamma
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
  *            W_dot  rad/s^2  -1 .. 1  rate of W
- * Returned:  rate_in_axes[3]  N m  along xyz  rate of angular momentum seen from the axes
- *            rate_absolute[3]  N m  along xyz  rate of angular momentum seen from the inertial frame
+ * Returned:  rate_in_axes[3]  N m  along xyz  rate of angular momentum about the centre of mass, seen from the axes
+ *            rate_absolute[3]  N m  along xyz  rate of angular momentum about the centre of mass, seen from the inertial frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
@@ -134,12 +134,12 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(const unsymme
     double gamma, double gamma_dot, double gamma_ddot, double W, double W_dot,
     double rate_in_axes[3], double rate_absolute[3]);
 
-/* Kinetic energy.
+/* Kinetic energy of turning about the centre of mass.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            gamma  rad  -3.14 .. 3.14  angle of the rotor on its shaft
  *            gamma_dot  rad/s  -300 .. 300  rate of gamma
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
- * Returned:  kinetic_energy  J  kinetic energy
+ * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.59, largest 27 u of the largest product or sum in the equation (of

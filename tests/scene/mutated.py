@@ -70,7 +70,7 @@ def unread(text: str, name: str = "example") -> list[str]:
 
 def _read(text: str, name: str) -> Scene | str:
     try:
-        return replace(parse_scene(text, name), text="")
+        return replace(parse_scene(text, name), text="", told=())
     except SceneError as error:
         return str(error)
 
@@ -78,7 +78,7 @@ def _read(text: str, name: str) -> Scene | str:
 def _said(text: str, name: str) -> tuple[str, ...]:
     """Return all that is said of a scene: its code and warnings, or why it is refused."""
     try:
-        scene: Scene = replace(parse_scene(text, name), text="")
+        scene: Scene = replace(parse_scene(text, name), text="", told=())
         return (*c_files(library(scene), ()).values(), *scene.warnings)
     except SceneError as error:
         return (str(error),)

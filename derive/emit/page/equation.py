@@ -4,7 +4,7 @@ Every line is arranged so that what it determines stands on the left. What the e
 between is put in where it is short; elsewhere it has a line of its own.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from sympy import Add, Expr, Symbol, cos, sin
@@ -73,7 +73,8 @@ def taken_names(known: Mechanism) -> frozenset[str]:
 def written_names(known: Mechanism) -> dict[Symbol, str]:
     """Return how the page writes each symbol; what has no name of the scene's by what it is of."""
     symbols, taken = known.made.sheet.symbols, taken_names(known)
-    names = {symbol: _written(name) for name, symbol in symbols.items()}
+    marks = known.scene.marks
+    names = {symbol: _written(_marked(name, marks)) for name, symbol in symbols.items()}
     alone = sum(q.is_quaternion for q in known.words.states) == 1
     for q in known.words.every():
         attitude = q.is_quaternion and q in known.words.states
@@ -92,6 +93,18 @@ def _dotted(name: str) -> str:
     return f"{base}_dot{name.removeprefix(base)}"
 
 
+def _marked(label: str, marks: Mapping[str, str]) -> str:
+    """Return a label with marks instead of owners that the user gave no names.
+
+    >>> _marked("body.axes.Omega.x", {"body.axes": "B"}), _marked("xyz.Omega.x", {"xyz": ""})
+    ('B.Omega.x', '.Omega.x')
+    """
+    found = f".{label}"
+    for name, mark in marks.items():
+        found = found.replace(f".{name}.", f".{mark}.")
+    return found[1:]
+
+
 def _written(label: str) -> str:
     """Return a label as a name: a letter, whose frame or body it belongs to is an index.
 
@@ -106,7 +119,7 @@ def _written(label: str) -> str:
     if at is not None:
         dots = [part for part in rest[at + 1 :] if part == "dot"]
         after = [part for part in rest[at + 1 :] if part != "dot"]
-        owner = "_".join([rest[at], *dots, owner, *rest[:at], *after])
+        owner = "_".join(filter(None, [rest[at], *dots, owner, *rest[:at], *after]))
     return "_by_".join([owner, *by])
 
 
@@ -127,14 +140,26 @@ def notes(known: Mechanism, base: str) -> list[str]:
     whole = _shown(known, base) is known.question(base)
     place = "Stands in the equations, but" if whole else "Left out of the equations, since"
     each = (
-        ("Balances", map(str, balances), "; "),
+        ("Balances", (b.told(known.scene.spoken) for b in balances), "; "),
         ("Chosen so that these unknowns do not enter",
          parts["unknowns left out"] if balances else (), ", "),
-        (f"{place} no answer changes with it", parts["cancels"], ", "),
-        ("Stands in none of these equations", parts["never enters"], ", "),
+        (f"{place} no answer changes with it", _vectors(known, parts["cancels"]), ", "),
+        ("Stands in none of these equations", _vectors(known, parts["never enters"]), ", "),
     )  # fmt: skip
     texts = ((says, between.join(names)) for says, names, between in each)
     return [f"{says}: {text}." for says, text in texts if text]
+
+
+def _vectors(known: Mechanism, names: Collection[str]) -> list[str]:
+    """Return names with each vector by its own where all of its components stand among them."""
+    words = known.words
+    whole = {
+        c: q.name
+        for q in (*words.states, *words.inputs)
+        if q.components[0].startswith(q.name) and {*q.components} <= {*names}
+        for c in q.components
+    }
+    return [*dict.fromkeys(whole.get(name, name) for name in names)]
 
 
 def passages(known: Mechanism, base: str) -> tuple[Passage, ...]:

@@ -30,7 +30,7 @@ def scene_page(library: Library, figures: Sequence[Measurement]) -> str:
         first_line=first_line(library).replace("--", "- -"),
         scene=scene,
         prose=prose,
-        given=given(scene),
+        given=scene.told or given(scene),
         assumptions=[step for step in LECTURE.steps if step.name in rests_on],
         constants=library.constants,
         parameters=library.known.words.parameters,
