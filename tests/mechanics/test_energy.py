@@ -1,5 +1,6 @@
 """A machine's energy grows by the power of the loads that are not in it, and by nothing else."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
@@ -11,6 +12,7 @@ from derive.library.library import Library, library
 from derive.mechanics import loads
 from derive.program.precision import F64
 from derive.scene import SceneError, load, parse_scene
+from derive.verify.cloud import balance
 from derive.verify.sample import Sample, samples
 from tests.check.mutants import first_sign_flipped
 from tests.check.replayed import Replayed
@@ -69,6 +71,21 @@ def test_a_prescribed_motion_changes_its_energy_by_the_power_of_what_it_needs(
     energy = made["kinetic_energy"]
     wrong = first_sign_flipped(energy) if spoilt else energy
     assert outcomes(replace(made, functions=(wrong,))) == {outcome}
+
+
+def test_an_energy_that_leaves_out_a_part_of_what_springs_pull_with_is_noticed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    by_lecture, by_particles = loads._spring, balance._spring
+    monkeypatch.setattr(
+        loads, "_spring", lambda *of: (replace(w, force=2 * w.force) for w in by_lecture(*of))
+    )
+    monkeypatch.setattr(
+        balance, "_spring", lambda *of: ((on, at, 2 * f, M) for on, at, f, M in by_particles(*of))
+    )
+    text = load(SCENES / "spring_pendulums.toml").text
+    alone = re.sub("^wanted = .*", 'wanted = ["energy"]', text, flags=re.M)
+    assert outcomes(library(parse_scene(alone, "springs"))) == {"FAILS"}
 
 
 @pytest.mark.parametrize(("flipped", "outcome"), [(0, "holds"), (1, "FAILS")])

@@ -1,14 +1,15 @@
 """The power of a machine's loads, summed over the points of its bodies that they act on.
 
-Loads that the energy counts, weights and springs, are told from the others.
+Loads that the energy counts, weights and springs without their dampers, are told from the others.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from mpmath import mp
 
+from derive.scene.formula import ZERO
 from derive.scene.machine import Spring, Weight
 from derive.verify.cloud.balance import acting, along, values
 from derive.verify.cloud.history import History
@@ -61,8 +62,6 @@ def _conservative(history: History) -> list[Any]:
         elif isinstance(load, Spring):
             ends = ((load.frame, load.at), (load.to_frame, load.to))
             start, end = (history.place(frame, at) for frame, at in ends)
-            d, v = values(end - start), each(lambda x: x.velocity, end - start)
-            k, rest = (history.value(f).value for f in (load.stiffness, load.length))
-            size = mp.sqrt(d @ d)
-            found.append(-k * (size - rest) * (d @ v) / size if size else 0 * k)
+            _, _, force, _ = next(acting(history, replace(load, damping=ZERO)))
+            found.append(-force @ each(lambda x: x.velocity, end - start))
     return found
