@@ -42,7 +42,7 @@ FREE_ROTATION = tuple(
     )
 )
 """What the closed forms and splittings of a free rotation rest on."""
-RATES = ("step_rk4", "step_lie", *TAYLOR)
+RATES = (*(f"step_{method}" for method in runge_kutta.METHODS), *TAYLOR)
 """Steps that are made from the rate of the state."""
 SLOPES = {
     "jacobian": "state_rate_jacobian",

@@ -107,7 +107,8 @@ def check_form(wanted: Iterable[str], form: str, emission: str) -> None:
         if name not in IN_PAIRS:
             raise SceneError(
                 f"form = 'accurate' is not for '{name}', which {_own_way(name)}; "
-                f"of the steps it is for {', '.join((*STEPS[:2], *SPLITTINGS))} and derivatives"
+                f"of the steps it is for {', '.join(s for s in STEPS if s in IN_PAIRS)} "
+                "and derivatives"
             )
 
 

@@ -6,7 +6,7 @@ A program's inputs are constants, every state, the inputs that the rates use, an
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from derive.lower.order import with_values_read_soon
 from derive.lower.signs import with_signs_moved
@@ -26,15 +26,14 @@ class Method:
 
     after      : the state (n,) after the step
     increments : the state before it and what it adds, an attitude not yet of length one
-    slopes     : the state after it and its derivatives by the state and what else there is
-    by_errors  : the same, with three errors of attitude for its four parts, before and after
+    slopes     : by the kind of derivatives, the state after it and its derivatives by the state and
+                 what else there is, of a tangent with three errors of attitude for its four parts
     """
 
     says: str
     after: Callable[[Tape, System], Row]
     increments: Callable[[Tape, System], tuple[Row, Row]]
-    slopes: Callable[[Tape, System], tuple[Row, Matrix]]
-    by_errors: Callable[[Tape, System], tuple[Row, Matrix]]
+    slopes: Mapping[str, Callable[[Tape, System], tuple[Row, Matrix]]] = field(default_factory=dict)
 
 
 METHODS: Mapping[str, Method] = {
@@ -42,15 +41,17 @@ METHODS: Mapping[str, Method] = {
         "One classic Runge-Kutta step (order 4)",
         classic.after,
         classic.increments,
-        sensitivity.step_slopes,
-        sensitivity.by_errors,
+        {
+            "jacobian": sensitivity.step_slopes,
+            "tangent": sensitivity.by_errors,
+            "sensitivity": sensitivity.step_slopes,
+        },
     ),
     "lie": Method(
         "One commutator-free Lie-group step: the attitude turns by exponentials (order 4)",
         lie.after,
         lie.increments,
-        lie.step_slopes,
-        lie.by_errors,
+        {"jacobian": lie.step_slopes, "tangent": lie.by_errors},
     ),
 }
 KINDS = {
@@ -124,7 +125,7 @@ def _without_slopes(how: Method, system: System, kind: str) -> Recorded:
 def _with_slopes(how: Method, system: System, kind: str) -> Recorded:
     slopes_of(system)  # a step without derivatives would be recorded without them
     tape, n = tape_for(system), len(system.names)
-    after, matrix = (how.by_errors if kind == "tangent" else how.slopes)(tape, system)
+    after, matrix = how.slopes[kind](tape, system)
     rows, columns = system.names, system.columns
     if kind == "tangent":
         rows = _names_with_errors(system)
