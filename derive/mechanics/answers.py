@@ -74,6 +74,10 @@ class Answers:
         sheet = self.frames.sheet
         used = {s for e in (*answers.values(), *sheet.needed(answers.values()).values())
                 for s in e.free_symbols}  # fmt: skip
+        open_ = used & {s for q in self.frames.words.vocabulary.outputs for s in self._symbols(q)}
+        if left := open_ - sheet.unknowns:
+            names = [c for c, s in sheet.symbols.items() if s in left]
+            raise KeyError(f"'{base}' has no expression for {', '.join(names)}")
         wanted = used & sheet.unknowns
         rows, unknowns = Regular(self.frames, self.balances).determining(wanted)
         written = tuple(self.balances.written(row) for row in rows)

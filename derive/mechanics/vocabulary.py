@@ -34,7 +34,10 @@ class Vocabulary:
     symbols: Mapping[str, Symbol] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Quantity:
-        return next(q for q in self.every() if q.name == name)
+        for q in self.every():
+            if q.name == name:
+                return q
+        raise KeyError(f"no quantity of the scene is called '{name}'")
 
     def __contains__(self, name: str) -> bool:
         return any(q.name == name for q in self.every())

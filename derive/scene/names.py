@@ -50,6 +50,7 @@ GENERATED: Mapping[str, str] = {
     "potential_energy": "the potential energy",
     "energy": "the energy",
     "accelerations": "the accelerations",
+    "state_rate": "the rates of all states",
     "mass_matrix": "the mass matrix of small motion",
     "damping_matrix": "the damping matrix of small motion",
     "stiffness_matrix": "the stiffness matrix of small motion",

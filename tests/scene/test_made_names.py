@@ -3,6 +3,7 @@
 import pytest
 
 from derive.scene import SceneError, parse_scene
+from derive.scene.results import FUNCTIONS
 
 SCENE = """
 wanted = [{wanted}]
@@ -40,6 +41,12 @@ RESULT = """
 
 def parsed(name: str, wanted: str, more: str = "") -> str:
     return parse_scene(SCENE.format(name=name, wanted=wanted) + more, "odd").name
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_what_the_code_calls_an_answer_is_declared_by_nobody(name: str) -> None:
+    with pytest.raises(SceneError, match=f"'{name}' has a name that is taken: "):
+        parsed(name, '"accelerations"')
 
 
 @pytest.mark.parametrize(("name", "wanted"), [(n, w) for w, names in TAKEN.items() for n in names])
