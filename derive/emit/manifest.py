@@ -42,7 +42,7 @@ def manifest(library: Library, figures: Sequence[Measurement], digest: str = "")
             "units": "SI, angles in rad",
         },
         "parameters": [_quantity(q) for q in library.known.words.parameters],
-        "constants": [{"name": c.name, "formula": c.formula} for c in library.constants],
+        "constants": [{"name": c, "formula": f} for c, f in library.constants.items()],
         "functions": _functions(library, figures),
         "warnings": list(doubts(library.known)),
         "measured": {"digest": digest},

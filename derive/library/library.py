@@ -10,11 +10,11 @@ from derive.library.setting import Setting, applied_moment, traced, with_names
 from derive.library.singular import with_singular
 from derive.library.steps import motions, needs
 from derive.lower.graph import Graph, Value
-from derive.lower.stage import Constant, Part, in_pairs, setup, with_low_parts
+from derive.lower.stage import Part, in_pairs, setup, with_low_parts
 from derive.lower.wording import formula
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.mechanics.problem import Problem
-from derive.program.program import Program, Quantity, read_by
+from derive.program.program import Program, Quantity, component_names, read_by
 from derive.program.tape import Tape, free_prefix
 from derive.scene import Scene, SceneError
 from derive.scene.wanted import ATTITUDES, IN_PAIRS, base_of, moves
@@ -27,6 +27,7 @@ class Library:
     """What a scene's files are printed from.
 
     functions : what the lecture states; each satisfies one of the ``truths``
+    constants : what each constant is made by, in the order of the struct
     rates     : further such functions that ``motions`` rest on and nobody wanted for themselves
     motions   : what moves the state in time, and formulas for attitudes
     """
@@ -34,7 +35,7 @@ class Library:
     known: Mechanism
     setup: Program
     functions: tuple[Program, ...]
-    constants: tuple[Constant, ...]
+    constants: Mapping[str, str]
     truths: Mapping[str, Problem]
     rates: tuple[Program, ...] = ()
     motions: tuple[Program, ...] = ()
@@ -121,11 +122,11 @@ def _set_up(scene: Graphed, part: Part) -> Program:
     return setup(scene.graph, scene.constants, parameters, [part, tried(scene, used)])
 
 
-def _constants(made: Program, meanings: Mapping[str, str]) -> tuple[Constant, ...]:
+def _constants(made: Program, meanings: Mapping[str, str]) -> dict[str, str]:
     """Return what set-up gives, each with its meaning; a low part is what rounding left."""
     lows = {f"{name}_low": f"what rounding {name} left" for name in meanings}
     every = lows | dict(meanings)
-    return tuple(Constant(c, every[c]) for q in made.outputs for c in q.components)
+    return {c: every[c] for c in component_names(made)}
 
 
 def _meanings(scene: Graphed) -> dict[str, str]:

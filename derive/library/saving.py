@@ -10,7 +10,7 @@ from derive.lower.arrange.plan import plain_arrangement
 from derive.lower.forms import cost
 from derive.lower.lower import lower
 from derive.mechanics.answers import Answers
-from derive.mechanics.balances import Balances, Row
+from derive.mechanics.balances import Balances
 from derive.mechanics.mechanism import Mechanism, dropped
 from derive.scene import SceneError
 from derive.scene.wanted import JACOBIAN
@@ -31,13 +31,12 @@ class Saving:
 def _body_by_body(balances: Balances) -> Balances:
     """Return the balances of single bodies, about their mass centres only."""
     fewer = Balances(balances.frames)
-    fewer.rows = tuple(row for row in balances.rows if _is_plain(row))
+    fewer.rows = tuple(
+        row
+        for row in balances.rows
+        if len(row.balance.bodies) == 1 and (row.balance.kind == "force" or row.balance.central)
+    )
     return fewer
-
-
-def _is_plain(row: Row) -> bool:
-    balance = row.balance
-    return len(balance.bodies) == 1 and (balance.kind == "force" or balance.central)
 
 
 def savings(library: Library) -> Iterator[Saving]:

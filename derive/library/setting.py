@@ -12,7 +12,7 @@ from derive.mechanics.rotation import FreeRotation, free_rotation
 from derive.motion.exact.inertia import Inertia, as_symmetric
 from derive.program.program import Program
 from derive.program.recorded import renamed
-from derive.program.tape import Number, Tape, free_prefix, number
+from derive.program.tape import Number, Tape, free_name, free_prefix, number
 from derive.scene import SceneError
 from derive.scene.wanted import SPLITTINGS, step_of
 
@@ -105,8 +105,7 @@ def traced(setting: Setting) -> tuple[Part, Mapping[str, str]]:
     names: dict[str, str] = {}
     for operand, (name, _) in setting.tape.names.items():
         used = {*taken.values(), *names.values()}
-        several = (name, *(f"{name}{k}" for k in range(2, len(used) + 3)))
-        names[operand] = shared.get(operand) or next(n for n in several if n not in used)
+        names[operand] = shared.get(operand) or free_name(name, used)
     new = {name: names[operand] for operand, (name, _) in setting.tape.names.items()}
     own = {operand: name for operand, name in names.items() if operand not in shared}
     return Part(tuple(setting.tape.ops), dict(setting.given), own), new

@@ -95,14 +95,6 @@ class Part:
     rules: tuple[Rule, ...] = ()
 
 
-@dataclass(frozen=True)
-class Constant:
-    """One named constant and the formula it is made by."""
-
-    name: str
-    formula: str
-
-
 def hot(
     graph: Graph, constants: Constants, values: Sequence[Value], taken: Iterable[str]
 ) -> tuple[tuple[Op, ...], tuple[Operand, ...]]:

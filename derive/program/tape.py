@@ -8,7 +8,7 @@ folded; nothing is re-ordered, so an error-free transformation stays one.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -61,9 +61,7 @@ class Tape:
     def name(self, operand: str, name: str, says: str) -> None:
         """Name a value of set-up, by a number after the name if it is another's already."""
         if operand not in self.names:
-            taken = {own for own, _ in self.names.values()}
-            several = (name, *(f"{name}{k}" for k in range(2, len(taken) + 3)))
-            self.names[operand] = (next(n for n in several if n not in taken), says)
+            self.names[operand] = (free_name(name, [own for own, _ in self.names.values()]), says)
 
     @contextmanager
     def within(self) -> Iterator[list[Line]]:
@@ -190,6 +188,12 @@ def named(name: str, value: Number, says: str) -> Number:
     if value.tape is not None and value.tape.below is None and isinstance(value.operand, str):
         value.tape.name(value.operand, name, says)
     return value
+
+
+def free_name(name: str, taken: Collection[str]) -> str:
+    """Return a name that is not taken, by a number after it if need be."""
+    several = (name, *(f"{name}{k}" for k in range(2, len(taken) + 3)))
+    return next(n for n in several if n not in taken)
 
 
 def free_prefix(letter: str, taken: set[str]) -> str:

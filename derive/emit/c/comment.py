@@ -22,10 +22,12 @@ WIDTH = 96
 
 def comment(program: Program, figures: Sequence[Measurement]) -> str:
     """Return the comment block of ``program`` as C text."""
+    lines = [program.says, *_arguments(program), *_postconditions(program)]
     if program.makes("constants"):
-        lines = _setup(program)
+        says = "; ".join(f"{number} {words}" for number, words in possible(program).items())
+        lines += _labelled("Returns:", f"{says}.") + _labelled("Error:", f"{SETUP_ERROR}.")
+        lines += _labelled("Cost:", f"once; {program.flops()} operations on pairs.")
     else:
-        lines = [program.says, *_arguments(program), *_postconditions(program)]
         lines += _labelled("Error:", _error(program, figures))
         pairs = " (on pairs of floats)" if program.arithmetic == "pairs" else ""
         lines += [line for s in program.singular for line in _labelled("Singular:", f"{told(s)}.")]
@@ -38,14 +40,6 @@ def comment(program: Program, figures: Sequence[Measurement]) -> str:
 
 def _labelled(label: str, text: str) -> list[str]:
     return wrap(f"{label} {text}", WIDTH, subsequent_indent=" " * 11, break_long_words=False)
-
-
-def _setup(program: Program) -> list[str]:
-    lines = [program.says, *_arguments(program)]
-    says = "; ".join(f"{number} {words}" for number, words in possible(program).items())
-    lines += _labelled("Returns:", f"{says}.")
-    lines += _labelled("Error:", f"{SETUP_ERROR}.")
-    return [*lines, *_labelled("Cost:", f"once; {program.flops()} operations on pairs.")]
 
 
 def _arguments(program: Program) -> list[str]:
