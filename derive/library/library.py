@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from derive.library.admission import tried
 from derive.library.function import Graphed, arranged, function, graphed
-from derive.library.setting import Setting, applied_moment, traced, with_names
+from derive.library.setting import Setting, applied_moment, held
 from derive.library.singular import with_singular
 from derive.library.steps import motions, needs
 from derive.lower.graph import Graph, Value
@@ -102,16 +102,14 @@ def _moved(
     scene: Graphed, rates: Mapping[str, Program]
 ) -> tuple[tuple[Program, ...], Part, dict[str, str]]:
     """Return what moves the state, its part of set-up, and what is said of its own constants."""
-    tape = Tape(free_prefix("p", set(scene.taken())))
-    setting = Setting(scene, rates, applied_moment(scene), tape)
+    moment = applied_moment(scene)
+    tape = Tape(free_prefix("p", set(scene.taken())), held=held(scene))
+    setting = Setting(scene, rates, moment, tape)
     programs = motions(setting)
-    part, renaming = traced(setting)
-    programs = tuple(with_names(program, renaming) for program in programs)
     read = {name for program in programs for name in read_by(program)}
-    names = {operand: name for operand, name in part.names.items() if name in read}
-    says = {operand: said for operand, (_, said) in setting.tape.names.items()}
-    meanings = {name: says[operand] for operand, name in names.items()}
-    return programs, replace(part, names=names), meanings
+    own = {o: each for o, each in tape.names.items() if each[0] in read - tape.held.keys()}
+    part = Part(tuple(tape.ops), dict(setting.given), {o: name for o, (name, _) in own.items()})
+    return programs, part, dict(own.values())
 
 
 def _set_up(scene: Graphed, part: Part) -> Program:

@@ -6,13 +6,12 @@ from dataclasses import dataclass, field, replace
 from derive.library.function import Graphed
 from derive.lower.graph import Graph, Value
 from derive.lower.lower import value_of
-from derive.lower.stage import Part, exact_number, hot, used_inputs
+from derive.lower.stage import exact_number, hot, used_inputs
 from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.rotation import FreeRotation, free_rotation
 from derive.motion.exact.inertia import Inertia, as_symmetric
 from derive.program.program import Program
-from derive.program.recorded import renamed
-from derive.program.tape import Number, Tape, free_name, free_prefix, number
+from derive.program.tape import Number, Tape, free_prefix, number
 from derive.scene import SceneError
 from derive.scene.wanted import SPLITTINGS, step_of
 
@@ -94,21 +93,9 @@ def applied_moment(scene: Graphed) -> Program | None:
     return Program("applied_moment", "", inputs, (output,), ops, results)
 
 
-def traced(setting: Setting) -> tuple[Part, Mapping[str, str]]:
-    """Return set-up's part of the motions, and how its constants are renamed.
-
-    A parameter that is a constant of the graph already keeps the name that it has there.
-    """
-    taken = setting.scene.constants.names
-    shared = {_parameter(setting.scene.graph, value): name for value, name in taken.items()}
-    shared.pop("", None)
-    names: dict[str, str] = {}
-    for operand, (name, _) in setting.tape.names.items():
-        used = {*taken.values(), *names.values()}
-        names[operand] = shared.get(operand) or free_name(name, used)
-    new = {name: names[operand] for operand, (name, _) in setting.tape.names.items()}
-    own = {operand: name for operand, name in names.items() if operand not in shared}
-    return Part(tuple(setting.tape.ops), dict(setting.given), own), new
+def held(scene: Graphed) -> dict[str, str]:
+    """Return the graph's constants, each with the parameter that it is."""
+    return {name: _parameter(scene.graph, v) for v, name in scene.constants.names.items()}
 
 
 def _parameter(graph: Graph, value: Value) -> str:
@@ -116,11 +103,3 @@ def _parameter(graph: Graph, value: Value) -> str:
     coefficient, node = value
     kind, *rest = graph.nodes[node]
     return str(rest[0]) if kind == "input" and coefficient == 1 else ""
-
-
-def with_names(program: Program, names: Mapping[str, str]) -> Program:
-    """Return a program whose constants are called by their new names."""
-    slopes = None if program.slopes is None else with_names(program.slopes, names)
-    ops, results = renamed(program.ops, names), renamed(program.results, names)
-    free = renamed(program.free, names)
-    return replace(program, ops=ops, results=results, free=free, slopes=slopes)

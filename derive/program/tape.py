@@ -8,7 +8,7 @@ folded; nothing is re-ordered, so an error-free transformation stays one.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -22,12 +22,14 @@ class Tape:
     """Operations as they are recorded; ``below`` is the tape of set-up, if this is a function's.
 
     names : what set-up's values are called as constants, with what is said of each
+    held  : the constants that functions have besides, and which input each is, "" if none
     """
 
     prefix: str
     below: Tape | None = None
     ops: list[Line] = field(default_factory=list)
     names: dict[str, tuple[str, str]] = field(default_factory=dict)
+    held: Mapping[str, str] = field(default_factory=dict)
     numbered: dict[tuple[object, ...], str] = field(default_factory=dict)
     inputs: set[str] = field(default_factory=set)
     made: int = 0
@@ -61,7 +63,9 @@ class Tape:
     def name(self, operand: str, name: str, says: str) -> None:
         """Name a value of set-up, by a number after the name if it is another's already."""
         if operand not in self.names:
-            self.names[operand] = (free_name(name, [own for own, _ in self.names.values()]), says)
+            taken = {*self.held, *(own for own, _ in self.names.values())}
+            same = next((held for held, given in self.held.items() if given == operand), "")
+            self.names[operand] = (same or free_name(name, taken), says)
 
     @contextmanager
     def within(self) -> Iterator[list[Line]]:
