@@ -14,7 +14,7 @@ from derive.scene.declaration import AXES, Moving
 from derive.scene.formula import Formula
 from derive.scene.machine import Group
 from derive.scene.results import ENERGIES, groups
-from derive.scene.scopes import PER_SECOND
+from derive.scene.scalars import PER_SECOND
 
 QUATERNION = ("w", "x", "y", "z")
 MATRICES = {

@@ -9,20 +9,8 @@ from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 
-from derive.scene.declaration import (
-    Given,
-    Input,
-    Parameter,
-    SceneError,
-    Turning,
-)
-from derive.scene.doubtful import (
-    beyond,
-    idle_frames,
-    in_degrees,
-    require_sizes,
-    turns_in_degrees,
-)
+from derive.scene.declaration import Given, Input, Parameter, SceneError, Turning
+from derive.scene.doubtful import doubts, require_sizes
 from derive.scene.escape import brief, visible
 from derive.scene.long_form import written_out
 from derive.scene.machine import Scene
@@ -136,14 +124,11 @@ def _read(document: dict[str, object], name: str, text: str) -> Scene:
         require_sizes(machine)
         check_form(machine.wanted, machine.form, machine.emission)
         require_values(machine)
-        angles = in_degrees((*machine.coordinates, *machine.inputs))
-        more = (*beyond(machine), *idle_frames(machine), *angles, *in_degrees(machine.parameters))
-        every = (*machine.warnings, *more, *turns_in_degrees(machine))
-        return replace(machine, warnings=every)
+        return replace(machine, warnings=(*machine.warnings, *doubts(machine)))
     scene = read_scene(document, name, text)
     said = tuple(table(document.get("known", {}), "known").entries)
     check(scene, said)
-    check_form(scene.wanted, scene.form, scene.emission)
+    check_form(scene.wanted, scene.head["form"], scene.head["emission"])
     require_values(scene)
     return written_out(replace(scene, warnings=warnings(scene, said)))
 

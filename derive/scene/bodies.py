@@ -14,7 +14,7 @@ from derive.scene.entry import Entry, Reading, entries_of
 from derive.scene.formula import ZERO, Formula, number
 from derive.scene.machine import Entries, Frame, Member
 from derive.scene.numbers import check_member, positive
-from derive.scene.scopes import Scalars
+from derive.scene.scalars import Scalars
 from derive.scene.shape import CONE_CENTRE, ROUND, about_axis, box, diagonal, moment, moved
 from derive.scene.table import Table, formula, listed, shown, word
 from derive.scene.unit import INERTIA, LENGTH

@@ -7,12 +7,13 @@ the scene's axes unless said otherwise; a product of inertia is I_xy = +sum x y 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
+from typing import Any, Literal
 
 from derive.scene.formula import Formula
 
 Axis = Literal["x", "y", "z"]
 AXES: tuple[Axis, ...] = ("x", "y", "z")
+Kind = Literal["coordinate", "speed", "input"]
 Triple = tuple[Formula, Formula, Formula]
 Sextuple = tuple[Formula, Formula, Formula, Formula, Formula, Formula]
 
@@ -60,7 +61,7 @@ class Moving:
     low: Fraction
     high: Fraction
     meaning: str
-    kind: Literal["coordinate", "speed", "input"]
+    kind: Kind
     free: bool
     state: bool
     rate: Input | Formula | None
@@ -160,11 +161,12 @@ class Point:
 
 @dataclass(frozen=True)
 class ShortForm:
-    """A single body as the user declared it, checked; ``text`` is the file as it was read."""
+    """A single body as the user declared it, checked.
 
-    name: str
-    title: str
-    text: str
+    head : what its ``Scene`` says of the whole: name, title, text, form, times and the like
+    """
+
+    head: Mapping[str, Any]
     parameters: tuple[Parameter, ...]
     coordinates: tuple[Moving, ...]
     speeds: tuple[Moving, ...]
@@ -176,9 +178,10 @@ class ShortForm:
     known: Mapping[str, Given]
     position: Given | None
     velocity: Given | None
-    wanted: tuple[str, ...]
-    form: Literal["fast", "accurate"]
-    emission: Literal["fast", "compact"]
-    time_step: Given
-    time: Given
     warnings: tuple[str, ...]
+
+    @property
+    def wanted(self) -> tuple[str, ...]:
+        """Return the names of the wanted functions."""
+        names: tuple[str, ...] = self.head["wanted"]
+        return names

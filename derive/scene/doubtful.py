@@ -27,7 +27,15 @@ def require_sizes(machine: Scene) -> None:
             raise SceneError(f"body '{body.name}': outer must be more than inner, but is the same")
 
 
-def beyond(machine: Scene) -> Iterator[str]:
+def doubts(machine: Scene) -> Iterator[str]:
+    """Yield a sentence for everything in a machine that is hardly meant."""
+    yield from _beyond(machine)
+    yield from _idle_frames(machine)
+    yield from in_degrees((*machine.coordinates, *machine.inputs, *machine.parameters))
+    yield from _turns_in_degrees(machine)
+
+
+def _beyond(machine: Scene) -> Iterator[str]:
     """Yield a sentence for every part of a state of small motion that is outside its range."""
     if not any("linearised" in answers for answers in machine.asked.values()):
         return
@@ -63,7 +71,7 @@ def _wall(tube: Member) -> Formula:
     return tube.lengths["outer"] - tube.lengths["inner"]
 
 
-def idle_frames(machine: Scene) -> Iterator[str]:
+def _idle_frames(machine: Scene) -> Iterator[str]:
     """Yield a sentence for every frame that carries nothing and that nothing refers to."""
     used = {INERTIAL, machine.momentum.frame, *(f.parent for f in machine.frames)}
     used |= {body.frame for body in machine.bodies}
@@ -86,7 +94,7 @@ def in_degrees(scalars: Iterable[Moving | Parameter]) -> Iterator[str]:
             yield f"{says} {float(end):g} rad; are degrees meant?"
 
 
-def turns_in_degrees(machine: Scene) -> Iterator[str]:
+def _turns_in_degrees(machine: Scene) -> Iterator[str]:
     """Yield a sentence for every turn by a formula that holds a number as of degrees."""
     turned = [(f"frame '{f.name}'", f.turned) for f in machine.frames]
     turned += [(f"body '{b.name}'", b.turned) for b in machine.bodies]

@@ -205,6 +205,16 @@ POSITION = (
     Entry("position", "bounds", "of the mass centre, m", default=REQUIRED),
     Entry("velocity", "bounds", "of the mass centre, m/s", default=REQUIRED),
 )
+FILE = (
+    Entry("title", "text", "of the scene; its name if left out"),
+    Entry("source", "text", "where a machine is described", default="own"),
+    Entry("wanted", "any", "functions, a list", default=REQUIRED),
+    Entry("form", "word", "whether they work on pairs of floats", default="fast",
+          words=("fast", "accurate")),
+    Entry("emission", "word", "whether steps are short loops", default="fast",
+          words=("fast", "compact")),
+)  # fmt: skip
+"""What a file says above its first table."""
 
 
 def round_entries(shape: str) -> tuple[Entry, ...]:

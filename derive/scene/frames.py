@@ -9,16 +9,15 @@ from derive.scene.escape import brief
 from derive.scene.formula import ZERO
 from derive.scene.machine import INERTIAL, Frame, Rolling
 from derive.scene.names import label
-from derive.scene.scopes import Scalars
+from derive.scene.scalars import Scalars
 from derive.scene.table import Table, nearest, table, text
 
 ORIGIN = ("origin", "rolls", "velocity", "acceleration")
-STILL = Frame(INERTIAL, "", (), None, "", (ZERO, ZERO, ZERO))
 
 
 def read_frames(given: Table, scalars: Scalars, bodies: tuple[str, ...]) -> tuple[Frame, ...]:
     """Return the inertial frame and all others, each after its parent."""
-    found: dict[str, Frame] = {INERTIAL: STILL}
+    found: dict[str, Frame] = {INERTIAL: Frame(INERTIAL, "")}
     waiting = {
         label(name, "a frame"): table(value, f"frame '{name}'")
         for name, value in given.entries.items()

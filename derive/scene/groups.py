@@ -3,134 +3,118 @@
 An input of one function may be the answer of another: the moment, and the rate of omega.
 """
 
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 from derive.scene.declaration import AXES, Given, Input, Moving, ShortForm
 from derive.scene.machine import Group, Groups
 from derive.scene.told import POINTS
 
-QUATERNION = ("w", *AXES)
 ANY = (Fraction(-1), Fraction(1))
+ATTITUDE, WHEELS, OWN, NO_AXES = "N from B", "wheel axes", "", "none"
+"""Along which axes components lie that are three along N or, ``OWN``, along those of the scene."""
+RATE = "rate of angular momentum about {about}"
+QUANTITIES: Mapping[str, tuple[str, str, str]] = {
+    "position": ("m", "N", "position of the centre of mass"),
+    "attitude": ("1", ATTITUDE, "attitude quaternion, scalar first, body to inertial, |q| = 1"),
+    "velocity": ("m/s", "N", "velocity of the centre of mass"),
+    "omega": ("rad/s", OWN, "angular velocity of the body in the inertial frame"),
+    "wheel_speeds": ("rad/s", WHEELS, "wheel speed relative to the carrier"),
+    "omega_dot": ("rad/s^2", OWN, "rate of the components of omega along the axes"),
+    "wheel_accelerations": ("rad/s^2", WHEELS, "wheel acceleration relative to the carrier"),
+    "point_acceleration": ("m/s^2", OWN, "acceleration of the moving point in the inertial frame"),
+    "force": ("N", OWN, "resultant external force"),
+    "moment": ("N m", OWN, "external moment about {about}"),
+    "wheel_torques": ("N m", WHEELS, "wheel torque of the motor on the wheel"),
+    "angular_momentum": ("kg m^2/s", OWN, "angular momentum about {about}"),
+    "rate_in_axes": ("N m", OWN, f"{RATE}, seen from the axes"),
+    "rate_absolute": ("N m", OWN, f"{RATE}, seen from the inertial frame"),
+    "coordinate_rates": ("rad/s", NO_AXES, "rates of {free}"),
+    "position_rate": ("m/s", "N", "rate of the position"),
+    "velocity_rate": ("m/s^2", "N", "rate of the velocity"),
+    "attitude_rate": ("1/s", ATTITUDE, "rate of the attitude quaternion"),
+}
+"""Unit, axes and meaning of each vector."""
+RATES = ("coordinate_rates", "position_rate", "attitude_rate", "velocity_rate", "omega_dot",
+         "wheel_accelerations")  # fmt: skip
 
 
 def groups(scene: ShortForm) -> Groups:
     """Return the quantities that the scene of a single body speaks of, in canonical order."""
-    states, outputs = tuple(_states(scene)), tuple(_outputs(scene))
-    rates = ("coordinate_rates", "position_rate", "attitude_rate", "velocity_rate", "omega_dot",
-             "wheel_accelerations")  # fmt: skip
-    inputs = tuple(_inputs(scene))
+    made = {name for name, given in _given(scene).items() if given and given.formulas is not None}
+    missing = _missing(scene) | made
+    free = [c for c in scene.coordinates if c.free]
+    driven = [c for c in scene.coordinates if not c.free]
+    moving = list[Moving | Input]()
+    for m in (*driven, *scene.speeds):
+        moving += (m, *m.given)
+
+    def of(*names: str) -> tuple[Group, ...]:
+        return tuple(_group(scene, name) for name in names if name not in missing)
+
+    whole = scene.position is not None or scene.point.kind != "centre_of_mass"
+    says = "kinetic energy" if whole else "kinetic energy of turning about the centre of mass"
+    energy = Group("kinetic_energy", ("kinetic_energy",), "J", "", None, None, says)
+    states = (*_scalars(free), *of("position", "attitude", "velocity", "omega", "wheel_speeds"))
+    inputs = (
+        *_scalars((*moving, *scene.inputs)),
+        *of("omega_dot", "wheel_accelerations", "point_acceleration", "force", "moment"),
+        *of("wheel_torques"),
+    )
+    outputs = (
+        *of("angular_momentum", "rate_in_axes", "rate_absolute"), energy,
+        *([_group(scene, "moment")] if "moment" in made else []),
+        *of("coordinate_rates", "position_rate", "velocity_rate", "attitude_rate"),
+    )  # fmt: skip
     known = {g.name for g in (*inputs, *outputs)}
-    return Groups(states, inputs, outputs, tuple(name for name in rates if name in known))
-
-
-def _scalar(entry: Moving | Input) -> Group:
-    return Group(entry.name, (entry.name,), entry.unit, "", entry.low, entry.high, entry.meaning)
-
-
-def _vector(name: str, unit: str, frame: str, given: Given | None, meaning: str) -> Group:
-    low, high = (given.low, given.high) if given else ANY
-    return Group(name, tuple(f"{name}_{a}" for a in AXES), unit, frame, low, high, meaning)
-
-
-def _quaternion(name: str, unit: str, says: str) -> Group:
-    return Group(name, tuple(f"{name}_{p}" for p in QUATERNION), unit, "N from B", *ANY, says)
-
-
-def _axes(scene: ShortForm) -> str:
-    """Return the name of the axes that vectors are resolved along: B (body) or xyz."""
-    return "B" if scene.axes.fixed_in_body else "xyz"
+    return Groups(states, inputs, outputs, tuple(name for name in RATES if name in known))
 
 
 def turns_freely(scene: ShortForm) -> bool:
     """Tell whether omega is a variable of its own and not made of prescribed rates."""
-    alone = scene.axes.kind == "body" and not _by_formulas(scene.known["angular_velocity"])
+    alone = scene.axes.kind == "body" and scene.known["angular_velocity"].formulas is None
     return alone or any(c.free for c in scene.coordinates)
 
 
-def _by_formulas(given: Given | None) -> bool:
-    """Tell whether a known vector is made of other quantities, and so is none of its own."""
-    return given is not None and given.formulas is not None
+def _given(scene: ShortForm) -> Mapping[str, Given | None]:
+    """Return the ranges or formulas that the scene gives for vectors."""
+    known = scene.known
+    return {
+        "omega": known["angular_velocity"], "omega_dot": known["angular_acceleration"],
+        "moment": known["moment"], "force": known["force"], "position": scene.position,
+        "velocity": scene.velocity, "point_acceleration": scene.point.acceleration,
+    }  # fmt: skip
 
 
-def _states(scene: ShortForm) -> list[Group]:
-    found = [_scalar(c) for c in scene.coordinates if c.free]
-    if scene.position is not None:
-        says = "position of the centre of mass"
-        found.append(_vector("position", "m", "N", scene.position, says))
-    if scene.axes.quaternion:
-        says = "attitude quaternion, scalar first, body to inertial, |q| = 1"
-        found.append(_quaternion("attitude", "1", says))
-    if scene.velocity is not None:
-        says = "velocity of the centre of mass"
-        found.append(_vector("velocity", "m/s", "N", scene.velocity, says))
-    if turns_freely(scene):
-        given = scene.known.get("angular_velocity")
-        says = "angular velocity of the body in the inertial frame"
-        found.append(_vector("omega", "rad/s", _axes(scene), given, says))
-    return found + _wheels(scene, "wheel_speeds", "rad/s", "speed relative to the carrier")
+def _missing(scene: ShortForm) -> set[str]:
+    """Return the vectors of which the scene does not speak."""
+    there = {
+        ("position", "velocity", "position_rate", "velocity_rate", "force"): scene.position,
+        ("attitude", "attitude_rate"): scene.axes.quaternion,
+        ("omega", "omega_dot"): turns_freely(scene),
+        ("wheel_speeds", "wheel_accelerations", "wheel_torques"): scene.wheels,
+        ("point_acceleration",): scene.point.acceleration,
+        ("coordinate_rates",): any(c.free for c in scene.coordinates),
+    }
+    return {name for names, is_so in there.items() if not is_so for name in names}
 
 
-def _wheels(scene: ShortForm, name: str, unit: str, says: str) -> list[Group]:
-    if not scene.wheels:
-        return []
-    each = [w.torque if name == "wheel_torques" else w.speed for w in scene.wheels]
-    dot = "_dot" if name == "wheel_accelerations" else ""
-    low, high = min(i.low for i in each), max(i.high for i in each)
-    parts = tuple(i.name + dot for i in each)
-    return [Group(name, parts, unit, "wheel axes", low, high, f"wheel {says}")]
-
-
-def _with_rates(m: Moving) -> tuple[Moving | Input, ...]:
-    return m, *m.given
-
-
-def _inputs(scene: ShortForm) -> list[Group]:
-    axes, known = _axes(scene), scene.known
-    moving = (*(c for c in scene.coordinates if not c.free), *scene.speeds)
-    found = [_scalar(one) for m in moving for one in _with_rates(m)]
-    found += map(_scalar, scene.inputs)
-    if turns_freely(scene) and not _by_formulas(known["angular_acceleration"]):
-        given = known.get("angular_acceleration")
-        says = "rate of the components of omega along the axes"
-        found.append(_vector("omega_dot", "rad/s^2", axes, given, says))
-    says = "acceleration relative to the carrier"
-    found += _wheels(scene, "wheel_accelerations", "rad/s^2", says)
-    acceleration = scene.point.acceleration
-    if scene.point.kind == "moving" and not _by_formulas(acceleration):
-        says = "acceleration of the moving point in the inertial frame"
-        found.append(_vector("point_acceleration", "m/s^2", axes, acceleration, says))
-    if scene.position is not None and not _by_formulas(known["force"]):
-        found.append(_vector("force", "N", axes, known["force"], "resultant external force"))
-    if not _by_formulas(known["moment"]):
-        found.append(_moment(scene))
-    return found + _wheels(scene, "wheel_torques", "N m", "torque of the motor on the wheel")
-
-
-def _moment(scene: ShortForm) -> Group:
-    says = f"external moment about {POINTS[scene.point.kind]}"
-    return _vector("moment", "N m", _axes(scene), scene.known["moment"], says)
-
-
-def _outputs(scene: ShortForm) -> list[Group]:
-    axes, about = _axes(scene), f"angular momentum about {POINTS[scene.point.kind]}"
-    said = (("angular_momentum", "kg m^2/s", about),
-            ("rate_in_axes", "N m", f"rate of {about}, seen from the axes"),
-            ("rate_absolute", "N m", f"rate of {about}, seen from the inertial frame"),
-            )  # fmt: skip
-    energy = "kinetic energy"
-    if scene.position is None and scene.point.kind == "centre_of_mass":
-        energy = "kinetic energy of turning about the centre of mass"
-    found = [_vector(name, unit, axes, None, says) for name, unit, says in said]
-    found.append(Group("kinetic_energy", ("kinetic_energy",), "J", "", None, None, energy))
-    if _by_formulas(scene.known["moment"]):
-        found.append(_moment(scene))
+def _group(scene: ShortForm, name: str) -> Group:
+    unit, axes, says = QUANTITIES[name]
     free = [c.name for c in scene.coordinates if c.free]
-    if free:
-        parts, says = tuple(f"{name}_dot" for name in free), f"rates of {', '.join(free)}"
-        found.append(Group("coordinate_rates", parts, "rad/s", "", *ANY, says))
-    if scene.position is not None:
-        found.append(_vector("position_rate", "m/s", "N", None, "rate of the position"))
-        found.append(_vector("velocity_rate", "m/s^2", "N", None, "rate of the velocity"))
-    if scene.axes.quaternion:
-        found.append(_quaternion("attitude_rate", "1/s", "rate of the attitude quaternion"))
-    return found
+    about = POINTS[scene.point.kind]
+    given, frame = _given(scene).get(name), axes or ("B" if scene.axes.fixed_in_body else "xyz")
+    low, high = (given.low, given.high) if given else ANY
+    components = [f"{name}_{part}" for part in (("w", *AXES) if axes == ATTITUDE else AXES)]
+    if axes == WHEELS:
+        each = [w.torque if name == "wheel_torques" else w.speed for w in scene.wheels]
+        low, high = min(i.low for i in each), max(i.high for i in each)
+        components = [i.name + "_dot" * (name == "wheel_accelerations") for i in each]
+    elif axes == NO_AXES:
+        components, frame = [f"{c}_dot" for c in free], ""
+    says = says.format(about=about, free=", ".join(free))
+    return Group(name, tuple(components), unit, frame, low, high, says)
+
+
+def _scalars(each: Iterable[Moving | Input]) -> Iterable[Group]:
+    return (Group(e.name, (e.name,), e.unit, "", e.low, e.high, e.meaning) for e in each)

@@ -10,7 +10,7 @@ from derive.scene.entry import Entry, Reading, entries_of
 from derive.scene.machine import Force, Frame, Gradient, Load, Member, Spring, Unknown, Weight
 from derive.scene.names import identifier, label
 from derive.scene.numbers import check_unit, ends_of, middle
-from derive.scene.scopes import Scalars
+from derive.scene.scalars import Scalars
 from derive.scene.table import Scope, Table, formula, shown, table
 from derive.scene.unit import Dimension, dimension
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
 
-from derive.scene.declaration import AXES, Input, Moving, ShortForm, Triple, Turning
+from derive.scene.declaration import AXES, Input, Kind, Moving, ShortForm, Triple, Turning
 from derive.scene.demands import carrier, of_one_body
 from derive.scene.formula import ONE, ZERO, Formula, apply, symbol
 from derive.scene.groups import groups, turns_freely
@@ -36,9 +36,8 @@ _ANY = (Fraction(-1), Fraction(1))
 
 def written_out(scene: ShortForm) -> Scene:
     """Return the machine that a scene of a single body is; names of scalars stay what they are."""
-    given = long_form(scene, "given")
-    sought = long_form(scene, "sought")
-    return replace(sought, wanted=scene.wanted, inverse=given, told=told(scene))
+    given = replace(long_form(scene, "given"), wanted=())
+    return replace(long_form(scene, "sought"), inverse=given, told=told(scene))
 
 
 def long_form(scene: ShortForm, motion: Motion) -> Scene:
@@ -54,20 +53,18 @@ def long_form(scene: ShortForm, motion: Motion) -> Scene:
              ("point_acceleration", scene.point.acceleration, "m/s^2"))  # fmt: skip
     for name, given, unit in known:
         if given is not None and given.formulas is None and (name, motion) != ("moment", "given"):
-            inputs += [_input(f"{name}_{a}", unit) for a in AXES]
+            inputs += [_driven(f"{name}_{a}", unit, "input") for a in AXES]
     wheels = [_wheel(scene, n, motion) for n in range(len(scene.wheels))]
     speeds += [speed for speed, _, _ in wheels]
-    inputs += [_input(w.torque.name, "N m") for w in scene.wheels]
+    inputs += [_driven(w.torque.name, "N m", "input") for w in scene.wheels]
     loads, unknowns = _loads(scene, motion)
     return Scene(
-        name=scene.name, title=scene.title, source="", text=scene.text,
-        parameters=scene.parameters, coordinates=tuple(coordinates), speeds=tuple(speeds),
-        inputs=tuple(inputs), frames=(_still(), _frame(scene)),
+        **scene.head, parameters=scene.parameters, coordinates=tuple(coordinates),
+        speeds=tuple(speeds), inputs=tuple(inputs), frames=(Frame(INERTIAL, ""), _frame(scene)),
         bodies=(_body(scene), *(member for _, member, _ in wheels)),
         loads=(*loads, *(load for _, _, load in wheels)), unknowns=unknowns, results=(),
         momentum=Place(FRAME, NOWHERE, (BODY, *(member.name for _, member, _ in wheels))),
-        about={}, steady=None, asked={}, wanted=(), form=scene.form, time_step=scene.time_step,
-        time=scene.time, emission=scene.emission, warnings=scene.warnings,
+        about={}, steady=None, asked={}, warnings=scene.warnings,
         demands=of_one_body(scene), merging=singular_attitude(scene), groups=groups(scene),
         spoken=spoken(scene, FRAME, BODY, f"{BODY}.axes"),
         marks={FRAME: "", f"{BODY}.axes": "B", BODY: "B"},
@@ -76,40 +73,31 @@ def long_form(scene: ShortForm, motion: Motion) -> Scene:
 
 def _omega(scene: ShortForm, motion: Motion) -> list[Moving]:
     """Return the components of omega: free, or with rates that are given."""
-    formulas = scene.known["angular_acceleration"].formulas
-    found = []
-    for k, a in enumerate(AXES):
-        name, rate = f"omega_{a}", f"omega_dot_{a}"
-        if motion == "sought":
-            found.append(replace(_moving(name, "rad/s", "speed", None), highest=rate))
-        else:
-            given = formulas[k] if formulas else Input(rate, "rad/s^2", *_ANY, "")
-            found.append(_moving(name, "rad/s", "speed", given))
-    return found
+    names = [(f"omega_{a}", f"omega_dot_{a}") for a in AXES]
+    if motion == "sought":
+        return [_free(name, "rad/s", "speed", None, rate) for name, rate in names]
+    inputs = [Input(rate, "rad/s^2", *_ANY, "") for _, rate in names]
+    rates: Sequence[Input | Formula] = scene.known["angular_acceleration"].formulas or inputs
+    return [_driven(n, "rad/s", "speed", r) for (n, _), r in zip(names, rates, strict=True)]
 
 
-def _moving(
-    name: str,
-    unit: str,
-    kind: Literal["coordinate", "speed", "input"],
-    rate: Input | Formula | None,
-) -> Moving:
-    free = rate is None and kind != "input"
-    return Moving(name, unit, *_ANY, "", kind, free, free, rate, None)
+def _free(name: str, unit: str, kind: Kind, rate: Input | None, highest: str = "") -> Moving:
+    return Moving(name, unit, *_ANY, "", kind, free=True, state=True, rate=rate, acceleration=None,
+                  highest=highest)  # fmt: skip
 
 
-def _input(name: str, unit: str) -> Moving:
-    return _moving(name, unit, "input", None)
+def _driven(name: str, unit: str, kind: Kind, rate: Input | Formula | None = None) -> Moving:
+    return Moving(name, unit, *_ANY, "", kind, free=False, state=False, rate=rate,
+                  acceleration=None)  # fmt: skip
 
 
 def _position() -> list[Moving]:
     """Return the coordinates of the mass centre, whose rates have names of their own."""
-    found = []
-    for a in AXES:
-        rate = Input(f"velocity_{a}", "m/s", *_ANY, "")
-        one = _moving(f"position_{a}", "m", "coordinate", rate)
-        found.append(replace(one, free=True, state=True, highest=f"velocity_rate_{a}"))
-    return found
+    return [
+        _free(f"position_{a}", "m", "coordinate", Input(f"velocity_{a}", "m/s", *_ANY, ""),
+              f"velocity_rate_{a}")
+        for a in AXES
+    ]  # fmt: skip
 
 
 def _coordinate(scene: ShortForm, c: Moving) -> Moving:
@@ -157,10 +145,6 @@ def _turned(v: Sequence[Formula], turn: Turning) -> list[Formula]:
     return found
 
 
-def _still() -> Frame:
-    return Frame(INERTIAL, "", (), None, "", NOWHERE)
-
-
 def _frame(scene: ShortForm) -> Frame:
     """Return the axes as a frame; its origin is the scene's point."""
     axes, given = scene.axes, scene.known["angular_velocity"].formulas
@@ -168,7 +152,7 @@ def _frame(scene: ShortForm) -> Frame:
     if axes.kind == "body":
         omega = given or tuple(symbol(f"omega_{a}") for a in AXES)  # type: ignore[assignment]
     attitude = "attitude" if axes.quaternion else ""
-    frame = Frame(FRAME, INERTIAL, axes.turned, omega, attitude, NOWHERE)
+    frame = Frame(FRAME, INERTIAL, axes.turned, omega, attitude)
     if scene.position is not None:
         x, y, z = (symbol(f"position_{a}") for a in AXES)
         return replace(frame, origin=(x, y, z))
@@ -190,35 +174,22 @@ def _body(scene: ShortForm) -> Member:
         for turn in reversed(body.turned):
             x, y, z = _turned(centre, turn)
             centre = (x, y, z)
-    return Member(
-        BODY, FRAME, body.mass, inertia, centre, body.axis, body.turned, body.spin, None, None,
-        "", {},
-    )  # fmt: skip
+    return Member(BODY, FRAME, body.mass, inertia, centre, body.axis, body.turned, body.spin)
 
 
 def _wheel(scene: ShortForm, n: int, motion: Motion) -> tuple[Moving, Member, Load]:
     """Return the speed of a wheel, the wheel, and what its motor and its bearing do to it."""
     wheel, (x, y, z) = scene.wheels[n], scene.wheels[n].axis
     s, u, C = symbol(wheel.speed.name), symbol(wheel.torque.name), wheel.axial
-    rate = Input(f"{wheel.speed.name}_dot", "rad/s^2", *_ANY, "")
-    speed = _moving(wheel.speed.name, "rad/s", "speed", None if motion == "sought" else rate)
+    rate, moves = Input(f"{wheel.speed.name}_dot", "rad/s^2", *_ANY, ""), wheel.speed.name
+    speed = _driven(moves, "rad/s", "speed", rate)
+    if motion == "sought":
+        speed = _free(moves, "rad/s", "speed", None)
     inertia = (C * x * x, C * y * y, C * z * z, -C * x * y, -C * x * z, -C * y * z)
     name = f"wheel {wheel.name}"
-    member = Member(
-        name,
-        FRAME,
-        ZERO,
-        inertia,
-        NOWHERE,
-        None,
-        (),
-        None,
-        None,
-        (s * x, s * y, s * z),
-        "",
-        {},
-        None if sorted(map(str, (x, y, z))) == ["0", "0", "1"] else (x, y, z),
-    )
+    spin_axis = None if sorted(map(str, (x, y, z))) == ["0", "0", "1"] else (x, y, z)
+    member = Member(name, FRAME, ZERO, inertia, NOWHERE, angular_velocity=(s * x, s * y, s * z),
+                    spin_axis=spin_axis)  # fmt: skip
     held = [symbol(_held(wheel.name, a)) for a in AXES]
     along = x * held[0] + y * held[1] + z * held[2]
     turning = u if motion == "sought" else along

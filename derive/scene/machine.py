@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Literal
 
 from derive.scene.declaration import Axis, Given, Moving, Parameter, Triple, Turning
-from derive.scene.formula import Formula
+from derive.scene.formula import ZERO, Formula
 
 INERTIAL = "inertial"
 LEFT_OVER = "0 where motion is steady"
@@ -34,10 +34,10 @@ class Frame:
 
     name: str
     parent: str
-    turned: tuple[Turning, ...]
-    angular_velocity: Triple | None
-    attitude: str
-    origin: Triple
+    turned: tuple[Turning, ...] = ()
+    angular_velocity: Triple | None = None
+    attitude: str = ""
+    origin: Triple = (ZERO, ZERO, ZERO)
     velocity: Triple | None = None
     acceleration: Triple | None = None
     rolls: Rolling | None = None
@@ -56,13 +56,13 @@ class Member:
     mass: Formula | None
     inertia: Entries
     centre: Triple
-    axis: Axis | None
-    turned: tuple[Turning, ...]
-    spin: Formula | None
-    axial_speed: Formula | None
-    angular_velocity: Triple | None
-    look: str
-    lengths: Mapping[str, Formula]
+    axis: Axis | None = None
+    turned: tuple[Turning, ...] = ()
+    spin: Formula | None = None
+    axial_speed: Formula | None = None
+    angular_velocity: Triple | None = None
+    look: str = ""
+    lengths: Mapping[str, Formula] = field(default_factory=dict)
     spin_axis: Triple | None = None
 
 

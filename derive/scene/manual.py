@@ -29,6 +29,7 @@ def _shape(shape: str) -> str:
 
 
 TABLES: Mapping[str, tuple[Entry, ...]] = {
+    "The file, above its first table": entries.FILE,
     "`[parameters]` NAME": entries.PARAMETER,
     "`[coordinates]` NAME": entries.COORDINATE,
     "`[speeds]` NAME": entries.SPEED,

@@ -3,12 +3,14 @@
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
 
 from derive.scene.bodies import read_member
 from derive.scene.declaration import Input, SceneError
 from derive.scene.demands import of_bodies
-from derive.scene.entries import MOMENTUM, STEADY, TIME, TIME_STEP
-from derive.scene.entry import Reading, entries_of
+from derive.scene.entries import FILE, MOMENTUM, STEADY, TIME, TIME_STEP
+from derive.scene.entry import REQUIRED, Entry, Reading, entries_of
 from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.frames import read_frames
 from derive.scene.loads import read_loads
@@ -24,17 +26,29 @@ from derive.scene.results import (
     read_results,
     written_out,
 )
-from derive.scene.scalars import read_scalars
-from derive.scene.scopes import PER_SECOND, Scalars
-from derive.scene.table import Scope, Table, formula, keys, several, table, text
+from derive.scene.scalars import PER_SECOND, Scalars, read_scalars
+from derive.scene.table import THE_FILE, Scope, Table, formula, keys, several, table
 from derive.scene.unit import BESIDE_SI, dimension, misnamed, spelled
-from derive.scene.wanted import moves, read_emission, read_form
+from derive.scene.wanted import moves
 
-TABLES = (
-    "parameters", "coordinates", "speeds", "inputs", "frames", "bodies", "loads", "results",
-    "angular_momentum", "linearised", "steady", "motion",
-)  # fmt: skip
-OF_ONE_BODY = ("body", "axes", "wheels", "point", "known", "position")
+
+@dataclass(frozen=True)
+class Form:
+    """Tables of a form, first the one it needs; of the other, and why not; entries of [motion]."""
+
+    tables: tuple[str, ...]
+    foreign: tuple[str, ...]
+    rule: str
+    motion: tuple[Entry, ...]
+
+
+SCALARS = ("parameters", "coordinates", "speeds", "inputs", "motion")
+MACHINE = Form(
+    ("bodies", "frames", "loads", "results", "angular_momentum", "linearised", "steady", *SCALARS),
+    ("body", "axes", "wheels", "point", "known", "position"),
+    "is for a single body; with bodies and frames, use bodies, frames and loads",
+    (TIME_STEP,),
+)
 
 
 def is_machine(document: Mapping[str, object]) -> bool:
@@ -42,32 +56,47 @@ def is_machine(document: Mapping[str, object]) -> bool:
     return "bodies" in document or "frames" in document
 
 
-def read_machine(document: Mapping[str, object], name: str, source: str) -> Scene:
+def read_file(
+    document: dict[str, Any], name: str, source: str, form: Form
+) -> tuple[dict[str, Any], Mapping[str, Table]]:
+    """Return what a scene is called and how it is made, and its tables, empty where it has none."""
+    for key in form.foreign:
+        if key in document:
+            raise SceneError(f"table '{key}' {form.rule}")
+    if "wanted" not in document:
+        raise SceneError("the file needs 'wanted', above its first [table]")
+    rows = [Entry(key, "any", "", default={}) for key in form.tables]
+    rows[0] = replace(rows[0], default=REQUIRED)
+    said = entries_of(Table(THE_FILE, document), (*FILE, *rows), Reading())
+    own = {key: said.pop(key) for key in form.tables}
+    part = {key: table(value, key) for key, value in own.items() if key != "wheels"}
+    times = entries_of(Table("motion", {}), (TIME_STEP, TIME), Reading())
+    times |= entries_of(part["motion"], form.motion, Reading())
+    head = {"name": name, "text": source, **said, **times, "title": said["title"] or name}
+    return head, part
+
+
+def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
     """Return the machine of a parsed TOML document, checked table by table."""
-    part = _tables(document)
+    head, part = read_file(document, name, source, MACHINE)
     scalars = read_scalars(part)
     frames = read_frames(part["frames"], scalars, tuple(part["bodies"].entries))
     bodies = _bodies(part["bodies"], frames, scalars)
     loads, unknowns = read_loads(part["loads"], scalars, frames, bodies)
     results = read_results(part["results"], scalars, unknowns)
     distinct(_declared(scalars, unknowns, results))
-    asked = read_asked(document["wanted"], scalars, unknowns, results)
+    asked = read_asked(head.pop("wanted"), scalars, unknowns, results)
     distinct([*_declared(scalars, (), ()), *_vectors(unknowns, asked)])
     steady = _steady(part["steady"], scalars, unknowns, results, asked)
     made = _made(scalars, frames, results, asked, steady)
     distinct([*_declared(scalars, unknowns, results), *made])
     return Scene(
-        name=name, title=text(document.get("title", name), "title"),
-        source=text(document.get("source", "own"), "source"), text=source,
-        parameters=scalars.parameters, coordinates=scalars.coordinates,
+        **head, parameters=scalars.parameters, coordinates=scalars.coordinates,
         speeds=scalars.speeds, inputs=scalars.inputs,
         frames=frames, bodies=bodies, loads=loads, unknowns=unknowns, results=results,
         momentum=_momentum(part["angular_momentum"], frames, bodies, scalars),
         about=_about(part["linearised"], scalars),
-        steady=steady, asked=asked, wanted=tuple(asked), form=read_form(document),
-        emission=read_emission(document), demands=of_bodies(bodies),
-        **entries_of(part["motion"], (TIME_STEP,), Reading()),
-        **entries_of(Table("motion", {}), (TIME,), Reading()),
+        steady=steady, asked=asked, wanted=tuple(asked), demands=of_bodies(bodies),
         warnings=(*_unused(scalars, source), *_doubts(bodies, scalars),
                   *_misnamed(scalars, results)),
     )  # fmt: skip
@@ -79,19 +108,6 @@ def _misnamed(scalars: Scalars, results: tuple[Result, ...]) -> list[str]:
     named += [(q.name, q.unit) for q in scalars.moving]
     named += [(q.name, q.unit) for q in results]
     return [doubt for name, unit in named if (doubt := misnamed(name, unit))]
-
-
-def _tables(document: Mapping[str, object]) -> Mapping[str, Table]:
-    """Return the tables of a machine's file, empty where it has none; refuse another kind's."""
-    for key in OF_ONE_BODY:
-        if key in document:
-            rule = "is for a single body; with bodies and frames, use bodies, frames and loads"
-            raise SceneError(f"table '{key}' {rule}")
-    if "wanted" not in document:
-        raise SceneError("the file needs 'wanted', above its first [table]")
-    keys(Table("the file", document), ("wanted", "bodies"),
-         (*TABLES, "title", "source", "form", "emission"))  # fmt: skip
-    return {key: table(document.get(key, {}), key) for key in TABLES}
 
 
 def _bodies(given: Table, frames: tuple[Frame, ...], scalars: Scalars) -> tuple[Member, ...]:

@@ -10,7 +10,7 @@ from derive.scene.formula import Formula, substitute
 from derive.scene.loads import MARK, unknown_units
 from derive.scene.machine import Result, Unknown
 from derive.scene.names import functions, identifier
-from derive.scene.scopes import Scalars, unknown_rates
+from derive.scene.scalars import Scalars, unknown_rates
 from derive.scene.table import Scope, Table, measured, shown, text
 from derive.scene.unit import BESIDE_SI, NONE, Dimension, UnitError, dimension, spelled
 from derive.scene.wanted import JACOBIAN, OF_MACHINES, resembling

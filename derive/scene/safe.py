@@ -55,7 +55,7 @@ def negative(part: Formula, ranges: Ranges) -> Point | None:
     used = symbols(part)
     if any(name not in ranges for name in used):
         return None
-    return _broken(part, {name: ranges[name] for name in used})
+    return _place("radicand", part, {name: ranges[name] for name in used})
 
 
 def values_of(formula: Formula, ranges: Ranges) -> list[float]:
@@ -123,7 +123,7 @@ def _require(label: str, kind: str, part: Formula, ranges: Ranges) -> None:
             raise SceneError(f"{label}: the {kind} '{brief(part)}' is 0 whatever its symbols are")
         return
     box = {name: ranges[name] for name in used}
-    place = _broken(part, box) if kind == "radicand" else _zero(part, box)
+    place = _place(kind, part, box)
     if place is None:
         return
     where = at_place(place)
@@ -166,27 +166,18 @@ def _points(box: Ranges) -> Iterator[Point]:
         yield {n: random.uniform(*ends) for n, ends in box.items()}
 
 
-def _broken(part: Formula, box: Ranges) -> Point | None:
-    """Return a place where a radicand is negative, None if there is none or none was found."""
-    for point in _points(box):
-        found, size = _sized(part, point)
-        if found < -ROUNDING * size:
-            return point
-    return _searched(part, box, lambda ends: ends.a >= 0, lambda x, size: x < -ROUNDING * size)
-
-
-def _zero(part: Formula, box: Ranges) -> Point | None:
-    """Return a place where a divisor vanishes, None if there is none or none was found."""
+def _place(kind: str, part: Formula, box: Ranges) -> Point | None:
+    """Return a place where a radicand is negative or a divisor vanishes, None if none is found."""
     signs: dict[bool, Point] = {}
     for point in _points(box):
         found, size = _sized(part, point)
-        if abs(found) <= ROUNDING * size:
+        if found < -ROUNDING * size if kind == "radicand" else abs(found) <= ROUNDING * size:
             return point
         if not math.isnan(found):
             signs.setdefault(found > 0, point)
-    if len(signs) == 2:
+    if kind != "radicand" and len(signs) == 2:
         return _between(part, signs[False], signs[True])
-    return _searched(part, box, lambda ends: 0 not in ends, None)
+    return _searched(kind, part, box)
 
 
 def _between(part: Formula, below: Point, above: Point) -> Point:
@@ -200,31 +191,31 @@ def _between(part: Formula, below: Point, above: Point) -> Point:
     return below
 
 
-def _searched(part: Formula, box: Ranges, safe: Any, broken: Any) -> Point | None:
+def _searched(kind: str, part: Formula, box: Ranges) -> Point | None:
     """Return a place that breaks the rule, found by halving the boxes that are not proved safe.
 
-    broken : tells it of a value and the size of its terms; None if a smallest box tells it
+    A radicand is negative at the middle of a box; that a divisor is 0 a smallest box tells.
     """
     waiting = [box]
     for _ in range(BOXES):
         if not waiting:
             return None
         now = waiting.pop()
-        if safe(evaluate(part, {n: iv.mpf(ends) for n, ends in now.items()}, INTERVALS)):
+        bounds = evaluate(part, {n: iv.mpf(ends) for n, ends in now.items()}, INTERVALS)
+        if bounds.a >= 0 if kind == "radicand" else 0 not in bounds:
             continue
         here = middle(now)
-        if broken is not None and broken(*_sized(part, here)):
+        found, size = _sized(part, here)
+        if kind == "radicand" and found < -ROUNDING * size:
             return here
         parts = {n: _part(now[n], box[n]) for n in now}
         widest = max(parts, key=parts.__getitem__, default="")
-        if not widest or parts[widest] < SMALLEST_BOX:
-            if broken is None:
-                return here
-            continue
-        low, high = now[widest]
-        cut = here[widest]
-        halves = [{**now, widest: (low, cut)}, {**now, widest: (cut, high)}]
-        waiting += sorted(halves, key=lambda half: _least(part, half), reverse=True)
+        if widest and parts[widest] >= SMALLEST_BOX:
+            (low, high), cut = now[widest], here[widest]
+            halves = [{**now, widest: (low, cut)}, {**now, widest: (cut, high)}]
+            waiting += sorted(halves, key=lambda half: _least(part, half), reverse=True)
+        elif kind != "radicand":
+            return here
     return None
 
 

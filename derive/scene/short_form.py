@@ -6,7 +6,7 @@ tables is in ``derive.scene.rules``.
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Literal, cast
+from typing import Any, Literal, cast
 
 from derive.scene.bodies import Kind, Substance, of_kind, of_shape
 from derive.scene.declaration import (
@@ -36,24 +36,26 @@ from derive.scene.entry import Reading, entries_of
 from derive.scene.escape import brief
 from derive.scene.formula import ZERO
 from derive.scene.names import distinct
-from derive.scene.scalars import of_one_body
-from derive.scene.scopes import Scalars
+from derive.scene.reader import SCALARS, Form, read_file
+from derive.scene.scalars import Scalars, of_one_body
 from derive.scene.shape import SHAPES, moved
-from derive.scene.table import Scope, Table, keys, nearest, shown, table, text
+from derive.scene.table import Scope, Table, keys, nearest, shown, table
 from derive.scene.unit import ANGULAR_VELOCITY, LENGTH, NONE, VELOCITY, Dimension
-from derive.scene.wanted import attitudes_only, read_emission, read_form, read_wanted
+from derive.scene.wanted import attitudes_only, read_wanted
 
-TABLES = (
-    *("parameters", "coordinates", "speeds", "inputs", "axes", "body", "point", "known"),
-    *("position", "motion"),
+ONE_BODY = Form(
+    ("body", "axes", "wheels", "point", "known", "position", *SCALARS),
+    ("frames", "bodies", "loads"),
+    "is for machines: a file that has it needs bodies, not a body",
+    (TIME_STEP, TIME),
 )
-LATER = ("frames", "bodies", "loads")
 
 
-def read_scene(document: dict[str, object], name: str, source: str) -> ShortForm:
+def read_scene(document: dict[str, Any], name: str, source: str) -> ShortForm:
     """Return the scene of a parsed TOML document, checked table by table."""
-    _top_level(document)
-    part = {key: table(document.get(key, {}), key) for key in TABLES}
+    if "body" not in document and attitudes_only(document.get("wanted")):
+        document["body"] = {"kind": "spherical", "moment": 1}  # nothing asks about it
+    head, part = read_file(document, name, source, ONE_BODY)
     scalars = of_one_body(part)
     wheels = _wheels(document.get("wheels", []), scalars)
     distinct(_declared(scalars, wheels))
@@ -63,12 +65,8 @@ def read_scene(document: dict[str, object], name: str, source: str) -> ShortForm
     state = _state(axes, "position" in document)
     loads = Scope({**scope.dimensions, **state}, scope.others, scope.rule)
     by = Reading({"motions": scalars.motions, "known": scope, "loads": loads})
-    times = entries_of(part["motion"], (TIME_STEP, TIME), by)
     point = _point(part["point"], scope)
     return ShortForm(
-        name=name,
-        title=text(document.get("title", name), "title"),
-        text=source,
         parameters=scalars.parameters,
         coordinates=scalars.coordinates,
         speeds=scalars.speeds,
@@ -80,27 +78,9 @@ def read_scene(document: dict[str, object], name: str, source: str) -> ShortForm
         known=entries_of(part["known"], KNOWN, by),
         position=place.get("position"),
         velocity=place.get("velocity"),
-        wanted=read_wanted(document["wanted"]),
-        form=read_form(document),
-        emission=read_emission(document),
-        time_step=times["time_step"],
-        time=times["time"],
+        head={**head, "source": "", "wanted": read_wanted(head["wanted"])},
         warnings=(),
     )
-
-
-def _top_level(document: dict[str, object]) -> None:
-    for key in document:
-        if key in LATER:
-            rule = "is for machines: a file that has it needs bodies, not a body"
-            raise SceneError(f"table '{key}' {rule}")
-    if "wanted" not in document:
-        raise SceneError("the file needs 'wanted', above its first [table]")
-    if "body" not in document and attitudes_only(document["wanted"]):
-        document["body"] = {"kind": "spherical", "moment": 1}  # nothing asks about it
-    said = ("title", "source", "form", "emission")
-    optional = (*(name for name in TABLES if name != "body"), "wheels", *said)
-    keys(Table("the file", document), ("wanted", "body"), optional)
 
 
 def _axes(given: Table, scalars: Scalars) -> Axes:

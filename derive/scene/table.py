@@ -51,6 +51,8 @@ class Table:
 
     def of(self, key: str) -> str:
         """Return what an entry is called in a sentence."""
+        if self.label == THE_FILE:
+            return key
         apart = ": " if self.label.partition(" ")[0] in SCALARS else "."
         return f"{self.label}{apart}{key}"
 

@@ -1,11 +1,10 @@
 """What a scene may ask for, and in what form: functions of the lecture, motions, attitudes."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from itertools import permutations
-from typing import Literal
 
 from derive.scene.declaration import SceneError
-from derive.scene.table import nearest, shown, word
+from derive.scene.table import nearest, shown
 
 EQUATIONS = (
     "angular_momentum",
@@ -89,12 +88,6 @@ def resembling(name: str, known: Iterable[str]) -> str:
     return nearest(name, known)
 
 
-def read_form(document: Mapping[str, object]) -> Literal["fast", "accurate"]:
-    """Return how accurate the wanted functions are to be."""
-    said = word(document.get("form", "fast"), "form", ("fast", "accurate"))
-    return "accurate" if said == "accurate" else "fast"
-
-
 def check_form(wanted: Iterable[str], form: str, emission: str) -> None:
     """Refuse the accurate form for steps that have none; formulas for attitudes need none."""
     moving = [name for name in wanted if moves(name)]
@@ -117,12 +110,6 @@ def _own_way(name: str) -> str:
     if name in COMPENSATED or name == "step_dmv":
         return "carries what rounding leaves already"
     return "is a closed form of its own" if name == "flow_exact" else "runs loops over its series"
-
-
-def read_emission(document: Mapping[str, object]) -> Literal["fast", "compact"]:
-    """Return whether steps are to be printed as they run fastest, or as short loops."""
-    said = word(document.get("emission", "fast"), "emission", ("fast", "compact"))
-    return "compact" if said == "compact" else "fast"
 
 
 def attitudes_only(value: object) -> bool:

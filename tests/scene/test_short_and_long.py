@@ -80,6 +80,6 @@ def test_a_body_in_short_form_is_the_body_in_long_form(case: tuple[str, str]) ->
 def test_a_body_that_is_read_otherwise_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     right = long_form.carrier
     monkeypatch.setattr(long_form, "carrier", lambda s: (*right(s)[1::-1], *right(s)[2:]))
-    text = short_of("free_body").text
+    text = short_of("free_body").head["text"]
     made = library(parse_scene(text, "free_body"))
     assert gap(made, "free_body", "acceleration") > AGREE

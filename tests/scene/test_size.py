@@ -30,7 +30,7 @@ def test_units_are_read_in_proportion_to_the_coordinates(monkeypatch: pytest.Mon
             calls += 1
             return dimension(spelling)
 
-        for module in ("scalars", "scopes", "results", "table"):
+        for module in ("scalars", "results", "table"):
             monkeypatch.setattr(import_module(f"derive.scene.{module}"), "dimension", counted)
         parse_scene(chain(count), "chain")
         found.append(calls)
