@@ -37,7 +37,8 @@ class Language:
     declared             : arrays, tables and rows
     carried              : the lines before a loop that carries values, and those that end a turn
     head, end            : what opens a loop or a choice, and what closes it
-    whole, same          : a counter as a value; the pattern of one where two counters are the same
+    whole, same          : a counter as a value, in parentheses or a call, for it may be a sum; the
+                           pattern of one where two counters are the same
     """
 
     text: Callable[[Operand], str]

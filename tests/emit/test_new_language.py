@@ -55,7 +55,7 @@ EVERY_KIND = Program(
         Arrays((("a", (5,)), ("b", (3, 3)))),
         Row("r", ("x", Fraction(1, 3), Fraction(2))),
         Loop("k", at(""), at("", 5), (
-            Assign(Element("a", (at("k"),)), Whole(at("k", 1)), "", ""),
+            Assign(Element("a", (at("k"),)), Term("div", ("x", Whole(at("k", 1))))),
             Even("k", "half", (
                 Assign(Element("a", (at("k"),)),
                        Term("mul", (Element("r", (at("half"),)), Term("sub", ("x", Fraction(1))))),
