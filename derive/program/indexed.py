@@ -135,6 +135,11 @@ class Loop:
     then: tuple[str | Fraction, ...] = ()
     done: str | Fraction | None = None
 
+    def __post_init__(self) -> None:
+        """Refuse a loop that may end early and changes what it does not carry."""
+        if self.done is not None and any(isinstance(line, Indexed) for line in self.body):
+            raise ValueError("a loop that ends when something is done must carry what it changes")
+
     def turns(self, counters: Counters, tables: Tables) -> Iterator[dict[str, int]]:
         """Yield the counters of each turn."""
         first, last = self.first.at(counters, tables), self.last.at(counters, tables)

@@ -49,7 +49,7 @@ def at(counter: str, plus: int = 0, table: str = "") -> Index:
 
 
 EVERY_KIND = Program(
-    "every_kind", "", (GIVEN,), outputs("power", "sum", "last", "root"),
+    "every_kind", "", (GIVEN,), outputs("power", "sum", "last", "root", "carried"),
     (
         Integers("order", (2, 0, 1)),
         Arrays((("a", (5,)), ("b", (3, 3)))),
@@ -79,10 +79,14 @@ EVERY_KIND = Program(
         Loop("", at(""), at("", 9), (
             Op("w", "mul", ("y", "z")), Op("small", "less", ("w", Fraction(1, 100))),
         ), carried=("y", "z"), start=("start", Fraction(1)), then=("z", "w"), done="small"),
+        Loop("k", at("", 1), at("", 5), (
+            Assign(Element("a", (at("k"),)), Term("mul", (Element("a", (at("k", -1),)), "s"))),
+            Op("t", "add", ("s", "c")),
+        ), carried=("c", "s"), start=("x", Fraction(1, 2)), then=("s", "t")),
         Op("size", "abs", ("y",)),
         Op("root", "sqrt", ("size",)),
     ),
-    ("z", "total", "a[4]", "root"),
+    ("z", "total", "a[4]", "root", "s"),
 )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ import pytest
 from derive.emit.c.text import body
 from derive.emit.casadi_text import plain_lines
 from derive.program.arithmetic import working
-from derive.program.indexed import Index, Loop
+from derive.program.indexed import Assign, Index, Loop
 from derive.program.operations import at_most, less, select
 from derive.program.precision import F32, F64
 from derive.program.program import Line, Op, Program, Quantity
@@ -109,6 +109,21 @@ def test_a_loop_ends_when_it_is_done_and_means_the_same_unrolled(precision) -> N
 
 def _longer(line: Line) -> Line:
     return replace(line, last=Index(plus=2 * line.last.plus)) if isinstance(line, Loop) else line
+
+
+def test_a_loop_that_ends_early_changes_only_what_it_carries() -> None:
+    change = Assign("total", "x", "add")
+    with pytest.raises(ValueError, match="must carry what it changes"):
+        Loop(
+            "",
+            Index(),
+            Index(plus=3),
+            (change,),
+            carried=("x",),
+            start=("y",),
+            then=("x",),
+            done="z",
+        )
 
 
 def test_a_loop_counts_all_its_passes() -> None:

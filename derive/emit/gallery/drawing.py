@@ -12,6 +12,7 @@ from typing import Any
 from mpmath import mp, mpf
 
 from derive.emit.page.words import told
+from derive.emit.templates import TEMPLATES
 from derive.scene import Input, Scene
 from derive.scene.formula import ZERO
 from derive.scene.machine import INERTIAL, Force
@@ -120,19 +121,7 @@ def _svg(lines: Sequence[Line], says: str) -> str:
     scale = min((WIDTH - 2 * MARGIN) / wide, (HEIGHT - 2 * MARGIN) / high)
     left = (WIDTH - scale * wide) / 2 - scale * min(xs)
     top = (HEIGHT - scale * high) / 2 - scale * min(ys)
-    placed = [[(left + scale * x, top + scale * y) for x, y in line] for line in flat]
-    parts = [_drawn(line, own) for line, own in zip(lines, placed, strict=True)]
-    head = f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{says}">'
-    return "\n".join([head, *parts, "</svg>"])
-
-
-def _drawn(line: Line, points: Sequence[tuple[Any, Any]]) -> str:
-    text = " ".join(f"{float(x):.1f},{float(y):.1f}" for x, y in points)
-    shown = f'<polyline class="{line.kind}" points="{text}"/>'
-    if line.kind == "frame" and line.label:
-        x, y = points[-1]
-        shown += f'<text x="{float(x):.1f}" y="{float(y):.1f}">{line.label}</text>'
-    if line.kind == "force":
-        x, y = points[-1]
-        shown += f'<circle class="force" cx="{float(x):.1f}" cy="{float(y):.1f}" r="2"/>'
-    return shown
+    placed = [[(float(left + scale * x), float(top + scale * y)) for x, y in line] for line in flat]
+    return TEMPLATES.get_template("drawing.svg.jinja").render(
+        size=(WIDTH, HEIGHT), says=says, lines=list(zip(lines, placed, strict=True))
+    )
