@@ -31,7 +31,7 @@ def short_of(name: str) -> ShortForm:
     return short((CATALOGUE / f"{name}.toml").read_text(encoding="utf-8"))
 
 
-SHORT = tuple(name for name in catalogue() if scene_of(name).groups is not None)
+SHORT = tuple(name for name in catalogue() if scene_of(name).inverse is not None)
 """Scenes of the catalogue in short form."""
 
 

@@ -22,6 +22,9 @@ WITHOUT_SYMPY = (
     *("lower/schedule", "lower/derivative", "lower/forms", "lower/stage"),
 )
 """Folders and modules that must not know the symbols."""
+MOST_ASKERS = 10
+"""Modules outside mechanics that may import it: what others need of it, a library tells them."""
+FORMS = ("ShortForm", "is_machine", "short_form", "long_form", "read_scene", "read_machine")
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "derive"
 TESTS = ROOT / "tests"
@@ -68,6 +71,47 @@ def faults(name: str, text: str) -> list[str]:
 
 def test_a_module_imports_only_from_its_floor_or_below() -> None:
     assert [f for p in FILES for f in faults(room(p), p.read_text(encoding="utf-8"))] == []
+
+
+def askers() -> list[str]:
+    """Return the modules outside mechanics that import from it."""
+    return [_dotted(p) for p in FILES if room(p) != "mechanics" and asks(p.read_text("utf-8"))]
+
+
+def asks(text: str) -> bool:
+    return any(m.split(".")[:2] == ["derive", "mechanics"] for m in imported(text))
+
+
+def test_few_modules_outside_mechanics_import_it() -> None:
+    assert len(askers()) <= MOST_ASKERS, askers()
+
+
+def test_a_module_that_imports_mechanics_is_counted_however_it_does() -> None:
+    for line in ("from derive import mechanics", "import derive.mechanics.sheet as s",
+                 "if T:\n    from derive.mechanics.problem import Problem"):  # fmt: skip
+        assert asks(line)
+    assert not asks("from derive.lower.arrange import plan")
+
+
+def forms_known(text: str) -> set[str]:
+    """Return what a source text names of the two forms that a scene may be written in."""
+    names = {getattr(n, "id", getattr(n, "attr", "")) for n in ast.walk(ast.parse(text))}
+    return {*FORMS} & {*names, *(part for m in imported(text) for part in m.split("."))}
+
+
+def test_no_room_but_the_scenes_knows_in_which_form_a_scene_was_written() -> None:
+    others = [p for p in FILES if room(p) != "scene"]
+    assert {str(p): forms_known(p.read_text("utf-8")) for p in others} == {
+        str(p): set() for p in others
+    }
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["from derive.scene.short_form import read_scene", "x = ShortForm()", "scene.is_machine"],
+)
+def test_a_module_that_asks_in_which_form_a_scene_was_written_is_found(text: str) -> None:
+    assert forms_known(text) != set()
 
 
 def knows_sympy(path: Path) -> bool:

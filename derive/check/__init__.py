@@ -75,13 +75,13 @@ def check_library(
             yield verdict(one, "all", "compiles without warnings", "holds", says)
             yield from _checks(one, found, workshop, ordinary)
     except CompilerError as error:
-        name = made.known.scene.name
+        name = made.scene.name
         yield Verdict(name, "all", "", "compiles without warnings", "FAILS", str(error))
 
 
 def as_made(made: Library, found: Files) -> Verdict:
     """Return whether the files that lie there are what the scene makes."""
-    name, check_ = made.known.scene.name, "lies as it is made"
+    name, check_ = made.scene.name, "lies as it is made"
     if found.origin == "made in memory":
         return Verdict(name, "all", "", check_, "skipped", "no files of the scene lie there")
     says = f"{found.origin}: as made"
@@ -92,7 +92,7 @@ def as_made(made: Library, found: Files) -> Verdict:
 
 def proof(made: Library) -> Verdict:
     """Return whether the programs satisfy the lecture's equations exactly."""
-    name = made.known.scene.name
+    name = made.scene.name
     if not made.functions:
         says = "nothing is wanted that the lecture's equations state: motions are measured"
         return Verdict(name, "all", "exact", "satisfies the lecture", "skipped", says)
@@ -106,7 +106,7 @@ def proof(made: Library) -> Verdict:
 
 def interface(made: Library, found: Files) -> Verdict:
     """Return whether the JSON describes the functions that the scene asks for."""
-    name, says = made.known.scene.name, ""
+    name, says = made.scene.name, ""
     described = {f["name"]: f["arguments"] for f in found.manifest["functions"]}
     programs = made.emitted()
     for program in programs:
@@ -122,7 +122,7 @@ def interface(made: Library, found: Files) -> Verdict:
 
 
 def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterator[Verdict]:
-    drawn = samples(one.library.known, one.precision, ordinary, CORNERS)
+    drawn = samples(one.library.mechanism, one.precision, ordinary, CORNERS)
     each = with_motion(one.library, drawn.each, one.precision)
     few = spread(each)
     printed = {f["name"]: f.get("error", {}) for f in found.manifest["functions"]}

@@ -16,9 +16,10 @@ import numpy as np
 
 from derive.check.emitted import Emitted, errors_of, from_parameters, inputs, verdict
 from derive.check.verdict import JUDGED, Verdict
-from derive.program.arithmetic import LIBM, Table, working
+from derive.program.arithmetic import LIBM, working
 from derive.program.largest import largest
 from derive.program.program import Program
+from derive.scene.formula import Arithmetic
 from derive.verify.draw import Field
 from derive.verify.measure import Errors, replayed, should, should_move
 from derive.verify.sample import Sample
@@ -51,12 +52,12 @@ def same_values(a: Sequence[float], b: Sequence[float]) -> bool:
     return same_bits([x + 0.0 for x in a], [x + 0.0 for x in b])
 
 
-def linked_arithmetic(emitted: Emitted) -> Table:
+def linked_arithmetic(emitted: Emitted) -> Arithmetic:
     """Return the file's arithmetic with the sine and cosine that the C is linked with."""
     loaded, dtype = ctypes.CDLL(str(emitted.shared)), emitted.precision.dtype
-    return working(dtype) | {
-        name: _linked(loaded, emitted.precision.functions[name], dtype) for name in sorted(LIBM)
-    }
+    functions = emitted.precision.functions
+    linked = {name: _linked(loaded, functions[name], dtype) for name in sorted(LIBM)}
+    return {**working(dtype), **linked}
 
 
 def _linked(loaded: ctypes.CDLL, symbol: str, dtype: type) -> Callable[..., Any]:
@@ -75,8 +76,8 @@ def _linked(loaded: ctypes.CDLL, symbol: str, dtype: type) -> Callable[..., Any]
 def replay(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether the C of every function gives the bits of its program."""
     uses_libm = any(kind in LIBM for f in emitted.library.printed() for kind in f.count())
-    table = linked_arithmetic(emitted) if uses_libm else working(emitted.precision.dtype)
-    expected = replayed(emitted.library, each, emitted.precision, table)
+    own = linked_arithmetic(emitted) if uses_libm else working(emitted.precision.dtype)
+    expected = replayed(emitted.library, each, emitted.precision, own)
     for program in emitted.library.printed():
         rows = np.array([np.broadcast_to(r, len(each)) for r in expected[program.name]]).T
         worst = [

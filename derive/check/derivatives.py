@@ -58,7 +58,7 @@ def derivatives(library: Library, module: Any, each: Sequence[Sample]) -> Iterat
         built = getattr(module, program.name)()
         wrong, missing = compared(library, program, built, ordinary)
         says = "; ".join(wrong[:1] or ["first and second ones", *missing[:3]])
-        scene, outcome = library.known.scene.name, JUDGED[not wrong]
+        scene, outcome = library.scene.name, JUDGED[not wrong]
         yield Verdict(scene, program.name, "f64", "CasADi's derivatives", outcome, says)
 
 

@@ -12,7 +12,6 @@ from typing import Any
 
 from flint import arb
 
-from derive.mechanics.words import rate_of_each
 from derive.scene import Scene
 from derive.scene.declaration import Axis, Triple, Turning
 from derive.scene.formula import ZERO, Formula, number, substitute, symbol
@@ -50,10 +49,6 @@ class Description:
     machine: Scene
     turn: Quaternion
     frames: frozenset[str]
-
-    @cached_property
-    def _rates(self) -> Mapping[str, str]:
-        return rate_of_each(self.machine)
 
     @cached_property
     def rows(self) -> list[list[Fraction]]:
@@ -94,8 +89,9 @@ class Description:
     def told_back(self, answers: Mapping[str, Any]) -> dict[str, Any]:
         """Return answers, in balls, with vectors and quaternions as the machine tells them."""
         found = dict(answers)
+        rates = self.machine.groups.rate_of_each()
         for q, (left, right) in self._attitudes():
-            parts = [self._rates[c] for c in q]
+            parts = [rates[c] for c in q]
             if parts[0] in answers:
                 first, last = (list(map(_ball, r)) for r in (_back(left), right))
                 turned = product(product(first, [answers[c] for c in parts]), last)

@@ -72,7 +72,7 @@ def errors_of(
 
 def verdict(one: Emitted, function: str, check: str, outcome: Outcome, says: str) -> Verdict:
     """Return a verdict on a function in C, or on ``all``."""
-    name = one.library.known.scene.name
+    name = one.library.scene.name
     return Verdict(name, function, one.precision.name, check, outcome, says)
 
 
@@ -93,7 +93,7 @@ def files(library: Library, folder: Path, sampling: Sampling = SAMPLING) -> File
 
     Only figures are taken over from there, by the digest of all that they depend on.
     """
-    name = library.known.scene.name
+    name = library.scene.name
     measured = figures_of(library, Measuring(sampling, folder))
     made = scene_files(library, measured.each, measured.digest)
     texts = {path.partition("/")[2]: text for path, text in made.items()}
@@ -106,7 +106,7 @@ def files(library: Library, folder: Path, sampling: Sampling = SAMPLING) -> File
 
 def loaded(library: Library, found: Files, workshop: Path, with_: Compiler) -> Iterator[Emitted]:
     """Yield the compiled C of each precision; raises CompilerError at a warning."""
-    name = library.known.scene.name
+    name = library.scene.name
     for precision in PRECISIONS:
         own = {n: t for n, t in found.texts.items() if n.endswith((".c", ".h"))}
         shared = compiled(own, f"{name}_{precision.name}.c", workshop, with_)
@@ -116,7 +116,7 @@ def loaded(library: Library, found: Files, workshop: Path, with_: Compiler) -> I
 
 def casadi_module(library: Library, found: Files, workshop: Path) -> ModuleType:
     """Return the scene's CasADi file as a module."""
-    name = f"{library.known.scene.name}_casadi"
+    name = f"{library.scene.name}_casadi"
     return imported(name, found.texts[f"{name}.py"], workshop)
 
 

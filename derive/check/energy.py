@@ -39,7 +39,7 @@ Rates = Callable[[Sample, Mapping[str, Any]], Mapping[str, Any]]
 def energy_balance(made: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether every energy of a machine changes by the power of the loads that change it."""
     for program, names in _energies(made):
-        row = (made.known.scene.name, program.name, "exact", "power balance")
+        row = (made.scene.name, program.name, "exact", "power balance")
         try:
             rates = rates_of(made)
         except SceneError as error:
@@ -53,7 +53,7 @@ def emitted_balance(one: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     made = one.library
     forward = [f for f in made.functions if base_of(f) == RATES or _finds_accelerations(made, f)]
     for program, names in _energies(made):
-        row = (made.known.scene.name, program.name, one.precision.name, "power balance")
+        row = (made.scene.name, program.name, one.precision.name, "power balance")
         if not forward:
             yield Verdict(*row, "skipped", "no function that is wanted finds accelerations")
             continue
@@ -67,7 +67,7 @@ def _finds_accelerations(made: Library, program: Program) -> bool:
 
 def _highest(made: Library) -> dict[str, str]:
     """Return of which quantity each acceleration that may be found is the rate."""
-    scene = made.known.scene
+    scene = made.scene
     return {
         m.unknown: m.rate.name if isinstance(m.rate, Input) else m.name
         for m in (*scene.coordinates, *scene.speeds)
@@ -97,8 +97,8 @@ def _verdict(
 
 def rates_of(made: Library) -> Library | None:
     """Return programs that give the rates of a machine's states; None if it has no state."""
-    scene = made.known.scene
-    if not made.known.words.states:
+    scene = made.scene
+    if not made.vocabulary.states:
         return None
     if any(p.name == RATES for p in (*made.functions, *made.rates)):
         return made
@@ -110,14 +110,14 @@ def _exactly(rates: Library | None) -> Rates:
     if rates is None:
         return lambda _, __: {}
     program = next(p for p in (*rates.functions, *rates.rates) if base_of(p) == RATES)
-    states = [c for q in rates.known.words.states for c in q.components]
+    states = [c for q in rates.vocabulary.states for c in q.components]
     return lambda _, at: dict(zip(states, results(rates, program, at).values(), strict=False))
 
 
 def _emitted(one: Emitted, program: Program, others: Rates) -> Rates:
     """Return the rates that a function of C gives at a sample, and what others give besides."""
     highest = _highest(one.library)
-    states = [c for q in one.library.known.words.states for c in q.components]
+    states = [c for q in one.library.vocabulary.states for c in q.components]
 
     def rates(sample: Sample, at: Mapping[str, Any]) -> Mapping[str, Any]:
         names, found = component_names(program), map(arb, one.results(program, sample))
@@ -137,7 +137,7 @@ def power_gaps(made: Library, rates: Rates, program: Program, sample: Sample) ->
         if cloud is None:
             return []
         velocity = _velocities(cloud, at)
-        if cloud.machine is made.known.scene:
+        if cloud.machine is made.scene:
             velocity |= rates(sample, at)
         if not all(arb(v).is_finite() for v in velocity.values()):
             return [mpf("inf")]
@@ -157,8 +157,7 @@ def _in_balance(made: Library, program: Program, given: Mapping[str, Any]) -> An
 
     Where the motion is prescribed, loads that are known too cannot hold: those it needs do.
     """
-    known = made.known
-    for machine in (known.scene, known.posed(base_of(program)).scene):
+    for machine in (made.scene, made.scene.posed(base_of(program))):
         with mp.workdps(DIGITS):
             cloud = answers(machine, given)
         if cloud.contradiction <= AGREE:

@@ -36,7 +36,7 @@ def fresh(
         of = Field(library, precision)
         found: list[Worst] = []
         for done, found in sampled(of, SEED, samples, KEPT):  # noqa: B007 - the last is kept
-            told(f"{library.known.scene.name}: {precision.name}, {done} of {samples} samples")
+            told(f"{library.scene.name}: {precision.name}, {done} of {samples} samples")
         for program in library.printed():
             for place, (q, _) in enumerate(measured_outputs(program)):
                 own = [w for w in found if (w.function, w.output) == (program.name, q.name)]
@@ -57,5 +57,5 @@ def _verdict(
     if stated is not None and not holds:
         limit = f"no more than {MORE * stated:.3g} u" if stated <= ABSURD else f"below {ABSURD:g} u"
         says += f", and it must be {limit}"
-    scene = of.library.known.scene.name
+    scene = of.library.scene.name
     return Verdict(scene, program.name, of.precision.name, "stated error", JUDGED[holds], says)

@@ -37,7 +37,7 @@ def inlined(library: Library, module: Any, each: Sequence[Sample]) -> Iterator[V
                                 from_parameters(module, anew, program, s))
         ]  # fmt: skip
         says = f"{differ[0]} is not what it is elsewhere" if differ else f"{len(plain)} samples"
-        scene, outcome = library.known.scene.name, JUDGED[not differ]
+        scene, outcome = library.scene.name, JUDGED[not differ]
         yield Verdict(scene, program.name, "f64", "CasADi's inlined", outcome, says)
 
 

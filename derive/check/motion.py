@@ -31,7 +31,7 @@ def _exact(library: Library, each: Sequence[Sample]) -> Verdict:
     worst = largest(exactness(library, s.values) for s in each)
     says = f"relative error {worst:.1g} without rounding, {BITS} bits, {LEVELS} levels"
     outcome = JUDGED[worst <= EXACT]
-    return Verdict(library.known.scene.name, "flow_exact", "exact", "is the motion", outcome, says)
+    return Verdict(library.scene.name, "flow_exact", "exact", "is the motion", outcome, says)
 
 
 def _order(library: Library, name: str, each: Sequence[Sample]) -> Verdict:
@@ -40,7 +40,7 @@ def _order(library: Library, name: str, each: Sequence[Sample]) -> Verdict:
     claimed = f"claimed {found[0].claimed}, measured {measured}"
     says = f"in closed form, errors {measured}" if found[0].closed else claimed
     outcome = JUDGED[all(one.holds for one in found)]
-    return Verdict(library.known.scene.name, name, "exact", "order", outcome, says)
+    return Verdict(library.scene.name, name, "exact", "order", outcome, says)
 
 
 def step_slopes(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
@@ -53,5 +53,5 @@ def step_slopes(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
             where = f"d({worst.row})/d({worst.column})"
             says = f"{len(found)} slopes, largest gap {worst.gap:.1g} at {where}"
             outcome = JUDGED[worst.gap <= GAP]
-            name = library.known.scene.name
+            name = library.scene.name
             yield Verdict(name, program.name, "exact", "slopes", outcome, says)

@@ -8,22 +8,19 @@ from mpmath import mp, mpf
 
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library
-from derive.mechanics.mechanism import Mechanism
-from derive.mechanics.problem import Problem
-from derive.mechanics.words import MATRICES
 from derive.program.largest import largest
 from derive.scene import Input, Scene
 from derive.scene.formula import symbols
 from derive.scene.machine import Result
-from derive.scene.results import written_out
+from derive.scene.results import MATRICES, written_out
 from derive.verify.cloud import Answers, answers
 from derive.verify.cloud.series import DIGITS
 from derive.verify.cloud.small import at_rest, slopes
 from derive.verify.convergence import unit_attitude
-from derive.verify.equations import Equations, equations
+from derive.verify.equations import Equations, equations_of, stated
 from derive.verify.reference import BITS, reference
 from derive.verify.sample import Sample
-from derive.verify.solution import Known
+from derive.verify.solution import Solved
 
 AGREE = mpf(10) ** -25
 SECANTS = 60
@@ -33,26 +30,27 @@ SAME = 1e-60
 
 def clouds(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether every function of a scene has the answers of its cloud of particles."""
-    known = library.known
-    for base, fact in library.truths.items():
-        question = equations(known, fact)
+    scene = library.scene
+    for base, equations in stated(library).items():
+        outputs = library.problems[base].outputs
+        names = [c for q in outputs for c in q.components]
         worst, count = 0.0, 0
         for values in _where_it_lasts(library, each):
-            true = reference(question, values, ())
+            true = reference(equations, values, ())
             with mp.workdps(DIGITS):
                 given = {name: digits(x) for name, x in values.items()}
-            if base == "linearised" or fact.outputs[0].name in MATRICES:
-                gaps = _small(known.scene, given, true)
+            if base == "linearised" or outputs[0].name in MATRICES:
+                gaps = _small(scene, given, true)
             else:
-                gaps = _gaps(known.posed(base), given, fact, true)
+                gaps = _gaps(scene.posed(base), given, base, {name: true[name] for name in names})
             worst, count = largest([worst, *gaps]), count + len(gaps)
         if not count:
             says = "the cloud has no such number at these points"
-            yield Verdict(known.scene.name, base, "exact", "cloud of particles", "skipped", says)
+            yield Verdict(scene.name, base, "exact", "cloud of particles", "skipped", says)
             continue
         says = f"{count} numbers, {worst:.1g} apart, relative to the largest term"
         verdict = JUDGED[bool(worst < AGREE)]
-        yield Verdict(known.scene.name, base, "exact", "cloud of particles", verdict, says)
+        yield Verdict(scene.name, base, "exact", "cloud of particles", verdict, says)
 
 
 def _where_it_lasts(library: Library, each: Sequence[Sample]) -> Iterator[dict[str, Any]]:
@@ -63,29 +61,29 @@ def _where_it_lasts(library: Library, each: Sequence[Sample]) -> Iterator[dict[s
     """
     with ctx.workprec(BITS):
         balls = [unit_attitude(library, {c: arb(x) for c, x in s.values.items()}) for s in each]
-    steady = library.known.scene.steady
-    if steady is None or steady.vanishes is not None or "steady" not in library.truths:
+    steady = library.scene.steady
+    if steady is None or steady.vanishes is not None or "steady" not in library.problems:
         yield from balls
     elif len(steady.unknown) == 1:
-        question = equations(library.known, library.truths["steady"])
+        equations = equations_of(library.mechanism, library.problems["steady"])
         for moving in balls:
             values = moving | dict.fromkeys(_rates(library), arb(0))
-            root = _root(question, values, steady.unknown[0])
+            root = _root(equations, values, steady.unknown[0])
             if root is not None:
                 yield values | {steady.unknown[0]: root}
 
 
 def _rates(library: Library) -> list[str]:
     """Return the rates of a machine's free coordinates, which rest while motion is steady."""
-    coordinates = library.known.scene.coordinates
+    coordinates = library.scene.coordinates
     return [c.rate.name for c in coordinates if c.free and isinstance(c.rate, Input)]
 
 
-def _root(question: Equations, values: Mapping[str, Any], name: str) -> Any:
+def _root(equations: Equations, values: Mapping[str, Any], name: str) -> Any:
     """Return where the only residual vanishes, to a part in 10^60, by secants; None if nowhere."""
 
     def residual(x: Any) -> Any:
-        return reference(question, {**values, name: x}, ())["steady"].value.mid()
+        return reference(equations, {**values, name: x}, ())["steady"].value.mid()
 
     with ctx.workprec(BITS):
         last, here = values[name], (values[name] * arb("1.01")).mid()
@@ -101,41 +99,32 @@ def _root(question: Equations, values: Mapping[str, Any], name: str) -> Any:
 
 
 def _gaps(
-    known: Mechanism, given: Mapping[str, Any], fact: Problem, true: Mapping[str, Known]
+    scene: Scene, given: Mapping[str, Any], base: str, true: Mapping[str, Solved]
 ) -> list[Any]:
-    """Return how far each answer is from the cloud's, relative to the function's largest term."""
-    machine = known.scene
-    cloud = answers(machine, given)
-    lasts = machine.steady is not None and machine.steady.vanishes is None
-    if fact.name == "steady" and lasts:
+    """Return how far the answers in ``true`` are from the cloud's, relative to the largest term."""
+    cloud = answers(scene, given)
+    lasts = scene.steady is not None and scene.steady.vanishes is None
+    if base == "steady" and lasts:
         return [cloud.contradiction]  # at a root, the particles are in balance
     if lasts and cloud.contradiction > AGREE:
         return []
-    names = [c for q in fact.outputs for c in q.components]
-    return _apart(fact, true, of_cloud(known, cloud, fact.name, names))
-
-
-def _apart(fact: Problem, true: Mapping[str, Known], cloud: Mapping[str, Any]) -> list[Any]:
-    """Return how far what the cloud has is from each answer, relative to the largest term."""
-    names = [c for q in fact.outputs for c in q.components]
-    found = [cloud.get(name) for name in names]
+    found = of_cloud(scene, cloud, base, list(true))
     with mp.workdps(DIGITS):
-        scale = max([mpf(true[name].scale) for name in names] + [abs(x) for x in found if x] or [1])
+        own = [abs(x) for x in found.values() if x]
+        scale = max([mpf(one.scale) for one in true.values()] + own or [1])
         return [
             abs(digits(true[name].value) - value) / (scale or 1)
-            for name, value in zip(names, found, strict=True)
+            for name, value in found.items()
             if value is not None
         ]
 
 
-def of_cloud(
-    known: Mechanism, cloud: Answers, function: str, names: Sequence[str]
-) -> dict[str, Any]:
+def of_cloud(scene: Scene, cloud: Answers, function: str, names: Sequence[str]) -> dict[str, Any]:
     """Return the answers of a function that a cloud has, None for those that it has not."""
     if function == "state_rate":
-        states = (c for q in known.words.states for c in q.components)
+        states = (c for g in scene.groups.states for c in g.components)
         return {rate: cloud.rate(state) for rate, state in zip(names, states, strict=True)}
-    return {name: _of_cloud(known.scene, cloud, function, name) for name in names}
+    return {name: _of_cloud(scene, cloud, function, name) for name in names}
 
 
 def _of_cloud(machine: Scene, cloud: Answers, function: str, name: str) -> Any:
@@ -192,7 +181,7 @@ def digits(ball: Any) -> Any:
     return mpf(int(man)) * mpf(2) ** int(exp)
 
 
-def _small(machine: Scene, given: Mapping[str, Any], true: Mapping[str, Known]) -> list[Any]:
+def _small(machine: Scene, given: Mapping[str, Any], true: Mapping[str, Solved]) -> list[Any]:
     """Return how far M, D and K are from the slopes of the cloud's accelerations."""
     if not at_rest(machine, given):
         return []  # the given motion is none, for these values

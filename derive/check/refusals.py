@@ -29,7 +29,7 @@ def refusal(emitted: Emitted, each: Sequence[Sample]) -> Verdict:
     ):
         finite = all(map(isfinite, _made(emitted, values)["constants"]))
         ends = ends_of(values, emitted.precision, finite=finite)
-        says = fault(emitted.library.known.scene, values, emitted.precision, status, ends)
+        says = fault(emitted.library.scene, values, emitted.precision, status, ends)
         says = says or ("" if same == status else f"{status}, by the program {same}")
         bad += [f"{says} at {values}"] if says else []
     refused = sum(status != RIGHT for status in found)
@@ -40,7 +40,7 @@ def refusal(emitted: Emitted, each: Sequence[Sample]) -> Verdict:
 
 def _hostile(emitted: Emitted) -> list[dict[str, float]]:
     """Return hostile parameters for the scene's set-up, the same at every run."""
-    seed = f"derive: {emitted.library.known.scene.name} {emitted.precision.name} hostile"
+    seed = f"derive: {emitted.library.scene.name} {emitted.precision.name} hostile"
     return hostile(emitted.library.setup, emitted.precision, HOSTILE, Random(seed))  # noqa: S311
 
 

@@ -39,5 +39,5 @@ def near_a_sphere(one: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
 
 def _left_alone(one: Emitted, sample: Sample) -> Sample:
     """Return a sample on which nothing acts from outside."""
-    acts = {c: 0.0 for q in one.library.known.words.inputs for c in q.components}
+    acts = {c: 0.0 for q in one.library.vocabulary.inputs for c in q.components}
     return replace(sample, values=sample.values | acts)

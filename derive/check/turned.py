@@ -14,14 +14,13 @@ from derive.check.agreement import ABSURD, LARGEST_BOUND, MORE
 from derive.check.description import Description, relabelled, turned
 from derive.check.emitted import Emitted, errors_of, verdict
 from derive.check.verdict import JUDGED, Verdict
-from derive.mechanics.mechanism import Mechanism, mechanism, problem
-from derive.mechanics.words import MATRICES
 from derive.program.largest import largest
 from derive.program.program import Program, component_names
+from derive.scene import Scene
 from derive.scene.formula import symbols
-from derive.scene.results import written_out
+from derive.scene.results import MATRICES, written_out
 from derive.verify.draw import Field
-from derive.verify.equations import Equations, equations
+from derive.verify.equations import Equations, retold
 from derive.verify.measure import Expected, should
 from derive.verify.reference import BITS, reference
 from derive.verify.sample import Sample
@@ -32,7 +31,7 @@ Stated = Mapping[str, Mapping[str, Mapping[str, Mapping[str, Any]]]]
 
 def turned_axes(one: Emitted, each: Sequence[Sample], stated: Stated) -> Iterator[Verdict]:
     """Yield whether every function is what the machine told along other axes gives."""
-    scene = one.library.known.scene
+    scene = one.library.scene
     of = Field(one.library, one.precision)
     told = {"cyclic relabelling": relabelled(scene), "rotation of axes": turned(scene)}
     for check, description in told.items():
@@ -41,39 +40,36 @@ def turned_axes(one: Emitted, each: Sequence[Sample], stated: Stated) -> Iterato
             says = says if one.library.functions else "nothing is wanted that equations state"
             yield verdict(one, "all", check, "skipped", says)
             continue
-        anew = mechanism(description.told())
-        asked = {
-            base: None if _free_to_choose(anew, base) else equations(anew, problem(anew, base))
-            for base in one.library.truths
-        }
+        bases = [base for base in one.library.problems if not _free_to_choose(scene, base)]
+        anew = retold(description.told(), bases)
         for program, true in should(of, one.library.functions, each):
-            question = asked[base_of(program)]
-            if question is None:
+            equations = anew.get(base_of(program))
+            if equations is None:
                 says = "rows of small motion and what vanishes if steady may be told otherwise"
                 yield verdict(one, program.name, check, "skipped", says)
             elif not program.sparsity:
                 rows = [
-                    _told_back(description, question, program, s, own)
+                    _told_back(description, equations, program, s, own)
                     for s, own in zip(each, true, strict=True)
                 ]
                 yield _judged(one, check, program, (each, rows), stated)
 
 
-def _free_to_choose(known: Mechanism, base: str) -> bool:
+def _free_to_choose(scene: Scene, base: str) -> bool:
     """Tell whether a function's rows may be multiplied or combined, and mean the same."""
-    steady = known.scene.steady
+    steady = scene.steady
     if base == "steady":
         return steady is None or steady.vanishes is None
-    names = known.scene.asked.get(base, (base,))
-    results = [r for r in known.scene.results if r.name in names]
-    used = {s for r in results for s in symbols(written_out(r.formula, known.scene.results))}
+    names = scene.asked.get(base, (base,))
+    results = [r for r in scene.results if r.name in names]
+    used = {s for r in results for s in symbols(written_out(r.formula, scene.results))}
     matrices = tuple(MATRICES)
     return "linearised" in names or any(s.startswith(matrices) for s in (*names, *used))
 
 
 def _told_back(
     description: Description,
-    question: Equations,
+    equations: Equations,
     program: Program,
     sample: Sample,
     own: Sequence[Expected],
@@ -84,7 +80,7 @@ def _told_back(
     """
     with ctx.workprec(BITS):
         given = description.given({c: arb(x) for c, x in sample.values.items()})
-        solved = reference(question, given, ())
+        solved = reference(equations, given, ())
         names = component_names(program)
         values = description.told_back({c: solved[c].value for c in names})
         pairs = [(values[c], true) for c, true in zip(names, own, strict=True)]

@@ -10,7 +10,6 @@ from derive.emit.gallery.card import Card, card, gallery
 from derive.emit.page.lecture import lecture_page
 from derive.library.library import Library, library
 from derive.library.saving import Saving, savings
-from derive.mechanics.mechanism import doubts, pole
 from derive.program.program import Measurement
 from derive.scene import SceneError, load
 from derive.verify.kept import Measuring, figures_of
@@ -57,7 +56,7 @@ def made(source: str, measuring: Measuring) -> Made:
         why = scene.merging or _poles(programs) or str(error)
         raise SceneError(f"scene '{scene.name}': {rule}, but {why}") from None
     _finite(programs, measured.each)
-    warnings = tuple(f"scene '{scene.name}': {warning}" for warning in doubts(programs.known))
+    warnings = tuple(f"scene '{scene.name}': {warning}" for warning in programs.mechanism.doubts())
     costs, spared = cost_rows(programs, measured.each), tuple(savings(programs))
     texts = scene_files(programs, measured.each, measured.digest)
     return Made(texts, warnings, costs, spared, card(programs))
@@ -65,25 +64,23 @@ def made(source: str, measuring: Measuring) -> Made:
 
 def _ranges_of_floats(programs: Library) -> None:
     """Refuse a range whose ends are beyond the smaller of the float types."""
-    words = programs.known.words
-    for q in (*words.parameters, *words.states, *words.inputs):
+    for q in programs.vocabulary.given():
         end = max(abs(float(q.low or 0)), abs(float(q.high or 0)))
         if end > LARGEST_FLOAT:
             raise SceneError(
-                f"scene '{programs.known.scene.name}': the range of '{q.name}' must fit a float, "
+                f"scene '{programs.scene.name}': the range of '{q.name}' must fit a float, "
                 f"up to 3.4e38, not {end:.3g}"
             )
 
 
 def _poles(programs: Library) -> str:
     """Return what a machine divides by that vanishes in its ranges, and where; "" if nothing."""
-    known = programs.known
-    return next(filter(None, (pole(known, base) for base in programs.truths)), "")
+    return next(filter(None, map(programs.mechanism.pole, programs.problems)), "")
 
 
 def _finite(programs: Library, measured: Sequence[Measurement]) -> None:
     """Refuse a scene whose declared ranges hold a pole or overflow one of the float types."""
-    scene = programs.known.scene.name
+    scene = programs.scene.name
     for m in measured:
         if not isfinite(m.worst):
             raise SceneError(
@@ -104,7 +101,7 @@ def gallery_of(results: Sequence[Made]) -> dict[str, str]:
 
 def cost_rows(programs: Library, measured: Sequence[Measurement]) -> tuple[CostRow, ...]:
     """Return one row a function."""
-    name = programs.known.scene.name
+    name = programs.scene.name
     return tuple(
         CostRow(name, p.name, p.flops(), p.count().get("div", 0), _errors(p.name, measured))
         for p in programs.printed()

@@ -15,7 +15,7 @@ from derive.emit.templates import TEMPLATES
 from derive.library.library import Library
 from derive.program.arithmetic import pair_of, rounded
 from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, Row
-from derive.program.pair_sine import quarter_turn, series
+from derive.program.pair_sine import coefficients, quarter_turn
 from derive.program.precision import F64
 from derive.program.program import Line, Op, Operand, Program, Quantity, every_op, placed
 from derive.program.status import possible, tried
@@ -27,20 +27,20 @@ BROKEN = {"finite": "_endless({})", "positive": "{} <= 0.0", "not negative": "{}
 
 def casadi_file(library: Library) -> str:
     """Return the text of ``<scene>_casadi.py``."""
-    name = library.known.scene.name
+    name = library.scene.name
     has_setup = bool(library.constants)
     in_pairs = [p for p in library.emitted() if p.arithmetic == "pairs"]
     functions = [_function(p, name) for p in library.printed()]
     return TEMPLATES.get_template("casadi.py.jinja").render(
         first_line=first_line(library),
-        title=library.known.scene.title,
+        title=library.scene.title,
         scene=name,
         setup=_setup(library.setup, name) if has_setup else None,
         pairs=bool(in_pairs),
         kept=bool(in_pairs) or any(KEPT in str(f["lines"]) for f in functions),
         turns=any(name in ("sin", "cos") for name in pair_functions(in_pairs)),
-        odd=[tuple(map(float, pair_of(c, F64.dtype))) for c in series(F64.bits, 1)],
-        even=[tuple(map(float, pair_of(c, F64.dtype))) for c in series(F64.bits, 0)],
+        odd=[tuple(map(float, pair_of(c, F64.dtype))) for c in coefficients(F64.bits, 1)],
+        even=[tuple(map(float, pair_of(c, F64.dtype))) for c in coefficients(F64.bits, 0)],
         quarter=[float(part) for part in quarter_turn(lambda q: rounded(q, F64.dtype))],
         functions=functions,
         sloped=any(p.free or p.slopes for p in library.printed()),

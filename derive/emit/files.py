@@ -44,7 +44,7 @@ def scene_files(
     library: Library, figures: Sequence[Measurement], digest: str = ""
 ) -> dict[str, str]:
     """Return the path below the output folder and the text of every file of a scene."""
-    name = library.known.scene.name
+    name = library.scene.name
     texts = c_files(library, figures) | {
         f"{name}_casadi.py": casadi_file(library),
         f"{name}.json": manifest(library, figures, digest),

@@ -13,7 +13,6 @@ from derive.emit.c.text import pair_functions
 from derive.emit.notation import equation_text
 from derive.lecture.chapters import LECTURE
 from derive.library.library import Library
-from derive.mechanics.mechanism import depends_on, doubts, dropped
 from derive.program.precision import F32, F64, PRECISIONS
 from derive.program.program import Measurement, Program, Quantity, Sparsity
 from derive.program.status import possible
@@ -23,7 +22,7 @@ from derive.scene.wanted import JACOBIAN
 
 def manifest(library: Library, figures: Sequence[Measurement], digest: str = "") -> str:
     """Return the text of ``<scene>.json``; ``digest`` is of all that the figures depend on."""
-    scene = library.known.scene
+    scene = library.scene
     whole = {
         "scene": scene.name,
         "title": scene.title,
@@ -41,10 +40,10 @@ def manifest(library: Library, figures: Sequence[Measurement], digest: str = "")
             "aliasing": "outputs may lie over inputs",
             "units": "SI, angles in rad",
         },
-        "parameters": [_quantity(q) for q in library.known.words.parameters],
+        "parameters": [_quantity(q) for q in library.vocabulary.parameters],
         "constants": [{"name": c, "formula": f} for c, f in library.constants.items()],
         "functions": _functions(library, figures),
-        "warnings": list(doubts(library.known)),
+        "warnings": list(library.mechanism.doubts()),
         "measured": {"digest": digest},
     }
     return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
@@ -79,7 +78,7 @@ def _functions(library: Library, figures: Sequence[Measurement]) -> list[dict[st
 
 
 def _symbols(library: Library, function: str, casadi: str | None) -> dict[str, Any]:
-    names = Names(library.known.scene.name)
+    names = Names(library.scene.name)
     symbols: dict[str, Any] = {p.name: names.symbol(function, p) for p in (F32, F64)}
     return symbols | {"casadi": casadi}
 
@@ -132,13 +131,13 @@ def _function(library: Library, program: Program, figures: Sequence[Measurement]
 def _choice(library: Library, program: Program) -> dict[str, Any]:
     """Return what a function of a machine depends on, and what it was found not to need."""
     base = program.name.removesuffix(JACOBIAN)
-    if base not in library.truths:
+    if base not in library.problems:
         return {}
-    found, spoken = dropped(library.known, base), library.known.scene.spoken
+    mechanism = library.mechanism
     return {
-        "depends_on": list(depends_on(library.known, base)),
-        "balances": [b.told(spoken) for b in library.known.question(base).balances],
-        "not_needed": {why: list(names) for why, names in found.items()},
+        "depends_on": list(mechanism.depends_on(base)),
+        "balances": [b.told(library.scene.spoken) for b in mechanism.whole(base).balances],
+        "not_needed": {why: list(names) for why, names in mechanism.dropped(base).items()},
     }
 
 

@@ -4,7 +4,7 @@ The road, from a file to what is emitted; each line says what comes in, what goe
 
     str            -> Scene                  scene.load
     Scene          -> Mechanism              mechanics.mechanism.mechanism
-    Mechanism      -> Problem                mechanics.mechanism.problem
+    Mechanism      -> Problem                mechanics.mechanism.Mechanism.problem
     Problem        -> Arrangement            lower.arrange.plan.arrange
     Arrangement    -> Value                  lower.lower.lower
     Value          -> Op, Operand            lower.stage.hot

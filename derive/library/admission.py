@@ -31,13 +31,13 @@ PLACES = {(0, 0): 0, (1, 1): 1, (2, 2): 2, (0, 1): 3, (0, 2): 4, (1, 2): 5}
 Matrix = dict[tuple[int, int], Number]
 
 
-def tried(scene: Graphed, parameters: AbstractSet[str]) -> Part:
-    """Return the rules of ``scene`` that rest on nothing but these parameters."""
-    tape = Tape(free_prefix("r", scene.graph.leaf_names()))
-    setting = Setting(scene, {}, None, tape)
-    numbers = set(scene.known.words.numbers) | {"pi"}
+def tried(terms: Graphed, parameters: AbstractSet[str]) -> Part:
+    """Return the rules of ``terms`` that rest on nothing but these parameters."""
+    tape = Tape(free_prefix("r", terms.graph.leaf_names()))
+    setting = Setting(terms, {}, None, tape)
+    numbers = set(terms.vocabulary.numbers) | {"pi"}
     rules: dict[tuple[int, object], Rule] = {}
-    every = scene.known.scene.demands
+    every = terms.scene.demands
     above = {d.formula for d in every if isinstance(d, Above) and d.kind != "inertia"}
     for demand in every:
         if isinstance(demand, Tensor) and _follows(demand, above):
@@ -100,9 +100,9 @@ def _values(setting: Setting, demand: Demand, known: AbstractSet[str]) -> Iterat
 
 
 def _number(setting: Setting, formula: Formula) -> Number:
-    scene = setting.scene
-    written = scene.known.words.expression(formula)
-    return setting.parameter(value_of(scene.graph, written, scene.by_symbol()))
+    terms = setting.terms
+    written = terms.vocabulary.expression(formula)
+    return setting.parameter(value_of(terms.graph, written, terms.by_symbol()))
 
 
 def _blocks(tensor: Matrix) -> list[tuple[int, ...]]:

@@ -1,7 +1,8 @@
-"""A function that the lecture states, from its truth to its program, with or without a Jacobian."""
+"""A function that the lecture states, from its problem to its program, and with a Jacobian."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import islice
 
 from sympy import Symbol
@@ -15,11 +16,13 @@ from derive.lower.forms import Block, best_values, best_with_jacobian, cost
 from derive.lower.graph import Graph, Value
 from derive.lower.lower import lower
 from derive.lower.stage import Constants, hot, used_inputs
-from derive.mechanics.mechanism import Mechanism, problem
+from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.problem import Problem
+from derive.mechanics.rotation import FreeRotation
+from derive.mechanics.vocabulary import Vocabulary
 from derive.program.pattern import compressed
 from derive.program.program import Program, Quantity, Sparsity
-from derive.scene import SceneError
+from derive.scene import Scene, SceneError
 from derive.scene.wanted import JACOBIAN, SENSITIVITY, base_of
 
 
@@ -30,99 +33,122 @@ class Graphed:
     best : the cheapest values of outputs, where they were looked for already
     """
 
-    known: Mechanism
+    mechanism: Mechanism
     graph: Graph
     leaves: Mapping[str, Value]
     constants: Constants
     best: dict[tuple[tuple[Value, ...], ...], list[Value]] = field(default_factory=dict)
 
+    @property
+    def scene(self) -> Scene:
+        """Return the scene as it was read."""
+        return self.mechanism.scene
+
+    @property
+    def vocabulary(self) -> Vocabulary:
+        """Return what the scene's quantities are called."""
+        return self.mechanism.vocabulary
+
     def taken(self) -> frozenset[str]:
         """Return the names that no operation may have: those of all quantities and components."""
-        words = self.known.words
-        return frozenset(n for q in words.every() for n in (q.name, *q.components))
+        return frozenset(n for q in self.vocabulary.every() for n in (q.name, *q.components))
 
     def by_symbol(self) -> dict[Symbol, Value]:
         """Return the value of every component by its symbol."""
-        return {self.known.words.symbols[c]: value for c, value in self.leaves.items()}
+        return {self.vocabulary.symbols[c]: value for c, value in self.leaves.items()}
+
+    @cached_property
+    def rotation(self) -> FreeRotation:
+        """Return the free rotation that a step moves on.
+
+        Raises SceneError if more than one body turning freely is in motion.
+        """
+        found = self.mechanism.rotation()
+        if found is None:
+            rule = "is of bodies that turn freely as one, and other things move with these"
+            raise SceneError(f"a step of a free rotation {rule}")
+        return found
 
 
 @dataclass(frozen=True)
 class Arranged:
-    """A wanted function in the graph: its truth, and its output components by quantity."""
+    """A wanted function in the graph: its problem, and its output components by quantity."""
 
-    fact: Problem
+    problem: Problem
     outputs: tuple[tuple[Value, ...], ...]
 
 
-def graphed(known: Mechanism) -> Graphed:
+def graphed(mechanism: Mechanism) -> Graphed:
     """Return a scene in a graph that holds its parameters, states and inputs, and nothing else."""
-    graph, words = Graph(), known.words
-    leaves = {c: graph.parameter(c) for q in words.parameters for c in q.components}
-    varying = [c for q in (*words.states, *words.inputs) for c in q.components]
+    graph, vocabulary = Graph(), mechanism.vocabulary
+    leaves = {c: graph.parameter(c) for q in vocabulary.parameters for c in q.components}
+    varying = [c for q in (*vocabulary.states, *vocabulary.inputs) for c in q.components]
     leaves |= {c: graph.variable(c) for c in varying}
-    return Graphed(known, graph, leaves, Constants(graph))
+    return Graphed(mechanism, graph, leaves, Constants(graph))
 
 
-def arranged(scene: Graphed, base: str) -> Arranged:
+def arranged(terms: Graphed, base: str) -> Arranged:
     """Return what the lecture says of a function, in the cheapest way to compute it."""
-    fact = problem(scene.known, base)
-    found = [_lowered(scene, fact, way) for way in plan.arrange(scene.known, fact)]
+    problem = terms.mechanism.problem(base)
+    found = [_lowered(terms, problem, way) for way in plan.arrange(terms.mechanism, problem)]
     if len(found) == 1:
         return found[0]
-    return min(found, key=lambda way: cost(scene.graph, _best(scene, way)))
+    return min(found, key=lambda way: cost(terms.graph, _best(terms, way)))
 
 
-def function(scene: Graphed, wanted: Arranged, name: str) -> Program:
+def function(terms: Graphed, wanted: Arranged, name: str) -> Program:
     """Return the program of a wanted function by its name, which says if a Jacobian is with it."""
     if name == base_of(name):
-        return _program(scene, wanted.fact, _best(scene, wanted))
-    return _with_jacobian(scene, wanted, name)
+        return _program(terms, wanted.problem, _best(terms, wanted))
+    return _with_jacobian(terms, wanted, name)
 
 
-def _lowered(scene: Graphed, fact: Problem, way: Arrangement) -> Arranged:
-    values = iter(lower(scene.graph, way, scene.by_symbol()))
-    return Arranged(fact, tuple(tuple(islice(values, len(q.components))) for q in fact.outputs))
+def _lowered(terms: Graphed, problem: Problem, way: Arrangement) -> Arranged:
+    values = iter(lower(terms.graph, way, terms.by_symbol()))
+    return Arranged(
+        problem, tuple(tuple(islice(values, len(q.components))) for q in problem.outputs)
+    )
 
 
-def _best(scene: Graphed, wanted: Arranged) -> list[Value]:
-    if wanted.outputs not in scene.best:
-        found = best_values(scene.graph, [Block(output, ()) for output in wanted.outputs])
+def _best(terms: Graphed, wanted: Arranged) -> list[Value]:
+    if wanted.outputs not in terms.best:
+        found = best_values(terms.graph, [Block(output, ()) for output in wanted.outputs])
         stands = [value for output in wanted.outputs for value in output]
         each = (found, stands)
-        scene.best[wanted.outputs] = min(each, key=lambda values: cost(scene.graph, values))
-    return scene.best[wanted.outputs]
+        terms.best[wanted.outputs] = min(each, key=lambda values: cost(terms.graph, values))
+    return terms.best[wanted.outputs]
 
 
-def _with_jacobian(scene: Graphed, wanted: Arranged, name: str) -> Program:
-    fact, columns = wanted.fact, _columns(scene, wanted, name)
-    values, rows = _differentiated(scene, wanted, columns)
-    row_names = [c for q in fact.outputs for c in q.components]
+def _with_jacobian(terms: Graphed, wanted: Arranged, name: str) -> Program:
+    problem, columns = wanted.problem, _columns(terms, wanted, name)
+    values, rows = _differentiated(terms, wanted, columns)
+    row_names = [c for q in problem.outputs for c in q.components]
     column_names = [c for q in columns for c in q.components]
     pattern, nonzeros = compressed(rows, row_names, column_names, lambda v: not v[0])
     if not nonzeros:
         rule = "must have entries, but nothing that varies changes it"
-        raise SceneError(f"wanted '{fact.name}{JACOBIAN}' {rule}")
-    program = _program(scene, fact, [*values, *nonzeros])
+        raise SceneError(f"wanted '{problem.name}{JACOBIAN}' {rule}")
+    program = _program(terms, problem, [*values, *nonzeros])
     return replace(
         program,
         name=name,
-        says=fact.says.rstrip(".") + ", with its Jacobian.",
+        says=problem.says.rstrip(".") + ", with its Jacobian.",
         outputs=(*program.outputs, _jacobian_quantity(pattern)),
         sparsity={"jacobian": pattern},
     )
 
 
 def _differentiated(
-    scene: Graphed, wanted: Arranged, columns: Sequence[Quantity]
+    terms: Graphed, wanted: Arranged, columns: Sequence[Quantity]
 ) -> tuple[list[Value], list[list[Value]]]:
     """Return the outputs' values and the rows of their Jacobian, sharing all that they can.
 
     Outputs are looked at one by one, and those together that vary by components of one vector.
     """
-    inputs = tuple(tuple(scene.leaves[c] for c in q.components) for q in columns)
-    ways = dict.fromkeys((_one_by_one(wanted), _together(scene.graph, wanted)))
-    found = [_in_groups(scene.graph, wanted, groups, inputs) for groups in ways]
-    return min(found, key=lambda one: cost(scene.graph, [*one[0], *(e for r in one[1] for e in r)]))
+    inputs = tuple(tuple(terms.leaves[c] for c in q.components) for q in columns)
+    ways = dict.fromkeys((_one_by_one(wanted), _together(terms.graph, wanted)))
+    found = [_in_groups(terms.graph, wanted, groups, inputs) for groups in ways]
+    return min(found, key=lambda one: cost(terms.graph, [*one[0], *(e for r in one[1] for e in r)]))
 
 
 Groups = tuple[tuple[int, ...], ...]
@@ -163,31 +189,31 @@ def _jacobian_quantity(pattern: Sparsity) -> Quantity:
     return Quantity("jacobian", parts, (len(parts),), "", "", None, None, says)
 
 
-def _columns(scene: Graphed, wanted: Arranged, name: str) -> tuple[Quantity, ...]:
+def _columns(terms: Graphed, wanted: Arranged, name: str) -> tuple[Quantity, ...]:
     """Return what the Jacobian is taken by: every state of a state rate, and all that is used."""
-    words = scene.known.words
+    vocabulary = terms.vocabulary
     if name.endswith(SENSITIVITY):
-        return (*words.states, *words.parameters)
-    graph, values = scene.graph, (v for output in wanted.outputs for v in output)
+        return (*vocabulary.states, *vocabulary.parameters)
+    graph, values = terms.graph, (v for output in wanted.outputs for v in output)
     below = (graph.nodes[n] for n in graph.within(values))
     used = {node[1] for node in below if node[0] == "input"}
-    every = (*words.states, *words.inputs)
-    whole = words.states if wanted.fact.name == "state_rate" else ()
+    every = (*vocabulary.states, *vocabulary.inputs)
+    whole = vocabulary.states if wanted.problem.name == "state_rate" else ()
     return tuple(q for q in every if q in whole or used & set(q.components))
 
 
-def _program(scene: Graphed, fact: Problem, values: Sequence[Value]) -> Program:
-    words = scene.known.words
-    ops, results = hot(scene.graph, scene.constants, values, scene.taken())
-    inputs = used_inputs((*words.states, *words.inputs), ops, results)
-    assumptions = sorted({a for step in fact.steps for a in LECTURE.assumptions(step)})
+def _program(terms: Graphed, problem: Problem, values: Sequence[Value]) -> Program:
+    vocabulary = terms.vocabulary
+    ops, results = hot(terms.graph, terms.constants, values, terms.taken())
+    inputs = used_inputs((*vocabulary.states, *vocabulary.inputs), ops, results)
+    assumptions = sorted({a for step in problem.steps for a in LECTURE.assumptions(step)})
     return Program(
-        fact.name,
-        fact.says,
+        problem.name,
+        problem.says,
         inputs,
-        fact.outputs,
+        problem.outputs,
         ops,
         results,
-        steps=fact.steps,
+        steps=problem.steps,
         assumptions=tuple(assumptions),
     )

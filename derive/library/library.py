@@ -14,6 +14,7 @@ from derive.lower.stage import Part, in_pairs, setup, with_low_parts
 from derive.lower.wording import formula
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.mechanics.problem import Problem
+from derive.mechanics.vocabulary import Vocabulary
 from derive.program.program import Program, Quantity, component_names, read_by
 from derive.program.tape import Tape, free_prefix
 from derive.scene import Scene, SceneError
@@ -26,22 +27,32 @@ INVERSE = re.compile("J_([xyz][xyz])'*")
 class Library:
     """What a scene's files are printed from.
 
-    functions : what the lecture states; each satisfies one of the ``truths``
+    functions : what the lecture states; each satisfies one of the ``problems``
     constants : what each constant is made by, in the order of the struct
     rates     : further such functions that ``motions`` rest on and nobody wanted for themselves
     motions   : what moves the state in time, and formulas for attitudes
     """
 
-    known: Mechanism
+    mechanism: Mechanism
     setup: Program
     functions: tuple[Program, ...]
     constants: Mapping[str, str]
-    truths: Mapping[str, Problem]
+    problems: Mapping[str, Problem]
     rates: tuple[Program, ...] = ()
     motions: tuple[Program, ...] = ()
 
     def __getitem__(self, name: str) -> Program:
         return next(p for p in (self.setup, *self.printed(), *self.rates) if p.name == name)
+
+    @property
+    def scene(self) -> Scene:
+        """Return the scene as it was read."""
+        return self.mechanism.scene
+
+    @property
+    def vocabulary(self) -> Vocabulary:
+        """Return what the scene's quantities are called."""
+        return self.mechanism.vocabulary
 
     def printed(self) -> tuple[Program, ...]:
         """Return the functions that are emitted: the lecture's, then those that move the state."""
@@ -82,11 +93,11 @@ def _library(scene: Scene) -> Library:
     functions = with_singular(functions, made)
     moving = with_singular(moving, made)
     return Library(
-        terms.known,
+        terms.mechanism,
         made,
         functions[: len(asked)],
         _constants(made, {**_meanings(terms), **meanings}),
-        {base: one.fact for base, one in wanted.items()},
+        {base: one.problem for base, one in wanted.items()},
         rates=functions[len(asked) :],
         motions=moving,
     )
@@ -99,12 +110,12 @@ def _asked(scene: Scene) -> tuple[list[str], list[str]]:
 
 
 def _moved(
-    scene: Graphed, rates: Mapping[str, Program]
+    terms: Graphed, rates: Mapping[str, Program]
 ) -> tuple[tuple[Program, ...], Part, dict[str, str]]:
     """Return what moves the state, its part of set-up, and what is said of its own constants."""
-    moment = applied_moment(scene)
-    tape = Tape(free_prefix("p", set(scene.taken())), held=held(scene))
-    setting = Setting(scene, rates, moment, tape)
+    moment = applied_moment(terms)
+    tape = Tape(free_prefix("p", set(terms.taken())), held=held(terms))
+    setting = Setting(terms, rates, moment, tape)
     programs = motions(setting)
     read = {name for program in programs for name in read_by(program)}
     own = {o: each for o, each in tape.names.items() if each[0] in read - tape.held.keys()}
@@ -112,12 +123,12 @@ def _moved(
     return programs, part, dict(own.values())
 
 
-def _set_up(scene: Graphed, part: Part) -> Program:
+def _set_up(terms: Graphed, part: Part) -> Program:
     """Return the program of set-up, which also tries whether its parameters are admissible."""
-    parameters = scene.known.words.parameters
-    bare = setup(scene.graph, scene.constants, parameters, [part])
+    parameters = terms.vocabulary.parameters
+    bare = setup(terms.graph, terms.constants, parameters, [part])
     used = {c for q in bare.inputs for c in q.components}
-    return setup(scene.graph, scene.constants, parameters, [part, tried(scene, used)])
+    return setup(terms.graph, terms.constants, parameters, [part, tried(terms, used)])
 
 
 def _constants(made: Program, meanings: Mapping[str, str]) -> dict[str, str]:
@@ -127,9 +138,9 @@ def _constants(made: Program, meanings: Mapping[str, str]) -> dict[str, str]:
     return {c: every[c] for c in component_names(made)}
 
 
-def _meanings(scene: Graphed) -> dict[str, str]:
+def _meanings(terms: Graphed) -> dict[str, str]:
     """Return the formula of every constant that the lecture's functions asked for."""
-    return {name: _meaning(scene.graph, value) for value, name in scene.constants.names.items()}
+    return {name: _meaning(terms.graph, value) for value, name in terms.constants.names.items()}
 
 
 def _meaning(graph: Graph, value: Value) -> str:

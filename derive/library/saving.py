@@ -9,9 +9,6 @@ from derive.lower.arrange.matching import UndeterminedError
 from derive.lower.arrange.plan import plain_arrangement
 from derive.lower.forms import cost
 from derive.lower.lower import lower
-from derive.mechanics.answers import Answers
-from derive.mechanics.balances import Balances
-from derive.mechanics.mechanism import Mechanism, dropped
 from derive.scene import SceneError
 from derive.scene.wanted import JACOBIAN
 
@@ -28,46 +25,32 @@ class Saving:
     plain: int | None
 
 
-def _body_by_body(balances: Balances) -> Balances:
-    """Return the balances of single bodies, about their mass centres only."""
-    fewer = Balances(balances.frames)
-    fewer.rows = tuple(
-        row
-        for row in balances.rows
-        if len(row.balance.bodies) == 1 and (row.balance.kind == "force" or row.balance.central)
-    )
-    return fewer
-
-
 def savings(library: Library) -> Iterator[Saving]:
     """Yield what each function of a machine was spared."""
-    known = library.known
+    mechanism = library.mechanism
     for program in library.functions:
         base = program.name.removesuffix(JACOBIAN)
         if base != program.name:
             continue
-        found = dropped(known, base)
-        balanced = bool(known.question(base).balances)
+        found = mechanism.dropped(base)
+        balanced = bool(mechanism.whole(base).balances)
         yield Saving(
-            known.scene.name,
+            library.scene.name,
             base,
             found["unknowns left out"] if balanced else (),
             found["cancels"],
             program.flops(),
-            _plain(known, base) if balanced else None,
+            _plain(library, base) if balanced else None,
         )
 
 
-def _plain(known: Mechanism, base: str) -> int | None:
+def _plain(library: Library, base: str) -> int | None:
     """Return the operations of a function body by body; None where that does not determine it."""
-    known = known.posed(base)
-    answers = known.answers
-    plain = Answers(answers.machine, answers.frames, _body_by_body(answers.balances))
+    plain = library.mechanism.posed(base).body_by_body()
     try:
-        question = plain.question(base)
-        way = plain_arrangement(known, question)
+        way = plain_arrangement(plain, plain.whole(base))
     except (SceneError, UndeterminedError):
         return None
-    scene = graphed(known)
-    hidden = {s: scene.graph.parameter(what) for s, what in known.made.hidden.items()}
-    return cost(scene.graph, lower(scene.graph, way, scene.by_symbol() | hidden))[0]
+    terms = graphed(plain)
+    hidden = {s: terms.graph.parameter(what) for s, what in plain.words.hidden.items()}
+    return cost(terms.graph, lower(terms.graph, way, terms.by_symbol() | hidden))[0]

@@ -15,9 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.program.arithmetic import Table, extended, paired, working
+from derive.program.arithmetic import extended, paired, working
 from derive.program.program import Op, Program, Quantity, Singular, component_names, operands_of
 from derive.program.run import run
+from derive.scene.formula import Arithmetic
 
 Columns = dict[str, NDArray[Any]]
 GENERIC = 32  # draws from the ranges, beside which a value is beyond measure
@@ -33,11 +34,11 @@ Place = tuple[tuple[str, ...], float]
 
 def with_singular(programs: Sequence[Program], setup: Program) -> tuple[Program, ...]:
     """Return the programs, each with the places at which it has no value."""
-    table = working(np.float64)
+    arithmetic = working(np.float64)
     plan = next((p for p in programs if p.makes("plan")), None)
     constants = _constants(setup)
     return tuple(
-        replace(p, singular=_singular(_Trial(p, plan, constants, table))) for p in programs
+        replace(p, singular=_singular(_Trial(p, plan, constants, arithmetic))) for p in programs
     )
 
 
@@ -48,7 +49,7 @@ class _Trial:
     program: Program
     plan: Program | None
     constants: Mapping[str, float]
-    table: Table
+    arithmetic: Arithmetic
 
     def free(self) -> tuple[Quantity, ...]:
         """Return the inputs that may be set."""
@@ -58,18 +59,20 @@ class _Trial:
         """Return the results, a row a component; ``columns`` hold what may be set."""
         given, count = dict(columns), len(next(iter(columns.values())))
         if self.plan is not None and any(q.role == "plan" for q in self.program.inputs):
-            made = _run(self.plan, given, self.constants, self.table)
+            made = _run(self.plan, given, self.constants, self.arithmetic)
             given |= dict(zip(component_names(self.plan), made, strict=True))
-        found = _run(self.program, given, self.constants, self.table)
+        found = _run(self.program, given, self.constants, self.arithmetic)
         return np.array([np.broadcast_to(np.asarray(r, float), count) for r in found])
 
 
-def _run(program: Program, given: Columns, known: Mapping[str, float], table: Table) -> list[Any]:
+def _run(
+    program: Program, given: Columns, known: Mapping[str, float], arithmetic: Arithmetic
+) -> list[Any]:
     names = [c for q in program.inputs for c in q.components]
     count = len(next(iter(given.values())))
     values = [given.get(n, np.full(count, known.get(n, 0.0))) for n in names]
     with np.errstate(all="ignore"):
-        return run(program, table, values)
+        return run(program, arithmetic, values)
 
 
 def _constants(setup: Program) -> dict[str, float]:

@@ -1,6 +1,6 @@
 """The programs that move a scene in time, and its formulas for attitudes, by their wanted names.
 
-Formulas stand in ``flows`` and ``rotations``; here they are given the scene's body, state and
+Formulas stand in the room ``motion``; here they are given the scene's body, state and
 rates, and become programs. What rests on parameters only is on the tape of set-up.
 """
 
@@ -11,7 +11,6 @@ from fractions import Fraction
 from derive.lecture.chapters import LECTURE
 from derive.library.setting import Setting
 from derive.lower.stage import used_inputs
-from derive.mechanics.vocabulary import Vocabulary
 from derive.motion import runge_kutta
 from derive.motion.attitude.functions import attitude_program
 from derive.motion.compensated import remainder
@@ -63,7 +62,7 @@ def needs(scene: Scene) -> tuple[str, ...]:
 def motions(setting: Setting) -> tuple[Program, ...]:
     """Return the programs of all wanted motions and attitude formulas, in the scene's order."""
     found: dict[str, Program] = {}
-    for name in setting.known.scene.wanted:
+    for name in setting.terms.scene.wanted:
         if name in ATTITUDES:
             found[name] = attitude_program(name)
         elif moves(name):
@@ -85,16 +84,16 @@ def _motion(setting: Setting, name: str) -> tuple[Program, ...]:
 
 
 def _taylor(setting: Setting, order: int) -> Program:
-    words, rate = setting.known.words, setting.rates["state_rate"]
+    vocabulary, rate = setting.terms.vocabulary, setting.rates["state_rate"]
     step = _time_step(setting)
-    series = taylor_step(rate, words.states, words.inputs, order, step)
+    series = taylor_step(rate, vocabulary.states, vocabulary.inputs, order, step)
     return replace(in_loops(series), assumptions=rate.assumptions)
 
 
 def _runge_kutta(setting: Setting, name: str) -> Program:
     rates, step = setting.rates, _time_step(setting)
     slopes = rates[SLOPES[name.rpartition("_")[2]]] if name in STEP_DERIVATIVES else None
-    states, taken = setting.known.words.states, setting.scene.taken()
+    states, taken = setting.terms.vocabulary.states, setting.terms.taken()
     system = System(states, rates["state_rate"], slopes, step, taken)
     _check_quaternions(setting, name, len(system.quaternions))
     program = runge_kutta.step(system, name)
@@ -110,7 +109,7 @@ def _runge_kutta(setting: Setting, name: str) -> Program:
 
 
 def _looped(setting: Setting, name: str) -> bool:
-    return setting.known.scene.emission == "compact" and name in LOOPED
+    return setting.terms.scene.emission == "compact" and name in LOOPED
 
 
 def _check_quaternions(setting: Setting, name: str, count: int) -> None:
@@ -124,7 +123,7 @@ def _check_quaternions(setting: Setting, name: str, count: int) -> None:
 
 
 def _time_step(setting: Setting) -> Quantity:
-    return _seconds("time_step", setting.known.scene.time_step, "length of the step")
+    return _seconds("time_step", setting.terms.scene.time_step, "length of the step")
 
 
 def _seconds(name: str, range_: Given, says: str) -> Quantity:
@@ -145,14 +144,13 @@ def _inputs(tape: Tape, q: Quantity) -> list[Number]:
     return [tape.input(c) for c in q.components]
 
 
-def _rotation(words: Vocabulary) -> tuple[Quantity, Quantity]:
-    return words["attitude"], words["omega"]
+def _rotation(setting: Setting) -> tuple[Quantity, Quantity]:
+    return setting.terms.rotation.attitude, setting.terms.rotation.omega
 
 
 def _flow_exact(setting: Setting) -> Program:
-    tape, words = setting.function(), setting.known.words
-    attitude, omega = _rotation(words)
-    given = setting.known.scene.time
+    tape, (attitude, omega) = setting.function(), _rotation(setting)
+    given = setting.terms.scene.time
     time = _seconds("time", given, "time from the given to the new state")
     (t,) = _inputs(tape, time)
     body, rates = setting.inertia(), _inputs(tape, omega)
@@ -166,8 +164,7 @@ def _flow_exact(setting: Setting) -> Program:
 
 
 def _dmv(setting: Setting) -> tuple[Program, ...]:
-    words, step = setting.known.words, _time_step(setting)
-    omega = words["omega"]
+    (_, omega), step = _rotation(setting), _time_step(setting)
     tape = setting.function()
     (h,) = _inputs(tape, step)
     entries = plan_dmv(tape, setting.inertia(), _inputs(tape, omega), h)
@@ -185,7 +182,7 @@ def _dmv(setting: Setting) -> tuple[Program, ...]:
 
 
 def _dmv_step(setting: Setting, plan: Quantity, names: Sequence[str]) -> Program:
-    tape, (attitude, omega) = setting.function(), _rotation(setting.known.words)
+    tape, (attitude, omega) = setting.function(), _rotation(setting)
     rest = remainder((attitude, omega))
     planned = dict(zip(names, _inputs(tape, plan), strict=True))
     state = (_inputs(tape, q) for q in (attitude, omega, rest))
@@ -197,7 +194,7 @@ def _dmv_step(setting: Setting, plan: Quantity, names: Sequence[str]) -> Program
 
 def _split(setting: Setting, name: str) -> Program:
     tape, step = setting.function(), _time_step(setting)
-    attitude, omega = _rotation(setting.known.words)
+    attitude, omega = _rotation(setting)
     order, carries = SPLITTINGS[step_of(name)], name.endswith(COMPENSATION)
     rest = (remainder((attitude, omega)),) if carries else ()
     (h,) = _inputs(tape, step)
@@ -213,7 +210,7 @@ def _split(setting: Setting, name: str) -> Program:
 
 def _outside(setting: Setting) -> tuple[Quantity, ...]:
     """Return the inputs that the moment may use, held while the step lasts."""
-    states = setting.known.words.states
+    states = setting.terms.vocabulary.states
     return tuple(q for q in setting.moment.inputs if q not in states) if setting.moment else ()
 
 
@@ -223,7 +220,7 @@ def _moment(setting: Setting, tape: Tape) -> Callable[[Sequence[Number]], list[N
     if program is None:
         return None
     outside = {c: tape.input(c) for q in _outside(setting) for c in q.components}
-    parts = setting.known.words["attitude"].components
+    parts = setting.terms.rotation.attitude.components
 
     def at(attitude: Sequence[Number]) -> list[Number]:
         return called(tape, program, outside | dict(zip(parts, attitude, strict=True)))

@@ -17,9 +17,7 @@ from derive.mechanics.bodies import (
     mass,
     momentum,
 )
-from derive.mechanics.choice import (
-    unbalanced,
-)
+from derive.mechanics.choice import unbalanced
 from derive.mechanics.frames import ZERO, Frames
 from derive.mechanics.linearised import Linearised, linearised, require_free
 from derive.mechanics.loads import potential_energy
@@ -27,11 +25,10 @@ from derive.mechanics.matter import without_factors
 from derive.mechanics.probe import NOTHING, POINTS, independent
 from derive.mechanics.problem import Problem, substituted
 from derive.mechanics.regular import Regular
-from derive.mechanics.words import MATRICES, rate_names
 from derive.program.program import Quantity
 from derive.scene import Input, Scene, SceneError
 from derive.scene.formula import Formula, symbols
-from derive.scene.results import written_out
+from derive.scene.results import MATRICES, written_out
 from derive.scene.wanted import JACOBIAN
 
 
@@ -43,8 +40,8 @@ class Answers:
     frames: Frames
     balances: Balances
 
-    def question(self, base: str) -> Problem:
-        """Return a wanted function as a question."""
+    def problem(self, base: str) -> Problem:
+        """Return a wanted function as a problem."""
         asked = self.machine.asked
         names = asked.get(base) or asked.get(base + JACOBIAN) or (base,)
         if names == ("steady",):
@@ -155,7 +152,7 @@ class Answers:
         """Return the rates of all states, in their order, grouped as the scene groups them."""
         rates = [rate for q in self._states for rate in self._rates(q)]
         found: dict[Quantity, list[Expr]] = {}
-        for q in map(self._quantity, rate_names(self.machine)):
+        for q in map(self._quantity, self.machine.groups.rates):
             found[q], rates = rates[: len(q.components)], rates[len(q.components) :]
         return found
 

@@ -255,6 +255,13 @@ class Balances:
                 found["any_point_form"] = None
         return tuple(found)
 
+    def body_by_body(self) -> "Balances":
+        """Return the balances of single bodies, about their mass centres only."""
+        fewer = Balances(self.frames)
+        fewer.rows = tuple(r for r in self.rows if len(r.balance.bodies) == 1
+                           and (r.balance.kind == "force" or r.balance.central))  # fmt: skip
+        return fewer
+
     def at(self, row: Row, valued: Valued) -> Array:
         """Return the coefficients of a balance at another place: the rest, then the unknowns."""
         b = row.balance

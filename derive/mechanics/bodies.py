@@ -7,9 +7,9 @@ from typing import Any
 from sympy import Expr, Matrix, zeros
 
 from derive.lecture.stated import stated
+from derive.lecture.turning import reduced
 from derive.mechanics.frames import ZERO, Frames, Parts, Point
 from derive.mechanics.probe import vanishes
-from derive.mechanics.turning import reduced
 from derive.mechanics.words import inertia_name, mass_name
 from derive.scene.machine import INERTIAL
 

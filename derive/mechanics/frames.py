@@ -7,9 +7,9 @@ from functools import cached_property
 from sympy import Expr, Matrix, expand_trig, eye, zeros
 
 from derive.lecture.stated import stated
+from derive.lecture.turning import ADDED, added, turn_matrix, unit_vector
 from derive.mechanics.own_axes import frames_of_bodies, own_axes
 from derive.mechanics.sheet import AXES, Sheet
-from derive.mechanics.turning import ADDED, added, turn_matrix, unit_vector
 from derive.mechanics.words import Words
 from derive.scene import Scene, SceneError
 from derive.scene.declaration import Turning

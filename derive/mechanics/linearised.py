@@ -147,7 +147,7 @@ def _accelerations(
 def _middle(words: Words) -> Probe:
     """Return the middle of all ranges, and zero for what varies and may be zero."""
     found, book = at_rest(words), words.vocabulary
-    for q in (*book.parameters, *book.states, *book.inputs):
+    for q in book.given():
         twice = q.ends[0] + q.ends[1]
         if q.shape == () and found.values[book.symbols[q.name]] != 0:
             found.values[book.symbols[q.name]] = mpf(twice.numerator) / (2 * twice.denominator)

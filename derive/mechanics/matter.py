@@ -23,33 +23,33 @@ OTHERS = 7919  # where trial points begin that share nothing with the first
 
 @dataclass(frozen=True)
 class Lean:
-    """A question without what does not matter, and the symbols that were taken out."""
+    """A problem without what does not matter, and the symbols that were taken out."""
 
-    question: Problem
+    problem: Problem
     cancelled: tuple[Symbol, ...]
 
 
-def lean(question: Problem, words: Words) -> Lean:
-    """Return ``question`` without the arguments that its answers do not depend on.
+def lean(problem: Problem, words: Words) -> Lean:
+    """Return ``problem`` without the arguments that its answers do not depend on.
 
     Raises SceneError if an answer depends on data that the user left out.
     """
     here = [point(words, n).values for n in range(POINTS)]
     there = [point(words, n + OTHERS).values for n in range(POINTS)]
-    own = _everywhere(question, words, here)
+    own = _everywhere(problem, here)
     if own is None:
-        raise SceneError(f"'{question.name}' has no answer at a trial point: "
+        raise SceneError(f"'{problem.name}' has no answer at a trial point: "
                          "its balances are singular there")  # fmt: skip
 
     def stay(changed: Sequence[dict[Symbol, Any]]) -> bool:
         places = [values | more for values, more in zip(here, changed, strict=True)]
-        return _same(own, _everywhere(question, words, places))
+        return _same(own, _everywhere(problem, places))
 
-    arguments = sorted(question.arguments(), key=str)
+    arguments = sorted(problem.arguments(), key=str)
     idle = [s for s in arguments if stay([{s: values[s]} for values in there])]
     for symbol, what in words.hidden.items():
         if symbol in arguments and symbol not in idle:
-            raise SceneError(f"'{question.name}' depends on {what}, which is not given")
+            raise SceneError(f"'{problem.name}' depends on {what}, which is not given")
     taken: dict[Symbol, Expr] = {}
     for symbol in idle:
         for number in STAND_INS:
@@ -57,24 +57,22 @@ def lean(question: Problem, words: Words) -> Lean:
             if stay([held] * POINTS):
                 taken[symbol] = Integer(number)
                 break
-    current = substituted(question, taken)
+    current = substituted(problem, taken)
     return Lean(current, tuple(s for s in idle if s in taken and s not in words.hidden))
 
 
-def _everywhere(
-    question: Problem, words: Words, places: Sequence[Mapping[Symbol, Any]]
-) -> list[Any] | None:
+def _everywhere(problem: Problem, places: Sequence[Mapping[Symbol, Any]]) -> list[Any] | None:
     """Return the answers at all trial points in one list."""
-    found = [_answers(question, words, values) for values in places]
+    found = [_answers(problem, values) for values in places]
     return None if None in found else [x for each in found if each is not None for x in each]
 
 
-def _answers(question: Problem, words: Words, values: Mapping[Symbol, Any]) -> list[Any] | None:
+def _answers(problem: Problem, values: Mapping[Symbol, Any]) -> list[Any] | None:
     with mp.workdps(DIGITS):
         try:
             probe = Probe(dict(values))
-            probe.define(question.definitions)
-            return answered(question, words.sheet, probe)
+            probe.define(problem.definitions)
+            return answered(problem, probe)
         except ZeroDivisionError:
             return None
 
@@ -87,27 +85,25 @@ def _same(first: list[Any] | None, second: list[Any] | None) -> bool:
     )
 
 
-def without_factors(question: Problem, words: Words, sought: AbstractSet[Symbol]) -> Problem:
-    """Return a question of what vanishes without the parameters that only multiply it.
+def without_factors(problem: Problem, words: Words, sought: AbstractSet[Symbol]) -> Problem:
+    """Return a problem of what vanishes without the parameters that only multiply it.
 
     sought : what it vanishes at, which is kept; so is a state: sines of angles have roots too
 
     A factor moves no root: with it and without it the answers at two points are in one ratio.
     """
     taken: dict[Symbol, Expr] = {}
-    fixed = {words.sheet.symbols[c] for q in words.vocabulary.parameters for c in q.components}
-    for symbol in sorted((question.arguments() & fixed) - sought, key=str):
-        if _is_factor(question, words, symbol):
+    fixed = words.vocabulary.fixed()
+    for symbol in sorted((problem.arguments() & fixed) - sought, key=str):
+        if _is_factor(problem, words, symbol):
             taken[symbol] = Integer(1)
-    return substituted(question, taken)
+    return substituted(problem, taken)
 
 
-def _is_factor(question: Problem, words: Words, symbol: Symbol) -> bool:
+def _is_factor(problem: Problem, words: Words, symbol: Symbol) -> bool:
     first, second = (point(words, n).values for n in range(POINTS))
     here, there, once, twice = (
-        _answers(question, words, values | {symbol: mpf(x)})
-        for x in (2, 3)
-        for values in (first, second)
+        _answers(problem, values | {symbol: mpf(x)}) for x in (2, 3) for values in (first, second)
     )
     if here is None or there is None or once is None or twice is None:
         return False

@@ -13,73 +13,121 @@ from derive.mechanics.balances import Balances
 from derive.mechanics.frames import Frames
 from derive.mechanics.linearised import unsteady
 from derive.mechanics.matter import Lean, lean
-from derive.mechanics.pivots import where
 from derive.mechanics.problem import Problem, substituted
+from derive.mechanics.rotation import FreeRotation, free_rotation
 from derive.mechanics.sweep import ranges, regular, weakest
 from derive.mechanics.vocabulary import Vocabulary
 from derive.mechanics.words import Words, words
 from derive.scene import Scene, SceneError
 
-SOUGHT = ("acceleration", "accelerations", "state_rate")
-"""Functions that find accelerations; what else may be asked of a body, its motion says."""
-
 
 @dataclass
 class Mechanism:
-    """A machine with its words and balances; questions are asked once and kept."""
+    """A machine with its words and balances; problems are posed once and kept.
+
+    inverse : the machine with its motion given, and what moves it sought
+    """
 
     scene: Scene
-    made: Words
+    words: Words
     answers: Answers
-    questions: dict[str, Problem] = field(default_factory=dict)
-    leans: dict[str, Lean] = field(default_factory=dict)
     inverse: Mechanism | None = None
+    wholes: dict[str, Problem] = field(default_factory=dict)
+    leans: dict[str, Lean] = field(default_factory=dict)
 
     @property
-    def words(self) -> Vocabulary:
+    def vocabulary(self) -> Vocabulary:
         """Return the vocabulary, in which an input may be the answer of another function."""
-        return self.made.spoken
+        return self.words.spoken
 
     def posed(self, base: str) -> Mechanism:
         """Return the machine as a function poses it: its motion sought, or given."""
-        return self if self.inverse is None or base in SOUGHT else self.inverse
+        return self.inverse or self if self.scene.posed(base) is self.scene.inverse else self
 
-    def question(self, base: str) -> Problem:
-        """Return a wanted function as a question, everything that is given still in it."""
-        if base not in self.questions:
-            self.questions[base] = self.posed(base).answers.question(base)
-        return self.questions[base]
+    def whole(self, base: str) -> Problem:
+        """Return a wanted function as a problem, everything that is given still in it."""
+        own = self.posed(base)
+        if base not in own.wholes:
+            own.wholes[base] = own.answers.problem(base)
+        return own.wholes[base]
 
     def lean(self, base: str) -> Lean:
-        """Return the question without what does not matter."""
-        if base not in self.leans:
-            found = lean(self.question(base), self.posed(base).made)
-            _require_unknowns(self, found.question)
-            self.leans[base] = found
-        return self.leans[base]
+        """Return the problem without what does not matter."""
+        own = self.posed(base)
+        if base not in own.leans:
+            found = lean(self.whole(base), own.words)
+            _require_unknowns(own, found.problem)
+            own.leans[base] = found
+        return own.leans[base]
 
+    def problem(self, base: str) -> Problem:
+        """Return what the lecture says of a wanted function: named quantities, balances, answers.
 
-def _require_unknowns(known: Mechanism, question: Problem) -> None:
-    """Refuse a residual of steady motion that does not change with each of its unknowns."""
-    steady = known.scene.steady
-    if steady is None or question.outputs[0].name != "steady":
-        return
-    used = {known.made.sheet.label(s) for s in question.arguments()}
-    if missing := [name for name in steady.unknown if name not in used]:
-        raise SceneError(
-            f"the steady residual must depend on {' and '.join(missing)}, but it does not; "
-            "name another steady.unknown, or what vanishes by steady.vanishes"
-        )
+        Raises SceneError if it has none, or none on all of the declared ranges.
+        """
+        own = self.posed(base)
+        try:
+            own.lean(base)
+        except ZeroDivisionError:
+            if own.scene.merging:
+                rule = "formulas must have a value on all of the declared ranges"
+                raise SceneError(f"{rule}, but {own.scene.merging}") from None
+            rule = "must change at a finite rate where all that varies is 0, as the root of a"
+            raise SceneError(f"what '{base}' rests on {rule} square does not") from None
+        found = substituted(own.whole(base), dict.fromkeys(own.words.hidden, Integer(1)))
+        return replace(found, name=base, steps=tuple(dict.fromkeys(found.steps)))
 
+    def body_by_body(self) -> Mechanism:
+        """Return the machine with balances of single bodies, about their mass centres only."""
+        a = self.answers
+        plain = Answers(a.machine, a.frames, a.balances.body_by_body())
+        return replace(self, answers=plain, wholes={}, leans={})
 
-def doubts(known: Mechanism) -> tuple[str, ...]:
-    """Return the warnings of a scene, and those that take its equations to be found."""
-    return (*known.scene.warnings, *doubts_at(known, {}))
+    def rotation(self) -> FreeRotation | None:
+        """Return the rotation of the only body that turns freely, None if there is none."""
+        return free_rotation(self.answers.frames)
 
+    def doubts(self) -> tuple[str, ...]:
+        """Return the warnings of a scene, and those that take its equations to be found."""
+        return (*self.scene.warnings, *self.doubts_at({}))
 
-def doubts_at(known: Mechanism, given: Mapping[str, float]) -> tuple[str, ...]:
-    """Return warnings that take a scene's equations to be found, where these values are set."""
-    return tuple(unsteady(known.scene, known.answers.balances, given))
+    def doubts_at(self, given: Mapping[str, float]) -> tuple[str, ...]:
+        """Return warnings that take a scene's equations to be found, where these values are set."""
+        return tuple(unsteady(self.scene, self.answers.balances, given))
+
+    def pole(self, base: str) -> str:
+        """Return words on what a function divides by that vanishes in its ranges, "" if nothing."""
+        problem, words = self.whole(base), self.posed(base).words
+        entries = [[own.get(u, Integer(0)) for u in problem.unknowns] for _, own in problem.parts]
+        divided = [(problem.unknowns, entries)] if entries else []
+        values = {**problem.definitions, **problem.answers}
+        divided += [((s,), [[d]]) for s, value in values.items() for d in _divisors(value)]
+        of = ranges(words)
+        for symbols, matrix in divided:
+            worst = weakest(of, problem.definitions, partial(regular, entries=matrix))
+            if worst.vanishes:
+                names = ", ".join(f"'{words.sheet.label(s)}'" for s in symbols)
+                return f"the divisor of {names} vanishes {worst.where}"
+        return ""
+
+    def dropped(self, base: str) -> Mapping[str, tuple[str, ...]]:
+        """Return what was found not to matter to a function: what cancels, what never enters."""
+        own, whole = self.posed(base), self.whole(base)
+        symbols, used = own.words.sheet.symbols, _labels(own.words, whole)
+        cancelled = {own.words.sheet.label(s) for s in self.lean(base).cancelled}
+        named = [u.name for u in own.scene.unknowns if u.name.isidentifier()]  # as a user may
+        every = _components(own)
+        return {
+            "cancels": tuple(c for c in every if c in cancelled),
+            "never enters": tuple(c for c in every if c not in used),
+            "unknowns left out": tuple(u for u in named if symbols[u] not in whole.unknowns),
+        }
+
+    def depends_on(self, base: str) -> tuple[str, ...]:
+        """Return the parameters, states and inputs that the answers of a function change with."""
+        own = self.posed(base)
+        used = _labels(own.words, self.lean(base).problem)
+        return tuple(c for c in _components(own) if c in used)
 
 
 def mechanism(machine: Scene) -> Mechanism:
@@ -87,40 +135,7 @@ def mechanism(machine: Scene) -> Mechanism:
     made = words(machine)
     frames = Frames(machine, made)
     inverse = mechanism(machine.inverse) if machine.inverse else None
-    return Mechanism(machine, made, Answers(machine, frames, Balances(frames)), inverse=inverse)
-
-
-def problem(known: Mechanism, base: str) -> Problem:
-    """Return what the lecture says of a wanted function: named quantities, balances, answers."""
-    known = known.posed(base)
-    try:
-        known.lean(base)
-    except ZeroDivisionError:
-        if known.scene.merging:
-            rule = "formulas must have a value on all of the declared ranges"
-            raise SceneError(f"{rule}, but {known.scene.merging}") from None
-        rule = "must change at a finite rate where all that varies is 0, as the root of a square"
-        raise SceneError(f"what '{base}' rests on {rule} does not") from None
-    found = substituted(known.question(base), dict.fromkeys(known.made.hidden, Integer(1)))
-    return replace(found, name=base, steps=tuple(dict.fromkeys(found.steps)))
-
-
-def pole(known: Mechanism, base: str) -> str:
-    """Return words on what a function divides by that vanishes in its ranges, "" if nothing."""
-    known = known.posed(base)
-    question, label = known.question(base), known.made.sheet.label
-    slopes = [known.made.sheet.split(row)[1] for row in question.rows]
-    entries = [[own.get(u, Integer(0)) for u in question.unknowns] for own in slopes]
-    divided = [(question.unknowns, entries)] if entries else []
-    values = {**question.definitions, **question.answers}
-    divided += [((s,), [[d]]) for s, value in values.items() for d in _divisors(value)]
-    of = ranges(known.made)
-    for symbols, matrix in divided:
-        worst = weakest(of, question.definitions, partial(regular, entries=matrix))
-        if worst.vanishes:
-            names = ", ".join(f"'{label(s)}'" for s in symbols)
-            return f"the divisor of {names} vanishes {where(worst.place)}"
-    return ""
+    return Mechanism(machine, made, Answers(machine, frames, Balances(frames)), inverse)
 
 
 def _divisors(value: Expr) -> list[Expr]:
@@ -128,29 +143,22 @@ def _divisors(value: Expr) -> list[Expr]:
     return sorted((p.base for p in value.atoms(Pow) if p.exp.is_negative), key=str)
 
 
-def dropped(known: Mechanism, base: str) -> Mapping[str, tuple[str, ...]]:
-    """Return what was found not to matter to a function: what cancels, what never enters."""
-    known = known.posed(base)
-    sheet, machine, words = known.made.sheet, known.scene, known.made.vocabulary
-    found = known.lean(base)
-    cancelled = {sheet.label(s) for s in found.cancelled}
-    used = {sheet.label(s) for s in known.question(base).arguments()}
-    every = [c for q in (*words.parameters, *words.states, *words.inputs)
-             for c in q.components]  # fmt: skip
-    asked = known.question(base).unknowns
-    named = [u.name for u in machine.unknowns if u.name.isidentifier()]  # as a user may
-    unasked = [name for name in named if sheet.symbols[name] not in asked]
-    return {
-        "cancels": tuple(c for c in every if c in cancelled),
-        "never enters": tuple(c for c in every if c not in used),
-        "unknowns left out": tuple(unasked),
-    }
+def _components(own: Mechanism) -> list[str]:
+    return [c for q in own.words.vocabulary.given() for c in q.components]
 
 
-def depends_on(known: Mechanism, base: str) -> tuple[str, ...]:
-    """Return the parameters, states and inputs that the answers of a function change with."""
-    known = known.posed(base)
-    used = {known.made.sheet.label(s) for s in known.lean(base).question.arguments()}
-    words = known.made.vocabulary
-    every = (*words.parameters, *words.states, *words.inputs)
-    return tuple(c for q in every for c in q.components if c in used)
+def _labels(words: Words, problem: Problem) -> set[str]:
+    return {words.sheet.label(s) for s in problem.arguments()}
+
+
+def _require_unknowns(own: Mechanism, problem: Problem) -> None:
+    """Refuse a residual of steady motion that does not change with each of its unknowns."""
+    steady = own.scene.steady
+    if steady is None or problem.outputs[0].name != "steady":
+        return
+    used = _labels(own.words, problem)
+    if missing := [name for name in steady.unknown if name not in used]:
+        raise SceneError(
+            f"the steady residual must depend on {' and '.join(missing)}, but it does not; "
+            "name another steady.unknown, or what vanishes by steady.vanishes"
+        )

@@ -71,7 +71,7 @@ def point(words: Words, number: int) -> Probe:
     book = words.vocabulary
     values: dict[Symbol, Any] = {}
     with mp.workdps(DIGITS):
-        for q in (*book.parameters, *book.states, *book.inputs):
+        for q in book.given():
             own = [_within(dice, q) for _ in q.components]
             size = mp.sqrt(mp.fsum(x * x for x in own)) if q.is_quaternion else mpf(1)
             values |= {book.symbols[c]: x / size for c, x in zip(q.components, own, strict=True)}

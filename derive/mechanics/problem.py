@@ -4,8 +4,9 @@ The reference solves it as it stands; how to compute its answers cheaply is left
 and a program is right if it satisfies the problem.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 from mpmath import mp, mpf
@@ -13,7 +14,7 @@ from sympy import Expr, Symbol
 
 from derive.mechanics.balances import Balance
 from derive.mechanics.probe import DIGITS, Probe, solved
-from derive.mechanics.sheet import Sheet
+from derive.mechanics.sheet import Split, below, split
 from derive.program.program import Quantity
 
 
@@ -44,6 +45,12 @@ class Problem:
         answers = (value - s for s, value in self.answers.items() if s not in self.unknowns)
         return (*named, *self.rows, *answers)
 
+    @cached_property
+    def parts(self) -> tuple[Split, ...]:
+        """Return of each row the part without unknowns, and each unknown's coefficient."""
+        unknowns = frozenset(self.unknowns)
+        return tuple(split(row, unknowns) for row in self.rows)
+
     def expressions(self) -> tuple[Expr, ...]:
         """Return all that the answers are made of, definitions apart."""
         return (*self.rows, *self.answers.values())
@@ -56,45 +63,32 @@ class Problem:
         return frozenset(used - set(self.definitions) - set(self.unknowns) - set(self.answers))
 
 
-def answered(question: Problem, sheet: Sheet, probe: Probe) -> list[Any]:
+def answered(problem: Problem, probe: Probe) -> list[Any]:
     """Return the answers at a trial point.
 
     Raises ZeroDivisionError where the balances are singular.
     """
     with mp.workdps(DIGITS):
         found = dict(probe.values)
-        if question.rows:
-            parts = [sheet.split(row) for row in question.rows]
+        if problem.rows:
             matrix = [[probe.value(slopes[u]) if u in slopes else mpf(0)
-                       for u in question.unknowns] for _, slopes in parts]  # fmt: skip
-            right = [-probe.value(rest) for rest, _ in parts]
-            found |= dict(zip(question.unknowns, solved(matrix, right), strict=True))
+                       for u in problem.unknowns] for _, slopes in problem.parts]  # fmt: skip
+            right = [-probe.value(rest) for rest, _ in problem.parts]
+            found |= dict(zip(problem.unknowns, solved(matrix, right), strict=True))
         there = Probe(found)
-        return [there.value(e) for e in question.answers.values()]
+        return [there.value(e) for e in problem.answers.values()]
 
 
-def substituted(question: Problem, values: Mapping[Symbol, Expr]) -> Problem:
-    """Return the question with symbols replaced, and named quantities that became plain put in."""
+def substituted(problem: Problem, values: Mapping[Symbol, Expr]) -> Problem:
+    """Return the problem with symbols replaced, and named quantities that became plain put in."""
     known, definitions = dict(values), dict[Symbol, Expr]()
-    for symbol, value in question.definitions.items():
+    for symbol, value in problem.definitions.items():
         made = value.xreplace(known)
         if made.is_Symbol or made.is_Number or (-made).is_Symbol:
             known[symbol] = made
         else:
             definitions[symbol] = made
-    rows = tuple(row.xreplace(known) for row in question.rows)
-    answers = {s: e.xreplace(known) for s, e in question.answers.items()}
-    used = _used(definitions, [*rows, *answers.values()])
-    kept = {s: e for s, e in definitions.items() if s in used}
-    return replace(question, definitions=kept, rows=rows, answers=answers)
-
-
-def _used(definitions: Mapping[Symbol, Expr], ends: Iterable[Expr]) -> set[Symbol]:
-    used: set[Symbol] = set()
-    waiting = [s for e in ends for s in e.free_symbols]
-    while waiting:
-        symbol = waiting.pop()
-        if symbol in definitions and symbol not in used:
-            used.add(symbol)
-            waiting += definitions[symbol].free_symbols
-    return used
+    rows = tuple(row.xreplace(known) for row in problem.rows)
+    answers = {s: e.xreplace(known) for s, e in problem.answers.items()}
+    kept = below(definitions, [*rows, *answers.values()])
+    return replace(problem, definitions=kept, rows=rows, answers=answers)

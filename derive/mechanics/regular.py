@@ -8,7 +8,6 @@ from sympy import Integer, Symbol
 from derive.mechanics.balances import Balances, Row
 from derive.mechanics.choice import chosen, clearly_told, contradiction, require_no_ring
 from derive.mechanics.frames import Frames
-from derive.mechanics.pivots import where
 from derive.mechanics.probe import Probe
 from derive.mechanics.sweep import Weakest, probe_at, ranges, regular, weakest
 from derive.scene import SceneError
@@ -42,7 +41,7 @@ class Regular:
         worst = self._weakest(*first)
         if rows and self._told(first[1], worst):
             names = ", ".join(f"'{self.frames.sheet.label(u)}'" for u in first[1])
-            rule = f"vanishes {where(worst.place)}, where the machine itself is regular"
+            rule = f"vanishes {worst.where}, where the machine itself is regular"
             raise SceneError(f"the divisor of {names} {rule}, and no other balances were found")
         return first
 

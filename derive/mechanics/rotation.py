@@ -9,11 +9,10 @@ from dataclasses import dataclass
 from sympy import Expr, Matrix, zeros
 
 from derive.lecture.stated import stated
+from derive.lecture.turning import reduced
 from derive.mechanics.bodies import centre, mass, tensor
 from derive.mechanics.frames import ZERO, Frames
 from derive.mechanics.loads import Wrench, wrenches
-from derive.mechanics.mechanism import Mechanism
-from derive.mechanics.turning import reduced
 from derive.program.program import Quantity
 from derive.scene import SceneError
 from derive.scene.machine import INERTIAL, Frame
@@ -35,19 +34,18 @@ class FreeRotation:
     moment: Matrix
 
 
-def free_rotation(known: Mechanism) -> FreeRotation | None:
+def free_rotation(frames: Frames) -> FreeRotation | None:
     """Return the rotation of the only quaternion, None where other things move with it.
 
     It is free if omega is a vector of the state, every body is fixed in the frame, and the loads
     have a known moment about its origin.
     """
-    frames = known.answers.frames
     turning = [frame for frame in frames.each.values() if frame.attitude]
-    bodies = [body.name for body in known.scene.bodies]
+    bodies = [body.name for body in frames.machine.bodies]
     if len(turning) != 1 or turning[0].parent != INERTIAL:
         return None
     (frame,) = turning
-    omega = _omega(known, frame)
+    omega = _omega(frames, frame)
     if omega is None or not all(_fixed(frames, body, frame.name) for body in bodies):
         return None
     if not (_at_rest(frames, frame) or _balanced(frames, frame.name)):
@@ -58,15 +56,15 @@ def free_rotation(known: Mechanism) -> FreeRotation | None:
     except SceneError:  # a load at a place, or along axes, that are not known in the frame
         return None
     acting = acting.applyfunc(lambda value: written_out(frames, value))
-    if (whole.free_symbols | acting.free_symbols) & {*frames.sheet.unknowns, *known.made.hidden}:
+    if (whole.free_symbols | acting.free_symbols) & {*frames.sheet.unknowns, *frames.words.hidden}:
         return None
-    return FreeRotation(frame.name, known.words[frame.attitude], omega, whole, acting)
+    return FreeRotation(frame.name, frames.words.spoken[frame.attitude], omega, whole, acting)
 
 
-def _omega(known: Mechanism, frame: Frame) -> Quantity | None:
+def _omega(frames: Frames, frame: Frame) -> Quantity | None:
     """Return the vector of the state that a frame turns with, None if it turns otherwise."""
     parts = tuple(f.name for f in frame.angular_velocity or () if f.operator == "symbol")
-    return next((q for q in known.words.states if q.components == parts), None)
+    return next((q for q in frames.words.spoken.states if q.components == parts), None)
 
 
 def _fixed(frames: Frames, body: str, name: str) -> bool:

@@ -5,6 +5,7 @@ Accelerations that are to be found, and reactions, enter every expression linear
 """
 
 from collections.abc import Iterable, Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 
 from sympy import Expr, Integer, Matrix, Symbol
@@ -12,6 +13,7 @@ from sympy import Expr, Integer, Matrix, Symbol
 from derive.scene import SceneError
 
 AXES = "xyz"
+Split = tuple[Expr, Mapping[Symbol, Expr]]  # what is left without unknowns, their coefficients
 
 
 @dataclass
@@ -27,7 +29,7 @@ class Sheet:
     rateless: Mapping[Symbol, str]
     definitions: dict[Symbol, Expr] = field(default_factory=dict)
     labels: dict[Expr, Symbol] = field(default_factory=dict)
-    parts: dict[Expr, tuple[Expr, Mapping[Symbol, Expr]]] = field(default_factory=dict)
+    parts: dict[Expr, Split] = field(default_factory=dict)
     because: dict[Symbol, list[str]] = field(default_factory=dict)
 
     def symbol(self, name: str) -> Symbol:
@@ -74,20 +76,16 @@ class Sheet:
         """Return the name of a symbol."""
         return next(name for name, own in self.symbols.items() if own == symbol)
 
-    def split(self, value: Expr) -> tuple[Expr, Mapping[Symbol, Expr]]:
+    def split(self, value: Expr) -> Split:
         """Return the part of ``value`` without unknowns, and each unknown's coefficient."""
         if value not in self.parts:
-            self.parts[value] = self._split(value)
+            own = split(value, self.unknowns)
+            if any(slope.free_symbols & self.unknowns for slope in own[1].values()):
+                found = sorted(value.free_symbols & self.unknowns, key=str)
+                names = ", ".join(map(self.label, found))
+                raise SceneError(f"unknowns must enter a load linearly, but {names} are multiplied")
+            self.parts[value] = own
         return self.parts[value]
-
-    def _split(self, value: Expr) -> tuple[Expr, Mapping[Symbol, Expr]]:
-        found = sorted(value.free_symbols & self.unknowns, key=str)
-        slopes = {u: value.diff(u) for u in found}
-        if any(slope.free_symbols & self.unknowns for slope in slopes.values()):
-            names = ", ".join(self.label(u) for u in found)
-            raise SceneError(f"unknowns must enter a load linearly, but {names} are multiplied")
-        rest = value.xreplace(dict.fromkeys(found, Integer(0)))
-        return rest, {u: slope for u, slope in slopes.items() if slope != 0}
 
     def rate(self, value: Expr) -> Expr:
         """Return the time derivative of ``value`` by the chain rule."""
@@ -130,3 +128,11 @@ def below(definitions: Mapping[Symbol, Expr], values: Iterable[Expr]) -> dict[Sy
 
 def _plain(value: Expr) -> bool:
     return bool(value.is_Symbol or value.is_Number or (-value).is_Symbol)
+
+
+def split(value: Expr, unknowns: AbstractSet[Symbol]) -> Split:
+    """Return the part of ``value`` without unknowns, and the coefficients that are not zero."""
+    found = sorted(value.free_symbols & unknowns, key=str)
+    slopes = {u: value.diff(u) for u in found}
+    rest = value.xreplace(dict.fromkeys(found, Integer(0)))
+    return rest, {u: slope for u, slope in slopes.items() if slope != 0}

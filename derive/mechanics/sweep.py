@@ -17,6 +17,7 @@ from sympy import Add, Expr, Mul, Pow, Rational, Symbol, pi, tan
 from derive.mechanics.probe import DIGITS, Probe, point
 from derive.mechanics.words import Words
 from derive.program.program import Quantity
+from derive.scene.escape import at_place
 
 Array = NDArray[Any]
 Sized = tuple[Array, Array]  # values at all points, and the sizes of the terms they are made of
@@ -65,9 +66,7 @@ def ranges(words: Words) -> Ranges:
     """Return the ranges of all that is given, and of data left out by the user."""
     book = words.vocabulary
     each: list[tuple[Symbol, str, Quantity]] = [
-        (book.symbols[c], c, q)
-        for q in (*book.parameters, *book.states, *book.inputs)
-        for c in q.components
+        (book.symbols[c], c, q) for q in book.given() for c in q.components
     ]
     ends = [tuple(map(float, q.ends)) for _, _, q in each] + [(1.0, 2.0)] * len(words.hidden)
     return Ranges(
@@ -171,6 +170,15 @@ class Weakest:
     def vanishes(self) -> bool:
         """Tell whether it is a pole."""
         return not self.least > LEAST
+
+    @property
+    def where(self) -> str:
+        """Return words for the place: the values of a few quantities.
+
+        >>> Weakest(0.0, {"a": 0.0, "b": 1.25}).where
+        'at a = 0, b = 1.25'
+        """
+        return at_place({name: float(f"{x:.4g}") for name, x in self.place.items()}).strip()
 
 
 def weakest(

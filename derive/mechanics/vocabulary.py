@@ -18,9 +18,6 @@ from derive.scene.escape import brief
 from derive.scene.formula import Formula
 from derive.scene.functions import FUNCTIONS, PLAIN
 
-XYZ = ("x", "y", "z")
-ANY = (Fraction(-1), Fraction(1))
-
 
 @dataclass(frozen=True)
 class Vocabulary:
@@ -44,7 +41,15 @@ class Vocabulary:
 
     def every(self) -> tuple[Quantity, ...]:
         """Return all quantities, parameters first."""
-        return self.parameters + self.states + self.inputs + self.outputs
+        return self.given() + self.outputs
+
+    def given(self) -> tuple[Quantity, ...]:
+        """Return the quantities that a function may be given: parameters, states, inputs."""
+        return self.parameters + self.states + self.inputs
+
+    def fixed(self) -> frozenset[Symbol]:
+        """Return the symbols of all parameters."""
+        return frozenset(self.symbols[c] for q in self.parameters for c in q.components)
 
     def column(self, name: str) -> Matrix:
         """Return the symbols of a quantity's components as a column."""

@@ -29,8 +29,7 @@ from derive.program.pairs import (
     pair_sqrt,
     splitter,
 )
-
-Table = dict[str, Callable[..., Any]]
+from derive.scene.formula import Arithmetic
 
 
 @dataclass(frozen=True)
@@ -115,7 +114,7 @@ FLOPS, TRUTHS, LIBM = (
     frozenset(name for name, row in OPERATORS.items() if row.kind == kind)
     for kind in ("flop", "truth", "libm")
 )
-EXACT: Table = {
+EXACT: Arithmetic = {
     "number": Fraction,
     **{name: row.exact for name, row in OPERATORS.items() if row.exact is not None},
 }
@@ -167,7 +166,7 @@ def _at_the_edge(function: str, *given: Any) -> float:
         return float(getattr(np, {"atan2": "arctan2"}.get(function, function))(*given))
 
 
-def working(dtype: type) -> Table:
+def working(dtype: type) -> Arithmetic:
     """Return the arithmetic of one float type, vectorised over samples."""
 
     def number(q: Fraction) -> Any:
@@ -178,7 +177,7 @@ def working(dtype: type) -> Table:
     return {"number": number, **own, **_numbers(number, dtype)}
 
 
-def _numbers(number: Callable[[Fraction], Any], dtype: type) -> Table:
+def _numbers(number: Callable[[Fraction], Any], dtype: type) -> Arithmetic:
     """Return the operators without operands, as an arithmetic has numbers."""
     bits = MANTISSA[dtype]
     every = {name: row.number(bits) for name, row in OPERATORS.items() if row.number is not None}
@@ -198,7 +197,7 @@ def pair_of(q: Fraction, dtype: type) -> tuple[Fraction, Fraction]:
     return high, Fraction(float(rounded(q - high, dtype)))
 
 
-def extended(dtype: type) -> Table:
+def extended(dtype: type) -> Arithmetic:
     """Return the arithmetic of pairs of ``dtype``, vectorised over samples."""
 
     def number(q: Fraction) -> Pair:

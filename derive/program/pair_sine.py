@@ -27,10 +27,10 @@ TERMS = {24: 8, 53: 14}
 """Terms of the series by bits: the first left out is below 2^-(2 p + 1) at an eighth of a turn."""
 
 
-def series(bits: int, first: int) -> list[Fraction]:
+def coefficients(bits: int, first: int) -> list[Fraction]:
     """Return coefficients by powers of x^2, of sin x / x (``first`` 1) or cos x (``first`` 0).
 
-    >>> series(24, 1)[:3]
+    >>> coefficients(24, 1)[:3]
     [Fraction(1, 1), Fraction(-1, 6), Fraction(1, 120)]
     """
     return [Fraction((-1) ** n, factorial(2 * n + first)) for n in range(TERMS[bits])]
@@ -54,7 +54,7 @@ def pair_sine(dtype: type, rounded: Callable[[Fraction], Any]) -> Callable[[Pair
 
     def summed(square: Pair, start: int) -> Pair:
         total = (square[0] * 0, square[0] * 0)
-        for c in reversed(series(bits, start)):
+        for c in reversed(coefficients(bits, start)):
             high = rounded(c)
             own = (high, rounded(c - Fraction(float(high))))
             total = pair_add(pair_mul(total, square, factor), own)

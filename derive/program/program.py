@@ -5,7 +5,7 @@ is the name of an earlier value or an exact number.
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Literal
@@ -15,7 +15,6 @@ from derive.program.indexed import Arrays, Even, Indexed, Integers, Loop, names_
 
 Operand = str | Fraction
 
-Arithmetic = Mapping[str, Callable[..., Any]]  # what each operator does
 
 Role = Literal["value", "constants", "plan", "remainder"]
 """What a quantity is for: a value of its own, or what one function makes for others to read."""

@@ -5,7 +5,8 @@ from types import MappingProxyType
 from typing import Any
 
 from derive.program.indexed import Assign, Even, Integers, Loop, Row, value_at
-from derive.program.program import Arithmetic, Line, Op, Operand, Program, component_names
+from derive.program.program import Line, Op, Operand, Program, component_names
+from derive.scene.formula import Arithmetic
 
 NOWHERE: Mapping[str, int] = MappingProxyType({})
 

@@ -178,13 +178,19 @@ class Group:
 class Groups:
     """What a scene's quantities are grouped as; an input of one function may answer another.
 
-    rates : of the outputs, those that answer with the rates of all states, in their order
+    rates : of inputs and outputs, those that answer with the rates of all states, in their order
     """
 
     states: tuple[Group, ...]
     inputs: tuple[Group, ...]
     outputs: tuple[Group, ...]
     rates: tuple[str, ...]
+
+    def rate_of_each(self) -> dict[str, str]:
+        """Return what answers with the rate of each component of the state."""
+        named = {g.name: g.components for g in (*self.inputs, *self.outputs)}
+        rates = [c for name in self.rates for c in named[name]]
+        return dict(zip((c for g in self.states for c in g.components), rates, strict=True))
 
 
 @dataclass(frozen=True)
@@ -213,12 +219,16 @@ class Tensor:
 Demand = Above | Tensor
 
 
+SOUGHT = ("acceleration", "accelerations", "state_rate")
+"""Functions that find accelerations; what else may be asked of a body, its motion says."""
+
+
 @dataclass(frozen=True)
 class Scene:
     """Everything the user declared, checked; ``text`` is the file as it was read.
 
     merging : words on where two of three free angles merge in their ranges, "" if nowhere
-    groups  : of its quantities, where they are not one scalar each
+    groups  : what its functions are given and answer
     inverse : the same bodies where their motion is given, and what moves them is sought
     told    : what it declares, in sentences, where not by frames, bodies and loads
     spoken  : what places, axes and bodies are called that the user gave no names
@@ -251,11 +261,15 @@ class Scene:
     warnings: tuple[str, ...]
     demands: tuple[Demand, ...]
     merging: str = ""
-    groups: Groups | None = None
+    groups: Groups = Groups((), (), (), ())
     inverse: "Scene | None" = None
     told: tuple[str, ...] = ()
     spoken: Mapping[str, str] = field(default_factory=dict)
     marks: Mapping[str, str] = field(default_factory=dict)
+
+    def posed(self, function: str) -> "Scene":
+        """Return the scene as a function poses it: its motion sought, or given."""
+        return self if self.inverse is None or function in SOUGHT else self.inverse
 
     @property
     def moving(self) -> tuple[Moving, ...]:

@@ -15,15 +15,16 @@ from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.frames import read_frames
 from derive.scene.loads import read_loads
 from derive.scene.machine import Frame, Member, Place, Result, Scene, Steady, Unknown
+from derive.scene.machine_groups import grouped
 from derive.scene.names import distinct, label
 from derive.scene.numbers import member_doubts
 from derive.scene.results import (
     answer_units,
-    groups,
     matrix_entries,
     of_any_unit,
     read_asked,
     read_results,
+    unknown_vectors,
     written_out,
 )
 from derive.scene.scalars import PER_SECOND, Scalars, read_scalars
@@ -90,7 +91,7 @@ def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
     steady = _steady(part["steady"], scalars, unknowns, results, asked)
     made = _made(scalars, frames, results, asked, steady)
     distinct([*_declared(scalars, unknowns, results), *made])
-    return Scene(
+    return grouped(Scene(
         **head, parameters=scalars.parameters, coordinates=scalars.coordinates,
         speeds=scalars.speeds, inputs=scalars.inputs,
         frames=frames, bodies=bodies, loads=loads, unknowns=unknowns, results=results,
@@ -99,7 +100,7 @@ def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
         steady=steady, asked=asked, wanted=tuple(asked), demands=of_bodies(bodies),
         warnings=(*_unused(scalars, source), *_doubts(bodies, scalars),
                   *_misnamed(scalars, results)),
-    )  # fmt: skip
+    ))  # fmt: skip
 
 
 def _misnamed(scalars: Scalars, results: tuple[Result, ...]) -> list[str]:
@@ -132,7 +133,7 @@ def _vectors(
 ) -> Iterator[tuple[str, str]]:
     """Yield the vectors of unknowns that are wanted, with what each is."""
     answers = {name for each in asked.values() for name in each}
-    for name in groups(unknowns):
+    for name in unknown_vectors(unknowns):
         if name in answers:
             yield name, f"the vector of the unknowns '{name}_x' to '{name}_z'"
 

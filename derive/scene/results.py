@@ -20,6 +20,12 @@ FUNCTIONS = (
     *ENERGIES,
     *("angular_momentum", "accelerations", "state_rate", "linearised", "steady"),
 )
+MATRICES = {
+    "mass_matrix": "acceleration",
+    "damping_matrix": "velocity, gyroscopic terms included",
+    "stiffness_matrix": "displacement",
+}
+"""The matrices of small motion, each with what its entries multiply."""
 
 
 def read_results(
@@ -74,13 +80,14 @@ def read_asked(
     if not isinstance(value, list) or not value:
         raise SceneError(f"wanted must be a list of at least one answer, not {shown(value)}")
     for result in results:
-        if result.name in groups(unknowns):
+        if result.name in unknown_vectors(unknowns):
             rule = f"is the vector of the unknowns '{result.name}_x' to '{result.name}_z' already"
             raise SceneError(f"result '{result.name}' needs another name: '{result.name}' {rule}")
     parts = _parts(scalars, unknowns)
     vectors = (m.answer for m in scalars.moving if m.free and m.vector)
-    known_ = [*FUNCTIONS, *OF_MACHINES, *groups(unknowns), *(u.name for u in unknowns),
-              *(r.name for r in results), *unknown_rates(scalars), *vectors]  # fmt: skip
+    named = (*(u.name for u in unknowns), *(r.name for r in results))
+    known_ = [*FUNCTIONS, *OF_MACHINES, *unknown_vectors(unknowns), *named,
+              *unknown_rates(scalars), *vectors]  # fmt: skip
     asked: dict[str, tuple[str, ...]] = {}
     for entry in value:
         name, answers = _entry(entry, known_)
@@ -97,7 +104,7 @@ def read_asked(
 
 def _parts(scalars: Scalars, unknowns: tuple[Unknown, ...]) -> Mapping[str, tuple[str, ...]]:
     """Return the unknowns that each answer gives as components of a vector."""
-    parts = {group: tuple(f"{group}_{axis}" for axis in AXES) for group in groups(unknowns)}
+    parts = {v: tuple(f"{v}_{axis}" for axis in AXES) for v in unknown_vectors(unknowns)}
     for m in (m for m in scalars.moving if m.free and m.vector):
         for answer in (m.answer, "accelerations"):
             parts[answer] = (*parts.get(answer, ()), m.unknown)
@@ -125,7 +132,7 @@ def _entry(entry: object, known_: Sequence[str]) -> tuple[str, tuple[str, ...]]:
     return name, answers
 
 
-def groups(unknowns: tuple[Unknown, ...]) -> tuple[str, ...]:
+def unknown_vectors(unknowns: tuple[Unknown, ...]) -> tuple[str, ...]:
     """Return the names of which all three components are unknowns."""
     names = {u.name for u in unknowns}
     firsts = [n.removesuffix("_x") for n in names if n.endswith("_x")]
@@ -150,11 +157,11 @@ def matrix_entries(scalars: Scalars) -> dict[str, Dimension]:
     of_a_turn, of_a_way = dimension("kg m^2"), dimension("kg")
     inertia = {"rad": of_a_turn, "rad/s": of_a_turn, "m": of_a_way, "m/s": of_a_way}
     found = {}
-    for name, per in (("mass", 0), ("damping", 1), ("stiffness", 2)):
+    for per, name in enumerate(MATRICES):
         units = [(u[0], u[1], u[2] - per) for u in (inertia[m.unit] for m in free)]
         for i in range(len(free)):
             for k, unit in enumerate(units):
-                found[f"{name}_matrix_{i + 1}_{k + 1}"] = unit
+                found[f"{name}_{i + 1}_{k + 1}"] = unit
     return found
 
 

@@ -129,7 +129,7 @@ def _limits(
     given: argparse.Namespace, found: Instrument, values: dict[str, float]
 ) -> Iterator[Row]:
     unit = {c: q.unit for q in found.quantities() for c in q.components}
-    wanted = found.library.known.scene.wanted
+    wanted = found.library.scene.wanted
     if "linearised" not in wanted:
         raise SceneError(f"scene '{found.name}': --limit needs wanted = [..., \"linearised\"]")
     for name in given.limit:
@@ -139,7 +139,7 @@ def _limits(
 
 def _every_answer(found: Instrument, values: dict[str, float]) -> Solved:
     answered = Solved([], [])
-    for name in found.library.known.scene.wanted:
+    for name in found.library.scene.wanted:
         missing = _missing(found, name, values)
         if missing:
             answered.unanswered.append(f"'{name}' needs {', '.join(missing)}")
@@ -188,7 +188,7 @@ def _number(text: str, value: str, unit: str) -> float:
 
 def _unknowns(found: Instrument, name: str, values: dict[str, float]) -> tuple[str, ...]:
     """Return the unknowns of a steady motion that is to be found; none if they are all set."""
-    scene = found.library.known.scene
+    scene = found.library.scene
     steady = scene.steady if name == "steady" else None
     return () if steady is None or all(n in values for n in steady.unknown) else steady.unknown
 

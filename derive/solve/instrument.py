@@ -13,7 +13,6 @@ import casadi
 from derive.emit.casadi_module import imported
 from derive.emit.casadi_text import casadi_file
 from derive.library.library import Library, library
-from derive.mechanics.mechanism import depends_on, doubts_at
 from derive.program.program import Program, Quantity
 from derive.program.status import refusal
 from derive.scene import SceneError, load
@@ -35,18 +34,16 @@ class Instrument:
     @property
     def name(self) -> str:
         """Return the scene's name."""
-        return self.library.known.scene.name
+        return self.library.scene.name
 
     def quantities(self) -> tuple[Quantity, ...]:
         """Return everything that may be set."""
-        words = self.library.known.words
-        return (*words.parameters, *words.states, *words.inputs)
+        return self.library.vocabulary.given()
 
     def needed(self, function: str) -> tuple[str, ...]:
         """Return the components that a function changes with."""
-        known = self.library.known
-        if function in self.library.truths:
-            return depends_on(known, function)
+        if function in self.library.problems:
+            return self.library.mechanism.depends_on(function)
         program = self.library[function]
         own = [c for q in program.inputs if q.role != "constants" for c in q.components]
         return (*(c for q in self.library.setup.inputs for c in q.components), *own)
@@ -73,7 +70,7 @@ class Instrument:
 
     def doubts(self, given: Values) -> tuple[str, ...]:
         """Return warnings about parameters that set-up takes: inertias that no masses can have."""
-        scene = self.library.known.scene
+        scene = self.library.scene
         pinned = tuple(
             replace(p, low=Fraction(x), high=Fraction(x))
             if isinstance(x := given.get(p.name), int | float) and p.value is None
@@ -84,10 +81,10 @@ class Instrument:
         each = ((d.label.split(" inertia")[0], d.whole or d.entries) for d in tensors)
         found = tuple(says for label, own in each for says in member_doubts(label, own, pinned))
         told = [p.name for p in scene.parameters if p.value is None]
-        linear = "linearised" in self.library.truths
+        linear = "linearised" in self.library.problems
         whole = linear and {*told, *self.needed("linearised")} <= given.keys()
         own = {n: x for n, x in given.items() if n not in scene.about}
-        return (*found, *doubts_at(self.library.known, own)) if whole else found
+        return (*found, *self.library.mechanism.doubts_at(own)) if whole else found
 
     def _called(self, program: Program, given: Values) -> list[Any]:
         if program.name not in self.built:
@@ -118,6 +115,6 @@ class Instrument:
 def opened(source: str) -> Instrument:
     """Return the instrument of a catalogue name or of a file."""
     made = library(load(source))
-    name = f"{made.known.scene.name}_casadi"
+    name = f"{made.scene.name}_casadi"
     with TemporaryDirectory(prefix="derive-") as folder:
         return Instrument(made, imported(name, casadi_file(made), Path(folder)))

@@ -20,7 +20,7 @@ HALVINGS = 60
 
 
 def _steady(found: Instrument) -> tuple[str, ...]:
-    scene = found.library.known.scene
+    scene = found.library.scene
     if scene.steady is None:
         raise SceneError(f"scene '{found.name}': roots need [steady]")
     return scene.steady.unknown

@@ -38,10 +38,10 @@ def simulated(
     sense, or the motion does not stay finite.
     """
     count = _count(until, step)
-    scene = found.library.known.scene
+    scene = found.library.scene
     if STEP not in scene.wanted:
         raise SceneError(f"scene '{found.name}': a simulation needs wanted = [..., \"{STEP}\"]")
-    states = found.library.known.words.states
+    states = found.library.vocabulary.states
     names = [c for q in states for c in q.components]
     missing = [n for n in names if n not in given]
     if missing:

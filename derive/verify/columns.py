@@ -17,9 +17,9 @@ from derive.program.indexed import Loop
 from derive.program.pairs import Pair
 from derive.program.program import Line, Op, Program, component_names, operands_of
 from derive.program.run import numbers_of, run_lines, values_of
+from derive.scene.formula import Arithmetic
 from derive.verify.operators import IN_DOUBLES, UNROUNDED, pair_sines
 
-Table = dict[str, Callable[..., Any]]
 Column = NDArray[Any]
 SMALL, LARGE = 2.0**-27, 2.0**20
 """Sines are taken in pairs between these; below, x is the float next to sin x, and 1 to cos x."""
@@ -57,16 +57,16 @@ def _names(line: Line) -> set[str]:
     return own | {*line.carried} if isinstance(line, Loop) else own
 
 
-def in_columns(plan: Plan, table: Table, known: Mapping[str, Any]) -> list[Any]:
+def in_columns(plan: Plan, arithmetic: Arithmetic, known: Mapping[str, Any]) -> list[Any]:
     """Return the results of a program by component, from the columns of its inputs by name."""
     program = plan.program
     own = {c: known[c] for q in program.inputs for c in q.components}
-    own |= numbers_of(program, table)
+    own |= numbers_of(program, arithmetic)
     for line, spent in zip(program.ops, plan.spent, strict=True):
-        run_lines((line,), table, own)
+        run_lines((line,), arithmetic, own)
         for name in spent:
             own.pop(name, None)
-    return values_of(program.results, table, own)
+    return values_of(program.results, arithmetic, own)
 
 
 @dataclass(frozen=True)
@@ -79,10 +79,10 @@ class Arithmetics:
     """
 
     dtype: type
-    made: Table
-    own: Table
-    true_made: Table
-    true: Table
+    made: Arithmetic
+    own: Arithmetic
+    true_made: Arithmetic
+    true: Arithmetic
 
     def number(self, pair: Pair) -> Any:
         """Return a constant of ``true_made`` as ``true`` has it."""
@@ -104,21 +104,21 @@ class Arithmetics:
 def arithmetics(dtype: type) -> Arithmetics:
     """Return the arithmetics of a precision: of float or of double."""
     made = _with_numbers(extended(dtype))
-    own = _with_numbers(working(dtype) | {n: _correctly(n, dtype) for n in LIBM})
+    own = _with_numbers({**working(dtype), **{n: _correctly(n, dtype) for n in LIBM}})
     true_made = _with_numbers({**extended(np.float64), **UNROUNDED})
     true = true_made if dtype is np.float64 else doubles()
     return Arithmetics(dtype, made, own, true_made, true)
 
 
 @cache
-def doubles() -> Table:
+def doubles() -> Arithmetic:
     """Return double with the libm of the machine: for what needs a few digits only."""
-    return _with_numbers(working(np.float64) | {n: IN_DOUBLES[n] for n in (*LIBM, "low")})
+    return _with_numbers({**working(np.float64), **{n: IN_DOUBLES[n] for n in (*LIBM, "low")}})
 
 
-def _with_numbers(table: Table) -> Table:
-    """Return a table that works each constant out once."""
-    return table | {"number": cache(table["number"])}
+def _with_numbers(arithmetic: Arithmetic) -> Arithmetic:
+    """Return an arithmetic that works each constant out once."""
+    return {**arithmetic, "number": cache(arithmetic["number"])}
 
 
 def _correctly(name: str, dtype: type) -> Callable[..., Any]:
@@ -166,7 +166,7 @@ def _double(name: str, given: Sequence[Column]) -> tuple[Column, NDArray[np.bool
 
 
 @dataclass(frozen=True)
-class Known:
+class Supplied:
     """Inputs and constants of a set of samples, as the program has them and as they truly are."""
 
     own: Mapping[str, Column]
@@ -174,7 +174,7 @@ class Known:
     wide: Mapping[str, Column]  # the true ones in double
 
 
-def known(setup: Plan, values: Mapping[str, Column], by: Arithmetics) -> Known:
+def supplied(setup: Plan, values: Mapping[str, Column], by: Arithmetics) -> Supplied:
     """Return samples with the constants that set-up makes of them."""
     names = component_names(setup.program)
     count = len(next(iter(values.values())))
@@ -186,14 +186,14 @@ def known(setup: Plan, values: Mapping[str, Column], by: Arithmetics) -> Known:
         own[name] = _filled(rounded_once[0], count).astype(by.dtype)
         both = (_filled(pair[0], count), _filled(pair[1], count))
         true[name], wide[name] = by.number(both), both[0]
-    return Known(own, true, wide)
+    return Supplied(own, true, wide)
 
 
 def _filled(x: Any, count: int) -> Column:
     return np.broadcast_to(np.asarray(x), (count,))
 
 
-def found_and_true(plan: Plan, at: Known, by: Arithmetics) -> list[tuple[Column, Any]]:
+def found_and_true(plan: Plan, at: Supplied, by: Arithmetics) -> list[tuple[Column, Any]]:
     """Return what a program gives and what it should give, by component, at all samples."""
     count = len(next(iter(at.own.values())))
     if plan.program.arithmetic == "pairs":

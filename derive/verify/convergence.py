@@ -13,13 +13,11 @@ from typing import Any
 from flint import arb, ctx
 
 from derive.library.library import Library
-from derive.mechanics.mechanism import problem
-from derive.mechanics.rotation import free_rotation
 from derive.program.largest import largest
 from derive.program.program import placed
 from derive.program.run import results_by_name
 from derive.scene.wanted import SPLITTINGS, TAYLOR, step_of
-from derive.verify.equations import Equations, equations
+from derive.verify.equations import equations_of
 from derive.verify.operators import LONG_FLOATS
 from derive.verify.reference import BALLS
 from derive.verify.solution import solution
@@ -77,14 +75,15 @@ class Order:
 
 def rate_of(library: Library, values: Mapping[str, Any]) -> Rate:
     """Return the rate of the state as the lecture's equations give it, other inputs held."""
-    fact = library.truths.get("state_rate") or problem(library.known, "state_rate")
-    asked: Equations = equations(library.known, fact)
+    mechanism = library.mechanism
+    problem = library.problems.get("state_rate") or mechanism.problem("state_rate")
+    equations = equations_of(mechanism, problem)
     states = _states(library)
-    rates = [c for q in fact.outputs for c in q.components]
+    rates = [c for q in problem.outputs for c in q.components]
 
     def rate(state: State) -> State:
         given = {**values, **dict(zip(states, state, strict=True))}
-        found = solution(asked, given, (), BALLS)
+        found = solution(equations, given, (), BALLS)
         return [found[name].value.mid() for name in rates]
 
     return rate
@@ -154,7 +153,7 @@ def closed(library: Library, name: str) -> bool:
     base = step_of(name)
     if base not in (*SPLITTINGS, "step_dmv", "step_lie"):
         return False
-    turning = free_rotation(library.known)
+    turning = library.mechanism.rotation()
     if turning is None or any(turning.moment) or not turning.tensor.is_diagonal():
         return False
     tensor = turning.tensor
@@ -163,7 +162,7 @@ def closed(library: Library, name: str) -> bool:
 
 
 def _states(library: Library) -> list[str]:
-    return [c for q in library.known.words.states for c in q.components]
+    return [c for q in library.vocabulary.states for c in q.components]
 
 
 def exactness(library: Library, values: Mapping[str, float]) -> float:
@@ -183,7 +182,7 @@ def exactness(library: Library, values: Mapping[str, float]) -> float:
 
 def unit_attitude(library: Library, values: dict[str, Any]) -> dict[str, Any]:
     """Return the values with every quaternion of the state brought to length one."""
-    for q in library.known.words.states:
+    for q in library.vocabulary.states:
         if q.is_quaternion:
             size = sum((values[c] ** 2 for c in q.components), arb(0)).sqrt()
             values = values | {c: (values[c] / size).mid() for c in q.components}
@@ -193,7 +192,7 @@ def unit_attitude(library: Library, values: dict[str, Any]) -> dict[str, Any]:
 def _turning(library: Library, rates: State, state: State) -> float:
     """Return the fastest relative rate, 1/s, among the quantities of the state."""
     fastest = 1e-30
-    for _, own in placed(library.known.words.states):
+    for _, own in placed(library.vocabulary.states):
         fast, size = (max(abs(float(x)) for x in each[own]) for each in (rates, state))
         fastest = max(fastest, fast / size if size else 0.0)
     return fastest

@@ -57,7 +57,7 @@ def slopes(library: Library, program: Program, values: Mapping[str, float]) -> I
 
 def _attitude(library: Library) -> tuple[str, ...]:
     """Return the components of the quaternion that errors of attitude turn."""
-    states = library.known.words.states
+    states = library.vocabulary.states
     return next((q.components for q in states if q.is_quaternion), ())
 
 

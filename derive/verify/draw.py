@@ -18,10 +18,10 @@ from derive.motion.compensated import REMAINDER
 from derive.program.precision import Precision
 from derive.program.program import Quantity, component_names, placed
 from derive.scene import SceneError
-from derive.verify.columns import Column, Known, Plan, arithmetics, in_columns, known, planned
-from derive.verify.equations import Equations, equations
+from derive.verify.columns import Column, Plan, Supplied, arithmetics, in_columns, planned, supplied
+from derive.verify.equations import Equations, stated
 from derive.verify.hard_bodies import admissible, solvable
-from derive.verify.sample import Sample, source, uniform, varying
+from derive.verify.sample import Sample, source, uniform
 
 FEWEST = 1 / 64
 """Where fewer bodies than this obey the triangle inequality, any definite tensor will do."""
@@ -59,8 +59,7 @@ class Field:
     @cached_property
     def quantities(self) -> tuple[Quantity, ...]:
         """Return what is drawn: parameters, what varies, and what motions are given besides."""
-        known = self.library.known
-        return (*known.words.parameters, *varying(known), *fresh_quantities(self.library))
+        return (*self.library.vocabulary.given(), *fresh_quantities(self.library))
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -84,7 +83,7 @@ class Field:
         A tensor that breaks it will do where the ranges hold hardly any other.
         """
         tried = held(self, _anywhere(self, Dice("bodies"), 4096))
-        fits = admissible(self.library.known, dict(zip(self.names, tried, strict=True)))
+        fits = admissible(self.library.scene, dict(zip(self.names, tried, strict=True)))
         return solvable if np.mean(fits) < FEWEST else admissible
 
     @cached_property
@@ -110,10 +109,9 @@ class Field:
         return next((planned(f) for f in self.library.motions if f.makes("plan")), None)
 
     @cached_property
-    def asked(self) -> Mapping[str, Equations]:
+    def equations(self) -> Mapping[str, Equations]:
         """Return the equations behind every function of the lecture, by its name."""
-        truths = self.library.truths
-        return {base: equations(self.library.known, fact) for base, fact in truths.items()}
+        return stated(self.library)
 
     @property
     def smallest(self) -> float:
@@ -123,7 +121,7 @@ class Field:
 
 def fresh_quantities(library: Library) -> list[Quantity]:
     """Return what only the functions of motion are given, but for a plan, which is made."""
-    known = {c for q in library.known.words.every() for c in q.components}
+    known = {c for q in library.vocabulary.every() for c in q.components}
     known |= set(component_names(library.setup))
     given = {q.name: q for f in library.motions for q in f.inputs}
     return [q for q in given.values() if not known & set(q.components) and q.role != "plan"]
@@ -149,7 +147,7 @@ def drawn(of: Field, dice: Dice, count: int) -> Column:
         if not missing:
             return np.concatenate(found, axis=1)
     raise SceneError(
-        f"scene '{of.library.known.scene.name}': the ranges of its parameters must hold a body, "
+        f"scene '{of.library.scene.name}': the ranges of its parameters must hold a body, "
         f"but only {count - missing} were found in {TRIES} tries of {count}"
     )
 
@@ -162,7 +160,7 @@ def _anywhere(of: Field, dice: Dice, count: int) -> Column:
 def on_the_sphere(of: Field, rows: Column) -> Column:
     """Return rows with every quaternion of the states of unit length."""
     for q, span in placed(of.quantities):
-        if q in of.library.known.words.states and q.is_quaternion:
+        if q in of.library.vocabulary.states and q.is_quaternion:
             w, x, y, z = rows[span]
             size = np.sqrt(w * w + x * x + y * y + z * z)
             rows[span] = rows[span] / np.where(size > 0, size, 1.0)
@@ -171,7 +169,7 @@ def on_the_sphere(of: Field, rows: Column) -> Column:
 
 def admitted(of: Field, rows: Column) -> Any:
     """Return which samples are of bodies that can be, wheels included."""
-    fits = of.bodies(of.library.known, dict(zip(of.names, held(of, rows), strict=True)))
+    fits = of.bodies(of.library.scene, dict(zip(of.names, held(of, rows), strict=True)))
     return np.broadcast_to(fits, (rows.shape[1],))
 
 
@@ -180,7 +178,7 @@ def held(of: Field, rows: Column) -> Column:
     return rows.astype(of.precision.dtype).astype(np.float64)
 
 
-def complete(of: Field, rows: Column) -> Known:
+def complete(of: Field, rows: Column) -> Supplied:
     """Return samples with remainders of their states, times in reach, the plan, and constants."""
     dtype = of.precision.dtype
     own: dict[str, Column] = dict(zip(of.names, rows.astype(dtype), strict=True))
@@ -193,27 +191,27 @@ def complete(of: Field, rows: Column) -> Known:
     return completed(of, own)
 
 
-def completed(of: Field, own: dict[str, Column]) -> Known:
+def completed(of: Field, own: dict[str, Column]) -> Supplied:
     """Return samples, by component, with times in reach, the plan, and the constants."""
-    dtype, table = of.precision.dtype, arithmetics(of.precision.dtype)
+    dtype, each = of.precision.dtype, arithmetics(of.precision.dtype)
     with np.errstate(all="ignore"):
-        made = known(of.setup, own, table)
+        made = supplied(of.setup, own, each)
         if "omega_x" in own and {"time_step", "time"} & own.keys():
-            own = _in_reach(own, _omega_rate(of.rate, made, table))
-            made = known(of.setup, own, table)
+            own = _in_reach(own, _omega_rate(of.rate, made, each))
+            made = supplied(of.setup, own, each)
         if of.plan is not None:
             count = len(next(iter(own.values())))
-            found = in_columns(of.plan, table.own, made.own)
+            found = in_columns(of.plan, each.own, made.own)
             columns: Any = (np.broadcast_to(x, (count,)).astype(dtype) for x in found)
             own |= dict(zip(component_names(of.plan.program), columns, strict=True))
-            made = known(of.setup, own, table)
+            made = supplied(of.setup, own, each)
     return made
 
 
-def _omega_rate(rate: Plan | None, made: Known, table: Any) -> Any:
+def _omega_rate(rate: Plan | None, made: Supplied, each: Any) -> Any:
     if rate is None:
         return 0.0
-    columns = in_columns(rate, table.own, made.own)
+    columns = in_columns(rate, each.own, made.own)
     named = zip(component_names(rate.program), columns, strict=True)
     own = [np.abs(c).astype(np.float64) for name, c in named if name in OMEGA_DOT]
     return np.max(np.nan_to_num(np.broadcast_arrays(*own)), axis=0)
@@ -238,7 +236,7 @@ def with_motion(
     """Return the samples with values for all that only the functions of motion are given."""
     if not library.motions or not each:
         return tuple(each)
-    of, dice = Field(library, precision), source(library.known, precision, "motion").dice
+    of, dice = Field(library, precision), source(library.mechanism, precision, "motion").dice
     fresh = [(c, q) for q in fresh_quantities(library) for c in q.components]
     rows = [s.values | {c: _drawn(of, dice, s, c, q) for c, q in fresh} for s in each]
     columns: dict[str, Column] = {

@@ -1,18 +1,21 @@
-"""A truth as linear equations, multiplied out, in an order in which they can be solved.
+"""A problem as linear equations, multiplied out, in an order in which they can be solved.
 
 Rows that need each other's unknowns form a block; all other terms of a row are made of inputs and
 of unknowns solved before, so that the size of each term can be told.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
+from derive.library.library import Library
 from derive.lower.arrange.matching import blocks
-from derive.mechanics.mechanism import Mechanism
+from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.mechanics.problem import Problem
+from derive.scene import Scene
 from derive.verify.valuation import Atom, Atoms, Monomial, Polynomial, terms
 
 Coefficient = tuple[tuple[Monomial, Fraction], ...]
@@ -40,7 +43,7 @@ class Block:
 
 @dataclass(frozen=True)
 class Equations:
-    """A truth ready to be solved: atoms, coefficients made of parameters, blocks in order."""
+    """A problem ready to be solved: atoms, coefficients made of parameters, blocks in order."""
 
     atoms: tuple[Atom, ...]
     names: Mapping[int, str]  # the component that an atom is
@@ -88,19 +91,30 @@ def _coefficient_of(row: Polynomial, unknown: int) -> Polynomial:
     }
 
 
-def equations(known: Mechanism, fact: Problem) -> Equations:
-    """Return the equations of ``fact``, multiplied out and in an order to solve them in."""
-    words, atoms = known.posed(fact.name).words, Atoms()
-    rows = [atoms.polynomial(residual) for residual in fact.residuals]
-    unknowns = [atoms.symbol(symbol) for symbol in fact.sought]
-    parameters = {words.symbols[c] for q in words.parameters for c in q.components}
-    splitter = _Splitter(atoms, _fixed(atoms, parameters), {})
+def stated(library: Library) -> dict[str, Equations]:
+    """Return the equations of every function that the lecture states, by its name."""
+    every = library.problems.items()
+    return {base: equations_of(library.mechanism, problem) for base, problem in every}
+
+
+def retold(scene: Scene, bases: Iterable[str]) -> dict[str, Equations]:
+    """Return the equations of functions of a scene, derived from it anew."""
+    told = mechanism(scene)
+    return {base: equations_of(told, told.problem(base)) for base in bases}
+
+
+def equations_of(machine: Mechanism, problem: Problem) -> Equations:
+    """Return the equations of a problem, multiplied out and in an order to solve them in."""
+    vocabulary, atoms = machine.posed(problem.name).vocabulary, Atoms()
+    rows = [atoms.polynomial(residual) for residual in problem.residuals]
+    unknowns = [atoms.symbol(symbol) for symbol in problem.sought]
+    splitter = _Splitter(atoms, _fixed(atoms, vocabulary.fixed()), {})
     found, later = [], set(unknowns)
     for places, solved in blocks([_uses(atoms, row, unknowns) for row in rows]):
         own = [unknowns[u] for u in solved]
         found.append(splitter.block([rows[r] for r in places], own, later))
         later -= set(own)
-    component = {symbol: name for name, symbol in words.symbols.items()}
+    component = {symbol: name for name, symbol in vocabulary.symbols.items()}
     names = {n: component[a.symbol] for n, a in enumerate(atoms.each) if a.symbol is not None}
     return Equations(tuple(atoms.each), names, splitter.fixed, tuple(splitter.places), tuple(found))
 
@@ -110,7 +124,7 @@ def _uses(atoms: Atoms, row: Polynomial, unknowns: Sequence[int]) -> frozenset[i
     return frozenset(place for place, atom in enumerate(unknowns) if atom in present)
 
 
-def _fixed(atoms: Atoms, parameters: set[Any]) -> frozenset[int]:
+def _fixed(atoms: Atoms, parameters: AbstractSet[Any]) -> frozenset[int]:
     fixed: set[int] = set()
     for place, atom in enumerate(atoms.each):
         if atom.symbol in parameters if atom.kind == "symbol" else _made_of(atom) <= fixed:

@@ -14,11 +14,11 @@ from typing import Any, TypeGuard
 
 import numpy as np
 
-from derive.mechanics.mechanism import Mechanism
 from derive.program.added import added
 from derive.program.arithmetic import rounded
 from derive.program.precision import Precision
-from derive.scene.formula import ZERO, Formula, evaluate
+from derive.scene import Scene
+from derive.scene.formula import ZERO, Arithmetic, Formula, evaluate
 from derive.scene.machine import Above, Demand, Entries, Tensor
 from derive.verify.columns import arithmetics
 
@@ -61,16 +61,16 @@ BODIES = (
 )
 
 
-def inverted(known: Mechanism) -> list[Tensor]:
+def inverted(scene: Scene) -> list[Tensor]:
     """Return the tensors that must be definite, since the equations divide by them."""
-    tensors = [d for d in known.scene.demands if isinstance(d, Tensor)]
+    tensors = [d for d in scene.demands if isinstance(d, Tensor)]
     return [t for t in tensors if t.relation == "positive"]
 
 
-def bodies_taken(known: Mechanism) -> tuple[Hard, ...]:
+def bodies_taken(scene: Scene) -> tuple[Hard, ...]:
     """Return the kinds of hard bodies that a scene's parameters can describe."""
-    for tensor in inverted(known):
-        entered = [_entered(known, f) for f in tensor.whole]
+    for tensor in inverted(scene):
+        entered = [_entered(scene, f) for f in tensor.whole]
         moments, products = entered[:3], tensor.whole[3:]
         if all(entered) and len(set(entered)) == 6:
             return BODIES
@@ -81,16 +81,16 @@ def bodies_taken(known: Mechanism) -> tuple[Hard, ...]:
     return ()
 
 
-def _entered(known: Mechanism, formula: Formula | None) -> str | None:
-    free = {q.name for q in known.words.parameters}
+def _entered(scene: Scene, formula: Formula | None) -> str | None:
+    free = {p.name for p in scene.parameters if p.value is None}
     named = formula is not None and formula.operator == "symbol" and formula.name in free
     return formula.name if named and formula is not None else None
 
 
-def hard_body(known: Mechanism, hard: Hard, dice: Random, precision: Precision) -> dict[str, float]:
+def hard_body(scene: Scene, hard: Hard, dice: Random, precision: Precision) -> dict[str, float]:
     """Return the parameters of a hard body, and of wheels that are light enough for it."""
     a, b, c = (x * (1 + hard.spread * dice.random()) for x in hard.second[precision.name])
-    (tensor, *_), moments = inverted(known), inverted(known)[0].whole[:3]
+    (tensor, *_), moments = inverted(scene), inverted(scene)[0].whole[:3]
     alone = [axis for axis, m in zip("xyz", moments, strict=True) if moments.count(m) == 1]
     if len(alone) == 1:
         a, b, c = _symmetric((a, b, c), alone[0])
@@ -102,7 +102,7 @@ def hard_body(known: Mechanism, hard: Hard, dice: Random, precision: Precision) 
         for f, x in zip(tensor.whole, entries, strict=True)
         if f is not None and f.operator == "symbol"
     }
-    for axial in (d.formula for d in known.scene.demands if _of_wheel(d)):
+    for axial in (d.formula for d in scene.demands if _of_wheel(d)):
         if axial.operator == "symbol":
             light = min(principal) * (0.1 + 0.1 * dice.random())
             values[axial.name] = float(rounded(Fraction(light), precision.dtype))
@@ -130,29 +130,29 @@ def _turned(moments: Triple, turn: Sequence[float]) -> tuple[float, ...]:
     return tuple(own)
 
 
-def admissible(known: Mechanism, values: Mapping[str, Any]) -> Any:
+def admissible(scene: Scene, values: Mapping[str, Any]) -> Any:
     """Tell whether a scene's parameters describe bodies, wheels included; of columns, which do.
 
     A body keeps the triangle inequality: its second moments are not negative.
     """
-    fits = solvable(known, values)
-    for tensor in inverted(known):
-        whole, size = _tensor(known, values, tensor.whole), _size(known, values, tensor)
+    fits = solvable(scene, values)
+    for tensor in inverted(scene):
+        whole, size = _tensor(scene, values, tensor.whole), _size(scene, values, tensor)
         half = (whole[0][0] + whole[1][1] + whole[2][2]) / 2
         second = [[(half if i == k else 0.0) - whole[i][k] for k in range(3)] for i in range(3)]
         fits = fits & _semidefinite(second, size)
     return fits
 
 
-def solvable(known: Mechanism, values: Mapping[str, Any]) -> Any:
+def solvable(scene: Scene, values: Mapping[str, Any]) -> Any:
     """Tell whether no tensor that equations divide by has a negative moment.
 
     That is all that the equations need.
     """
     fits = np.True_
-    for tensor in inverted(known):
-        rest = _tensor(known, values, without_wheels(tensor))
-        fits = fits & _semidefinite(rest, _size(known, values, tensor))
+    for tensor in inverted(scene):
+        rest = _tensor(scene, values, without_wheels(tensor))
+        fits = fits & _semidefinite(rest, _size(scene, values, tensor))
     return fits
 
 
@@ -162,17 +162,18 @@ def without_wheels(tensor: Tensor) -> Entries:
     return tuple(whole if own is None else own for own, whole in pairs)
 
 
-def _size(known: Mechanism, values: Mapping[str, Any], tensor: Tensor) -> Any:
-    whole = _tensor(known, values, tensor.whole)
+def _size(scene: Scene, values: Mapping[str, Any], tensor: Tensor) -> Any:
+    whole = _tensor(scene, values, tensor.whole)
     return np.abs(whole[0][0]) + np.abs(whole[1][1]) + np.abs(whole[2][2])
 
 
-def _tensor(known: Mechanism, values: Mapping[str, Any], entries: Entries) -> list[list[Any]]:
-    numbers = {**values, **{n: float(x) for n, x in known.words.numbers.items()}}
-    table = arithmetics(np.float64).own | {"number": float, "power": _power}
+def _tensor(scene: Scene, values: Mapping[str, Any], entries: Entries) -> list[list[Any]]:
+    fixed = {p.name: float(p.value) for p in scene.parameters if p.value is not None}
+    numbers = {**values, **fixed}
+    own: Arithmetic = {**arithmetics(np.float64).own, "number": float, "power": _power}
     with np.errstate(all="ignore"):
         xx, yy, zz, xy, xz, yz = (
-            np.float64(0) if f is None else np.asarray(evaluate(f, numbers, table)) for f in entries
+            np.float64(0) if f is None else np.asarray(evaluate(f, numbers, own)) for f in entries
         )
     return [[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]
 

@@ -46,7 +46,7 @@ class Figures:
 def figures_of(library: Library, by: Measuring) -> Figures:
     """Return the figures of a scene, measured if none are kept that are still true."""
     digest = digest_of(library, by.sampling)
-    name = library.known.scene.name
+    name = library.scene.name
     file = None if by.folder is None else by.folder / name / f"{name}.json"
     kept = () if file is None else kept_figures(_read(file), digest)
     return Figures(kept or figures(library, by.sampling), digest)
@@ -54,11 +54,11 @@ def figures_of(library: Library, by: Measuring) -> Figures:
 
 def digest_of(library: Library, by: Sampling) -> str:
     """Return a digest of all that the figures of a scene depend on."""
-    scene = library.known.scene
+    scene = library.scene
     programs = map(_numbers, (library.setup, *library.printed(), *library.rates))
-    ranges = [(q.name, q.components, q.low, q.high) for q in library.known.words.every()]
-    truths = [(name, *map(str, fact.residuals)) for name, fact in library.truths.items()]
-    parts = (scene.name, scene.text, repr(by), repr([*programs, ranges, truths]), _method())
+    ranges = [(q.name, q.components, q.low, q.high) for q in library.vocabulary.every()]
+    problems = [(name, *map(str, p.residuals)) for name, p in library.problems.items()]
+    parts = (scene.name, scene.text, repr(by), repr([*programs, ranges, problems]), _method())
     return sha256("\n".join(parts).encode()).hexdigest()
 
 

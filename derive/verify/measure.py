@@ -18,12 +18,13 @@ from flint import arb, ctx
 from numpy.typing import NDArray
 
 from derive.library.library import Library
-from derive.program.arithmetic import Table, extended, paired
+from derive.program.arithmetic import extended, paired
 from derive.program.largest import largest
 from derive.program.precision import Precision
 from derive.program.program import Program, component_names
 from derive.program.run import results_by_name, run
-from derive.verify.columns import arithmetics, known, planned
+from derive.scene.formula import Arithmetic
+from derive.verify.columns import arithmetics, planned, supplied
 from derive.verify.draw import Field
 from derive.verify.operators import LONG_FLOATS
 from derive.verify.reference import BALLS, BITS, reference
@@ -36,7 +37,6 @@ from derive.verify.scale import (
     measured_outputs,
     motion_scales,
 )
-from derive.verify.valuation import Arithmetic
 
 DIGITS = 2  # of a printed figure, rounded up
 
@@ -84,10 +84,10 @@ def should(
     by: Field, functions: Sequence[Program], each: Sequence[Sample], arithmetic: Arithmetic = BALLS
 ) -> Iterator[tuple[Program, list[list[Expected]]]]:
     """Yield each function of the lecture with what its components should be, sample by sample."""
-    for base, asked in by.asked.items():
+    for base, equations in by.equations.items():
         own = [f for f in functions if base_of(f) == base]
         columns = tuple(dict.fromkeys(c for f in own for c in columns_of(f)))
-        true = [reference(asked, s.values, columns, arithmetic) for s in each if own]
+        true = [reference(equations, s.values, columns, arithmetic) for s in each if own]
         for program in own:
             yield program, [[Expected(*of) for of in entries(program, at)] for at in true]
 
@@ -98,7 +98,7 @@ def should_move(by: Field, program: Program, each: Sequence[Sample]) -> list[lis
     true = [[x.mid() for x in exact(by.library, program, s)] for s in each]
     own: dict[str, Any] = {c: np.array([s.values[c] for s in each], dtype) for c in each[0].values}
     with np.errstate(all="ignore"):
-        wide = known(by.setup, own, arithmetics(dtype)).wide
+        wide = supplied(by.setup, own, arithmetics(dtype)).wide
         values = [np.array([float(row[k]) for row in true]) for k in range(len(true[0]))]
         scales = [np.broadcast_to(x, len(each)).tolist()
                   for x in motion_scales(by, planned(program), wide, values)]  # fmt: skip
@@ -122,9 +122,9 @@ def results(library: Library, program: Program, values: Mapping[str, Any]) -> di
 
 
 def replayed(
-    library: Library, each: Sequence[Sample], precision: Precision, table: Table
+    library: Library, each: Sequence[Sample], precision: Precision, arithmetic: Arithmetic
 ) -> dict[str, list[NDArray[Any]]]:
-    """Return the results of every program at all samples, in the ``table`` of C's arithmetic."""
+    """Return the results of every program at all samples, in C's ``arithmetic``."""
     pairs = extended(precision.dtype)
     names = each[0].values if each else ()
     known: dict[str, NDArray[Any]] = {
@@ -137,16 +137,16 @@ def replayed(
         ]
         known |= dict(zip(component_names(library.setup), each_one, strict=True))
         return {
-            p.name: _replay(p, pairs if p.arithmetic == "pairs" else table, known)
+            p.name: _replay(p, pairs if p.arithmetic == "pairs" else arithmetic, known)
             for p in library.printed()
         }
 
 
-def _replay(program: Program, table: Table, known: Mapping[str, NDArray[Any]]) -> list[Any]:
+def _replay(program: Program, by: Arithmetic, known: Mapping[str, NDArray[Any]]) -> list[Any]:
     given = [known[c] for q in program.inputs for c in q.components]
     if program.arithmetic != "pairs":
-        return run(program, table, given)
-    return [r[0] for r in run(program, table, paired(np.array(given)))]
+        return run(program, by, given)
+    return [r[0] for r in run(program, by, paired(np.array(given)))]
 
 
 def errors(

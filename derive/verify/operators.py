@@ -25,10 +25,10 @@ from derive.program.pairs import (
     pair_mul,
     splitter,
 )
+from derive.scene.formula import Arithmetic
 from derive.scene.functions import PLAIN
 
 Column = NDArray[Any]
-Table = Mapping[str, Callable[..., Any]]
 FACTOR = np.float64(splitter(MANTISSA[np.float64]))
 
 
@@ -52,7 +52,7 @@ class Meaning:
     fractions: Callable[..., Any] | None = None
     doubles: Callable[..., Any] | None = None
     wide: Callable[..., Any] | None = None
-    slope: Callable[[Table, Any, Any], Any] | None = None
+    slope: Callable[[Arithmetic, Any, Any], Any] | None = None
 
 
 def _root(x: Any) -> Any:
@@ -110,13 +110,13 @@ MEANINGS: Mapping[str, Meaning] = {
         lambda x: x.sin(),
         lambda x: 2 * x / (1 + x * x),
         np.sin,
-        slope=lambda table, x, _: table["cos"](x),
+        slope=lambda by, x, _: by["cos"](x),
     ),
     "cos": Meaning(
         lambda x: x.cos(),
         lambda x: (1 - x * x) / (1 + x * x),
         np.cos,
-        slope=lambda table, x, _: -table["sin"](x),
+        slope=lambda by, x, _: -by["sin"](x),
     ),
     "tan": Meaning(lambda x: x.tan()),
     "sqrt": Meaning(lambda x: x.sqrt(), _root, np.sqrt, slope=lambda _, __, root: 1 / (2 * root)),
@@ -147,21 +147,21 @@ def _rounded(operation: Callable[..., Any]) -> Callable[..., Any]:
     return one
 
 
-IN_BALLS: Table = {
+IN_BALLS: Arithmetic = {
     "number": lambda q: (
         arb(q.numerator) / q.denominator if q.denominator != 1 else arb(q.numerator)
     ),
     **{name: row.balls for name, row in MEANINGS.items() if row.balls},
 }
-IN_FRACTIONS: Table = {
+IN_FRACTIONS: Arithmetic = {
     "number": lambda q: fmpq(q.numerator, q.denominator),
     **{n: row.fractions or _no_fraction for n, row in MEANINGS.items() if row.balls},
 }
-IN_DOUBLES: Table = {
+IN_DOUBLES: Arithmetic = {
     "number": lambda q: q.numerator / q.denominator,
     **{name: row.doubles for name, row in MEANINGS.items() if row.doubles},
 }
 SLOPES = {name: row.slope for name, row in MEANINGS.items() if row.slope}
-UNROUNDED: Table = {name: row.wide for name, row in MEANINGS.items() if row.wide}
-LONG_FLOATS: Table = {name: _rounded(operation) for name, operation in IN_BALLS.items()}
+UNROUNDED: Arithmetic = {name: row.wide for name, row in MEANINGS.items() if row.wide}
+LONG_FLOATS: Arithmetic = {name: _rounded(operation) for name, operation in IN_BALLS.items()}
 """Floats of whatever precision is set: balls would lose a choice that is made next to zero."""

@@ -5,7 +5,7 @@ in a million a point; sine and cosine enter as a pair of rationals with unit nor
 holds a root or half an angle, balls of 4000 bits stand in for fractions.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from random import Random
@@ -17,19 +17,18 @@ from derive.library.library import Library
 from derive.program.program import Op, Program, component_names, read_by
 from derive.program.recorded import needed
 from derive.program.run import results_by_name
+from derive.scene.formula import Arithmetic
 from derive.scene.wanted import JACOBIAN
-from derive.verify.equations import Equations, equations
+from derive.verify.equations import Equations, stated
 from derive.verify.operators import IN_FRACTIONS, IrrationalError
 from derive.verify.reference import BALLS, NoValueError
-from derive.verify.solution import Known, solution
+from derive.verify.solution import Solved, solution
 
 POINTS = 2
 TRIES = 50
 SEED = "derive: proof by exact values"
 BITS = 4000
 SPAN = 9973  # numerators up to this, denominators up to its hundredth
-
-Table = dict[str, Callable[..., Any]]
 
 
 class ProofError(ArithmeticError):
@@ -40,7 +39,7 @@ def _inverse(rows: list[list[Any]]) -> list[list[Any]]:
     return [list(row) for row in fmpq_mat(rows).inv().tolist()]
 
 
-FRACTIONS: Table = {
+FRACTIONS: Arithmetic = {
     **IN_FRACTIONS,
     "inverse": _inverse,
     "size": lambda _: 1.0,
@@ -48,7 +47,7 @@ FRACTIONS: Table = {
     "most": max,
     "unless_zero": lambda size, other: size or other,
 }
-WIDE_BALLS: Table = {
+WIDE_BALLS: Arithmetic = {
     **BALLS,
     "power_of_two": lambda x: x * 0 + 1,
     "size": lambda _: 1.0,
@@ -60,7 +59,7 @@ WIDE_BALLS: Table = {
 class Point:
     """Exact values of parameters and inputs, the constants made of them, and their arithmetic."""
 
-    arithmetic: Table
+    arithmetic: Arithmetic
     values: Mapping[str, Any]
 
 
@@ -69,15 +68,15 @@ def prove(library: Library) -> None:
 
     Raises NoValueError if no such point is found at which the scene's formulas have values.
     """
-    asked = {name: equations(library.known, fact) for name, fact in library.truths.items()}
+    every = stated(library)
     for number in range(POINTS):
         try:
             if any(map(_halves_angles, (library.setup, *library.functions, *library.rates))):
                 raise IrrationalError
-            _prove_at(library, asked, point(library, number))
+            _prove_at(library, every, point(library, number))
         except IrrationalError:
             with ctx.workprec(BITS):
-                _prove_in_balls(library, asked, number)
+                _prove_in_balls(library, every, number)
 
 
 def _halves_angles(program: Program) -> bool:
@@ -87,18 +86,18 @@ def _halves_angles(program: Program) -> bool:
     return any(op.operator == "sin" and op.operands[0] in halves for op in ops)
 
 
-def _prove_in_balls(library: Library, asked: Mapping[str, Equations], number: int) -> None:
+def _prove_in_balls(library: Library, every: Mapping[str, Equations], number: int) -> None:
     """Prove at the first point at which every root exists."""
     for tries in range(TRIES):
         at = ball_point(library, number + POINTS * tries)
-        if all(_exists(question, at) for question in asked.values()):
-            _prove_at(library, asked, at)
+        if all(_exists(equations, at) for equations in every.values()):
+            _prove_at(library, every, at)
             return
     raise NoValueError("no random point was found at which all roots exist")
 
 
-def _exists(question: Equations, at: Point) -> bool:
-    true = solution(question, at.values, (), at.arithmetic)
+def _exists(equations: Equations, at: Point) -> bool:
+    true = solution(equations, at.values, (), at.arithmetic)
     return all(known.value.is_finite() for known in true.values())
 
 
@@ -114,22 +113,21 @@ def ball_point(library: Library, number: int) -> Point:
 
 
 def _dice(library: Library, number: int) -> Iterator[tuple[str, Any]]:
-    words = library.known.words
     dice = Random(f"{SEED} {number}")  # noqa: S311 - points of a proof, no secret
-    for quantity in (*words.parameters, *words.states, *words.inputs):
+    for quantity in library.vocabulary.given():
         for name in quantity.components:
             top = dice.randint(1, SPAN) * dice.choice((-1, 1))
             yield name, fmpq(top, dice.randint(1, SPAN // 100))
 
 
-def _prove_at(library: Library, asked: Mapping[str, Equations], at: Point) -> None:
+def _prove_at(library: Library, every: Mapping[str, Equations], at: Point) -> None:
     constants = results_by_name(lectured(library), at.arithmetic, at.values)
-    for name, question in asked.items():
+    for name, equations in every.items():
         functions = [
             f for f in (*library.functions, *library.rates) if f.name.removesuffix(JACOBIAN) == name
         ]
         columns = {c for f in functions for s in (f.sparsity or {}).values() for c in s.columns}
-        true = solution(question, at.values, columns, at.arithmetic)
+        true = solution(equations, at.values, columns, at.arithmetic)
         for program in functions:
             fault = first_fault(program, true, constants, at)
             if fault:
@@ -140,7 +138,7 @@ def lectured(library: Library) -> Program:
     """Return the part of set-up that the functions which are proved read."""
     setup = library.setup
     every = (*library.functions, *library.rates)
-    proved = [f for f in every if f.name.removesuffix(JACOBIAN) in library.truths]
+    proved = [f for f in every if f.name.removesuffix(JACOBIAN) in library.problems]
     used = {name for f in proved for name in read_by(f)}
     names = component_names(setup)
     kept = [(c, r) for c, r in zip(names, setup.results, strict=True) if c in used]
@@ -150,7 +148,7 @@ def lectured(library: Library) -> Program:
 
 
 def first_fault(
-    program: Program, true: Mapping[str, Known], constants: Mapping[str, Any], at: Point
+    program: Program, true: Mapping[str, Solved], constants: Mapping[str, Any], at: Point
 ) -> tuple[str, Any] | None:
     """Return the first output component that is not what the equations say, and by how much."""
     given = {c: None for q in program.inputs if q.role == "constants" for c in q.components}
@@ -163,7 +161,7 @@ def first_fault(
     return None
 
 
-def _expected(program: Program, true: Mapping[str, Known]) -> dict[str, Any]:
+def _expected(program: Program, true: Mapping[str, Solved]) -> dict[str, Any]:
     """Return what each output should be, and each entry of a Jacobian, in the pattern or not."""
     patterns = program.sparsity or {}
     expected = {
@@ -190,8 +188,8 @@ def _sentence(library: Library, program: Program, fault: tuple[str, Any]) -> str
     name, gap = fault
     size = float(arb(gap) if isinstance(gap, fmpq) else gap)
     base = program.name.removesuffix(JACOBIAN)
-    steps = ", ".join(f"'{step}'" for step in library.truths[base].steps)
+    steps = ", ".join(f"'{step}'" for step in library.problems[base].steps)
     return (
-        f"scene '{library.known.scene.name}': function '{program.name}' must satisfy lecture step "
+        f"scene '{library.scene.name}': function '{program.name}' must satisfy lecture step "
         f"{steps} exactly, but '{name}' is off by {size:.3g} at a random exact point"
     )

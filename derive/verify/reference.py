@@ -7,10 +7,10 @@ from typing import Any
 
 from flint import arb, arb_mat, ctx
 
+from derive.scene.formula import Arithmetic
 from derive.verify.equations import Equations
 from derive.verify.operators import IN_BALLS
-from derive.verify.solution import Known, solution
-from derive.verify.valuation import Arithmetic
+from derive.verify.solution import Solved, solution
 
 BITS = 300
 SPARE_BITS = 100  # a ball must be this much narrower than its largest product
@@ -44,11 +44,11 @@ class NoValueError(ArithmeticError):
 
 
 def reference(
-    asked: Equations,
+    equations: Equations,
     given: Mapping[str, float],
     columns: Iterable[str],
     arithmetic: Arithmetic = BALLS,
-) -> dict[str, Known]:
+) -> dict[str, Solved]:
     """Return every unknown as a ball far narrower than one rounding of its largest product.
 
     Raises NoValueError where the equations have no solution, or none that can be told.
@@ -58,7 +58,7 @@ def reference(
         with ctx.workprec(bits):
             try:
                 balls = {name: arb(x) for name, x in given.items()}
-                found = solution(asked, balls, wanted, arithmetic)
+                found = solution(equations, balls, wanted, arithmetic)
             except ZeroDivisionError:
                 found = {}
             if found and all(_tight(known) for known in found.values()):
@@ -67,7 +67,7 @@ def reference(
     raise NoValueError(f"the equations have no solution that {MOST_BITS} bits can tell")
 
 
-def _tight(known: Known) -> bool:
+def _tight(known: Solved) -> bool:
     pairs = [(known.value, known.scale), *known.slopes.values()]
     return all(_narrow(ball, scale) for ball, scale in pairs)
 

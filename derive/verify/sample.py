@@ -56,7 +56,7 @@ class Samples:
 class Source:
     """Where samples come from: a scene, a precision, and dice for one kind of sample."""
 
-    known: Mechanism
+    mechanism: Mechanism
     precision: Precision
     dice: Random
 
@@ -65,25 +65,25 @@ class Source:
         return float(rounded(Fraction(x), self.precision.dtype))
 
 
-def source(known: Mechanism, precision: Precision, kind: str) -> Source:
+def source(mechanism: Mechanism, precision: Precision, kind: str) -> Source:
     """Return the source of one kind of sample."""
-    seed = f"derive: {known.scene.name} {precision.name} {kind}"
-    return Source(known, precision, Random(seed))  # noqa: S311 - samples, no secret
+    seed = f"derive: {mechanism.scene.name} {precision.name} {kind}"
+    return Source(mechanism, precision, Random(seed))  # noqa: S311 - samples, no secret
 
 
-def samples(known: Mechanism, precision: Precision, ordinary: int, corners: int) -> Samples:
+def samples(mechanism: Mechanism, precision: Precision, ordinary: int, corners: int) -> Samples:
     """Return ``ordinary`` samples on the declared ranges, and ``corners`` of each hard kind."""
-    plain = source(known, precision, "ordinary")
+    plain = source(mechanism, precision, "ordinary")
     found = [("ordinary", _ordinary(plain)) for _ in range(ordinary)]
     skipped = []
     for kind, corner in CORNERS.items():
-        own = source(known, precision, kind)
+        own = source(mechanism, precision, kind)
         made = [corner(own, n) for n in range(corners)]
         found += [(kind, values) for values in made if values is not None]
         skipped += [kind] if all(values is None for values in made) else []
-    taken = bodies_taken(known)
+    taken = bodies_taken(mechanism.scene)
     for hard in BODIES:
-        own = source(known, precision, hard.kind)
+        own = source(mechanism, precision, hard.kind)
         if hard in taken:
             found += [(hard.kind, _with_hard_body(own, hard)) for _ in range(corners)]
         else:
@@ -93,37 +93,35 @@ def samples(known: Mechanism, precision: Precision, ordinary: int, corners: int)
 
 
 def _with_hard_body(of: Source, hard: Hard) -> Values:
-    return _ordinary(of) | hard_body(of.known, hard, of.dice, of.precision)
+    return _ordinary(of) | hard_body(of.mechanism.scene, hard, of.dice, of.precision)
 
 
 def _ordinary(of: Source) -> Values:
-    words = of.known.words
+    parameters = of.mechanism.vocabulary.parameters
     for tries in range(TRIES):
-        values = {
-            name: of.held(uniform(of.dice, q)) for q in words.parameters for name in q.components
-        }
-        if admissible(of.known, values):
+        values = {n: of.held(uniform(of.dice, q)) for q in parameters for n in q.components}
+        if admissible(of.mechanism.scene, values):
             return values | _motion(of)
-        if tries > PATIENCE and solvable(of.known, values):
+        if tries > PATIENCE and solvable(of.mechanism.scene, values):
             return values | _motion(of)
     raise SceneError(
-        f"scene '{of.known.scene.name}': the ranges of its parameters must hold a body, "
+        f"scene '{of.mechanism.scene.name}': the ranges of its parameters must hold a body, "
         f"but none was found in {TRIES} tries"
     )
 
 
 def _motion(of: Source) -> Values:
     values: Values = {}
-    for q in varying(of.known):
+    for q in varying(of.mechanism):
         own = [uniform(of.dice, q) for _ in q.components]
         own = _unit(own) if q.is_quaternion else own
         values |= {name: of.held(x) for name, x in zip(q.components, own, strict=True)}
     return values
 
 
-def varying(known: Mechanism) -> tuple[Quantity, ...]:
+def varying(mechanism: Mechanism) -> tuple[Quantity, ...]:
     """Return all quantities that vary with time and enter from outside."""
-    return (*known.words.states, *known.words.inputs)
+    return (*mechanism.vocabulary.states, *mechanism.vocabulary.inputs)
 
 
 def uniform(dice: Random, q: Quantity) -> float:
@@ -141,16 +139,16 @@ def _unit(values: Sequence[float]) -> list[float]:
 def _changed(of: Source, change: Callable[[Quantity, float], float]) -> Values:
     """Return an ordinary sample with every varying value changed by a rule."""
     values = _ordinary(of)
-    for q in varying(of.known):
+    for q in varying(of.mechanism):
         values |= {name: of.held(change(q, values[name])) for name in q.components}
     return values
 
 
 def _large_spin(of: Source, _: int) -> Values | None:
-    moves = any(wanted.startswith("step_") for wanted in of.known.scene.wanted)
-    if not inverted(of.known) and moves:
+    moves = any(wanted.startswith("step_") for wanted in of.mechanism.scene.wanted)
+    if not inverted(of.mechanism.scene) and moves:
         return None  # a step would turn angles by many radians, and their sines magnify rounding
-    fast = [q for q in varying(of.known) if q.unit == "rad/s"]
+    fast = [q for q in varying(of.mechanism) if q.unit == "rad/s"]
 
     def change(q: Quantity, x: float) -> float:
         reach = max(abs(float(end)) for end in q.ends)
@@ -164,7 +162,7 @@ def _at_rest(of: Source, _: int) -> Values | None:
 
 
 def _denormal(of: Source, _: int) -> Values | None:
-    if not inverted(of.known):
+    if not inverted(of.mechanism.scene):
         return None  # chains of products fall below the smallest float one after another
     tiny = DENORMAL[of.precision.name]
     return _changed(of, lambda q, x: x * tiny if _may_vanish(q) else x)
@@ -177,7 +175,7 @@ def _may_vanish(q: Quantity) -> bool:
 
 
 def _half_turn(of: Source, number: int) -> Values | None:
-    attitudes = [q.components for q in varying(of.known) if q.is_quaternion]
+    attitudes = [q.components for q in varying(of.mechanism) if q.is_quaternion]
     turn = [of.held(x) for x in HALF_TURNS[number % len(HALF_TURNS)]]
     turned = {name: x for parts in attitudes for name, x in zip(parts, turn, strict=True)}
     return _ordinary(of) | turned if attitudes else None
@@ -185,8 +183,8 @@ def _half_turn(of: Source, number: int) -> Values | None:
 
 def _range_ends(of: Source, number: int) -> Values | None:
     """Return a sample with every coordinate at an end of its range: closest to a gimbal lock."""
-    scalars = {q.name for q in varying(of.known)}
-    names = [c.name for c in of.known.scene.coordinates if c.name in scalars]
+    scalars = {q.name for q in varying(of.mechanism)}
+    names = [c.name for c in of.mechanism.scene.coordinates if c.name in scalars]
 
     def change(q: Quantity, x: float) -> float:
         return _end(of, q, number >> names.index(q.name) & 1) if q.name in names else x

@@ -19,8 +19,7 @@ from derive.scene.wanted import JACOBIAN
 from derive.verify.columns import Column, Plan, doubles, in_columns
 from derive.verify.draw import Field
 from derive.verify.operators import IN_DOUBLES
-from derive.verify.solution import Known as Solved
-from derive.verify.solution import solution
+from derive.verify.solution import Solved, solution
 
 ANGLES = "angles"
 STATE_RATE = "state_rate"
@@ -107,7 +106,7 @@ def entries(program: Program, found: Mapping[str, Solved]) -> Iterator[tuple[Any
 
 def lecture_scales(by: Field, program: Program, wide: Wide) -> list[Column]:
     """Return the largest product in the equation of each component of a function of the lecture."""
-    found = solution(by.asked[base_of(program)], wide, columns_of(program), DOUBLES)
+    found = solution(by.equations[base_of(program)], wide, columns_of(program), DOUBLES)
     return [np.maximum(scale, by.smallest * gain) for _, scale, gain in entries(program, found)]
 
 
@@ -139,14 +138,14 @@ def _added(by: Field, wide: Wide) -> dict[str, Column]:
 
     What is added is sized twice: a rate may be made of states that themselves begin at zero.
     """
-    names = [c for q in by.library.known.words.states for c in q.components]
+    names = [c for q in by.library.vocabulary.states for c in q.components]
     largest = {c: np.abs(wide[c]) for c in names if c in wide}
-    if STATE_RATE not in by.asked or "time_step" not in wide:
+    if STATE_RATE not in by.equations or "time_step" not in wide:
         return largest
-    rates = [c for q in by.library.truths[STATE_RATE].outputs for c in q.components]
+    rates = [c for q in by.library.problems[STATE_RATE].outputs for c in q.components]
     step = np.abs(wide["time_step"])
     for _ in range(2):
-        found = solution(by.asked[STATE_RATE], wide, (), DOUBLES, largest)
+        found = solution(by.equations[STATE_RATE], wide, (), DOUBLES, largest)
         grown = {c: step * found[rate].scale for c, rate in zip(names, rates, strict=True)}
         largest = {c: np.maximum(np.abs(wide[c]), grown[c]) for c in largest}
     return largest

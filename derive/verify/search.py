@@ -12,7 +12,7 @@ from itertools import chain
 import numpy as np
 
 from derive.program.pair_sine import PI
-from derive.verify.columns import Column, Known, Plan, arithmetics, found_and_true
+from derive.verify.columns import Column, Plan, Supplied, arithmetics, found_and_true
 from derive.verify.draw import Dice, Field, admitted, complete, drawn, on_the_sphere
 from derive.verify.scale import around, lecture_scales, measured_outputs, motion_scales
 
@@ -79,7 +79,7 @@ class Worst:
         self.errors, self.rows = worst[order], every[:, order]
 
 
-def errors_at(of: Field, plan: Plan, at: Known) -> list[Column]:
+def errors_at(of: Field, plan: Plan, at: Supplied) -> list[Column]:
     """Return the errors of each measured output: rows by component, columns by sample, in u."""
     by = arithmetics(of.precision.dtype)
     with np.errstate(all="ignore"):
@@ -105,7 +105,7 @@ def _apart(gaps: Column, whole: object) -> Column:
 
 def sampled(of: Field, seed: str, count: int, kept: int) -> Iterator[tuple[int, list[Worst]]]:
     """Yield how many samples are done, and the worst so far of each output of each function."""
-    dice = Dice(f"derive: {of.library.known.scene.name} {of.precision.name} {seed}")
+    dice = Dice(f"derive: {of.library.scene.name} {of.precision.name} {seed}")
     height = len(of.names)
     best = [
         Worst(plan.program.name, q.name, np.zeros(0), np.zeros((height, 0)), [])
@@ -127,7 +127,7 @@ def sampled(of: Field, seed: str, count: int, kept: int) -> Iterator[tuple[int, 
 
 def searched(of: Field, plan: Plan, best: Sequence[Worst], by: Sampling) -> None:
     """Look for worse samples of a function from the worst of its outputs on."""
-    scene, name = of.library.known.scene.name, plan.program.name
+    scene, name = of.library.scene.name, plan.program.name
     dice = Dice(f"derive: {scene} {of.precision.name} search {name}")
     for turn in range(by.rounds):
         parents = np.concatenate([own.rows for own in best], axis=1)

@@ -15,16 +15,17 @@ from operator import add
 from types import MappingProxyType
 from typing import Any
 
+from derive.scene.formula import Arithmetic
 from derive.verify.equations import Block, Coefficient, Equations, Part, Sum
 from derive.verify.operators import SLOPES
-from derive.verify.valuation import Arithmetic, Atom, raised, value
+from derive.verify.valuation import Atom, raised, value
 
 Slopes = dict[str, tuple[Any, Any]]
 NO_SCALES: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
-class Known:
+class Solved:
     """A value, its scale, what it magnifies, and its slopes by column, each with its scale."""
 
     value: Any
@@ -34,27 +35,27 @@ class Known:
 
 
 def solution(
-    asked: Equations,
+    equations: Equations,
     given: Mapping[str, Any],
     columns: Iterable[str],
     arithmetic: Arithmetic,
     scales: Mapping[str, Any] = NO_SCALES,
-) -> dict[str, Known]:
+) -> dict[str, Solved]:
     """Return every unknown by its component's name, with its slopes by the ``columns``.
 
     scales : of what is given and was itself the sum of larger terms
     """
-    known = _given(asked, given, set(columns), arithmetic, scales)
-    _apply(asked, known, arithmetic)
-    fixed = {place: known[place].value for place in asked.fixed}
-    coefficients = [_coefficient(c, fixed, arithmetic) for c in asked.coefficients]
-    found: dict[str, Known] = {}
-    for block in asked.blocks:
+    known = _given(equations, given, set(columns), arithmetic, scales)
+    _apply(equations, known, arithmetic)
+    fixed = {place: known[place].value for place in equations.fixed}
+    coefficients = [_coefficient(c, fixed, arithmetic) for c in equations.coefficients]
+    found: dict[str, Solved] = {}
+    for block in equations.blocks:
         matrix = _matrix(block, known, coefficients, arithmetic)
         right = [_summed(s, known, coefficients, arithmetic) for s in block.right]
         for atom, solved in zip(block.unknowns, _solved(matrix, right, arithmetic), strict=True):
-            known[atom] = found[asked.names[atom]] = solved
-        _apply(asked, known, arithmetic)
+            known[atom] = found[equations.names[atom]] = solved
+        _apply(equations, known, arithmetic)
     return found
 
 
@@ -67,34 +68,34 @@ def _coefficient(
 
 
 def _given(
-    asked: Equations,
+    equations: Equations,
     given: Mapping[str, Any],
     columns: set[str],
     arithmetic: Arithmetic,
     scales: Mapping[str, Any],
-) -> dict[int, Known]:
-    known: dict[int, Known] = {}
+) -> dict[int, Solved]:
+    known: dict[int, Solved] = {}
     one = arithmetic["number"](Fraction(1))
-    for place, name in asked.names.items():
+    for place, name in equations.names.items():
         if name in given:
             slopes: Slopes = {name: (one, 1.0)} if name in columns else {}
             size = scales[name] if name in scales else arithmetic["size"](given[name])
-            known[place] = Known(given[name], size, slopes)
+            known[place] = Solved(given[name], size, slopes)
     return known
 
 
-def _apply(asked: Equations, known: dict[int, Known], arithmetic: Arithmetic) -> None:
+def _apply(equations: Equations, known: dict[int, Solved], arithmetic: Arithmetic) -> None:
     """Add the functions that are made of what is known by now."""
-    for place, made_of in asked.functions.items():
+    for place, made_of in equations.functions.items():
         if place not in known and made_of <= known.keys():
-            known[place] = _applied(asked.atoms[place], known, arithmetic)
+            known[place] = _applied(equations.atoms[place], known, arithmetic)
 
 
-def _applied(atom: Atom, known: Mapping[int, Known], arithmetic: Arithmetic) -> Known:
+def _applied(atom: Atom, known: Mapping[int, Solved], arithmetic: Arithmetic) -> Solved:
     """Return a function of a polynomial, with its slopes by the chain rule."""
     number, size = arithmetic["number"], arithmetic["size"]
     if atom.kind == "pi":
-        return Known(arithmetic["pi"](), size(arithmetic["pi"]()), {})
+        return Solved(arithmetic["pi"](), size(arithmetic["pi"]()), {})
     coefficients = [(number(c), size(number(c))) for _, c in atom.inner]
     parts = tuple(Part(n, monomial) for n, (monomial, _) in enumerate(atom.inner))
     inner = _summed(parts, known, coefficients, arithmetic)
@@ -104,15 +105,15 @@ def _applied(atom: Atom, known: Mapping[int, Known], arithmetic: Arithmetic) -> 
     exact = len(atom.inner) == 1 and abs(atom.inner[0][1]) == 1 and len(atom.inner[0][0]) == 1
     error = 0.0 if exact else size(slope) * inner.scale
     slopes = {c: (slope * v, size(slope) * s) for c, (v, s) in inner.slopes.items()}
-    return Known(here, arithmetic["most"](size(here), error), slopes)
+    return Solved(here, arithmetic["most"](size(here), error), slopes)
 
 
 def _summed(
     parts: Sum,
-    known: Mapping[int, Known],
+    known: Mapping[int, Solved],
     coefficients: Sequence[tuple[Any, float]],
     arithmetic: Arithmetic,
-) -> Known:
+) -> Solved:
     """Return a sum of terms with its largest product, and the same for every slope."""
     most, slopes = arithmetic["most"], Slopes()
     total, largest = arithmetic["number"](Fraction(0)), 0.0
@@ -127,7 +128,7 @@ def _summed(
             if known[atom].slopes:
                 partial = _partial(part, place, known, coefficients)
                 _add_slopes(slopes, known[atom].slopes, *partial, most)
-    return Known(*_at_least(total, largest, arithmetic), _all_at_least(slopes, arithmetic))
+    return Solved(*_at_least(total, largest, arithmetic), _all_at_least(slopes, arithmetic))
 
 
 def _at_least(value: Any, scale: Any, arithmetic: Arithmetic) -> tuple[Any, Any]:
@@ -139,7 +140,7 @@ def _all_at_least(slopes: Slopes, arithmetic: Arithmetic) -> Slopes:
     return {column: _at_least(*slope, arithmetic) for column, slope in slopes.items()}
 
 
-def _power_scale(factor: Known, power: int, arithmetic: Arithmetic) -> Any:
+def _power_scale(factor: Solved, power: int, arithmetic: Arithmetic) -> Any:
     """Return the size of a power; a quotient magnifies what its divisor has lost."""
     if power > 0:
         return raised(factor.scale, power)
@@ -148,7 +149,7 @@ def _power_scale(factor: Known, power: int, arithmetic: Arithmetic) -> Any:
 
 
 def _partial(
-    part: Part, place: int, known: Mapping[int, Known], coefficients: Sequence[tuple[Any, float]]
+    part: Part, place: int, known: Mapping[int, Solved], coefficients: Sequence[tuple[Any, float]]
 ) -> tuple[Any, float]:
     """Return a term's derivative by its factor at ``place``, and its size."""
     product, size = coefficients[part.coefficient]
@@ -176,10 +177,10 @@ def _add_slopes(
 
 def _matrix(
     block: Block,
-    known: Mapping[int, Known],
+    known: Mapping[int, Solved],
     coefficients: Sequence[tuple[Any, Any]],
     arithmetic: Arithmetic,
-) -> list[list[Known]]:
+) -> list[list[Solved]]:
     """Return the matrix of a block; one of parameters only is inverted once, and loses nothing."""
     rows = [[_summed(s, known, coefficients, arithmetic) for s in row] for row in block.matrix]
     if any(part.factors for row in block.matrix for entry in row for part in entry):
@@ -187,7 +188,9 @@ def _matrix(
     return [[replace(entry, scale=0.0) for entry in row] for row in rows]
 
 
-def _solved(matrix: list[list[Known]], right: list[Known], arithmetic: Arithmetic) -> list[Known]:
+def _solved(
+    matrix: list[list[Solved]], right: list[Solved], arithmetic: Arithmetic
+) -> list[Solved]:
     """Return the unknowns of a block and their slopes: A u' = b' - A' u."""
     inverse = arithmetic["inverse"]([[entry.value for entry in row] for row in matrix])
     solved = _through(matrix, inverse, [(r.value, r.scale) for r in right], arithmetic)
@@ -200,13 +203,13 @@ def _solved(matrix: list[list[Known]], right: list[Known], arithmetic: Arithmeti
     }
     sizes = [[arithmetic["size"](entry) for entry in row] for row in inverse]
     return [
-        Known(*solved[k], {c: slopes[c][k] for c in columns}, reduce(arithmetic["most"], row, 1.0))
+        Solved(*solved[k], {c: slopes[c][k] for c in columns}, reduce(arithmetic["most"], row, 1.0))
         for k, row in enumerate(sizes)
     ]
 
 
 def _load(
-    row: Sequence[Known], load: Known, solved: Sequence[tuple[Any, Any]], arithmetic: Arithmetic
+    row: Sequence[Solved], load: Solved, solved: Sequence[tuple[Any, Any]], arithmetic: Arithmetic
 ) -> Slopes:
     """Return the right side of a row's slopes, b' - A' u."""
     slopes = dict(load.slopes)
@@ -216,7 +219,7 @@ def _load(
 
 
 def _through(
-    matrix: Sequence[Sequence[Known]],
+    matrix: Sequence[Sequence[Solved]],
     inverse: Sequence[Sequence[Any]],
     right: Sequence[tuple[Any, Any]],
     arithmetic: Arithmetic,

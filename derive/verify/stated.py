@@ -28,8 +28,8 @@ def figures(library: Library, by: Sampling) -> tuple[Measurement, ...]:
 def _of_precision(library: Library, precision: Precision, by: Sampling) -> Iterator[Measurement]:
     of = Field(library, precision)
     found = worst(of, by)
-    plain = samples(library.known, precision, by.balls, by.corners).each
-    moving = samples(library.known, precision, by.motion_balls, by.motion_corners).each
+    plain = samples(library.mechanism, precision, by.balls, by.corners).each
+    moving = samples(library.mechanism, precision, by.motion_balls, by.motion_corners).each
     moving = with_motion(library, moving, precision)
     for program in library.printed():
         own = [w for w in found if w.function == program.name]

@@ -12,11 +12,11 @@ from typing import Any
 
 from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, pi, sin, tan
 
+from derive.scene.formula import Arithmetic
 from derive.verify.operators import SLOPES
 
 Monomial = tuple[tuple[int, int], ...]  # (atom, power), by atom
 Polynomial = dict[Monomial, Fraction]
-Arithmetic = Mapping[str, Callable[..., Any]]
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ Texts = dict[str, str]
 
 def printed(made: Library) -> Texts:
     """Return the emitted files of a library that checks read."""
-    name = made.known.scene.name
+    name = made.scene.name
     return c_files(made, ()) | {
         f"{name}_casadi.py": casadi_file(made),
         f"{name}.json": manifest(made, ()),
@@ -30,10 +30,10 @@ def other_scene(*changes: tuple[str, str]) -> Callable[[Library], Texts]:
     """Return a mutant that was generated from a scene other than the one meant."""
 
     def mutant(made: Library) -> Texts:
-        text = made.known.scene.text
+        text = made.scene.text
         for old, new in changes:
             text = replaced(text, old, new)
-        return printed(library(parse_scene(text, made.known.scene.name)))
+        return printed(library(parse_scene(text, made.scene.name)))
 
     return mutant
 
@@ -44,7 +44,7 @@ def other_program(name: str, change: Callable[[Program], Program]) -> Callable[[
     def mutant(made: Library) -> Texts:
         functions = tuple(change(f) if f.name == name else f for f in made.functions)
         assert functions != made.functions
-        described = f"{made.known.scene.name}.json"
+        described = f"{made.scene.name}.json"
         return printed(replace(made, functions=functions)) | {described: manifest(made, ())}
 
     return mutant

@@ -26,7 +26,7 @@ QUICK = ("attitude", "t_handle_flip", "tumbling_disc")
 def made(scene: str) -> tuple[Library, ModuleType, Sample]:
     found = library(load(scene))
     module = imported(f"{scene}_casadi", casadi_file(found), Path(mkdtemp()))
-    each = with_motion(found, samples(found.known, F64, 2, 0).each, F64)
+    each = with_motion(found, samples(found.mechanism, F64, 2, 0).each, F64)
     return found, module, next(s for s in each if s.kind == "ordinary")
 
 

@@ -60,7 +60,7 @@ def made(name: str) -> tuple[Library, ModuleType]:
 def test_no_slope_is_wrong_or_lost(name: str, function: str) -> None:
     """At rest, about and beside each axis, for no time, with equal moments, and elsewhere."""
     found, module = made(name)
-    each = with_motion(found, samples(found.known, F64, 4, 0).each, F64)
+    each = with_motion(found, samples(found.mechanism, F64, 4, 0).each, F64)
     plain = [s for s in each if s.kind == "ordinary"][:2]
     wrong, missing = compared(found, found[function], getattr(module, function)(), plain)
     assert (wrong, missing) == ([], [])

@@ -168,7 +168,7 @@ def inlined_rows(name: str, old: str, new: str) -> list[str]:
     found = library(source)
     text = casadi_file(found)
     assert old in text
-    each = samples(found.known, F64, 2, 0).each
+    each = samples(found.mechanism, F64, 2, 0).each
     given = with_motion(found, each, F64)
     return [v.outcome for v in inlined(found, module(text.replace(old, new), name), given)]
 

@@ -55,8 +55,8 @@ class Built:
 
 
 def c_answers(one: Emitted, function: str, values: Values) -> Values:
-    known = one.library.known
-    words = (*known.words.parameters, *known.words.states, *known.words.inputs)
+    known = one.library.mechanism
+    words = known.vocabulary.given()
     held = {c: float(one.precision.dtype(values.get(c, 1.0))) for q in words for c in q.components}
     program = one.library[function]
     found = one.results(program, Sample(0, "data", held))

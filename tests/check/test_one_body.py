@@ -33,14 +33,14 @@ def quick(names: Iterable[str], *at_once: str) -> list[Any]:
 
 def rows(made: Library) -> dict[str, str]:
     """Return the verdict on every function of a scene that the lecture's equations state."""
-    each = samples(made.known, F64, 2, 0).each
+    each = samples(made.mechanism, F64, 2, 0).each
     return {verdict.function: verdict.outcome for verdict in clouds(made, each)}
 
 
 @pytest.mark.parametrize("name", quick(OF_ONE_BODY, "free_body_principal", "heavy_top"))
 def test_a_scene_of_the_catalogue_is_its_particles(name: str) -> None:
     made = library_of(name)
-    assert rows(made) == dict.fromkeys(made.truths, "holds")
+    assert rows(made) == dict.fromkeys(made.problems, "holds")
 
 
 @pytest.mark.parametrize("name", quick(unusual.SCENES, "a moving point"))
@@ -85,7 +85,7 @@ def test_the_programs_of_another_scene_are_noticed(name: str, wrong: str) -> Non
     made = library_of(name)
     other = written_out(WRONG[wrong](short_of(name)))
     assert other.inverse is not None
-    assert made.known.inverse is not None
-    inverse = replace(made.known.inverse, scene=other.inverse)
-    made = replace(made, known=replace(made.known, scene=other, inverse=inverse))
+    assert made.mechanism.inverse is not None
+    inverse = replace(made.mechanism.inverse, scene=other.inverse)
+    made = replace(made, mechanism=replace(made.mechanism, scene=other, inverse=inverse))
     assert "FAILS" in rows(made).values()

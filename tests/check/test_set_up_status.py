@@ -61,7 +61,7 @@ def names(setup: Program) -> list[str]:
 
 
 def drawn(lib: Library, precision: Precision) -> list[dict[str, float]]:
-    return hostile(lib.setup, precision, DRAWS, Random(lib.known.scene.name))
+    return hostile(lib.setup, precision, DRAWS, Random(lib.scene.name))
 
 
 def faults(lib: Library, setup: Program, precision: Precision) -> list[str]:
@@ -75,7 +75,7 @@ def faults(lib: Library, setup: Program, precision: Precision) -> list[str]:
     return [
         f"{says} at {values}"
         for values, status, ok in zip(each, found, finite, strict=True)
-        if (says := fault(lib.known.scene, values, precision, status,
+        if (says := fault(lib.scene, values, precision, status,
                           ends_of(values, precision, finite=bool(ok))))
     ]  # fmt: skip
 
@@ -148,7 +148,7 @@ def test_no_definite_tensor_is_refused_for_being_close_to_singular(
         keys = {"I_xx": own[0, 0], "I_yy": own[1, 1], "I_zz": own[2, 2],
                 "I_xy": -own[0, 1], "I_xz": -own[0, 2], "I_yz": -own[1, 2]}  # fmt: skip
         each.append({k: float(precision.dtype(x)) for k, x in keys.items()})
-    scene = made("free_body").known.scene
+    scene = made("free_body").scene
     found = replayed(setup, each, precision)
     assert found.count(RIGHT) > 190
     wrong = [fault(scene, v, precision, s, ends_of(v, precision, finite=True))

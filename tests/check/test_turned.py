@@ -25,7 +25,7 @@ AT_ONCE = ("edge_runner_flat", "skewed_disc", "free_body_principal")
 
 def outcomes(made: Library, emitted: Library) -> dict[tuple[str, str], str]:
     one = cast("Any", Replayed(made, emitted))
-    found = turned_axes(one, samples(made.known, F64, 3, 0).each, {})
+    found = turned_axes(one, samples(made.mechanism, F64, 3, 0).each, {})
     return {(row.check, row.function): row.outcome for row in found}
 
 
@@ -57,7 +57,7 @@ known.angular_velocity = [1, "w", 0]
 def test_what_is_denormal_is_lost_in_no_sum_along_other_axes() -> None:
     made = library(parse_scene(GIVEN, "given"))
     one = cast("Any", Replayed(made, made))
-    each = samples(made.known, F64, 1, 2).each
+    each = samples(made.mechanism, F64, 1, 2).each
     assert "denormal" in {s.kind for s in each}
     assert {row.outcome for row in turned_axes(one, each, {})} == {"holds"}
 

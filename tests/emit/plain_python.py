@@ -12,7 +12,7 @@ from derive.emit.operators import patterns
 from derive.emit.templates import templates_of
 from derive.program.arithmetic import pair_of
 from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, Row
-from derive.program.pair_sine import quarter_turn, series
+from derive.program.pair_sine import coefficients, quarter_turn
 from derive.program.precision import F64
 from derive.program.program import Op, Operand, Program, component_names
 
@@ -33,8 +33,8 @@ def python_file(programs: Sequence[Program], own: Mapping[str, str]) -> str:
         .get_template("plain_python.py.jinja")
         .render(
             functions=[_function(program, own) for program in programs],
-            odd=[_pair(q) for q in series(F64.bits, 1)],
-            even=[_pair(q) for q in series(F64.bits, 0)],
+            odd=[_pair(q) for q in coefficients(F64.bits, 1)],
+            even=[_pair(q) for q in coefficients(F64.bits, 0)],
             quarter=[float(q) for q in quarter_turn(lambda q: Fraction(float(q)))],
         )
     )

@@ -89,13 +89,13 @@ def test_every_link_leads_to_a_place_that_is_there(name: str) -> None:
 @pytest.mark.parametrize("name", thinned(catalogue(), 4))
 def test_every_stored_result_leads_to_the_equation_that_it_satisfies(name: str) -> None:
     for program in library_of(name).functions:
-        known, base = library_of(name).known, program.name.removesuffix("_jacobian")
+        known, base = library_of(name).mechanism, program.name.removesuffix("_jacobian")
         lines = [line for passage in passages(known, base) for line in passage.lines]
         links = {line.unknown: line.place for line in lines}
         text = str(listing(program, name, links))
         assert text.count("<a href=") == len(program.results)
         assert {p.name for g in passages(known, base) for p in g.steps} == set(
-            known.question(base).steps
+            known.whole(base).steps
         )
 
 
@@ -158,6 +158,6 @@ def test_a_title_cannot_break_the_page() -> None:
 
 
 def test_the_rate_of_a_quaternion_is_written_with_a_dot() -> None:
-    known = library_of("satellite").known
-    symbols, names = known.words.symbols, written_names(known)
+    known = library_of("satellite").mechanism
+    symbols, names = known.words.sheet.symbols, written_names(known)
     assert [names[symbols[f"attitude_rate_{p}"]] for p in "wxyz"] == [f"q_dot_{p}" for p in "wxyz"]

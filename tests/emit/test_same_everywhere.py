@@ -38,7 +38,7 @@ ASKED = {
     "scene/functions.py: tan": "as sin",
     "verify/convergence.py: log2": "an order, compared with bounds tenths away and not printed",
     "mechanics/choice.py: linalg": "which balances tell unknowns apart, by margins of digits",
-    "mechanics/pivots.py: linalg": "which pivots do not vanish, by margins of digits",
+    "lower/arrange/pivots.py: linalg": "which pivots do not vanish, by margins of digits",
     "mechanics/sweep.py: linalg": "where divisors vanish, by margins of digits",
     "scene/numbers.py: hypot": "a length in a sentence of refusal, to ten digits",
     "check/attitudes.py: atan": "verdicts against a bound of many u",

@@ -83,6 +83,6 @@ def functions(made: Library) -> list[dict[str, list[str]]]:
 
 
 def test_frames_and_bodies_of_a_machine_are_noticed() -> None:
-    known = library_of("edge_runner_flat").known
+    known = library_of("edge_runner_flat").mechanism
     assert UNSAID.search("Frame axle is carried by inertial.")
     assert [n for n in notes(known, "N") if UNSAID.search(n.replace("roller", "body"))]

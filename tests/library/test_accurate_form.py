@@ -174,7 +174,8 @@ def step_errors(form: str) -> list[float]:
     text = text.replace('fixed_in = "body"', 'attitude = "quaternion"')
     text = re.sub(r"moment\s*=.*", "moment = [0, 0, 0]", text)
     lib = library(parse_scene(text, "rods"))
-    drawn = [s for s in samples(lib.known, F32, 1, 6).each if s.kind == "turned, ill-conditioned"]
+    every = samples(lib.mechanism, F32, 1, 6).each
+    drawn = [s for s in every if s.kind == "turned, ill-conditioned"]
     each = with_motion(lib, drawn, F32)
     results = replayed(lib, each, F32, working(F32.dtype))
     return [max(of_the_largest(lib, lib[name], each, results[name])) for name in STEPS]

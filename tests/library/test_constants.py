@@ -9,7 +9,7 @@ from tests.made import library_of, thinned
 @pytest.mark.parametrize("name", thinned(catalogue(), 10))
 def test_a_constant_with_the_name_of_a_parameter_is_that_parameter(name: str) -> None:
     library = library_of(name)
-    made, words = library.setup, library.known.words
+    made, words = library.setup, library.vocabulary
     names = [c for q in made.outputs for c in q.components]
     given = (*words.parameters, *(q for p in library.printed() for q in p.inputs))
     of_scene = {c for q in given if q.role != "constants" for c in q.components}

@@ -6,6 +6,7 @@ import inspect
 import re
 from collections.abc import Callable
 from pathlib import Path
+from textwrap import dedent
 from typing import Any
 
 import pytest
@@ -13,24 +14,27 @@ import pytest
 import derive.library
 
 PAGE = Path(__file__).parents[2] / "docs" / "architecture.md"
-STAGE = re.compile(r"^    (\S.*?) +-> (\S.*?)  +([a-z_.]+)$", re.MULTILINE)
+STAGE = re.compile(r"^    (\S.*?) +-> (\S.*?)  +([A-Za-z_.]+)$", re.MULTILINE)
 INSIDE = {"Op", "Program"}
 """What the library is put together from."""
 STAGES = STAGE.findall(derive.library.__doc__ or "")
 
 
 def function_at(where: str) -> Callable[..., Any]:
-    """Return the function of a dotted name within the package."""
-    module, _, name = where.rpartition(".")
-    found: Callable[..., Any] = getattr(importlib.import_module(f"derive.{module}"), name)
-    return found
+    """Return the function of a dotted name within the package, or the method of a class there."""
+    module = ".".join(part for part in where.split(".")[:-1] if part.islower())
+    found: Any = importlib.import_module(f"derive.{module}")
+    for name in where.removeprefix(f"{module}.").split("."):
+        found = getattr(found, name)
+    return found  # type: ignore[no-any-return]
 
 
 def told(function: Callable[..., Any]) -> tuple[set[str], set[str]]:
-    """Return the names of types that go into a function, and of those that come out."""
-    (own,) = ast.parse(inspect.getsource(function)).body
+    """Return the names of types that go into a function, a method's class too, and come out."""
+    (own,) = ast.parse(dedent(inspect.getsource(function))).body
     assert isinstance(own, ast.FunctionDef)
     given = [ast.unparse(a.annotation) for a in own.args.args if a.annotation is not None]
+    given += function.__qualname__.split(".")[:-1]
     assert own.returns is not None
     return words(" ".join(given)), words(ast.unparse(own.returns))
 

@@ -77,7 +77,7 @@ def test_samples_have_every_quaternion_of_length_one_and_at_half_a_turn() -> Non
     made = two_hubs("step_rk4")
     of = Field(made, F64)
     at = complete(of, drawn_in_columns(of, Dice("two hubs"), 64)).wide
-    (turned,) = (s.values for s in samples(made.known, F64, 0, 1).each if s.kind == "half turn")
+    (turned,) = (s.values for s in samples(made.mechanism, F64, 0, 1).each if s.kind == "half turn")
     for frame in ("hub", "pod"):
         parts = [f"attitude_{frame}_{part}" for part in "wxyz"]
         assert np.allclose(sum(at[part] ** 2 for part in parts), 1, rtol=0, atol=1e-15)
@@ -94,7 +94,7 @@ def top() -> Library:
 
 
 def drawn(made: Library, precision: Precision, count: int) -> tuple[Sample, ...]:
-    return with_motion(made, samples(made.known, precision, count, 0).each, precision)
+    return with_motion(made, samples(made.mechanism, precision, count, 0).each, precision)
 
 
 @pytest.mark.long

@@ -105,4 +105,4 @@ def text_of(name):
 def test_an_unusual_scene_is_proved(name):
     made = library(parse_scene(text_of(name), "unusual"))
     prove(made)
-    assert len(made.functions) == len(made.known.scene.wanted)
+    assert len(made.functions) == len(made.scene.wanted)

@@ -20,7 +20,7 @@ from derive.program.precision import F64
 from derive.program.program import Quantity, placed
 from derive.verify.columns import Column
 from derive.verify.draw import Dice, Field, admitted, complete, drawn
-from derive.verify.equations import equations
+from derive.verify.equations import equations_of
 from derive.verify.reference import NoValueError, reference
 from derive.verify.scale import STATE_RATE, base_of, measured_outputs
 from derive.verify.search import errors_at
@@ -112,30 +112,28 @@ def _on_spheres(of: Field, rows: Column) -> Column:
 
 def regular(made: Library, base: str, place: dict[str, float]) -> bool:
     """Tell whether a function has a value at a place by what its scene says; a step as its rate."""
-    known = made.known
-    base = base if base in made.truths else STATE_RATE
-    if base not in made.truths:
+    base = base if base in made.problems else STATE_RATE
+    if base not in made.problems:
         return True
-    if isinstance(known, Mechanism):
-        question = known.question(base)
-        used = {s for e in question.answers.values() for s in e.free_symbols}
-        used |= {s for e in question.definitions.values() for s in e.free_symbols}
-        wanted = [u for u in question.unknowns if u in used]
-        if wanted:
-            return told(known, wanted, place) > REGULAR
+    problem = made.mechanism.whole(base)
+    used = {s for e in problem.answers.values() for s in e.free_symbols}
+    used |= {s for e in problem.definitions.values() for s in e.free_symbols}
+    wanted = [u for u in problem.unknowns if u in used]
+    if wanted:
+        return told(made.mechanism, wanted, place) > REGULAR
     try:
-        reference(equations(known, made.truths[base]), place, ())
+        reference(equations_of(made.mechanism, made.problems[base]), place, ())
     except NoValueError:
         return False
     return True
 
 
-def told(known: Mechanism, wanted: list[object], place: dict[str, float]) -> float:
+def told(mechanism: Mechanism, wanted: list[object], place: dict[str, float]) -> float:
     """Return how clearly all balances of a machine tell some unknowns: a singular value."""
-    balances, symbols = known.answers.balances, known.words.symbols
-    probe = Probe(point(known.made, 0).values | {symbols[c]: mpf(x) for c, x in place.items()})
+    balances, symbols = mechanism.answers.balances, mechanism.vocabulary.symbols
+    probe = Probe(point(mechanism.words, 0).values | {symbols[c]: mpf(x) for c, x in place.items()})
     with mp.workdps(DIGITS):
-        probe.define(known.made.sheet.definitions)
+        probe.define(mechanism.words.sheet.definitions)
         valued = Valued(balances.sides, probe)
         table = np.array([[float(x) for x in balances.at(row, valued)[1:]]
                           for row in balances.rows if row.holds])  # fmt: skip

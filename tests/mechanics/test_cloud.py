@@ -13,7 +13,7 @@ from derive.scene import Scene, catalogue, load, parse_scene
 from derive.scene.formula import Formula
 from derive.solve import opened, roots
 from derive.verify.cloud import answers
-from derive.verify.equations import equations
+from derive.verify.equations import equations_of
 from derive.verify.reference import reference
 from derive.verify.sample import samples
 from tests.made import library_of, scene_of, thinned
@@ -28,9 +28,9 @@ EVERY = [name if name in SHORT else pytest.param(name, marks=pytest.mark.long) f
 @pytest.mark.parametrize("name", EVERY)
 def test_every_answer_of_a_machine_agrees_with_its_cloud(name: str) -> None:
     made = library_of(name)
-    verdicts = list(clouds(made, samples(made.known, F64, FEW, 0).each))
+    verdicts = list(clouds(made, samples(made.mechanism, F64, FEW, 0).each))
     assert [v for v in verdicts if v.outcome != "holds"] == []
-    assert {v.function for v in verdicts} == set(made.truths)
+    assert {v.function for v in verdicts} == set(made.problems)
 
 
 # Programs of one machine beside the cloud of another: a machine, an edit of it, what it spoils.
@@ -52,8 +52,8 @@ def test_another_machine_does_not_agree_with_the_cloud(
     assert old in right.text
     other = parse_scene(right.text.replace(old, new), name)
     made = library(other)
-    spoilt = replace(made, known=replace(made.known, scene=right))
-    each = samples(made.known, F64, 1, 0).each
+    spoilt = replace(made, mechanism=replace(made.mechanism, scene=right))
+    each = samples(made.mechanism, F64, 1, 0).each
     outcomes = {v.function: v.outcome for v in clouds(spoilt, each)}
     assert outcomes[function] == "FAILS"
 
@@ -97,9 +97,9 @@ def test_a_usual_shortcut_gives_another_answer_than_the_cloud(
     assert old in right.text
     wrong = library(parse_scene(right.text.replace(old, new), right.name))
     (sample,) = samples(mechanism(right), F64, 1, 0).each
-    fact = wrong.truths[function]
-    false = reference(equations(wrong.known, fact), sample.values, ())
-    names = [c for q in fact.outputs for c in q.components]
+    problem = wrong.problems[function]
+    false = reference(equations_of(wrong.mechanism, problem), sample.values, ())
+    names = [c for q in problem.outputs for c in q.components]
     cloud = answers(right, sample.values)
     true = [
         float(cloud.unknowns[n] if n in cloud.unknowns else cloud.result(_formula(right, n)))

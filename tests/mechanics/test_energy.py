@@ -30,7 +30,7 @@ WITH_ENERGY = ("spring_pendulums", "hoop_pole", "top_on_lift", "rolling_coin", "
 
 def one(made: Library) -> tuple[Sample, ...]:
     """Return one sample of a scene."""
-    return samples(made.known, F64, 1, 0).each
+    return samples(made.mechanism, F64, 1, 0).each
 
 
 def outcomes(made: Library) -> set[str]:
@@ -60,7 +60,7 @@ def test_an_energy_of_other_loads_is_noticed(row: tuple[str, str, str, str]) -> 
     right = load(SCENES / f"{name}.toml")
     assert old in right.text
     made = library(parse_scene(right.text.replace(old, new), name))
-    assert outcomes(replace(made, known=replace(made.known, scene=right))) == {"FAILS"}
+    assert outcomes(replace(made, mechanism=replace(made.mechanism, scene=right))) == {"FAILS"}
 
 
 @pytest.mark.parametrize(("spoilt", "outcome"), [(0, "holds"), (1, "FAILS")])
@@ -115,7 +115,7 @@ def test_the_height_may_be_added_where_the_kinetic_energy_stands() -> None:
     text = ROLLING.replace('"potential_energy", "kinetic_energy", "energy"', '"total"')
     results = '[results]\ntotal = "kinetic_energy + m*g*r*cos(lean)"\n'
     made = library(parse_scene(text + results, "disc"))
-    assert "total" in made.truths
+    assert "total" in made.problems
 
 
 def test_a_disc_that_rolls_upright_keeps_its_height_and_has_an_energy() -> None:

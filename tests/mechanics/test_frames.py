@@ -34,7 +34,7 @@ def values_of(matrix: Matrix, probe: "Probe | Later") -> Array:
 def test_frames_turn_and_accelerate_as_their_positions_say(source: str | Path) -> None:
     machine = load(source)
     known = mechanism(machine)
-    frames, words = known.answers.frames, known.made
+    frames, words = known.answers.frames, known.words
     frames.acceleration, frames.Omega_dot  # noqa: B018 - they name what they need on the sheet
     with mp.workdps(DIGITS):
         probe = point(words, 0)

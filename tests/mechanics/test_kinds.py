@@ -20,6 +20,6 @@ SCENES = sorted((Path(__file__).parent / "scenes").glob("*.toml"))
 def test_a_machine_of_another_kind_is_proved_and_agrees_with_its_cloud(path: Path) -> None:
     made = library(load(path))
     prove(made)
-    found = list(clouds(made, samples(made.known, F64, 2, 0).each))
+    found = list(clouds(made, samples(made.mechanism, F64, 2, 0).each))
     assert [v for v in found if v.outcome == "FAILS"] == []
     assert any(v.outcome == "holds" for v in found)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.mechanics.mechanism import mechanism, problem
+from derive.mechanics.mechanism import mechanism
 from derive.program.program import Quantity
 from derive.scene import SceneError, parse_scene
 from tests.made import scene_of
@@ -66,22 +66,22 @@ def test_every_quantity_of_other_scenes_has_a_meaning_and_a_unit(text: str) -> N
     except SceneError:
         return
     for one in (known, *([known.inverse] if known.inverse else [])):
-        assert without(told(one.words.every())) == []
+        assert without(told(one.vocabulary.every())) == []
 
 
 def test_a_result_named_as_the_rate_of_a_state_is_given_in_its_own_unit() -> None:
     known = mechanism(parse_scene(LONG, "example"))
-    (rate,) = problem(known, "phi_rate").outputs
+    (rate,) = known.problem("phi_rate").outputs
     assert (rate.unit, rate.meaning) == ("m^2/s^2", "M/m")
 
 
 def test_components_of_several_units_are_not_given_in_that_of_the_first() -> None:
-    (bearing,) = problem(mechanism(parse_scene(LONG, "example")), "bearing").outputs
+    (bearing,) = mechanism(parse_scene(LONG, "example")).problem("bearing").outputs
     assert (bearing.unit, bearing.meaning) == ("", "force of hold, each in its own unit")
 
 
 def test_what_is_given_without_a_word_is_called_by_its_kind() -> None:
-    words = mechanism(parse_scene(LONG, "example")).words
+    words = mechanism(parse_scene(LONG, "example")).vocabulary
     said = {q.name: q.meaning for q in words.every()}
     assert [said[n] for n in ("m", "psi", "psi_dot", "psi_ddot", "W", "W_dot", "T")] == [
         "parameter m", "coordinate psi", "rate of psi", "acceleration of psi", "speed W",

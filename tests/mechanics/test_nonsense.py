@@ -10,7 +10,7 @@ from derive.emit.casadi_text import casadi_file
 from derive.library.library import library
 from derive.mechanics.balances import Balances
 from derive.mechanics.choice import closed_loop
-from derive.mechanics.mechanism import doubts, mechanism
+from derive.mechanics.mechanism import mechanism
 from derive.scene import CATALOGUE, SceneError, parse_scene
 
 TRIALS = Path(__file__).parent.parent / "data" / "trials"
@@ -115,7 +115,7 @@ def test_a_name_beside_a_vector_of_unknowns_that_is_wanted_is_refused(name: str)
 def test_small_motion_about_no_equilibrium_is_warned_about(q: str, size: str) -> None:
     # -g b sin(q)/(b^2 + (a^2 + (a + b)^2)/2) with a = 0.2 and b = 0.3 is -6.004
     machine = parse_scene(f"{PLAIN.replace('k = ', '# k = ')}\n[linearised]\nq = {q}\n", "odd")
-    found = doubts(mechanism(machine))
+    found = mechanism(machine).doubts()
     start = "'linearised' is about a state that is no equilibrium: the acceleration of 'q' is"
     assert [says.startswith(f"{start} {size} there") for says in found] == [True] * bool(size)
 

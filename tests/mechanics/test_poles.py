@@ -6,9 +6,8 @@ from pathlib import Path
 import pytest
 
 from derive.library.library import Library, library
+from derive.lower.arrange.pivots import Pivots
 from derive.mechanics import regular
-from derive.mechanics.mechanism import Mechanism, pole
-from derive.mechanics.pivots import Pivots
 from derive.mechanics.sweep import Weakest
 from derive.scene import CATALOGUE, SceneError, catalogue, parse_scene
 from tests.mechanics.poles import ALLOWED, poles
@@ -92,8 +91,7 @@ pin = { on = "bob", force = "?pin" }
 
 def test_a_pole_that_the_machine_has_is_named_with_its_place() -> None:
     made = library(parse_scene(UPRIGHT, "upright"))
-    assert isinstance(made.known, Mechanism)
-    says = pole(made.known, "accelerations")
+    says = made.mechanism.pole("accelerations")
     assert says.startswith("the divisor of 'psi_ddot', 'theta_ddot' vanishes at ")
     assert ", theta = 0," in says
 

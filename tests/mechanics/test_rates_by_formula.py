@@ -7,11 +7,11 @@ import pytest
 
 from derive.check.particles import clouds
 from derive.library.library import Library, library
-from derive.mechanics.mechanism import mechanism, problem
+from derive.mechanics.mechanism import mechanism
 from derive.program.precision import F64
 from derive.program.program import component_names
 from derive.scene import SceneError, parse_scene
-from derive.verify.equations import equations
+from derive.verify.equations import equations_of
 from derive.verify.reference import reference
 from derive.verify.sample import samples
 from tests.made import library_of, scene_of
@@ -69,16 +69,17 @@ def test_what_a_formula_moves_is_a_state_and_costs_no_more_than_by_hand() -> Non
 def test_every_answer_agrees_with_the_cloud_of_particles(top: Library) -> None:
     sleigh = library(parse_scene(SLEIGH, "sleigh"))
     for made in (top, sleigh):
-        verdicts = list(clouds(made, samples(made.known, F64, 1, 0).each))
-        assert {v.function for v in verdicts} == set(made.truths)
+        verdicts = list(clouds(made, samples(made.mechanism, F64, 1, 0).each))
+        assert {v.function for v in verdicts} == set(made.problems)
         assert {v.outcome for v in verdicts} == {"holds"}
 
 
 def test_another_rate_does_not_agree_with_the_cloud_of_particles(top: Library) -> None:
     """Both rates are integrals of the same speeds, but the second acceleration is another."""
-    text = top.known.scene.text.replace("w_y/sin(theta)", "w_y/sin(theta) + w_x*theta")
-    other = replace(top, known=replace(top.known, scene=parse_scene(text, "top")))
-    outcomes = {v.function: v.outcome for v in clouds(other, samples(top.known, F64, 1, 0).each)}
+    text = top.scene.text.replace("w_y/sin(theta)", "w_y/sin(theta) + w_x*theta")
+    other = replace(top, mechanism=replace(top.mechanism, scene=parse_scene(text, "top")))
+    each = samples(top.mechanism, F64, 1, 0).each
+    outcomes = {v.function: v.outcome for v in clouds(other, each)}
     assert outcomes["state_rate"] == outcomes["tip"] == "FAILS"
 
 
@@ -89,7 +90,7 @@ def test_the_top_has_the_rates_of_the_body_whose_omega_the_speeds_are() -> None:
     values = {**sample.values, **omega, "phi": 0.3}
     ours, theirs = (
         {n: float(x.value) for n, x in
-         reference(equations(k, problem(k, "state_rate")), values, ()).items()}
+         reference(equations_of(k, k.problem("state_rate")), values, ()).items()}
         for k in (machine, body)
     )  # fmt: skip
     pairs = {"psi_rate": "psi_dot", "theta_rate": "theta_dot"}
@@ -104,7 +105,7 @@ def test_a_sleigh_moves_as_chaplygin_says() -> None:
     known = mechanism(parse_scene(SLEIGH, "sleigh"))
     (sample,) = samples(known, F64, 1, 0).each
     m, a, moment, v, w = (sample.values[n] for n in ("m", "a", "I", "v", "w"))
-    found = reference(equations(known, problem(known, "state_rate")), sample.values, ())
+    found = reference(equations_of(known, known.problem("state_rate")), sample.values, ())
     assert float(found["v_rate"].value) == pytest.approx(a * w**2)
     assert float(found["w_rate"].value) == pytest.approx(-m * a * v * w / (moment + m * a**2))
 
@@ -161,6 +162,6 @@ def test_a_coordinate_is_given_if_its_rate_is_or_the_scene_says_so(
     said = f'"{rate}"' + (f', motion = "{motion}"' if motion else "")
     text = TOP.replace(RATE, said)
     text = text.replace("[speeds]", '[speeds]\nW = { unit = "rad/s", range = [1, 2], rate = 0 }')
-    words = mechanism(parse_scene(text, "top")).words
+    words = mechanism(parse_scene(text, "top")).vocabulary
     assert ("psi" in {q.name for q in words.states}) == state
     assert ("psi" in {q.name for q in words.inputs}) != state

@@ -4,7 +4,7 @@ import pytest
 from sympy import Matrix, Symbol, eye, sympify
 
 from derive.mechanics.mechanism import mechanism
-from derive.mechanics.rotation import FreeRotation, free_rotation
+from derive.mechanics.rotation import FreeRotation
 from derive.scene import parse_scene
 
 BODY = """
@@ -70,10 +70,10 @@ spin = "W_x"
 def rotation(text: str) -> FreeRotation | None:
     machine = parse_scene(text, "turning")
     known = mechanism(machine)
-    found = free_rotation(known)
+    found = known.rotation()
     if found is None:
         return None
-    names = {s: Symbol(c) for c, s in known.words.symbols.items()}
+    names = {s: Symbol(c) for c, s in known.vocabulary.symbols.items()}
     return FreeRotation(
         found.frame, found.attitude, found.omega,
         found.tensor.xreplace(names), found.moment.xreplace(names),

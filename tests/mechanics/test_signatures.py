@@ -3,7 +3,7 @@
 import pytest
 
 from derive.mechanics.matter import OTHERS
-from derive.mechanics.mechanism import Mechanism, depends_on, mechanism, problem
+from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.mechanics.probe import POINTS, point
 from derive.scene import load
 
@@ -39,21 +39,21 @@ def test_an_answer_depends_on_what_the_data_file_says(
     name: str, function: str, expected: set[str]
 ) -> None:
     found = known(name)
-    problem(found, function)
-    assert set(depends_on(found, function)) == expected
+    found.problem(function)
+    assert set(found.depends_on(function)) == expected
 
 
 def test_the_hinge_force_stays_outside_when_only_the_press_is_asked() -> None:
     found = known("edge_runner_flat")
-    question = found.question("N")
-    assert [str(b) for b in question.balances] == [
+    problem = found.whole("N")
+    assert [str(b) for b in problem.balances] == [
         "moment on roller about the origin of axle along y of axle"
     ]
-    assert len(question.unknowns) == 1
+    assert len(problem.unknowns) == 1
 
 
 def test_trial_values_lie_within_the_ranges_and_no_two_are_alike() -> None:
-    words = known("sleeping_top").made
+    words = known("sleeping_top").words
     book, numbers = words.vocabulary, (*range(POINTS), OTHERS)
     points = [point(words, n).values for n in numbers]
     for q in (*book.parameters, *book.states, *book.inputs):

@@ -8,7 +8,7 @@ import pytest
 
 from derive.cli import parser
 from derive.library.library import library
-from derive.mechanics.mechanism import Mechanism, depends_on, mechanism
+from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.scene import SceneError, parse_scene
 from derive.scene.machine import LEFT_OVER
 from derive.solve import opened, roots
@@ -53,7 +53,7 @@ def test_what_is_sought_and_angles_stay_in_what_only_they_multiply(
 ) -> None:
     known = mechanism(parse_scene(PENDULUM.replace("@", unknown), "pendulum"))
     assert isinstance(known, Mechanism)
-    assert {*depends_on(known, "steady")} == inputs
+    assert {*known.depends_on("steady")} == inputs
 
 
 @pytest.mark.parametrize(

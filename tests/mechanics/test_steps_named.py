@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from mpmath import mp
 
-from derive.mechanics.mechanism import Mechanism, mechanism, problem
+from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.program.precision import F64
 from derive.scene import Scene, SceneError, catalogue, parse_scene
 from derive.scene.machine import INERTIAL, Force
@@ -77,7 +77,7 @@ def turns(scene: Scene, name: str) -> int:
 def denied(known: Mechanism, function: str, steps: tuple[str, ...]) -> set[str]:
     """Return the steps of a function whose condition does not occur in its scene."""
     scene = known.posed(function).scene
-    balances = known.question(function).balances
+    balances = known.whole(function).balances
     seen = history(known, scene)
     moved = any(a > NOTHING for a in accelerated(seen, scene))
     own = [turns(scene, b.frame) + len(b.turned) for b in scene.bodies]
@@ -106,7 +106,7 @@ def _way(scene: Scene, name: str) -> list[Any]:
 def unneeded(name: str) -> dict[str, set[str]]:
     """Return the steps that functions of a scene name without need."""
     known = known_of(name)
-    found = {f: denied(known, f, problem(known, f).steps) for f in functions(known)}
+    found = {f: denied(known, f, known.problem(f).steps) for f in functions(known)}
     return {f: steps for f, steps in found.items() if steps}
 
 
@@ -136,7 +136,7 @@ NEEDED = (
 
 @pytest.mark.parametrize(("name", "function", "step"), NEEDED)
 def test_a_step_that_a_function_needs_is_named(name: str, function: str, step: str) -> None:
-    assert step in problem(known_of(name), function).steps
+    assert step in known_of(name).problem(function).steps
 
 
 @pytest.mark.parametrize("step", [*FORMS, "angular_velocities_add", "mass_centre_motion"])

@@ -92,7 +92,7 @@ def test_the_numbers_and_the_operations_are_those_of_the_scalars(
 
 def valued(made: Library, name: str) -> dict[str, Fraction]:
     """Return the exact outputs of a function where every component has a value of its own."""
-    known = {c: Fraction(number_of(c)) for q in made.known.words.every() for c in q.components}
+    known = {c: Fraction(number_of(c)) for q in made.vocabulary.every() for c in q.components}
     known["time_step"] = Fraction(1, 8)
     for program in (made.setup, made[name]):
         values = [known[c] for q in program.inputs for c in q.components]

@@ -47,7 +47,7 @@ STATE = [Fraction(n, 16) for n in (12, 7, -5, 6, 9, -7, 20)]
 def catalogued(name: str) -> tuple[TaylorStep, Program, list[Fraction]]:
     """Return a scene's step, its rate, and values for constants, states and inputs."""
     made = library_of(name)
-    rate, words = made["state_rate"], made.known.words
+    rate, words = made["state_rate"], made.vocabulary
     step = taylor_step(rate, words.states, words.inputs, 20)
     dice = Random(name)
     count = sum(len(q.components) for q in step.inputs) - 1

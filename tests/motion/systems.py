@@ -83,7 +83,7 @@ def _principal() -> Library:
 def system(name: str) -> System:
     """Return the motion of a scene with its Jacobian."""
     found = made(name)
-    return System(found.known.words.states, found["state_rate"], found["state_rate_jacobian"])
+    return System(found.vocabulary.states, found["state_rate"], found["state_rate_jacobian"])
 
 
 def without_slopes(given: System) -> System:
@@ -97,7 +97,7 @@ def start(name: str, seed: int = 1) -> Values:
     found, rest = made(name), random.Random(seed)
     drawn = {
         c: mpf(rest.uniform(float(q.low or 0), float(q.high or 0)))
-        for q in (*found.known.words.parameters, *system(name).states, *system(name).inputs)
+        for q in (*found.vocabulary.parameters, *system(name).states, *system(name).inputs)
         for c in q.components
     }
     given = [drawn[c] for q in found.setup.inputs for c in q.components]

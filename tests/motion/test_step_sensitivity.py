@@ -55,7 +55,7 @@ def test_the_sensitivity_is_the_slope_by_each_parameter(name: str) -> None:
     program = made["step_rk4_sensitivity"]
     found = entries(program, prepared(made, values))
     pattern = (program.sparsity or {})["jacobian"]
-    assert pattern.columns == tuple(c for q in made.known.words.parameters for c in q.components)
+    assert pattern.columns == tuple(c for q in made.vocabulary.parameters for c in q.components)
     for column in pattern.columns:
         for row, expected in zip(pattern.rows, slope(made, values, column), strict=True):
             assert abs(found.get((row, column), 0) - expected) < EXACTLY, (row, column)

@@ -17,8 +17,8 @@ from random import Random
 from typing import Any
 
 from derive.library.library import library
-from derive.mechanics.words import MATRICES
 from derive.scene import CATALOGUE, SceneError, parse_scene
+from derive.scene.results import MATRICES
 from derive.scene.wanted import EQUATIONS, MOTIONS
 from tests.scene.mutated import written
 

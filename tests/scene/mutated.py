@@ -20,10 +20,9 @@ from mpmath import mp, mpf
 from derive.check.particles import of_cloud
 from derive.emit.c.source import c_files
 from derive.library.library import Library, library
-from derive.mechanics.mechanism import mechanism
-from derive.mechanics.words import MATRICES
 from derive.program.precision import PRECISIONS
 from derive.scene import Scene, SceneError, parse_scene
+from derive.scene.results import MATRICES
 from derive.verify.cloud import answers
 from derive.verify.cloud.series import DIGITS
 from derive.verify.cloud.small import slopes
@@ -87,8 +86,8 @@ def _said(text: str, name: str) -> tuple[str, ...]:
 def _matters(made: Library, text: str, name: str) -> bool:
     """Tell whether a change changes the answers at a sample; where there are none, it does."""
     other = parse_scene(text, name)
-    (sample,) = samples(made.known, PRECISIONS[1], 1, 0).each[:1]
-    scenes = (made.known.scene, other)
+    (sample,) = samples(made.mechanism, PRECISIONS[1], 1, 0).each[:1]
+    scenes = (made.scene, other)
     first, second = (_by_particles(made, one, sample.values) for one in scenes)
     with mp.workdps(DIGITS):
         pairs = list(zip(first, second, strict=True))
@@ -98,14 +97,14 @@ def _matters(made: Library, text: str, name: str) -> bool:
 
 def _by_particles(made: Library, scene: Scene, values: Mapping[str, float]) -> list[Any]:
     """Return the answers of a machine that its cloud of particles has."""
-    known, found = mechanism(scene), []
-    for base, fact in made.truths.items():
-        posed = known.posed(base)
-        cloud = answers(posed.scene, values)
-        if base == "linearised" or fact.outputs[0].name in MATRICES:
+    found = []
+    for base, problem in made.problems.items():
+        posed = scene.posed(base)
+        cloud = answers(posed, values)
+        if base == "linearised" or problem.outputs[0].name in MATRICES:
             found += [x for table in slopes(scene, values) for x in table]
             continue
-        names = [c for q in fact.outputs for c in q.components]
+        names = [c for q in problem.outputs for c in q.components]
         found += [*of_cloud(posed, cloud, base, names).values()]
     return [x for x in found if x is not None]
 

@@ -20,7 +20,7 @@ from derive.program.run import run
 from derive.scene import parse_scene
 from derive.verify.cloud import answers
 from derive.verify.convergence import unit_attitude
-from derive.verify.equations import equations
+from derive.verify.equations import equations_of
 from derive.verify.operators import LONG_FLOATS
 from derive.verify.reference import BITS, reference
 from derive.verify.sample import samples
@@ -60,12 +60,12 @@ def rocket_by_particles(values: Mapping[str, Any]) -> list[Any]:
 
 def test_a_force_of_state_and_inputs_moves_the_body_as_it_moves_its_particles() -> None:
     made = body(ROCKET, "state_rate")
-    question = equations(made.known, made.truths["state_rate"])
+    equations = equations_of(made.mechanism, made.problems["state_rate"])
     names = [f"{name}_{p}" for name in ("velocity_rate", "omega_dot") for p in "xyz"]
-    for sample in samples(made.known, PRECISIONS[1], 3, 0).each:
+    for sample in samples(made.mechanism, PRECISIONS[1], 3, 0).each:
         with ctx.workprec(BITS):
             values = unit_attitude(made, {c: arb(x) for c, x in sample.values.items()})
-        true = reference(question, values, ())
+        true = reference(equations, values, ())
         with mp.workdps(60):
             pairs = zip(names, rocket_by_particles(values), strict=True)
             assert all(abs(digits(true[n].value) - x) < AGREE * (1 + abs(x)) for n, x in pairs)
@@ -95,7 +95,7 @@ def inputs(program: Any) -> list[str]:
 @pytest.mark.parametrize("name", ["force_by_attitude", "force_by_parameters"])
 def test_what_formulas_give_is_no_argument(name: str) -> None:
     made = body((DATA / "trials" / f"{name}.toml").read_text(), "state_rate")
-    every = (*made.known.words.states, *made.known.words.inputs)
+    every = (*made.vocabulary.states, *made.vocabulary.inputs)
     assert {"force", "moment"} & {q.name for q in every} == set()
     assert "force" not in inputs(made["state_rate"])
 

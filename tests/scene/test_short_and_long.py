@@ -1,7 +1,7 @@
 """A body in short form has the answers of the same body that somebody wrote with frames and loads.
 
 The short form is read by one road into what code and checks both see, so a wrong reading of it
-would go unnoticed by either; these files were written by hand, and their particles are asked.
+would go unnoticed by either; these files were written by hand, and their particles are equations.
 """
 
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from derive.program.precision import F64
 from derive.scene import load, long_form, parse_scene
 from derive.verify.cloud import answers
 from derive.verify.cloud.series import DIGITS
-from derive.verify.equations import equations
+from derive.verify.equations import equations_of
 from derive.verify.reference import reference
 from derive.verify.sample import samples
 from tests.made import library_of, short_of, thinned
@@ -56,10 +56,10 @@ CASES: Mapping[tuple[str, str], tuple[Mapping[str, str], Mapping[str, str]]] = {
 def gap(short: Library, scene: str, function: str) -> Any:
     """Return how far the answers are apart, relative to the largest."""
     given, found = CASES[scene, function]
-    asked = equations(short.known, short.truths[function])
+    equations = equations_of(short.mechanism, short.problems[function])
     written, gaps = load(LONG / f"{scene}.toml"), []
-    for sample in samples(short.known, F64, 2, 0).each[:2]:
-        true = reference(asked, sample.values, ())
+    for sample in samples(short.mechanism, F64, 2, 0).each[:2]:
+        true = reference(equations, sample.values, ())
         with mp.workdps(DIGITS):
             values: dict[str, Any] = {n: mpf(x) for n, x in sample.values.items()}
             values |= {new: values[old] for old, new in given.items() if old in values}

@@ -110,7 +110,7 @@ def test_constants_are_within_an_ulp(name: str, precision: Precision, small: flo
 
     made = library_of(name)
     worst = 0.0
-    for number, sample in enumerate(samples(made.known, precision, 12, 0).each):
+    for number, sample in enumerate(samples(made.mechanism, precision, 12, 0).each):
         values = dict(sample.values) | slender(small * (1 + number / 16), precision)
         worst = max(worst, largest_ulps(made, values, precision))
     assert worst <= 1.0
@@ -122,7 +122,7 @@ def test_constants_of_every_scene_are_within_an_ulp(name: str, precision: Precis
     made = library_of(name)
     if not made.constants:
         pytest.skip("the scene has no constants")
-    drawn = samples(made.known, precision, 12, 0).each
+    drawn = samples(made.mechanism, precision, 12, 0).each
     assert max(largest_ulps(made, dict(s.values), precision) for s in drawn) <= 1.0
 
 
@@ -132,7 +132,7 @@ def test_a_constant_that_cancels_is_within_16_u_squared_of_its_products(precisio
     """k3 is 2 (I_xz J_xy - I_xy J_xz): I_xz is moved until nothing is left of it."""
     made, u = library_of("free_body"), precision.unit_roundoff
     worst = 0.0
-    for sample in samples(made.known, precision, 8, 0).each:
+    for sample in samples(made.mechanism, precision, 8, 0).each:
         low, high = (sample.values | {"I_xz": end} for end in (-0.2, 0.2))
         held = [float(precision.dtype(-0.2)), float(precision.dtype(0.2))]
         if signs_of(made, low, precision) == signs_of(made, high, precision):
@@ -191,7 +191,7 @@ def largest_ulps(made: Library, values: dict[str, float], precision: Precision) 
     with ctx.workprec(400):
         true = run(made.setup, LONG_FLOATS, [arb(values[n]) for n in names])
         constants = dict(zip(component_names(made.setup), true, strict=True))
-        if made.known.scene.name in INVERSES:
+        if made.scene.name in INVERSES:
             assert_inverse(constants, values)
         return max(ulps(x, y, precision) for x, y in zip(found, true, strict=True))
 

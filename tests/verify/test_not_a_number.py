@@ -43,7 +43,8 @@ FEWEST = Sampling(samples=64, rounds=1, batch=16, balls=1, motion_balls=1)
 
 @cache
 def drawn(scene: str) -> tuple[Sample, ...]:
-    return with_motion(library_of(scene), samples(library_of(scene).known, F64, FEW, 0).each, F64)
+    made = library_of(scene)
+    return with_motion(made, samples(made.mechanism, F64, FEW, 0).each, F64)
 
 
 def without_value(program: Program) -> Program:

@@ -25,13 +25,13 @@ MUTATED = ("step_split", "step_rk4", "step_dmv")  # an order of two hides too mu
 
 @cache
 def one_sample(scene: str) -> Sample:
-    drawn = samples(library_of(scene).known, F64, 2, 0).each
+    drawn = samples(library_of(scene).mechanism, F64, 2, 0).each
     return with_motion(library_of(scene), drawn, F64)[0]
 
 
 @pytest.mark.parametrize("scene", thinned(MOVING, 8))
 def test_every_step_has_its_order_and_every_flow_is_the_motion(scene: str) -> None:
-    drawn = samples(library_of(scene).known, F64, 2, 0).each
+    drawn = samples(library_of(scene).mechanism, F64, 2, 0).each
     verdicts = list(orders(library_of(scene), with_motion(library_of(scene), drawn, F64)))
     assert [v for v in verdicts if v.outcome != "holds"] == []
     steps = {n for n in load(scene).wanted if moves(n) and n not in STEP_DERIVATIVES}
@@ -140,7 +140,7 @@ def test_only_what_is_in_closed_form_may_be_without_an_order() -> None:
     ]
     assert not any(closed(library_of("tumbling_body"), name) for name in steps)
     assert not closed(library_of("heavy_body"), "step_split")
-    each = with_motion(sphere, samples(sphere.known, F64, 1, 0).each, F64)
+    each = with_motion(sphere, samples(sphere.mechanism, F64, 1, 0).each, F64)
     assert {v.outcome for v in orders(sphere, each)} == {"holds"}
 
 

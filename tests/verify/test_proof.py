@@ -82,7 +82,7 @@ def test_no_mutant_of_any_program_is_proved(name: str) -> None:
 def alone(made: Library, program: Program) -> Library:
     """Return the library with one function only: the others need no second proof."""
     base = program.name.removesuffix(JACOBIAN)
-    return replace(made, functions=(program,), truths={base: made.truths[base]})
+    return replace(made, functions=(program,), problems={base: made.problems[base]})
 
 
 @pytest.mark.parametrize("name", SMALL_SET_UPS)

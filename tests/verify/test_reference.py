@@ -8,12 +8,12 @@ import pytest
 import sympy
 from flint import arb, ctx
 
-from derive.mechanics.mechanism import Mechanism, mechanism, problem
+from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.mechanics.problem import Problem
 from derive.program.precision import F64
 from derive.scene import catalogue, load
 from derive.scene.wanted import ATTITUDES, JACOBIAN, moves
-from derive.verify.equations import equations
+from derive.verify.equations import equations_of
 from derive.verify.reference import BALLS, reference
 from derive.verify.sample import Sample, samples
 from derive.verify.solution import solution
@@ -28,10 +28,10 @@ def scene(name: str) -> Mechanism:
     return mechanism(load(name))
 
 
-def truths(known: Mechanism) -> list[Problem]:
+def problems(known: Mechanism) -> list[Problem]:
     bases = dict.fromkeys(w.removesuffix(JACOBIAN) for w in known.scene.wanted)
     stated = [b for b in bases if not moves(b) and b not in ATTITUDES]
-    return [problem(known, base) for base in stated]
+    return [known.problem(base) for base in stated]
 
 
 def valued(e: Any, values: Mapping[Any, Any]) -> Any:
@@ -64,29 +64,32 @@ def ordinary(known: Mechanism) -> Sample:
 @pytest.mark.parametrize("name", thinned(catalogue(), 4))
 def test_the_reference_satisfies_every_residual(name: str) -> None:
     known = scene(name)
-    for fact in truths(known):
-        symbols = known.posed(fact.name).words.symbols
+    for problem in problems(known):
+        symbols = known.posed(problem.name).vocabulary.symbols
         given = ordinary(known).values
-        found = reference(equations(known, fact), given, ())
+        found = reference(equations_of(known, problem), given, ())
         values = {symbols[c]: arb(x) for c, x in given.items()}
         values |= {symbols[c]: k.value for c, k in found.items()}
         with ctx.workprec(300):
-            assert all(abs(valued(r, values)) < arb(2) ** -200 for r in fact.residuals)
+            assert all(abs(valued(r, values)) < arb(2) ** -200 for r in problem.residuals)
 
 
 @pytest.mark.parametrize("name", thinned(catalogue(), 4))
 def test_slopes_are_central_differences_of_the_reference_itself(name: str) -> None:
     known = scene(name)
-    columns = [c for q in (*known.words.states, *known.words.inputs) for c in q.components]
-    for fact in truths(known):
-        asked = equations(known, fact)
+    columns = [
+        c for q in (*known.vocabulary.states, *known.vocabulary.inputs) for c in q.components
+    ]
+    for problem in problems(known):
+        equations = equations_of(known, problem)
         with ctx.workprec(BITS):
             given = {c: arb(x) for c, x in ordinary(known).values.items()}
-            slopes = solution(asked, given, columns, BALLS)
+            slopes = solution(equations, given, columns, BALLS)
             h = arb(2) ** -STEP_BITS
             for column in columns:
                 ahead, behind = (
-                    solution(asked, given | {column: given[column] + d}, (), BALLS) for d in (h, -h)
+                    solution(equations, given | {column: given[column] + d}, (), BALLS)
+                    for d in (h, -h)
                 )
                 for row, one in slopes.items():
                     slope, _ = one.slopes.get(column, (arb(0), 0.0))
@@ -97,7 +100,7 @@ def test_slopes_are_central_differences_of_the_reference_itself(name: str) -> No
 def found(name: str, wanted: str, values: Mapping[str, float]) -> dict[str, Any]:
     known = scene(name)
     given = dict(ordinary(known).values) | values
-    return reference(equations(known, problem(known, wanted)), given, ())
+    return reference(equations_of(known, known.problem(wanted)), given, ())
 
 
 def test_near_a_sphere_the_products_are_large_and_the_difference_is_small() -> None:

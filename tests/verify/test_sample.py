@@ -11,7 +11,7 @@ from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.program.precision import F32, F64, PRECISIONS, Precision
 from derive.scene import catalogue, load
 from derive.verify.hard_bodies import BODIES, TURN, admissible, bodies_taken
-from derive.verify.sample import CORNERS, LARGE_SPIN, Samples, samples, varying
+from derive.verify.sample import CORNERS, LARGE_SPIN, Samples, samples
 from tests.made import thinned
 
 
@@ -40,7 +40,7 @@ def test_every_value_is_a_float_of_the_precision(name: str, precision: Precision
 def test_every_sample_is_a_body(name: str) -> None:
     known = scene(name)
     each = drawn(name, F64).each
-    assert all(admissible(known, s.values) for s in each)
+    assert all(admissible(known.scene, s.values) for s in each)
 
 
 @pytest.mark.parametrize("name", thinned(catalogue(), 5))
@@ -48,7 +48,7 @@ def test_ordinary_samples_lie_on_the_declared_ranges(name: str) -> None:
     known = scene(name)
     for sample in drawn(name, F64).each:
         if sample.kind == "ordinary":
-            for q in (*known.words.parameters, *varying(known)):
+            for q in known.vocabulary.given():
                 values = [sample.values[c] for c in q.components]
                 assert all((q.low or 0) <= Fraction(x) <= (q.high or 0) for x in values), q.name
 
@@ -99,6 +99,6 @@ def test_the_turn_of_hard_bodies_is_a_rotation() -> None:
 
 def test_a_tensor_that_breaks_the_triangle_inequality_is_no_body() -> None:
     known = scene("free_body_principal")
-    assert admissible(known, {"I_xx": 1.0, "I_yy": 1.0, "I_zz": 2.0})
-    assert not admissible(known, {"I_xx": 1.0, "I_yy": 1.0, "I_zz": 2.1})
-    assert bodies_taken(scene("unsymmetrical_rotor_in_carrier_axes")) != ()
+    assert admissible(known.scene, {"I_xx": 1.0, "I_yy": 1.0, "I_zz": 2.0})
+    assert not admissible(known.scene, {"I_xx": 1.0, "I_yy": 1.0, "I_zz": 2.1})
+    assert bodies_taken(scene("unsymmetrical_rotor_in_carrier_axes").scene) != ()

@@ -5,7 +5,7 @@ import pytest
 
 from derive.program.precision import PRECISIONS, Precision
 from derive.scene import catalogue
-from derive.verify.columns import arithmetics, known
+from derive.verify.columns import arithmetics, supplied
 from derive.verify.draw import Field
 from derive.verify.sample import samples
 from derive.verify.search import errors_at
@@ -23,10 +23,10 @@ def test_errors_in_columns_are_those_in_balls(case: tuple[str, Precision]) -> No
     made = library_of(name)
     if not made.functions:
         pytest.skip(f"{name} wants formulas of motion alone")
-    each = samples(made.known, precision, SAMPLES, 0).each[:SAMPLES]
+    each = samples(made.mechanism, precision, SAMPLES, 0).each[:SAMPLES]
     of = Field(made, precision)
     columns = {n: np.array([s.values[n] for s in each], precision.dtype) for n in each[0].values}
-    at = known(of.setup, columns, arithmetics(precision.dtype))
+    at = supplied(of.setup, columns, arithmetics(precision.dtype))
     compared = 0
     for plan in (p for p in of.plans if p.program in made.functions):
         exact = at_samples(of, plan.program, each)

@@ -13,7 +13,7 @@ from sympy import Add, Expr, Mul, S, Symbol, cos, expand, symbols
 
 from derive.mechanics.problem import Problem
 from derive.program.precision import F64
-from derive.verify.equations import equations
+from derive.verify.equations import equations_of
 from derive.verify.reference import reference
 from derive.verify.sample import samples
 from tests.made import library_of
@@ -27,28 +27,28 @@ ANSWERS = [
 ]
 
 
-def unit(fact: Any, known: dict[Symbol, Any], parameters: set[Symbol]) -> dict[Symbol, float]:
+def unit(problem: Any, known: dict[Symbol, Any], parameters: set[Symbol]) -> dict[Symbol, float]:
     """Return the largest product in the equations of each unknown, as docs/code.md defines it."""
     values, sizes = dict(known), {s: abs(x) for s, x in known.items()}
     fixed = set(parameters)
-    for s, e in fact.definitions.items():
+    for s, e in problem.definitions.items():
         values[s] = _number(e, values)
         sizes[s] = max(abs(values[s]), *(_size(p, values, sizes) for p in _products(e)))
         fixed |= {s} if e.free_symbols <= fixed else set()
-    if fact.rows:
-        sizes |= _solved(fact, values, sizes, fixed)
-    for s, e in fact.answers.items():
-        if s not in fact.unknowns:
+    if problem.rows:
+        sizes |= _solved(problem, values, sizes, fixed)
+    for s, e in problem.answers.items():
+        if s not in problem.unknowns:
             values[s] = _number(e, values)
             sizes[s] = max(abs(values[s]), *(_size(p, values, sizes) for p in _products(e)))
-    return {s: float(sizes[s]) for s in fact.answers}
+    return {s: float(sizes[s]) for s in problem.answers}
 
 
 def _solved(
-    fact: Any, values: dict[Symbol, Any], sizes: dict[Symbol, Any], fixed: set[Symbol]
+    problem: Any, values: dict[Symbol, Any], sizes: dict[Symbol, Any], fixed: set[Symbol]
 ) -> dict[Symbol, Any]:
-    unknowns = list(fact.unknowns)
-    rows = [_products(row) for row in fact.rows]
+    unknowns = list(problem.unknowns)
+    rows = [_products(row) for row in problem.rows]
     a = [[sum((p / u for p in row if p.has(u)), S.Zero) for u in unknowns] for row in rows]
     loads = [[p for p in row if not p.has(*unknowns)] for row in rows]
     numbers = matrix([[_number(entry, values) for entry in row] for row in a])
@@ -95,15 +95,15 @@ def _number(e: Expr, known: dict[Symbol, Any]) -> mpf:
 @pytest.mark.parametrize(("scene", "answer"), ANSWERS)
 def test_errors_are_counted_in_the_largest_product_of_the_equation(scene: str, answer: str) -> None:
     library = library_of(scene)
-    fact, words = library.truths[answer], library.known.posed(answer).words
+    problem, words = library.problems[answer], library.mechanism.posed(answer).vocabulary
     parameters = {words.symbols[c] for q in words.parameters for c in q.components}
     names = {symbol: name for name, symbol in words.symbols.items()}
-    for sample in samples(library.known, F64, 3, 0).each:
-        true = reference(equations(library.known, fact), sample.values, ())
+    for sample in samples(library.mechanism, F64, 3, 0).each:
+        true = reference(equations_of(library.mechanism, problem), sample.values, ())
         known = {s: sample.values[c] for c, s in words.symbols.items() if c in sample.values}
         with mp.workdps(30):
-            sizes = unit(fact, known, parameters)
-        found = {u: true[names[u]].scale for u in fact.answers}
+            sizes = unit(problem, known, parameters)
+        found = {u: true[names[u]].scale for u in problem.answers}
         assert found == pytest.approx(sizes, rel=1e-12)
 
 
@@ -111,11 +111,11 @@ def test_products_of_a_matrix_that_varies_count_too() -> None:
     u, v, q, s, p = symbols("u v q s p")
     rows = ((2 + cos(q)) * u + cos(q) * v - s, cos(q) * u + v - p * s + p)
     answers = {x: x for x in (u, v)}
-    fact = Problem("both", "", (), answers, {}, rows, (u, v), (), ())
-    words = SimpleNamespace(parameters=(), symbols={x.name: x for x in (u, v, q, s, p)})
-    posed = SimpleNamespace(words=words)
+    problem = Problem("both", "", (), answers, {}, rows, (u, v), (), ())
+    words = SimpleNamespace(fixed=frozenset, symbols={x.name: x for x in (u, v, q, s, p)})
+    posed = SimpleNamespace(vocabulary=words)
     given = {"q": 0.25, "s": 1.0, "p": 1.5}
-    true = reference(equations(SimpleNamespace(posed=lambda _: posed), fact), given, ())
+    true = reference(equations_of(SimpleNamespace(posed=lambda _: posed), problem), given, ())
     with mp.workdps(30):
-        sizes = unit(fact, {words.symbols[c]: x for c, x in given.items()}, set())
+        sizes = unit(problem, {words.symbols[c]: x for c, x in given.items()}, set())
     assert {u: true["u"].scale, v: true["v"].scale} == pytest.approx(sizes, rel=1e-12)

@@ -38,7 +38,7 @@ class Card:
 
 def card(library: Library) -> Card:
     """Return the card of a scene."""
-    scene, program = library.known.scene, (*library.functions, *library.motions)[0]
+    scene, program = library.scene, (*library.functions, *library.motions)[0]
     return Card(
         scene.name,
         scene.title,
@@ -62,22 +62,22 @@ def _cost(library: Library) -> str:
 
 def _equation(library: Library, program: Program) -> str:
     """Return the closed form of the first answer, or the lecture step that it comes from."""
-    fact = library.truths.get(program.name.removesuffix(JACOBIAN))
-    if fact is None:
+    problem = library.problems.get(program.name.removesuffix(JACOBIAN))
+    if problem is None:
         return ""  # a step is no equation of the lecture
-    known = library.known.posed(fact.name)
-    way, *_ = arrange(known, fact)
+    mechanism = library.mechanism.posed(problem.name)
+    way, *_ = arrange(mechanism, problem)
     values: dict[Expr, Expr] = {}
     for stage in way.stages:
         values[stage.symbol] = stage.value.xreplace(values)
-    question = known.question(fact.name)
-    names = written_names(known)
+    whole = mechanism.whole(problem.name)
+    names = written_names(mechanism)
     each = [e.xreplace(values) for e in way.outputs]
     place = next((k for k, e in enumerate(each) if e.count_ops()), 0)  # no name alone, no zero
-    symbol, answer = list(question.answers)[place], each[place]
+    symbol, answer = list(whole.answers)[place], each[place]
     if answer.count_ops() <= LONGEST:
         return sympy_equation_mathml(symbol, answer, names)
-    step = next(iter(question.steps), "")
+    step = next(iter(whole.steps), "")
     return equation_mathml(LECTURE[step]) if step else ""
 
 

@@ -13,10 +13,10 @@ from derive.emit.notation import equation_mathml, sympy_equation_mathml
 from derive.emit.notation.glyph import glyph
 from derive.lecture.chapters import LECTURE
 from derive.lecture.step import Step
+from derive.lecture.turning import reduced
 from derive.lower.arrange.matching import matched
-from derive.mechanics.mechanism import Mechanism, dropped
+from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.problem import Problem
-from derive.mechanics.turning import reduced
 
 OF_BALANCES = ("mass_centre_motion", "general_form", "moving_point_form", "any_point_form")
 OF_MOTION = (
@@ -62,27 +62,24 @@ def letter(quantity: str, taken: frozenset[str]) -> str:
     return next(free, quantity)
 
 
-def taken_names(known: Mechanism) -> frozenset[str]:
+def taken_names(mechanism: Mechanism) -> frozenset[str]:
     """Return the names that the user chose."""
-    words = known.words
-    return frozenset(
-        c for q in (*words.parameters, *words.states, *words.inputs) for c in q.components
-    )
+    return frozenset(c for q in mechanism.vocabulary.given() for c in q.components)
 
 
-def written_names(known: Mechanism) -> dict[Symbol, str]:
+def written_names(mechanism: Mechanism) -> dict[Symbol, str]:
     """Return how the page writes each symbol; what has no name of the scene's by what it is of."""
-    symbols, taken = known.made.sheet.symbols, taken_names(known)
-    marks = known.scene.marks
+    symbols, taken = mechanism.words.sheet.symbols, taken_names(mechanism)
+    marks = mechanism.scene.marks
     names = {symbol: _written(_marked(name, marks)) for name, symbol in symbols.items()}
-    alone = sum(q.is_quaternion for q in known.words.states) == 1
-    for q in known.words.every():
-        attitude = q.is_quaternion and q in known.words.states
+    alone = sum(q.is_quaternion for q in mechanism.vocabulary.states) == 1
+    for q in mechanism.vocabulary.every():
+        attitude = q.is_quaternion and q in mechanism.vocabulary.states
         start = q.name if alone or not attitude else "attitude"
         new = letter("attitude" if attitude else q.name, taken)
         own = (c for c in q.components if new != q.name and c.startswith(start))
         names |= {symbols[c]: new + c.removeprefix(start) for c in own}
-    for q in known.words.states:  # the rate of what is written q_w is written q_w_dot
+    for q in mechanism.vocabulary.states:  # the rate of what is written q_w is written q_w_dot
         rates = ((c, f"{c}_rate") for c in q.components if f"{c}_rate" in symbols)
         names |= {symbols[rate]: _dotted(names[symbols[c]]) for c, rate in rates}
     return names
@@ -123,73 +120,73 @@ def _written(label: str) -> str:
     return "_by_".join([owner, *by])
 
 
-def _shown(known: Mechanism, base: str) -> Problem:
-    """Return a function's question without what cancels, if a reader is spared more than letters.
+def _shown(mechanism: Mechanism, base: str) -> Problem:
+    """Return a function's problem without what cancels, if a reader is spared more than letters.
 
     A parameter that cancels stays beside others: as a number it would say less.
     """
-    known = known.posed(base)
-    fixed = {known.words.symbols[c] for q in known.words.parameters for c in q.components}
-    lean = known.lean(base)
-    return lean.question if set(lean.cancelled) - fixed else known.question(base)
+    lean = mechanism.lean(base)
+    kept = set(lean.cancelled) <= mechanism.posed(base).vocabulary.fixed()
+    return mechanism.whole(base) if kept else lean.problem
 
 
-def notes(known: Mechanism, base: str) -> list[str]:
+def notes(mechanism: Mechanism, base: str) -> list[str]:
     """Return which balances a function uses, and what was found not to matter to it, and why."""
-    parts, balances = dropped(known, base), known.question(base).balances
-    whole = _shown(known, base) is known.question(base)
+    parts, balances = mechanism.dropped(base), mechanism.whole(base).balances
+    whole = _shown(mechanism, base) is mechanism.whole(base)
     place = "Stands in the equations, but" if whole else "Left out of the equations, since"
     each = (
-        ("Balances", (b.told(known.scene.spoken) for b in balances), "; "),
+        ("Balances", (b.told(mechanism.scene.spoken) for b in balances), "; "),
         ("Chosen so that these unknowns do not enter",
          parts["unknowns left out"] if balances else (), ", "),
-        (f"{place} no answer changes with it", _vectors(known, parts["cancels"]), ", "),
-        ("Stands in none of these equations", _vectors(known, parts["never enters"]), ", "),
+        (f"{place} no answer changes with it", _vectors(mechanism, parts["cancels"]), ", "),
+        ("Stands in none of these equations", _vectors(mechanism, parts["never enters"]), ", "),
     )  # fmt: skip
     texts = ((says, between.join(names)) for says, names, between in each)
     return [f"{says}: {text}." for says, text in texts if text]
 
 
-def _vectors(known: Mechanism, names: Collection[str]) -> list[str]:
+def _vectors(mechanism: Mechanism, names: Collection[str]) -> list[str]:
     """Return names with each vector by its own where all of its components stand among them."""
-    words = known.words
+    vocabulary = mechanism.vocabulary
     whole = {
         c: q.name
-        for q in (*words.states, *words.inputs)
+        for q in (*vocabulary.states, *vocabulary.inputs)
         if q.components[0].startswith(q.name) and {*q.components} <= {*names}
         for c in q.components
     }
     return [*dict.fromkeys(whole.get(name, name) for name in names)]
 
 
-def passages(known: Mechanism, base: str) -> tuple[Passage, ...]:
+def passages(mechanism: Mechanism, base: str) -> tuple[Passage, ...]:
     """Return the equations of a function: named quantities, balances, answers."""
-    known = known.posed(base)
-    question = _shown(known, base)
-    named, rows, answers = _put_together(question)
+    mechanism = mechanism.posed(base)
+    problem = _shown(mechanism, base)
+    named, rows, answers = _put_together(problem)
     motion: list[Equation] = [(s, s, value) for s, value in named.items()]
-    found = {value: s for s, value in reversed(answers.items()) if value in question.unknowns}
-    balanced = [(found.get(u, u), *sides) for u, *sides in _balanced(question, rows, _loads(known))]
+    found = {value: s for s, value in reversed(answers.items()) if value in problem.unknowns}
+    each = _balanced(problem, rows, _loads(mechanism))
+    balanced = [(found.get(u, u), *sides) for u, *sides in each]
     given = [(s, s, value) for s, value in answers.items() if s not in found.values()]
-    every = question.steps
+    every = problem.steps
     of_motion = tuple(s for s in every if s in OF_MOTION) if motion else ()
     of_rows = tuple(s for s in every if s in (*OF_BALANCES, *OF_MOTION)) if rows else ()
     of_rows = tuple(s for s in of_rows if s not in of_motion)
     others = tuple(s for s in every if s not in (*of_motion, *of_rows))
     groups = ((of_motion, motion), (of_rows, balanced), (others, given))
-    names = written_names(known)
+    names = written_names(mechanism)
     names |= {u: names[s] for u, s in found.items()}
-    return tuple(_passage(known, base, steps, own, names) for steps, own in groups if own)
+    return tuple(_passage(mechanism, base, steps, own, names) for steps, own in groups if own)
 
 
 def _put_together(
-    question: Problem,
+    problem: Problem,
 ) -> tuple[dict[Symbol, Expr], list[Expr], dict[Symbol, Expr]]:
     """Return the named quantities that keep a line, rows, and answers, with all else put in."""
     whole: dict[Expr, Expr] = {}
     short: dict[Expr, Expr] = {}
     named: dict[Symbol, Expr] = {}
-    for symbol, value in question.definitions.items():
+    for symbol, value in problem.definitions.items():
         full, part = _plainer(value.xreplace(whole)), _plainer(value.xreplace(short))
         if full.count_ops() <= LONGEST:
             whole[symbol] = full
@@ -202,8 +199,8 @@ def _put_together(
         full = _plainer(value.xreplace(whole))
         return full if full.count_ops() <= LONGEST else value.xreplace(short)
 
-    rows = [shown(row) for row in question.rows]
-    answers = {s: shown(value) for s, value in question.answers.items()}
+    rows = [shown(row) for row in problem.rows]
+    answers = {s: shown(value) for s, value in problem.answers.items()}
     return _read(named, short, [*rows, *answers.values()]), rows, answers
 
 
@@ -227,15 +224,15 @@ def _plainer(value: Expr) -> Expr:
     return min(value, reduced(value), key=lambda e: e.count_ops())
 
 
-def _loads(known: Mechanism) -> frozenset[Symbol]:
+def _loads(mechanism: Mechanism) -> frozenset[Symbol]:
     """Return the forces and moments that are given."""
-    given = (q for q in known.words.inputs if q.unit in ("N", "N m"))
-    return frozenset(known.words.symbols[c] for q in given for c in q.components)
+    given = (q for q in mechanism.vocabulary.inputs if q.unit in ("N", "N m"))
+    return frozenset(mechanism.vocabulary.symbols[c] for q in given for c in q.components)
 
 
-def _balanced(question: Problem, rows: list[Expr], loads: frozenset[Symbol]) -> Iterator[Equation]:
+def _balanced(problem: Problem, rows: list[Expr], loads: frozenset[Symbol]) -> Iterator[Equation]:
     """Yield each unknown with the row that determines it."""
-    unknowns = question.unknowns
+    unknowns = problem.unknowns
     holds = [frozenset(k for k, u in enumerate(unknowns) if u in r.free_symbols) for r in rows]
     straight = all(k in own for k, own in enumerate(holds))
     places = {k: k for k in range(len(rows))} if straight else matched(holds)
@@ -261,10 +258,10 @@ def arranged(
 
 
 def _passage(
-    known: Mechanism, base: str, steps: tuple[str, ...], equations: list[Equation],
+    mechanism: Mechanism, base: str, steps: tuple[str, ...], equations: list[Equation],
     names: dict[Symbol, str],
 ) -> Passage:  # fmt: skip
-    label = known.made.sheet.label
+    label = mechanism.words.sheet.label
     lines = tuple(
         Line(
             f"{base}.{label(s)}".replace(" ", "_"),

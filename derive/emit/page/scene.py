@@ -24,7 +24,7 @@ _PRECISIONS = ("f32", "f64")
 
 def scene_page(library: Library, figures: Sequence[Measurement]) -> str:
     """Return the text of ``<scene>.html``, complete in one file and without scripts."""
-    scene = library.known.scene
+    scene = library.scene
     rests_on = {a for program in library.printed() for a in program.assumptions}
     return TEMPLATES.get_template("scene.html.jinja").render(
         first_line=first_line(library).replace("--", "- -"),
@@ -33,7 +33,7 @@ def scene_page(library: Library, figures: Sequence[Measurement]) -> str:
         given=scene.told or given(scene),
         assumptions=[step for step in LECTURE.steps if step.name in rests_on],
         constants=library.constants,
-        parameters=library.known.words.parameters,
+        parameters=library.vocabulary.parameters,
         setup_cost=library.setup.flops(),
         symbol=partial(_symbol, library),
         range_of=_range,
@@ -64,8 +64,8 @@ def _base(program: Program) -> str:
 
 
 def _section(library: Library, program: Program, owner: str) -> dict[str, object]:
-    fact = library.truths.get(_base(program)) if program in library.functions else None
-    equations = passages(library.known, _base(program)) if fact else ()
+    posed = program in library.functions and _base(program) in library.problems
+    equations = passages(library.mechanism, _base(program)) if posed else ()
     links = {line.unknown: line.place for passage in equations for line in passage.lines}
     sparsity = (program.sparsity or {}).get("jacobian")
     says = f"pattern of the Jacobian of {_base(program)}"
@@ -73,9 +73,9 @@ def _section(library: Library, program: Program, owner: str) -> dict[str, object
         "program": program,
         "equations_of": owner,
         "passages": equations if owner == program.name else (),
-        "code": listing(program, library.known.scene.name, links),
+        "code": listing(program, library.scene.name, links),
         "pattern": pattern(sparsity, says) if sparsity else "",
-        "notes": notes(library.known, _base(program)) if fact else [],
+        "notes": notes(library.mechanism, _base(program)) if posed else [],
     }
 
 
@@ -83,7 +83,7 @@ def _symbol(library: Library, q: Quantity) -> Markup:
     """Return the letter of a quantity; of one whose components have names of their own, none."""
     if q.shape and not q.components[0].startswith(q.name):
         return Markup("")
-    name = letter(q.name, taken_names(library.known))
+    name = letter(q.name, taken_names(library.mechanism))
     return Markup(name_mathml(name, "vector" if q.shape else "scalar"))  # noqa: S704 (MathML of a checked name)
 
 

@@ -1,13 +1,12 @@
 """A block of linear balances: what it holds, and the stages that solve it as they are found."""
 
 from collections.abc import Callable, Container, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
-from sympy import Expr, Function, Integer, Matrix, Symbol, cos, sin, tan
+from sympy import Expr, Integer, Matrix, Symbol
 
 from derive.lower.arrange.draft import Stage
-from derive.mechanics.pivots import Pivots
-from derive.mechanics.probe import Probe
+from derive.lower.arrange.pivots import Pivots
 
 Place = tuple[int, int]
 
@@ -30,7 +29,6 @@ class Solution:
     """
 
     fixed: frozenset[Symbol]
-    probe: Probe
     pivots: Pivots
     stages: list[Stage] = field(default_factory=list)
 
@@ -40,11 +38,7 @@ class Solution:
             return value
         symbol = fresh(name, {stage.symbol for stage in self.stages})
         self.stages.append(Stage(kind, symbol, value, family))
-        known_there = value.free_symbols <= self.probe.values.keys()
-        if known_there and {type(f) for f in value.atoms(Function)} <= {sin, cos, tan}:
-            self.probe.values[symbol] = self.probe.value(value)
-            known = {**self.pivots.definitions, symbol: value}
-            self.pivots = replace(self.pivots, definitions=known)
+        self.pivots.define(symbol, value)
         if value.free_symbols <= self.fixed:
             self.fixed |= {symbol}
         return symbol

@@ -1,4 +1,4 @@
-"""Columns of a question: quantities that follow each other, and rules that rewrite them."""
+"""Columns of a problem: quantities that follow each other, and rules that rewrite them."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -9,7 +9,6 @@ from sympy import Expr, Integer, Matrix, Symbol
 from derive.lower.arrange.block import fresh
 from derive.lower.arrange.tidy import in_what_is_given
 from derive.mechanics.problem import Problem, substituted
-from derive.mechanics.sheet import Sheet
 
 
 @dataclass
@@ -50,17 +49,17 @@ Rule = Callable[[Matrix, Known], Matrix | None]
 """A column written in another way, with what is named on the way; None if there is no such way."""
 
 
-def in_definitions(question: Problem, rule: Rule, known: Known) -> Problem:
-    """Return the question with columns of named quantities rewritten wherever a rule applies."""
+def in_definitions(problem: Problem, rule: Rule, known: Known) -> Problem:
+    """Return the problem with columns of named quantities rewritten wherever a rule applies."""
     done: dict[Symbol, Expr] = {}
-    symbols = list(question.definitions)
+    symbols = list(problem.definitions)
     while symbols:
         own = symbols[:3]
-        made = _rewritten(Matrix([question.definitions[s] for s in own]), rule, known)
-        new = [question.definitions[own[0]]] if made is None else [*made]
+        made = _rewritten(Matrix([problem.definitions[s] for s in own]), rule, known)
+        new = [problem.definitions[own[0]]] if made is None else [*made]
         done |= known.taken() | dict(zip(own, new, strict=False))
         symbols = symbols[len(new) :]
-    return substituted(replace(question, definitions=done), {})
+    return substituted(replace(problem, definitions=done), {})
 
 
 def _rewritten(column: Matrix, rule: Rule, known: Known) -> Matrix | None:
@@ -73,27 +72,26 @@ def _rewritten(column: Matrix, rule: Rule, known: Known) -> Matrix | None:
     return None
 
 
-def in_answers(question: Problem, rule: Rule, known: Known, size: int) -> Problem:
-    """Return the question with answers rewritten, ``size`` one after another, by a rule."""
-    answers, symbols = dict(question.answers), list(question.answers)
+def in_answers(problem: Problem, rule: Rule, known: Known, size: int) -> Problem:
+    """Return the problem with answers rewritten, ``size`` one after another, by a rule."""
+    answers, symbols = dict(problem.answers), list(problem.answers)
     for own in (symbols[k : k + size] for k in range(len(symbols) - size + 1)):
         made = rule(Matrix([answers[s] for s in own]), known)
         answers |= {} if made is None else dict(zip(own, made, strict=True))
-    return replace(question, answers=answers, definitions={**question.definitions, **known.taken()})
+    return replace(problem, answers=answers, definitions={**problem.definitions, **known.taken()})
 
 
-def in_rows(question: Problem, sheet: Sheet, rule: Rule, known: Known) -> Problem:
-    """Return the question with three of its rows rewritten, all that varies written out in them."""
-    parts = [sheet.split(row) for row in question.rows]
-    rests = [in_what_is_given(question, rest, known.constant) for rest, _ in parts]
+def in_rows(problem: Problem, rule: Rule, known: Known) -> Problem:
+    """Return the problem with three of its rows rewritten, all that varies written out in them."""
+    rests = [in_what_is_given(problem, rest, known.constant) for rest, _ in problem.parts]
     short = [n for n, rest in enumerate(rests) if rest is not None and rest != 0]
     for places in combinations(short, 3):
         made = rule(Matrix([rests[n] for n in places]), known)
         if made is None:
             continue
-        rows = list(question.rows)
+        rows = list(problem.rows)
         for n, e in zip(places, made, strict=True):
-            rows[n] = e + sum((c * u for u, c in parts[n][1].items()), Integer(0))
-        definitions = {**question.definitions, **known.taken()}
-        return substituted(replace(question, definitions=definitions, rows=tuple(rows)), {})
-    return question
+            rows[n] = e + sum((c * u for u, c in problem.parts[n][1].items()), Integer(0))
+        definitions = {**problem.definitions, **known.taken()}
+        return substituted(replace(problem, definitions=definitions, rows=tuple(rows)), {})
+    return problem

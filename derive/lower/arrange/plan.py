@@ -16,6 +16,7 @@ from derive.lower.arrange.column import Rule as ColumnRule
 from derive.lower.arrange.constant_coefficients import constant_coefficients
 from derive.lower.arrange.constant_tensor import constant_tensor
 from derive.lower.arrange.draft import Arrangement, Stage
+from derive.lower.arrange.pivots import pivots
 from derive.lower.arrange.quaternion import quaternion_rate, turned_by_quaternion
 from derive.lower.arrange.solve import solve
 from derive.lower.arrange.spherical_part import spherical_part
@@ -31,10 +32,7 @@ from derive.lower.arrange.tidy import (
 )
 from derive.lower.arrange.turns import turns_one_by_one
 from derive.mechanics.mechanism import Mechanism
-from derive.mechanics.pivots import Pivots
-from derive.mechanics.probe import point
 from derive.mechanics.problem import Problem
-from derive.mechanics.sweep import ranges
 from derive.mechanics.vocabulary import Vocabulary
 
 OF_COLUMNS: tuple[ColumnRule, ...] = (turns_one_by_one, turned_by_quaternion, spherical_part)
@@ -46,87 +44,80 @@ MOST_TERMS = 60  # of a named quantity that rules have found; its users may mult
 
 @dataclass(frozen=True)
 class Way:
-    """A question in some words, the rules its balances are solved by, what components share.
+    """A problem in some words, the rules its balances are solved by, what components share.
 
     most : a named quantity of more terms is not multiplied out by its users
     """
 
-    question: Problem
+    problem: Problem
     rules: tuple[Rule, ...] = ()
     families: Mapping[Symbol, str] = field(default_factory=dict)
     most: int = MANY_TERMS
 
 
-def arrange(known: Mechanism, fact: Problem) -> tuple[Arrangement, ...]:
-    """Return the ways to compute the outputs of ``fact``, the plain one first."""
-    known = known.posed(fact.name)
-    question = prepared(known, known.lean(fact.name).question)
-    ways = (Way(question), _ruled(known, question), _written_out(known, question))
-    return tuple(dict.fromkeys(_arranged(known, way) for way in ways))
+def arrange(mechanism: Mechanism, problem: Problem) -> tuple[Arrangement, ...]:
+    """Return the ways to compute the outputs of ``problem``, the plain one first."""
+    own = mechanism.posed(problem.name)
+    lean = prepared(own, own.lean(problem.name).problem)
+    ways = (Way(lean), _ruled(own, lean), _written_out(own, lean))
+    return tuple(dict.fromkeys(_arranged(own, way) for way in ways))
 
 
-def plain_arrangement(known: Mechanism, question: Problem) -> Arrangement:
-    """Return the stages of a question by what serves every question."""
-    return _arranged(known, Way(prepared(known, question)))
+def plain_arrangement(mechanism: Mechanism, problem: Problem) -> Arrangement:
+    """Return the stages of a problem by what serves every problem."""
+    return _arranged(mechanism, Way(prepared(mechanism, problem)))
 
 
-def prepared(known: Mechanism, question: Problem) -> Problem:
-    """Return a question without names of short constants, and no longer than it need be."""
-    question = without_constants(question, parameters(known.words))
-    return tidied(question, known.made.sheet, without_squares)
+def prepared(mechanism: Mechanism, problem: Problem) -> Problem:
+    """Return a problem without names of short constants, and no longer than it need be."""
+    problem = without_constants(problem, mechanism.vocabulary.fixed())
+    return tidied(problem, without_squares)
 
 
-def _ruled(known: Mechanism, question: Problem) -> Way:
-    """Return a question with its columns rewritten by rules, then its like terms gathered."""
-    sheet, words = known.made.sheet, known.words
-    attitudes = [words.column(q.name) for q in words.states if q.is_quaternion]
-    own = Known(constants(question, words), attitudes)
+def _ruled(mechanism: Mechanism, problem: Problem) -> Way:
+    """Return a problem with its columns rewritten by rules, then its like terms gathered."""
+    vocabulary = mechanism.vocabulary
+    attitudes = [vocabulary.column(q.name) for q in vocabulary.states if q.is_quaternion]
+    own = Known(constants(problem, vocabulary), attitudes)
     for rule in OF_COLUMNS:
-        question = in_definitions(question, rule, own)
+        problem = in_definitions(problem, rule, own)
     for rule in OF_ANSWERS:
-        question = in_answers(question, rule, own, 4)
+        problem = in_answers(problem, rule, own, 4)
     for rule in OF_ROWS:
-        question = in_rows(question, sheet, rule, own)
-        question = in_answers(question, rule, own, 3)
-    question = tidied(question, sheet, lambda e: with_like_terms(e, own.constant))
-    return Way(question, OF_BLOCKS, own.families, MOST_TERMS)
+        problem = in_rows(problem, rule, own)
+        problem = in_answers(problem, rule, own, 3)
+    problem = tidied(problem, lambda e: with_like_terms(e, own.constant))
+    return Way(problem, OF_BLOCKS, own.families, MOST_TERMS)
 
 
-def _written_out(known: Mechanism, question: Problem) -> Way:
-    """Return a question without named quantities wherever its rows stay short."""
-    constant = constants(question, known.words)
-    return Way(written_out(question, known.made.sheet, constant), OF_BLOCKS)
+def _written_out(mechanism: Mechanism, problem: Problem) -> Way:
+    """Return a problem without named quantities wherever its rows stay short."""
+    constant = constants(problem, mechanism.vocabulary)
+    return Way(written_out(problem, constant), OF_BLOCKS)
 
 
-def _arranged(known: Mechanism, way: Way) -> Arrangement:
-    """Return the stages of a question: named quantities, solved balances, answers."""
-    question, of = way.question, way.families
-    stages = [Stage("let", s, value, of.get(s, "")) for s, value in question.definitions.items()]
-    if question.rows:
-        probe = point(known.made, 0)
-        probe.define(question.definitions)
-        pivots = Pivots(ranges(known.made), question.definitions, known.made.sheet.label)
-        found = Solution(constants(question, known.words), probe, pivots)
-        solve(found, question.rows, question.unknowns, known.made.sheet.split, way.rules)
+def _arranged(mechanism: Mechanism, way: Way) -> Arrangement:
+    """Return the stages of a problem: named quantities, solved balances, answers."""
+    problem, of = way.problem, way.families
+    stages = [Stage("let", s, value, of.get(s, "")) for s, value in problem.definitions.items()]
+    if problem.rows:
+        own = pivots(mechanism.words, problem.definitions)
+        found = Solution(constants(problem, mechanism.vocabulary), own)
+        solve(found, problem.parts, problem.unknowns, way.rules)
         stages += found.stages
-    sums = sums_in_common(question.answers.values(), constants(question, known.words))
+    sums = sums_in_common(problem.answers.values(), constants(problem, mechanism.vocabulary))
     stages += [Stage("cut", s, value) for s, value in sums.items()]
     names = {value: s for s, value in sums.items()}
-    answers = tuple(e.xreplace(names) for e in question.answers.values())
+    answers = tuple(e.xreplace(names) for e in problem.answers.values())
     used = [stage.value for stage in stages] + [e for e in answers if not e.is_Symbol]
     done = {s for e in used for s in e.free_symbols if s in answers}
     return Arrangement(tuple(staged(stages, way.most, done)), answers)
 
 
-def parameters(words: Vocabulary) -> frozenset[Symbol]:
-    """Return the symbols of all parameters."""
-    return frozenset(words.symbols[c] for q in words.parameters for c in q.components)
-
-
-def constants(question: Problem, words: Vocabulary) -> frozenset[Symbol]:
-    """Return the symbols of a question that rest on parameters only."""
-    found = set(parameters(words))
-    for symbol, value in question.definitions.items():
+def constants(problem: Problem, vocabulary: Vocabulary) -> frozenset[Symbol]:
+    """Return the symbols of a problem that rest on parameters only."""
+    found = set(vocabulary.fixed())
+    for symbol, value in problem.definitions.items():
         if value.free_symbols <= found:
             found.add(symbol)
     return frozenset(found)

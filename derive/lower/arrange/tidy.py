@@ -1,4 +1,4 @@
-"""A question in fewer words: like terms gathered, sin^2 + cos^2 = 1, constants without names."""
+"""A problem in fewer words: like terms gathered, sin^2 + cos^2 = 1, constants without names."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
@@ -8,37 +8,34 @@ from math import prod
 
 from sympy import Add, Expr, Integer, Mul, Pow, Symbol, factor_terms, sin
 
+from derive.lecture.turning import reduced
 from derive.lower.arrange.block import fresh
 from derive.lower.arrange.like_terms import gathered
 from derive.mechanics.problem import Problem, substituted
-from derive.mechanics.sheet import Sheet
-from derive.mechanics.turning import reduced
 
 LONGEST = 150  # operations of a term that is multiplied out
 MANY_TERMS = 10  # a named quantity of more terms is not multiplied out by its users
 
 
-def without_constants(question: Problem, parameters: AbstractSet[Symbol]) -> Problem:
-    """Return the question without names for short sums of parameters: set-up finds them itself."""
+def without_constants(problem: Problem, parameters: AbstractSet[Symbol]) -> Problem:
+    """Return the problem without names for short sums of parameters: set-up finds them itself."""
     known: dict[Symbol, Expr] = {}
-    for symbol, value in question.definitions.items():
+    for symbol, value in problem.definitions.items():
         made = value.xreplace(known)
         if made.free_symbols <= parameters and terms(made, {}) <= MANY_TERMS:
             known[symbol] = min(made, factor_terms(made), key=lambda form: form.count_ops())
-    return substituted(question, known)
+    return substituted(problem, known)
 
 
-def tidied(question: Problem, sheet: Sheet, shorter: Callable[[Expr], Expr]) -> Problem:
-    """Return the question with every term in shorter words."""
-    rows = []
-    for row in question.rows:
-        rest, slopes = sheet.split(row)
-        rows.append(shorter(rest) + sum(shorter(c) * u for u, c in slopes.items()))
+def tidied(problem: Problem, shorter: Callable[[Expr], Expr]) -> Problem:
+    """Return the problem with every term in shorter words."""
+    rows = [shorter(rest) + sum(shorter(c) * u for u, c in slopes.items())
+            for rest, slopes in problem.parts]  # fmt: skip
     made = replace(
-        question,
-        definitions={s: shorter(e) for s, e in question.definitions.items()},
+        problem,
+        definitions={s: shorter(e) for s, e in problem.definitions.items()},
         rows=tuple(rows),
-        answers={s: shorter(e) for s, e in question.answers.items()},
+        answers={s: shorter(e) for s, e in problem.answers.items()},
     )
     return substituted(made, {})
 
@@ -58,23 +55,22 @@ def with_like_terms(e: Expr, constant: AbstractSet[Symbol]) -> Expr:
     return min(e, gathered(e, constant), key=lambda form: _operations(form, constant))
 
 
-def written_out(question: Problem, sheet: Sheet, constant: AbstractSet[Symbol]) -> Problem:
-    """Return the question with rows in what is given, sin^2 = 1 - cos^2, like terms gathered."""
+def written_out(problem: Problem, constant: AbstractSet[Symbol]) -> Problem:
+    """Return the problem with rows in what is given, sin^2 = 1 - cos^2, like terms gathered."""
 
     def short(e: Expr) -> Expr:
-        whole = in_what_is_given(question, e, constant)
+        whole = in_what_is_given(problem, e, constant)
         return e if whole is None else gathered(reduced(whole), constant)
 
-    parts = [sheet.split(row) for row in question.rows]
     rows = [short(rest) + sum((c * u for u, c in slopes.items()), Integer(0))
-            for rest, slopes in parts]  # fmt: skip
-    answers = {s: short(e) for s, e in question.answers.items()}
-    return substituted(replace(question, rows=tuple(rows), answers=answers), {})
+            for rest, slopes in problem.parts]  # fmt: skip
+    answers = {s: short(e) for s, e in problem.answers.items()}
+    return substituted(replace(problem, rows=tuple(rows), answers=answers), {})
 
 
-def in_what_is_given(question: Problem, e: Expr, constant: AbstractSet[Symbol]) -> Expr | None:
+def in_what_is_given(problem: Problem, e: Expr, constant: AbstractSet[Symbol]) -> Expr | None:
     """Return an expression in what is given and constant, multiplied out; None if it is long."""
-    varying = {s: value for s, value in question.definitions.items() if s not in constant}
+    varying = {s: value for s, value in problem.definitions.items() if s not in constant}
     while e.free_symbols & varying.keys():
         e = e.xreplace(varying)
         if e.count_ops() > LONGEST:

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 
 from sympy import Expr, Integer, Matrix, cos, sin, zeros
 
+from derive.lecture.turning import PLACE, turn_matrix
 from derive.lower.arrange.column import Known
-from derive.mechanics.turning import PLACE, turn_matrix
 
 LONGEST = 300  # operations of a column that is multiplied out
 

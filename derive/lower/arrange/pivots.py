@@ -5,23 +5,47 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from sympy import Expr, Matrix, Symbol
+from mpmath import mp
+from sympy import Expr, Function, Matrix, Symbol, cos, sin, tan
 
+from derive.mechanics.probe import DIGITS, Probe, point
 from derive.mechanics.sheet import below
-from derive.mechanics.sweep import Array, Field, Ranges, block, field_at, weakest
+from derive.mechanics.sweep import Array, Field, Ranges, block, field_at, ranges, weakest
+from derive.mechanics.words import Words
 from derive.scene import SceneError
-from derive.scene.escape import at_place
 
 Place = tuple[int, int]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Pivots:
-    """The ranges, the named quantities below, and what the unknowns are called."""
+    """The ranges, a trial point, the named quantities below, and what the unknowns are called."""
 
     ranges: Ranges
-    definitions: Mapping[Symbol, Expr]
+    probe: Probe
+    definitions: dict[Symbol, Expr]
     label: Callable[[Symbol], str]
+
+    def define(self, symbol: Symbol, value: Expr) -> None:
+        """Add a named quantity, if it can be valued."""
+        known_there = value.free_symbols <= self.probe.values.keys()
+        if known_there and {type(f) for f in value.atoms(Function)} <= {sin, cos, tan}:
+            self.probe.values[symbol] = self.probe.value(value)
+            self.definitions[symbol] = value
+
+    def order(self, matrix: Matrix) -> list[int]:
+        """Return rows in the order of pivots at the trial point: the largest that is left."""
+        size = matrix.rows
+        with mp.workdps(DIGITS):
+            A = [[self.probe.value(matrix[r, c]) for c in range(size)] for r in range(size)]
+            rows = list(range(size))
+            for k in range(size):
+                pivot = max(rows[k:], key=lambda r: abs(A[r][k]))
+                rows[k : rows.index(pivot) + 1] = [pivot, *rows[k : rows.index(pivot)]]
+                for r in rows[k + 1 :]:
+                    factor = A[r][k] / A[pivot][k]
+                    A[r] = [a - factor * p for a, p in zip(A[r], A[pivot], strict=True)]
+        return rows
 
     def vanish(self, matrix: Matrix, places: Sequence[Place]) -> bool:
         """Tell whether some pivot vanishes, taken one after another at (row, column)."""
@@ -45,7 +69,7 @@ class Pivots:
         worst = weakest(self.ranges, self._below(matrix), self._measure(matrix, taken))
         if worst.vanishes:
             names = ", ".join(f"'{self.label(u)}'" for u in unknowns)
-            raise SceneError(f"a divisor of {names} vanishes {where(worst.place)}")
+            raise SceneError(f"a divisor of {names} vanishes {worst.where}")
         return taken
 
     def _below(self, matrix: Matrix) -> Mapping[Symbol, Expr]:
@@ -80,10 +104,8 @@ def _eliminated(A: Array, r: int, c: int) -> Array:
         return A - factor[:, :, None] * A[:, r, :][:, None, :]
 
 
-def where(place: Mapping[str, float]) -> str:
-    """Return words for a place: the values of a few quantities.
-
-    >>> where({"a": 0.0, "b": 1.25})
-    'at a = 0, b = 1.25'
-    """
-    return at_place({name: float(f"{x:.4g}") for name, x in place.items()}).strip()
+def pivots(words: Words, definitions: Mapping[Symbol, Expr]) -> Pivots:
+    """Return the pivots of balances that stand on some named quantities."""
+    probe = point(words, 0)
+    probe.define(definitions)
+    return Pivots(ranges(words), probe, dict(definitions), words.sheet.label)

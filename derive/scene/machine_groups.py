@@ -1,0 +1,115 @@
+"""What the quantities of a machine are called: a vector where it was declared so, else a scalar."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+
+from derive.scene.declaration import AXES, Input, Moving
+from derive.scene.groups import ANY
+from derive.scene.machine import Group, Groups, Scene
+from derive.scene.results import ENERGIES, MATRICES, unknown_vectors
+from derive.scene.scalars import PER_SECOND
+
+
+def grouped(scene: Scene) -> Scene:
+    """Return a machine with what its functions are given and answer, in canonical order."""
+    states = (*_with_rates(m for m in _moving(scene) if m.state), *_quaternions(scene))
+    inputs = tuple(_with_rates(m for m in scene.moving if not m.state))
+    rates = tuple(f"{g.name}_rate" for g in states)
+    return replace(scene, groups=Groups(states, inputs, tuple(_outputs(scene, states)), rates))
+
+
+def _moving(scene: Scene) -> tuple[Moving, ...]:
+    return (*scene.coordinates, *scene.speeds)
+
+
+def _quaternions(scene: Scene) -> Iterator[Group]:
+    for frame in scene.frames:
+        if name := frame.attitude:
+            parts = tuple(f"{name}_{p}" for p in ("w", *AXES))
+            says = f"quaternion of {frame.name}, scalar first, to {frame.parent}, of norm 1"
+            yield Group(name, parts, "1", "", *ANY, says)
+
+
+def _with_rates(moving: Iterable[Moving]) -> Iterator[Group]:
+    """Yield what moves, each with its rates that are inputs or states; components as one vector."""
+    found: dict[str, list[Group]] = {}
+    for m in moving:
+        found.setdefault(m.vector or m.name, []).append(_of(m))
+        for rate in m.given:
+            found.setdefault(m.of_vector(rate.name), []).append(_of(rate))
+    for name, parts in found.items():
+        yield _joined(name, parts)
+
+
+def _of(entry: Input | Moving) -> Group:
+    return Group(entry.name, (entry.name,), entry.unit, "", entry.low, entry.high, entry.meaning)
+
+
+def _joined(name: str, parts: Sequence[Group]) -> Group:
+    """Return the vector of some scalars, or the scalar that is alone."""
+    if len(parts) == 1:
+        return parts[0]
+    return replace(parts[0], name=name, components=tuple(g.name for g in parts))
+
+
+def _answer(name: str, components: tuple[str, ...], unit: str, says: str) -> Group:
+    return Group(name, components, unit, "", None, None, says)
+
+
+def _outputs(scene: Scene, states: Iterable[Group]) -> Iterator[Group]:
+    for u in scene.unknowns:
+        yield _answer(u.name, (u.name,), u.unit, u.meaning)
+    for name in unknown_vectors(scene.unknowns):
+        first = next(u for u in scene.unknowns if u.name == f"{name}_x")
+        parts = tuple(f"{name}_{a}" for a in AXES)
+        unit, says = first.unit, first.meaning.removesuffix(" along x")
+        if len({u.unit for u in scene.unknowns if u.name in parts}) > 1:
+            unit, says = "", f"{says}, each in its own unit"
+        yield _answer(name, parts, unit, says)
+    yield from _accelerations(scene)
+    results = {r.name for r in scene.results}
+    rates = list(map(_rate_of, states))
+    yield from (g for g in rates if g.name not in results)
+    for name in ENERGIES:
+        yield _answer(name, (name,), "J", name.replace("_", " "))
+    says = f"angular momentum along {scene.momentum.frame}"
+    parts = tuple(f"angular_momentum_{a}" for a in AXES)
+    yield _answer("angular_momentum", parts, "kg m^2/s", says)
+    for r in scene.results:
+        yield _answer(r.name, (r.name,), r.unit, r.meaning)
+    yield from (g for g in rates if g.name in results)  # by this name the result is meant
+    yield from _matrices(scene)
+    count = len(scene.steady.unknown) if scene.steady else 1
+    parts = tuple(f"steady_{n + 1}" for n in range(count)) if count > 1 else ("steady",)
+    unit = scene.steady.unit if scene.steady else ""
+    free_of = "" if unit else ", without factors that never vanish, so in no unit"
+    yield _answer("steady", parts, unit, f"what vanishes in a steady motion{free_of}")
+
+
+def _rate_of(g: Group) -> Group:
+    """Return the rate of a state."""
+    parts = tuple(f"{c}_rate" for c in g.components)
+    unit = PER_SECOND.get(g.unit, f"{g.unit}/s").replace("rad/s^2/s", "rad/s^3")
+    return _answer(f"{g.name}_rate", parts, unit, f"rate of {g.name}")
+
+
+def _accelerations(scene: Scene) -> Iterator[Group]:
+    """Yield the highest rate of all that is free, each alone, then those that make up vectors."""
+    vectors: dict[str, list[Group]] = {}
+    for m in (m for m in _moving(scene) if m.free):
+        unit = PER_SECOND[m.unit]
+        unit = PER_SECOND[unit] if m.kind == "coordinate" else unit
+        one = _answer(m.unknown, (m.unknown,), unit, f"acceleration of {m.vector or m.name}")
+        yield one
+        if m.vector:
+            vectors.setdefault(m.answer, []).append(one)
+    yield from (_joined(vector, each) for vector, each in vectors.items())
+
+
+def _matrices(scene: Scene) -> Iterator[Group]:
+    names = [m.name for m in _moving(scene) if m.free]
+    places = range(1, len(names) + 1)
+    for name, by in MATRICES.items():
+        parts = tuple(f"{name}_{i}_{k}" for k in places for i in places)
+        says = f"forces by {by}, column by column, for {', '.join(names)}, each in its own unit"
+        yield _answer(name, parts, "", says)
