@@ -133,7 +133,7 @@ def power_gaps(made: Library, rates: Rates, program: Program, sample: Sample) ->
     """Return how far the rates of a program's energies are from powers, beside their terms."""
     with ctx.workprec(BITS):
         at = unit_attitude(made, {c: arb(x) for c, x in sample.values.items()})
-        cloud = _in_balance(made, program, {name: digits(x) for name, x in at.items()})
+        cloud = _in_balance(made, program, at)
         if cloud is None:
             return []
         velocity = _velocities(cloud, at)
@@ -152,14 +152,14 @@ def power_gaps(made: Library, rates: Rates, program: Program, sample: Sample) ->
         ]
 
 
-def _in_balance(made: Library, program: Program, given: Mapping[str, Any]) -> Answers | None:
+def _in_balance(made: Library, program: Program, at: Mapping[str, Any]) -> Answers | None:
     """Return a cloud whose loads and motion do not contradict each other, None if none is so.
 
     Where the motion is prescribed, loads that are known too cannot hold: those it needs do.
     """
     for machine in (made.scene, made.scene.posed(base_of(program))):
         with mp.workdps(DIGITS):
-            cloud = answers(machine, given)
+            cloud = answers(machine, {name: digits(x) for name, x in at.items()})
         if cloud.contradiction <= AGREE:
             return cloud
     return None

@@ -63,6 +63,10 @@ def test_an_energy_of_other_loads_is_noticed(row: tuple[str, str, str, str]) -> 
     assert outcomes(replace(made, mechanism=replace(made.mechanism, scene=right))) == {"FAILS"}
 
 
+def test_the_balance_of_a_body_turned_by_a_quaternion_has_all_digits() -> None:
+    assert outcomes(library_of("rigid_body")) == {"holds"}
+
+
 @pytest.mark.parametrize(("spoilt", "outcome"), [(0, "holds"), (1, "FAILS")])
 def test_a_prescribed_motion_changes_its_energy_by_the_power_of_what_it_needs(
     spoilt: int, outcome: str
