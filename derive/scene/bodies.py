@@ -16,8 +16,8 @@ from derive.scene.machine import Entries, Frame, Member
 from derive.scene.numbers import check_member, positive
 from derive.scene.scalars import Scalars
 from derive.scene.shape import CONE_CENTRE, ROUND, about_axis, box, diagonal, moment, moved
-from derive.scene.table import Table, formula, listed, shown, word
-from derive.scene.unit import INERTIA, LENGTH
+from derive.scene.table import Table, formulas, word
+from derive.scene.unit import LENGTH
 
 Kind = Literal["general", "principal", "axisymmetric", "spherical", "rod"]
 NEXT: Mapping[str, Axis] = {"x": "y", "y": "z", "z": "x"}
@@ -114,7 +114,7 @@ def of_kind(given: Table, more: tuple[Entry, ...], by: Reading) -> Substance:
     own = (Entry("kind", "text", ""), *KINDS[kind], MASS)
     said = entries_of(given, (*own, *more), by)
     if kind in ("general", "principal"):
-        return Substance(kind, said["mass"], _three_moments(given, said, by), None, said)
+        return Substance(kind, said["mass"], _three_moments(given, said), None, said)
     axis = said.get("axis")
     axial: Formula | None = ZERO if kind == "rod" else said.get("axial")
     across = said["transverse" if kind == "axisymmetric" else "moment"]
@@ -122,23 +122,13 @@ def of_kind(given: Table, more: tuple[Entry, ...], by: Reading) -> Substance:
     return Substance(kind, said["mass"], (xx, yy, zz, ZERO, ZERO, ZERO), axis, said)
 
 
-def _three_moments(given: Table, said: Mapping[str, Any], by: Reading) -> Sextuple:
+def _three_moments(given: Table, said: Mapping[str, Any]) -> Sextuple:
     if (said["moments"] is None) == (said["second_moments"] is None):
         raise SceneError(f"{given.label} needs either moments or second_moments")
     first, second, third = said["moments"] or said["second_moments"]
     if said["moments"] is None:
         first, second, third = second + third, first + third, first + second
-    if "products" not in said:
-        return diagonal(first, second, third)
-    value = said["products"]
-    if not isinstance(value, list) or len(value) != 3:
-        rule = "must be a list of 3 (xy, xz, yz)"
-        raise SceneError(f"{given.of('products')} {rule}, not {shown(value)}")
-    xy, xz, yz = (
-        formula(part, given.of(f"products.{name}"), by.scopes["constants"], INERTIA)
-        for part, name in zip(value, ("xy", "xz", "yz"), strict=True)
-    )
-    return first, second, third, xy, xz, yz
+    return (first, second, third, *said.get("products", (ZERO, ZERO, ZERO)))
 
 
 def of_shape(
@@ -170,13 +160,12 @@ def of_shape(
 
 def _edges(given: Table, along: tuple[Axis, ...], by: Reading) -> dict[Axis, Formula]:
     """Return the edges of a box, or of a plate, by the axes that they lie along."""
-    parts = listed(given.entries["lengths"], given.of("lengths"), len(along))
-    found = {}
-    for part, name in zip(parts, along, strict=True):
-        label = given.of(f"lengths.{name}")
-        edge = formula(part, label, by.scopes["constants"], LENGTH)
-        found[name] = positive(edge, label, by.parameters)
-    return found
+    label = given.of("lengths")
+    edges = formulas(given.entries["lengths"], label, along, by.scopes["constants"], LENGTH)
+    return {
+        name: positive(edge, f"{label}.{name}", by.parameters)
+        for name, edge in zip(along, edges, strict=True)
+    }
 
 
 def _blades(axis: Axis, mass: Formula, said: Mapping[str, Any]) -> Substance:

@@ -66,7 +66,9 @@ ACROSS = Entry(
 KINDS: Mapping[str, tuple[Entry, ...]] = {
     "general": (
         *MOMENTS,
-        Entry("products", "any", "xy, xz, yz = +sum x y dm", "kg m^2", default=REQUIRED),
+        Entry(
+            "products", "three formulas xy, xz, yz", "xy = +sum x y dm", "kg m^2", default=REQUIRED
+        ),
     ),
     "principal": MOMENTS,
     "axisymmetric": (

@@ -12,6 +12,7 @@ from derive.scene.table import (
     Scope,
     Table,
     formula,
+    formulas,
     interval,
     keys,
     rational,
@@ -147,6 +148,9 @@ READERS: Mapping[str, Callable[[_One], Any]] = {
     "formula": _One.formula,
     "formula above 0": lambda one: positive(one.formula(), one.label, one.by.parameters),
     "three formulas": lambda one: triple(one.value, one.label, one.scope, dimension(one.row.unit)),
+    "three formulas xy, xz, yz": lambda one: formulas(
+        one.value, one.label, ("xy", "xz", "yz"), one.scope, dimension(one.row.unit)
+    ),
     "turns": _turns,
     "turns through coordinates": _turns,
     "range": lambda one: interval(one.value, one.label),

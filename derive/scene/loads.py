@@ -11,7 +11,7 @@ from derive.scene.machine import Force, Frame, Gradient, Load, Member, Spring, U
 from derive.scene.names import identifier, label
 from derive.scene.numbers import check_unit, ends_of, middle
 from derive.scene.scalars import Scalars
-from derive.scene.table import Scope, Table, formula, shown, table
+from derive.scene.table import Scope, Table, table, triple
 from derive.scene.unit import Dimension, dimension
 
 MARK = re.compile(r"\?([A-Za-z][A-Za-z0-9_]*)")
@@ -107,16 +107,11 @@ def _load(reader: _Reader, name: str, given: Table) -> Load:
 def _three(reader: _Reader, given: Table, key: str) -> Triple:
     """Return three formulas of what is known and of unknowns."""
     parts, known = _spread(given, key), reader.scalars.known
-    if not isinstance(parts, list) or len(parts) != 3:
-        raise SceneError(f"{given.of(key)} must be a list of 3, not {shown(parts)}")
     units = unknown_units(tuple(reader.found.values()))
     both = Scope({**known.dimensions, **units}, known.others, known.rule)
-    plain = [MARK.sub(r"\1", part) if isinstance(part, str) else part for part in parts]
-    x, y, z = (
-        formula(part, given.of(f"{key}.{axis}"), both, dimension(UNKNOWNS[key]))
-        for part, axis in zip(plain, AXES, strict=True)
-    )
-    return x, y, z
+    if isinstance(parts, list):
+        parts = [MARK.sub(r"\1", part) if isinstance(part, str) else part for part in parts]
+    return triple(parts, given.of(key), both, dimension(UNKNOWNS[key]))
 
 
 def unknown_units(unknowns: tuple[Unknown, ...]) -> Mapping[str, Dimension]:

@@ -4,7 +4,7 @@ Every function here raises SceneError with a sentence that begins at the table's
 """
 
 import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
@@ -196,16 +196,11 @@ def rational(value: object, label: str) -> Fraction:
     return Fraction(value)
 
 
-def listed(value: object, label: str, size: int) -> list[object]:
-    """Return a list of the size that the quantity needs."""
-    if not isinstance(value, list) or len(value) != size:
-        raise SceneError(f"{label} must be a list of {size}, not {shown(value)}")
-    return value
-
-
 def interval(value: object, label: str) -> tuple[Fraction, Fraction]:
     """Return a range [low, high] with low < high."""
-    low, high = (rational(end, label) for end in listed(value, label, 2))
+    if not isinstance(value, list) or len(value) != 2:
+        raise SceneError(f"{label} must be a list of 2, not {shown(value)}")
+    low, high = (rational(end, label) for end in value)
     if low >= high:
         state = "empty" if low == high else "reversed"
         raise SceneError(f"{label} is {state}: [{float(low):g}, {float(high):g}]")
@@ -263,9 +258,18 @@ def _check_symbols(read: Formula, label: str, scope: Scope) -> None:
 
 def triple(value: object, label: str, scope: Scope, expected: Dimension) -> Triple:
     """Return three formulas along x, y and z."""
-    parts = listed(value, label, 3)
-    x, y, z = (
-        formula(part, f"{label}.{axis}", scope, expected)
-        for part, axis in zip(parts, "xyz", strict=True)
-    )
+    x, y, z = formulas(value, label, "xyz", scope, expected)
     return x, y, z
+
+
+def formulas(
+    value: object, label: str, names: Sequence[str], scope: Scope, expected: Dimension
+) -> tuple[Formula, ...]:
+    """Return a formula for each of some names, such as x, y and z."""
+    if not isinstance(value, list) or len(value) != len(names):
+        which = f" ({', '.join(names)})" if len(names[0]) > 1 else ""
+        raise SceneError(f"{label} must be a list of {len(names)}{which}, not {shown(value)}")
+    return tuple(
+        formula(part, f"{label}.{name}", scope, expected)
+        for part, name in zip(value, names, strict=True)
+    )
