@@ -1,6 +1,5 @@
 """All programs of a scene: one set-up, and for every wanted function its hot part."""
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -9,9 +8,8 @@ from derive.library.function import Graphed, arranged, function, graphed
 from derive.library.setting import Setting, applied_moment, held
 from derive.library.singular import with_singular
 from derive.library.steps import motions, needs
-from derive.lower.graph import Graph, Value
 from derive.lower.stage import Part, in_pairs, setup, with_low_parts
-from derive.lower.wording import formula
+from derive.lower.wording import meaning
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.mechanics.problem import Problem
 from derive.mechanics.vocabulary import Vocabulary
@@ -19,8 +17,6 @@ from derive.program.program import Program, Quantity, component_names, read_by
 from derive.program.tape import Tape, free_prefix
 from derive.scene import Scene, SceneError
 from derive.scene.wanted import ATTITUDES, IN_PAIRS, base_of, moves
-
-INVERSE = re.compile("J_([xyz][xyz])'*")
 
 
 @dataclass(frozen=True)
@@ -140,13 +136,7 @@ def _constants(made: Program, meanings: Mapping[str, str]) -> dict[str, str]:
 
 def _meanings(terms: Graphed) -> dict[str, str]:
     """Return the formula of every constant that the lecture's functions asked for."""
-    return {name: _meaning(terms.graph, value) for value, name in terms.constants.names.items()}
-
-
-def _meaning(graph: Graph, value: Value) -> str:
-    text = formula(graph, value)
-    inverse = INVERSE.fullmatch(graph.names.get(value[1], "")) if value[0] == 1 else None
-    return f"{inverse[1]} of the inverse inertia tensor" if inverse else text
+    return {name: meaning(terms.graph, value) for value, name in terms.constants.names.items()}
 
 
 def _in_parameters(made: Program, functions: Sequence[Program]) -> tuple[Program, ...]:

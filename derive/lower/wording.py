@@ -1,5 +1,6 @@
 """Parameter-only values in words: a name for a struct's field, a formula for its comment."""
 
+import re
 from fractions import Fraction
 
 from derive.lower.graph import ONE, Graph, Value
@@ -11,6 +12,10 @@ _COEFFICIENTS = {
     Fraction(-1): "minus_",
 }
 SPELLED_FACTORS = 4
+LONGEST = 80
+"""Characters of a formula that is read with pleasure."""
+INVERSE = re.compile("J_([xyz][xyz])'*")
+"""Entries of the inverse inertia tensor, which are constants themselves wherever they stand."""
 
 
 def spelling(graph: Graph, value: Value) -> str:
@@ -61,19 +66,40 @@ def formula(graph: Graph, value: Value) -> str:
     if node == ONE:
         return str(coefficient)
     body = _node_text(graph, node)
+    if not sign + factor and graph.nodes[node][0] in ("let", "cut") and body[0] == "(":
+        return body[1:-1]
     if factor and graph.nodes[node][0] == "sum":
         body = f"({body})"
     return sign + (f"{factor}*{body}" if factor else body)
 
 
+def meaning(graph: Graph, value: Value) -> str:
+    """Return what a constant is: its formula, or of what it is made where that is long.
+
+    >>> g = Graph()
+    >>> meaning(g, g.let("pivot", g.power(g.mul([g.parameter("m"), g.parameter("r")]), -1)))
+    '1/(m*r)'
+    """
+    inverse = INVERSE.fullmatch(graph.names.get(value[1], "")) if value[0] == 1 else None
+    if inverse:
+        return f"{inverse[1]} of the inverse inertia tensor"
+    text = formula(graph, value)
+    if len(text) <= LONGEST:
+        return text
+    inputs = [graph.nodes[n][1] for n in graph.within([value]) if graph.nodes[n][0] == "input"]
+    return f"a constant made of {', '.join(map(str, inputs))}"
+
+
 def _node_text(graph: Graph, node: int) -> str:
-    if node in graph.names:
-        return graph.names[node]
     kind, *rest = graph.nodes[node]
     if kind == "input":
         return str(rest[0])
+    if kind in ("let", "cut"):
+        name = graph.names.get(node, "")
+        return name if INVERSE.fullmatch(name) else _within(formula(graph, rest[0]))
     if kind == "call":
-        return f"{rest[0]}({', '.join(formula(graph, v) for v in rest[1])})"
+        inner = ", ".join(formula(graph, v) for v in rest[1])
+        return f"{rest[0]}({inner})" if inner else str(rest[0])
     if kind == "sum":
         text = " + ".join(formula(graph, v) for v in rest[0])
         return text.replace("+ -", "- ")
@@ -85,8 +111,13 @@ def _node_text(graph: Graph, node: int) -> str:
     return f"{above}/{bottom[0]}" if len(bottom) == 1 else f"{above}/({'*'.join(bottom)})"
 
 
+def _within(text: str) -> str:
+    """Return a formula as it stands within another."""
+    return text if re.fullmatch(r"\w+(\([^()]*\))?", text) else f"({text})"
+
+
 def _power_text(graph: Graph, node: int, power: int) -> str:
     body = _node_text(graph, node)
-    if graph.nodes[node][0] in ("sum", "product") and node not in graph.names:
+    if graph.nodes[node][0] in ("sum", "product"):
         body = f"({body})"
     return body if power == 1 else f"{body}^{power}"

@@ -99,20 +99,16 @@ class Answers:
             return tuple(s for part in parts for s in self._steps(part))
         if name in ("kinetic_energy", "energy"):
             return tuple(energy_form(self.frames, body.name) for body in self.machine.bodies)
-        if (
-            name == "angular_momentum_rate"
-            and self.frames.Omega[self.machine.momentum.frame] == ZERO
-        ):
-            return ("rate_in_axes",)
+        if name == "angular_momentum_rate":
+            still = self.frames.Omega[self.machine.momentum.frame] == ZERO
+            return ("rate_in_axes",) if still else ("rate_in_axes", "transport_theorem")
         if name == "state_rate":
             turns = any(q.is_quaternion for q in self._states)
             return ("quaternion_rate_scalar", "quaternion_rate_vector") if turns else ()
         if name in ("linearised", *MATRICES):
-            return (
-                *self._balanced(self._small.rows),
-                *self.frames.sheet.steps(self._small.written),
-            )
-        return STEPS.get(name, ())
+            small = self._small
+            return (*self._balanced(small.rows), *self.frames.sheet.steps(small.written))
+        return ("angular_momentum",) if name == "angular_momentum" else ()
 
     def _answer(self, name: str) -> dict[Quantity, list[Expr]]:
         if name == "state_rate" and not self._states:
@@ -280,16 +276,13 @@ def _lasts(row: Row) -> bool:
 
 
 SAYS = {
+    "linearised": "Mass, damping and stiffness matrices of small motion.",
     "acceleration": "Rate of the angular velocity from the moment (forward dynamics).",
     "state_rate": "Rate of the state from the state and the inputs (forward dynamics).",
     "moment": "External moment that the motion needs (inverse dynamics).",
     "angular_momentum": "Angular momentum from the angular velocity.",
     "angular_momentum_rate": "Rate of the angular momentum, seen from the axes and from the "
     "inertial frame.",
-}
-STEPS = {
-    "angular_momentum": ("angular_momentum",),
-    "angular_momentum_rate": ("rate_in_axes", "transport_theorem"),
 }
 ANSWER = re.compile("(_[xyz]|(_[0-9]+){2})$")
 """How the name of a component of an answer ends."""

@@ -9,9 +9,10 @@
  *     chandler_rigid_earth_period_days_f64(&constants, &period_days);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 4f51c120828da41d.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 4f51c120828da41d.
  */
 #ifndef CHANDLER_RIGID_EARTH_F64_H
 #define CHANDLER_RIGID_EARTH_F64_H
@@ -22,7 +23,7 @@ extern "C" {
 
 /* Constants made of parameters only, by chandler_rigid_earth_setup_f64. */
 typedef struct {
-    double k1; /* -1/43200*pi()/s0005 */
+    double k1; /* -1/43200*pi/(rate*(A - C)/A) */
 } chandler_rigid_earth_constants_f64;
 
 /* Make the constants of this scene from its parameters; call it once.

@@ -9,9 +9,10 @@
  *     disc_two_bearings_couple_f32(&constants, &couple);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 303fad25a2f74fe8.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of float, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 303fad25a2f74fe8.
  */
 #ifndef DISC_TWO_BEARINGS_F32_H
 #define DISC_TWO_BEARINGS_F32_H
@@ -22,9 +23,9 @@ extern "C" {
 
 /* Constants made of parameters only, by disc_two_bearings_setup_f32. */
 typedef struct {
-    float s0010; /* s0010 */
-    float k1; /* s0010 */
-    float s0008; /* s0008 */
+    float s0010; /* 1/2*m*r^2*w*W */
+    float k1; /* 1/2*m*(d*g + r^2*w*W)/d */
+    float s0008; /* -1/2*m*(d*g - r^2*w*W)/d */
 } disc_two_bearings_constants_f32;
 
 /* Make the constants of this scene from its parameters; call it once.

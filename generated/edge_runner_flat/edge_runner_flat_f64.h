@@ -9,9 +9,10 @@
  *     edge_runner_flat_N_f64(&constants, 3.0, &N);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 440684dcbb39e9a9.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 440684dcbb39e9a9.
  */
 #ifndef EDGE_RUNNER_FLAT_F64_H
 #define EDGE_RUNNER_FLAT_F64_H

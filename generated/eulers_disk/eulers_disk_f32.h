@@ -9,9 +9,10 @@
  *     eulers_disk_steady_f32(&constants, 105.0F, &steady);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 c657dc1fe48610cc.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of float, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 c657dc1fe48610cc.
  */
 #ifndef EULERS_DISK_F32_H
 #define EULERS_DISK_F32_H
@@ -25,7 +26,7 @@ typedef struct {
     float k1; /* r*g*cos(tilt) */
     float k2; /* 1/4*r^2*sin(tilt)*cos(tilt) */
     float k3; /* -cos(tilt) */
-    float k4; /* -r*cos(tilt)*s0007 */
+    float k4; /* -r*cos(tilt)*(m*g) */
 } eulers_disk_constants_f32;
 
 /* Make the constants of this scene from its parameters; call it once.

@@ -9,9 +9,10 @@
  *     eulers_disk_steady_f64(&constants, 105.0, &steady);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 3ad7c1857d3d81e1.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 3ad7c1857d3d81e1.
  */
 #ifndef EULERS_DISK_F64_H
 #define EULERS_DISK_F64_H
@@ -25,7 +26,7 @@ typedef struct {
     double k1; /* r*g*cos(tilt) */
     double k2; /* 1/4*r^2*sin(tilt)*cos(tilt) */
     double k3; /* -cos(tilt) */
-    double k4; /* -r*cos(tilt)*s0007 */
+    double k4; /* -r*cos(tilt)*(m*g) */
 } eulers_disk_constants_f64;
 
 /* Make the constants of this scene from its parameters; call it once.

@@ -10,9 +10,10 @@
  *     free_body_principal_acceleration_f32(&constants, omega, moment, omega_dot);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 620abe1d37e5c836.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of float, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 620abe1d37e5c836.
  */
 #ifndef FREE_BODY_PRINCIPAL_F32_H
 #define FREE_BODY_PRINCIPAL_F32_H

@@ -326,7 +326,7 @@ def _period_s():
 
 
 def linearised():
-    """Forces by acceleration, column by column, for alpha, each in its own unit, forces by velocity, gyroscopic terms included, column by column, for alpha, each in its own unit and forces by displacement, column by column, for alpha, each in its own unit. Inputs: parameters, ."""
+    """Mass, damping and stiffness matrices of small motion. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_linearised(), "gyrocompass_linearised"))
 
 

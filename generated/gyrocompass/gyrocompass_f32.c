@@ -230,7 +230,7 @@ void gyrocompass_period_s_f32(const gyrocompass_constants_f32 *constants, float 
     *period_s = constants->k3;
 }
 
-/* Forces by acceleration, column by column, for alpha, each in its own unit, forces by velocity, gyroscopic terms included, column by column, for alpha, each in its own unit and forces by displacement, column by column, for alpha, each in its own unit. */
+/* Mass, damping and stiffness matrices of small motion. */
 void gyrocompass_linearised_f32(const gyrocompass_constants_f32 *constants, float mass_matrix[1],
     float damping_matrix[1], float stiffness_matrix[1])
 {

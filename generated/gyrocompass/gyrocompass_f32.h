@@ -9,9 +9,10 @@
  *     gyrocompass_alpha_ddot_f32(&constants, 0.0F, &alpha_ddot);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 d6cbab634767408e.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of float, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 9e76c54fc1d722c2.
  */
 #ifndef GYROCOMPASS_F32_H
 #define GYROCOMPASS_F32_H
@@ -24,7 +25,7 @@ extern "C" {
 typedef struct {
     float k1; /* we^2*cos(lat)^2 */
     float k2; /* 2*w3*we*cos(lat) */
-    float k3; /* pi()*sqrt(1/(cos(lat)*(1/2*w3 - 1/4*we*cos(lat))))/sqrt(we) */
+    float k3; /* pi*sqrt(1/(cos(lat)*(1/2*w3 - 1/4*we*cos(lat))))/sqrt(we) */
     float k4; /* 1/4*m*r^2 */
     float k5; /* we*cos(lat)*(1/2*m*r^2*w3 - 1/4*m*r^2*we*cos(lat)) */
 } gyrocompass_constants_f32;
@@ -75,7 +76,7 @@ void gyrocompass_alpha_ddot_f32(const gyrocompass_constants_f32 *constants, floa
  */
 void gyrocompass_period_s_f32(const gyrocompass_constants_f32 *constants, float *period_s);
 
-/* Forces by acceleration, column by column, for alpha, each in its own unit, forces by velocity, gyroscopic terms included, column by column, for alpha, each in its own unit and forces by displacement, column by column, for alpha, each in its own unit.
+/* Mass, damping and stiffness matrices of small motion.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  mass_matrix[1]  forces by acceleration, column by column, for alpha, each in its own unit
  *            damping_matrix[1]  forces by velocity, gyroscopic terms included, column by column, for alpha, each in its own unit

@@ -242,7 +242,7 @@ void gyrocompass_period_s_f64(const gyrocompass_constants_f64 *constants, double
     *period_s = constants->k3;
 }
 
-/* Forces by acceleration, column by column, for alpha, each in its own unit, forces by velocity, gyroscopic terms included, column by column, for alpha, each in its own unit and forces by displacement, column by column, for alpha, each in its own unit. */
+/* Mass, damping and stiffness matrices of small motion. */
 void gyrocompass_linearised_f64(const gyrocompass_constants_f64 *constants, double mass_matrix[1],
     double damping_matrix[1], double stiffness_matrix[1])
 {

@@ -10,9 +10,10 @@
  *     gyrostat_state_rate_f64(&constants, 0.0, 0.0, omega, wheel_speeds, moment, wheel_torques, coordinate_rates, omega_dot, wheel_accelerations);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 aa3847b8d9b05652.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 aa3847b8d9b05652.
  */
 #ifndef GYROSTAT_F64_H
 #define GYROSTAT_F64_H
@@ -100,12 +101,12 @@ int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doubl
  *            theta  rad  -1.4 .. 1.4  pitch
  *            phi  rad  -3.14 .. 3.14  roll
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
- *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
+ *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  speed of each wheel relative to the body
  *            moment[3]  N m  along B  -0.5 .. 0.5  external moment about the centre of mass
- *            wheel_torques[3]  N m  wheel axes  -0.2 .. 0.2  wheel torque of the motor on the wheel
+ *            wheel_torques[3]  N m  wheel axes  -0.2 .. 0.2  torque of its motor on each wheel
  * Returned:  coordinate_rates[3]  rad/s  rates of psi, theta, phi
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
- *            wheel_accelerations[3]  rad/s^2  wheel axes  wheel acceleration relative to the carrier
+ *            wheel_accelerations[3]  rad/s^2  wheel axes  rate of the speed of each wheel
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.72, largest 12 u of the largest product or sum in the equation (of omega_dot;
@@ -126,12 +127,12 @@ void gyrostat_state_rate_f64(const gyrostat_constants_f64 *constants, double the
  *            theta  rad  -1.4 .. 1.4  pitch
  *            phi  rad  -3.14 .. 3.14  roll
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
- *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
+ *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  speed of each wheel relative to the body
  *            moment[3]  N m  along B  -0.5 .. 0.5  external moment about the centre of mass
- *            wheel_torques[3]  N m  wheel axes  -0.2 .. 0.2  wheel torque of the motor on the wheel
+ *            wheel_torques[3]  N m  wheel axes  -0.2 .. 0.2  torque of its motor on each wheel
  * Returned:  coordinate_rates[3]  rad/s  rates of psi, theta, phi
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
- *            wheel_accelerations[3]  rad/s^2  wheel axes  wheel acceleration relative to the carrier
+ *            wheel_accelerations[3]  rad/s^2  wheel axes  rate of the speed of each wheel
  *            jacobian[84]  nonzeros of the Jacobian, in compressed-column order, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
@@ -158,7 +159,7 @@ void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *consta
 /* Kinetic energy of turning about the centre of mass.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
- *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
+ *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  speed of each wheel relative to the body
  * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
@@ -175,7 +176,7 @@ void gyrostat_kinetic_energy_f64(const gyrostat_constants_f64 *constants, const 
 /* Angular momentum from the angular velocity.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
- *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  wheel speed relative to the carrier
+ *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  speed of each wheel relative to the body
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum about the centre of mass
  * Postcondition: l = I omega   [lecture step angular_momentum]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]

@@ -10,9 +10,10 @@
  *     heavy_body_kinetic_energy_f64(&constants, omega, &kinetic_energy);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 44f27afcd1762e61.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 44f27afcd1762e61.
  */
 #ifndef HEAVY_BODY_F64_H
 #define HEAVY_BODY_F64_H

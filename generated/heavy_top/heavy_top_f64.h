@@ -10,9 +10,10 @@
  *     heavy_top_state_rate_f64(&constants, 1.55, omega, coordinate_rates, omega_dot);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 00abf580121bdeba.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 00abf580121bdeba.
  */
 #ifndef HEAVY_TOP_F64_H
 #define HEAVY_TOP_F64_H

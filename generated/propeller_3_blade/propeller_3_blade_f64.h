@@ -9,9 +9,10 @@
  *     propeller_3_blade_M_f64(&constants, M);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 4f168fcd9a5cb5ec.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 4f168fcd9a5cb5ec.
  */
 #ifndef PROPELLER_3_BLADE_F64_H
 #define PROPELLER_3_BLADE_F64_H
@@ -22,7 +23,7 @@ extern "C" {
 
 /* Constants made of parameters only, by propeller_3_blade_setup_f64. */
 typedef struct {
-    double s0008; /* s0008 */
+    double s0008; /* blade_mass*blade_length^2*p*W */
 } propeller_3_blade_constants_f64;
 
 /* Make the constants of this scene from its parameters; call it once.

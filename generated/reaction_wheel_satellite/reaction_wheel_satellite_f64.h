@@ -9,9 +9,10 @@
  *     reaction_wheel_satellite_body_f64(&constants, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, &w_x_dot, &w_y_dot, &w_z_dot);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 8b317f73565c15b0.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 8b317f73565c15b0.
  */
 #ifndef REACTION_WHEEL_SATELLITE_F64_H
 #define REACTION_WHEEL_SATELLITE_F64_H

@@ -10,9 +10,10 @@
  *     rigid_body_state_rate_f32(&constants, attitude, velocity, omega, force, moment, position_rate, attitude_rate, velocity_rate, omega_dot);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 8e0db48cc7172db0.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of float, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 8e0db48cc7172db0.
  */
 #ifndef RIGID_BODY_F32_H
 #define RIGID_BODY_F32_H

@@ -10,9 +10,10 @@
  *     rigid_body_state_rate_f64(&constants, attitude, velocity, omega, force, moment, position_rate, attitude_rate, velocity_rate, omega_dot);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 7c2a4603d20953f1.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 7c2a4603d20953f1.
  */
 #ifndef RIGID_BODY_F64_H
 #define RIGID_BODY_F64_H

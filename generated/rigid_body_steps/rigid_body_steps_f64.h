@@ -10,9 +10,10 @@
  *     rigid_body_steps_step_rk4_f64(&constants, position, attitude, velocity, omega, force, moment, 0.01, position_next, attitude_next, velocity_next, omega_next);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 fc46cf688896f507.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 fc46cf688896f507.
  */
 #ifndef RIGID_BODY_STEPS_F64_H
 #define RIGID_BODY_STEPS_F64_H

@@ -9,9 +9,10 @@
  *     rod_wire_vertical_shaft_T_f32(&constants, &T);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 6327ed64325f7108.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of float, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 6327ed64325f7108.
  */
 #ifndef ROD_WIRE_VERTICAL_SHAFT_F32_H
 #define ROD_WIRE_VERTICAL_SHAFT_F32_H
@@ -22,8 +23,8 @@ extern "C" {
 
 /* Constants made of parameters only, by rod_wire_vertical_shaft_setup_f32. */
 typedef struct {
-    float s0008; /* s0008 */
-    float s0005; /* s0005 */
+    float s0008; /* (1/2*W*L*cos(beta) + 1/3*W*L^2*w^2*sin(beta)*cos(beta)/g)/(L*sin(beta)) */
+    float s0005; /* (1/2*W*L*cos(beta) - 1/6*W*L^2*w^2*sin(beta)*cos(beta)/g)/(L*sin(beta)) */
     float W; /* W */
 } rod_wire_vertical_shaft_constants_f32;
 

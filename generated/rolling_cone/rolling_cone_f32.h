@@ -9,9 +9,10 @@
  *     rolling_cone_kinetic_energy_f32(&constants, 10.5F, &kinetic_energy);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 952792391ad68f1f.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of float, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 952792391ad68f1f.
  */
 #ifndef ROLLING_CONE_F32_H
 #define ROLLING_CONE_F32_H

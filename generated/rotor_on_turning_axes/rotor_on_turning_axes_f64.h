@@ -9,9 +9,10 @@
  *     rotor_on_turning_axes_moment_f64(&constants, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, moment);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 219617511ad30a24.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 219617511ad30a24.
  */
 #ifndef ROTOR_ON_TURNING_AXES_F64_H
 #define ROTOR_ON_TURNING_AXES_F64_H

@@ -9,9 +9,10 @@
  *     ship_turbine_three_motions_roll_case_f32(&constants, &A_roll, &B_roll);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 e5ed0723c015198b.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of float, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 e5ed0723c015198b.
  */
 #ifndef SHIP_TURBINE_THREE_MOTIONS_F32_H
 #define SHIP_TURBINE_THREE_MOTIONS_F32_H
@@ -22,11 +23,11 @@ extern "C" {
 
 /* Constants made of parameters only, by ship_turbine_three_motions_setup_f32. */
 typedef struct {
-    float s0011; /* s0011 */
-    float s0013; /* s0013 */
-    float s0016; /* s0016 */
-    float s0018; /* s0018 */
-    float s0020; /* s0020 */
+    float s0011; /* m*a*g/(a + b) */
+    float s0013; /* m*b*g/(a + b) */
+    float s0016; /* -m*(kz^2*ws*turn - a*g)/(a + b) */
+    float s0018; /* m*(b*g + kz^2*ws*turn)/(a + b) */
+    float s0020; /* -m*kz^2*ws*pitch */
 } ship_turbine_three_motions_constants_f32;
 
 /* Make the constants of this scene from its parameters; call it once.

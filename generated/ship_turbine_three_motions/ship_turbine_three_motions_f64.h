@@ -9,9 +9,10 @@
  *     ship_turbine_three_motions_roll_case_f64(&constants, &A_roll, &B_roll);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 d91d6baadee4ab87.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 d91d6baadee4ab87.
  */
 #ifndef SHIP_TURBINE_THREE_MOTIONS_F64_H
 #define SHIP_TURBINE_THREE_MOTIONS_F64_H
@@ -22,11 +23,11 @@ extern "C" {
 
 /* Constants made of parameters only, by ship_turbine_three_motions_setup_f64. */
 typedef struct {
-    double s0011; /* s0011 */
-    double s0013; /* s0013 */
-    double s0016; /* s0016 */
-    double s0018; /* s0018 */
-    double s0020; /* s0020 */
+    double s0011; /* m*a*g/(a + b) */
+    double s0013; /* m*b*g/(a + b) */
+    double s0016; /* -m*(kz^2*ws*turn - a*g)/(a + b) */
+    double s0018; /* m*(b*g + kz^2*ws*turn)/(a + b) */
+    double s0020; /* -m*kz^2*ws*pitch */
 } ship_turbine_three_motions_constants_f64;
 
 /* Make the constants of this scene from its parameters; call it once.

@@ -9,9 +9,10 @@
  *     ship_turbine_turn_port_reactions_f64(&constants, &R_A, &R_B);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 3038bfb7ae9f3776.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 3038bfb7ae9f3776.
  */
 #ifndef SHIP_TURBINE_TURN_PORT_F64_H
 #define SHIP_TURBINE_TURN_PORT_F64_H
@@ -22,9 +23,9 @@ extern "C" {
 
 /* Constants made of parameters only, by ship_turbine_turn_port_setup_f64. */
 typedef struct {
-    double s0010; /* s0010 */
-    double s0012; /* s0012 */
-    double minus_s0012; /* -s0012 */
+    double s0010; /* m*(k^2*p*v/R + b*g)/(a + b) */
+    double s0012; /* m*(a*g - k^2*p*v/R)/(a + b) */
+    double minus_s0012; /* -(-m*k^2*p*v/R) */
 } ship_turbine_turn_port_constants_f64;
 
 /* Make the constants of this scene from its parameters; call it once.

@@ -9,9 +9,10 @@
  *     skewed_disc_M_f32(&constants, 300.0F, &M_x, &M_y, &M_z);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 9570fea982a0e608.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of float, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 9570fea982a0e608.
  */
 #ifndef SKEWED_DISC_F32_H
 #define SKEWED_DISC_F32_H

@@ -9,9 +9,10 @@
  *     skewed_disc_M_f64(&constants, 300.0, &M_x, &M_y, &M_z);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 52cebf6c2168da5c.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 52cebf6c2168da5c.
  */
 #ifndef SKEWED_DISC_F64_H
 #define SKEWED_DISC_F64_H

@@ -213,7 +213,7 @@ def _from_parameters(hot, name):
 
 
 def linearised():
-    """Forces by acceleration, column by column, for alpha, beta, each in its own unit, forces by velocity, gyroscopic terms included, column by column, for alpha, beta, each in its own unit and forces by displacement, column by column, for alpha, beta, each in its own unit. Inputs: parameters, ."""
+    """Mass, damping and stiffness matrices of small motion. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_linearised(), "sleeping_top_linearised"))
 
 

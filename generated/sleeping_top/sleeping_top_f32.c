@@ -164,7 +164,7 @@ int sleeping_top_setup_f32(float m, float r, float l, float n, float g,
 #endif
 #endif
 
-/* Forces by acceleration, column by column, for alpha, beta, each in its own unit, forces by velocity, gyroscopic terms included, column by column, for alpha, beta, each in its own unit and forces by displacement, column by column, for alpha, beta, each in its own unit. */
+/* Mass, damping and stiffness matrices of small motion. */
 void sleeping_top_linearised_f32(const sleeping_top_constants_f32 *constants, float mass_matrix[4],
     float damping_matrix[4], float stiffness_matrix[4])
 {

@@ -9,9 +9,10 @@
  *     sleeping_top_linearised_f32(&constants, mass_matrix, damping_matrix, stiffness_matrix);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 62dbf8c51ab90e7d.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of float, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 01f992e860ec3372.
  */
 #ifndef SLEEPING_TOP_F32_H
 #define SLEEPING_TOP_F32_H
@@ -53,7 +54,7 @@ typedef struct {
 int sleeping_top_setup_f32(float m, float r, float l, float n, float g,
     sleeping_top_constants_f32 *constants);
 
-/* Forces by acceleration, column by column, for alpha, beta, each in its own unit, forces by velocity, gyroscopic terms included, column by column, for alpha, beta, each in its own unit and forces by displacement, column by column, for alpha, beta, each in its own unit.
+/* Mass, damping and stiffness matrices of small motion.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  mass_matrix[4]  forces by acceleration, column by column, for alpha, beta, each in its own unit
  *            damping_matrix[4]  forces by velocity, gyroscopic terms included, column by column, for alpha, beta, each in its own unit

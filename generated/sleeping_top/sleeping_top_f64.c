@@ -164,7 +164,7 @@ int sleeping_top_setup_f64(double m, double r, double l, double n, double g,
 #endif
 #endif
 
-/* Forces by acceleration, column by column, for alpha, beta, each in its own unit, forces by velocity, gyroscopic terms included, column by column, for alpha, beta, each in its own unit and forces by displacement, column by column, for alpha, beta, each in its own unit. */
+/* Mass, damping and stiffness matrices of small motion. */
 void sleeping_top_linearised_f64(const sleeping_top_constants_f64 *constants, double mass_matrix[4],
     double damping_matrix[4], double stiffness_matrix[4])
 {

@@ -9,9 +9,10 @@
  *     sleeping_top_linearised_f64(&constants, mass_matrix, damping_matrix, stiffness_matrix);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 eecfef62b32f7349.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 6b12d67594efbc79.
  */
 #ifndef SLEEPING_TOP_F64_H
 #define SLEEPING_TOP_F64_H
@@ -53,7 +54,7 @@ typedef struct {
 int sleeping_top_setup_f64(double m, double r, double l, double n, double g,
     sleeping_top_constants_f64 *constants);
 
-/* Forces by acceleration, column by column, for alpha, beta, each in its own unit, forces by velocity, gyroscopic terms included, column by column, for alpha, beta, each in its own unit and forces by displacement, column by column, for alpha, beta, each in its own unit.
+/* Mass, damping and stiffness matrices of small motion.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  mass_matrix[4]  forces by acceleration, column by column, for alpha, beta, each in its own unit
  *            damping_matrix[4]  forces by velocity, gyroscopic terms included, column by column, for alpha, beta, each in its own unit

@@ -10,9 +10,10 @@
  *     t_handle_flip_kinetic_energy_f64(&constants, omega, &kinetic_energy);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 7f461f8c014a3be8.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 7f461f8c014a3be8.
  */
 #ifndef T_HANDLE_FLIP_F64_H
 #define T_HANDLE_FLIP_F64_H

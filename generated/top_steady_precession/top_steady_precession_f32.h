@@ -9,9 +9,10 @@
  *     top_steady_precession_steady_f32(&constants, 100.050003F, &steady);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 1178c358fd040a6b.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of float, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 1178c358fd040a6b.
  */
 #ifndef TOP_STEADY_PRECESSION_F32_H
 #define TOP_STEADY_PRECESSION_F32_H

@@ -9,9 +9,10 @@
  *     torque_free_axisymmetric_precession_f32(&constants, 0.0500000007F, 1.5F, 6.0F, &precession);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 a1cda2508f8af0fd.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of float, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 a1cda2508f8af0fd.
  */
 #ifndef TORQUE_FREE_AXISYMMETRIC_F32_H
 #define TORQUE_FREE_AXISYMMETRIC_F32_H

@@ -9,9 +9,10 @@
  *     torque_free_axisymmetric_precession_f64(&constants, 0.05, 1.5, 6.0, &precession);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 0f0185e10e7a1dab.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 0f0185e10e7a1dab.
  */
 #ifndef TORQUE_FREE_AXISYMMETRIC_F64_H
 #define TORQUE_FREE_AXISYMMETRIC_F64_H

@@ -10,9 +10,10 @@
  *     tumbling_body_kinetic_energy_f32(&constants, omega, &kinetic_energy);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 f52f73500a81ece3.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of float, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 f52f73500a81ece3.
  */
 #ifndef TUMBLING_BODY_F32_H
 #define TUMBLING_BODY_F32_H

@@ -10,9 +10,10 @@
  *     tumbling_disc_flow_exact_f64(&constants, attitude, omega, 0.0, attitude_next, omega_next);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 4fe8f94b76d92987.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 4fe8f94b76d92987.
  */
 #ifndef TUMBLING_DISC_F64_H
 #define TUMBLING_DISC_F64_H

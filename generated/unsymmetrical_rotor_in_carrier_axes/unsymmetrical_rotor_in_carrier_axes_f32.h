@@ -9,9 +9,10 @@
  *     unsymmetrical_rotor_in_carrier_axes_moment_f32(&constants, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, moment);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * float, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 91e07bb28392d696.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of float, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 91e07bb28392d696.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H

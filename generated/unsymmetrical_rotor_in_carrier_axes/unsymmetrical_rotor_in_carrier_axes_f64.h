@@ -9,9 +9,10 @@
  *     unsymmetrical_rotor_in_carrier_axes_moment_f64(&constants, 0.0, 0.0, 0.0, 0.0, 0.0, moment);
  *
  * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial). Errors are in u, the unit roundoff of
- * double, times the largest product or sum in the equation of an output, multiplied out and
- * solved; of motions and attitudes, times the largest component. Body of these files: sha256 75974420a53a628e.
+ * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * are in u, the unit roundoff of double, times the largest product or sum in the equation of
+ * an output, multiplied out and solved; of motions and attitudes, times the largest component.
+ * Body of these files: sha256 75974420a53a628e.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H

@@ -1,5 +1,7 @@
 """What set-up makes is called as nothing else in its scene is: one name, one number."""
 
+import re
+
 import pytest
 
 from derive.scene import catalogue
@@ -25,3 +27,12 @@ def test_a_formula_of_a_constant_tells_a_parameter_from_an_entry_of_the_inverse(
     assert sorted(x[:2] for x in says.values() if "inverse" in x) == [
         "xx", "xy", "xz", "yy", "yz", "zz",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["disc_two_bearings", "chandler_rigid_earth", "eulers_disk"])
+def test_a_formula_of_a_constant_is_made_of_parameters_and_of_no_name_of_ours(name: str) -> None:
+    library = library_of(name)
+    given = {q.name for q in library.setup.inputs} | {"pi", "sqrt", "sin", "cos", "tan"}
+    told = library.constants.items()
+    words = {name: {*re.findall(r"[A-Za-z_]\w*", formula)} for name, formula in told}
+    assert {n: own - given for n, own in words.items() if own - given} == {}

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from derive.emit.page.equation import written_names
 from derive.mechanics.mechanism import mechanism
 from derive.program.program import Quantity
 from derive.scene import SceneError, parse_scene
@@ -73,6 +74,8 @@ def test_a_result_named_as_the_rate_of_a_state_is_given_in_its_own_unit() -> Non
     known = mechanism(parse_scene(LONG, "example"))
     (rate,) = known.problem("phi_rate").outputs
     assert (rate.unit, rate.meaning) == ("m^2/s^2", "M/m")
+    names = written_names(known)
+    assert names[known.vocabulary.symbols["phi_rate"]] == "phi_rate"  # and no dot over phi
 
 
 def test_components_of_several_units_are_not_given_in_that_of_the_first() -> None:

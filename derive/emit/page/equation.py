@@ -79,8 +79,10 @@ def written_names(mechanism: Mechanism) -> dict[Symbol, str]:
         new = letter("attitude" if attitude else q.name, taken)
         own = (c for c in q.components if new != q.name and c.startswith(start))
         names |= {symbols[c]: new + c.removeprefix(start) for c in own}
+    results = {r.name for r in mechanism.scene.results}
     for q in mechanism.vocabulary.states:  # the rate of what is written q_w is written q_w_dot
-        rates = ((c, f"{c}_rate") for c in q.components if f"{c}_rate" in symbols)
+        rates = ((c, f"{c}_rate") for c in q.components
+                 if f"{c}_rate" in symbols and f"{c}_rate" not in results)  # fmt: skip
         names |= {symbols[rate]: _dotted(names[symbols[c]]) for c, rate in rates}
     return names
 
