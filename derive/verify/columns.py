@@ -1,30 +1,36 @@
 """Programs on columns of numbers: thousands of samples in one operation, in floats and in pairs.
 
-What is no longer needed is let go, so that columns stay in the cache. Sine, cosine and atan2 are
-rounded correctly: by a value of more digits, or by a ball where even that leaves a doubt.
+What is no longer needed is let go, so that columns stay in the cache. What libm knows is rounded
+correctly: sine, cosine and atan2 by a value of more digits, or by a ball where even that leaves a
+doubt, all others by balls.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cache
 from typing import Any
 
 import numpy as np
+from flint import arb, ctx
 from numpy.typing import NDArray
 
-from derive.program.arithmetic import LIBM, extended, working
+from derive.program.arithmetic import LIBM, extended, pair_of, working
 from derive.program.indexed import Loop
 from derive.program.pairs import Pair
 from derive.program.program import Line, Op, Program, component_names, operands_of
 from derive.program.run import numbers_of, run_lines, values_of
 from derive.scene.formula import Arithmetic
-from derive.verify.operators import IN_DOUBLES, UNROUNDED, pair_sines
+from derive.verify.operators import IN_BALLS, IN_DOUBLES, UNROUNDED, pair_sines
 
 Column = NDArray[Any]
 SMALL, LARGE = 2.0**-27, 2.0**20
 """Sines are taken in pairs between these; below, x is the float next to sin x, and 1 to cos x."""
 FAR = 2.0**200
 """Components of an angle's direction are taken in pairs up to this, and down to its inverse."""
+QUICKLY = ("sin", "cos", "atan2")
+"""Functions of libm that more digits than a float's round rightly nearly always, before balls."""
+BITS = 200  # of balls: a double's range apart, two pairs differ within 106
 SURE = {np.float32: 2.0**-46, np.float64: 2.0**-94}
 """Relative errors that the values of more digits keep: a libm's in double, and a pair's."""
 
@@ -105,9 +111,32 @@ def arithmetics(dtype: type) -> Arithmetics:
     """Return the arithmetics of a precision: of float or of double."""
     made = _with_numbers(extended(dtype))
     own = _with_numbers({**working(dtype), **{n: _correctly(n, dtype) for n in LIBM}})
-    true_made = _with_numbers({**extended(np.float64), **UNROUNDED})
+    true_made = _with_numbers(_unrounded())
     true = true_made if dtype is np.float64 else doubles()
     return Arithmetics(dtype, made, own, true_made, true)
+
+
+def _unrounded() -> Arithmetic:
+    """Return pairs of doubles as if they were numbers of all digits: nothing is left below."""
+    own = {**extended(np.float64), **UNROUNDED}
+    return {**own, **{name: _by_balls(name) for name in sorted(LIBM) if name not in own}}
+
+
+def _by_balls(name: str) -> Callable[..., Pair]:
+    """Return a function of libm on columns of pairs, each value found in a ball."""
+
+    def one(*given: float) -> tuple[float, float]:
+        with ctx.workprec(BITS):
+            pairs = zip(given[::2], given[1::2], strict=True)
+            ball = IN_BALLS[name](*(arb(float(a)) + arb(float(b)) for a, b in pairs))
+            if not ball.is_finite():
+                return float("nan"), 0.0
+            mantissa, exponent = ball.mid().man_exp()
+        high, low = pair_of(Fraction(int(mantissa)) * Fraction(2) ** int(exponent), np.float64)
+        return float(high), float(low)
+
+    each = np.vectorize(one, otypes=(np.float64, np.float64))
+    return lambda *pairs: each(*(part for pair in pairs for part in pair))
 
 
 @cache
@@ -124,6 +153,8 @@ def _with_numbers(arithmetic: Arithmetic) -> Arithmetic:
 def _correctly(name: str, dtype: type) -> Callable[..., Any]:
     """Return a function of libm correctly rounded, the same on every machine, for columns."""
     with_balls = working(dtype)[name]
+    if name not in QUICKLY:
+        return with_balls
     value = _single if dtype is np.float32 else _double
 
     def each(*given: Any) -> Any:

@@ -25,7 +25,9 @@ ROWS = {
     "lower/derivative.py": """lambda g, v: (
         g.add([g.number(1), g.mul([g.number(-1), g.power(g.call("tanh", *v), 2)])]),
     )""",
-    "verify/operators.py": "Meaning(lambda x: x.tanh(), slope=lambda _, __, y: 1 - y * y)",
+    "verify/operators.py": (
+        "Meaning(lambda x: x.tanh(), doubles=np.tanh, slope=lambda _, __, y: 1 - y * y)"
+    ),
 }
 SCENE = """
 wanted = ["drag", "drag_jacobian"]
@@ -46,6 +48,7 @@ pin = { on = "bob", force = "?pin", couple = ["?cx", "-k*tanh(2*phi)", "?cz"] }
 [results]
 drag = "phi_ddot*tanh(phi)"
 """
+MOST = 8.0  # u
 RUN = """
 import json, sys
 from pathlib import Path
@@ -55,8 +58,12 @@ from derive.emit.files import scene_files
 from derive.library.library import library
 from derive.scene import parse_scene
 from derive.verify.prove import prove
+from derive.verify.search import Sampling
+from derive.verify.stated import figures
 made = library(parse_scene(sys.stdin.read(), "odd"))
 prove(made)
+few = Sampling(samples=64, rounds=1, batch=16, balls=1, corners=1)
+print(json.dumps([[m.median, m.worst] for m in figures(made, few)]))
 texts = {name.partition("/")[2]: text for name, text in scene_files(made, (), "").items()}
 files, here = Files(texts, ""), Path(sys.argv[1])
 for one in loaded(made, files, here, find_compiler()):
@@ -98,7 +105,11 @@ def test_a_row_a_room_is_all_that_a_new_operator_takes(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     once, twice = math.tanh(0.75), math.tanh(1.5)
     slope = -2 * (1 - twice**2) * once - twice * (1 - once**2)
-    for line, room in zip(done.stdout.splitlines(), (1e-6, 1e-15, 1e-15), strict=True):
+    errors, *lines = done.stdout.splitlines()
+    each = json.loads(errors)
+    assert len(each) == 6  # drag, and both of drag_jacobian, in float and in double
+    assert all(0 < median <= worst < MOST for median, worst in each)
+    for line, room in zip(lines, (1e-6, 1e-15, 1e-15), strict=True):
         found = json.loads(line)
         assert found["drag"] == pytest.approx([-twice * once], rel=room)
         assert found["jacobian"] == pytest.approx([slope], rel=room)
