@@ -189,7 +189,7 @@ def _put_together(
     short: dict[Expr, Expr] = {}
     named: dict[Symbol, Expr] = {}
     for symbol, value in problem.definitions.items():
-        full, part = _plainer(value.xreplace(whole)), _plainer(value.xreplace(short))
+        full, part = _plainer(value.xreplace(short | whole)), _plainer(value.xreplace(short))
         if full.count_ops() <= LONGEST:
             whole[symbol] = full
         if part.count_ops() <= SHORT:
@@ -198,24 +198,24 @@ def _put_together(
             named[symbol] = part
 
     def shown(value: Expr) -> Expr:
-        full = _plainer(value.xreplace(whole))
+        """Return a value as its line shows it; no line says only that it equals another."""
+        value = named.get(value, value)
+        full = _plainer(value.xreplace(short | whole))
         return full if full.count_ops() <= LONGEST else value.xreplace(short)
 
     rows = [shown(row) for row in problem.rows]
     answers = {s: shown(value) for s, value in problem.answers.items()}
-    return _read(named, short, [*rows, *answers.values()]), rows, answers
+    return _read(named, [*rows, *answers.values()]), rows, answers
 
 
-def _read(
-    named: Mapping[Symbol, Expr], short: Mapping[Expr, Expr], ends: Iterable[Expr]
-) -> dict[Symbol, Expr]:
+def _read(named: dict[Symbol, Expr], ends: Iterable[Expr]) -> dict[Symbol, Expr]:
     """Return the named quantities that other lines speak of, in their order."""
     read = {s for e in ends for s in e.free_symbols}
     kept: dict[Symbol, Expr] = {}
-    for symbol, value in reversed((dict(short) | dict(named)).items()):
+    for symbol, value in reversed(named.items()):
         if symbol in read:
-            kept[symbol] = named.get(symbol, value)
-            read |= kept[symbol].free_symbols
+            kept[symbol] = value
+            read |= value.free_symbols
     return dict(reversed(kept.items()))
 
 
