@@ -139,6 +139,8 @@ def hostile(
     names = [c for q in setup.inputs for c in q.components]
     middle = {q.name: float(((q.low or 0) + (q.high or 0)) / 2) for q in setup.inputs}
     found = [dict(middle)]
+    if not names:
+        return found
     found += [middle | {n: x} for n in names for x in (0.0, -middle[n], nan, inf, -inf)]
     info = np.finfo(precision.dtype)
     ends = (float(info.max), float(info.smallest_normal), float(info.smallest_subnormal))

@@ -14,8 +14,8 @@ _COEFFICIENTS = {
 SPELLED_FACTORS = 4
 LONGEST = 80
 """Characters of a formula that is read with pleasure."""
-INVERSE = re.compile("J_([xyz][xyz])'*")
-"""Entries of the inverse inertia tensor, which are constants themselves wherever they stand."""
+INVERSE = re.compile("J_([xyz]{2}|[123]{2})'*")
+"""Entries of the inverse of what multiplies unknowns, constants themselves wherever they stand."""
 
 
 def spelling(graph: Graph, value: Value) -> str:
@@ -59,6 +59,8 @@ def formula(graph: Graph, value: Value) -> str:
     >>> g = Graph()
     >>> formula(g, g.mul([g.number(2), g.parameter("m"), g.power(g.parameter("r"), 2)]))
     '2*m*r^2'
+    >>> formula(g, g.mul([g.number(-1), g.add([g.parameter("m"), g.parameter("r")])]))
+    '-(m + r)'
     """
     coefficient, node = value
     sign = "-" if coefficient < 0 else ""
@@ -68,7 +70,7 @@ def formula(graph: Graph, value: Value) -> str:
     body = _node_text(graph, node)
     if not sign + factor and graph.nodes[node][0] in ("let", "cut") and body[0] == "(":
         return body[1:-1]
-    if factor and graph.nodes[node][0] == "sum":
+    if sign + factor and graph.nodes[node][0] == "sum":
         body = f"({body})"
     return sign + (f"{factor}*{body}" if factor else body)
 
@@ -82,7 +84,7 @@ def meaning(graph: Graph, value: Value) -> str:
     """
     inverse = INVERSE.fullmatch(graph.names.get(value[1], "")) if value[0] == 1 else None
     if inverse:
-        return f"{inverse[1]} of the inverse inertia tensor"
+        return f"entry {inverse[1]} of the inverse of the matrix that multiplies the unknowns"
     text = formula(graph, value)
     if len(text) <= LONGEST:
         return text

@@ -95,7 +95,8 @@ class Answers:
         result = next((r for r in self.machine.results if r.name == name), None)
         if result is not None:
             every = symbols(written_out(result.formula, self.machine.results))
-            parts = dict.fromkeys(ANSWER.sub("", s) for s in every)
+            own = {r.name for r in self.machine.results}  # of which none stands in `every`
+            parts = dict.fromkeys(part for s in every if (part := ANSWER.sub("", s)) not in own)
             return tuple(s for part in parts for s in self._steps(part))
         if name in ("kinetic_energy", "energy"):
             return tuple(energy_form(self.frames, body.name) for body in self.machine.bodies)

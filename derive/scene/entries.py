@@ -114,7 +114,7 @@ OWN_TURNS, SPIN = "from the axes to the body's own", "relative to the axes, abou
 BODY = (
     CENTRE,
     Entry("turned", "turns through coordinates", OWN_TURNS, scope="places"),
-    Entry("spin", "formula", f"{SPIN}, of a sphere about that from the point to its centre",
+    Entry("spin", "formula", f"{SPIN}, of a sphere about that of x, y, z on which its centre lies",
           "rad/s", "motions"),
 )  # fmt: skip
 """What a single body may say besides its kind or shape."""

@@ -170,7 +170,13 @@ def _size(scene: Scene, values: Mapping[str, Any], tensor: Tensor) -> Any:
 def _tensor(scene: Scene, values: Mapping[str, Any], entries: Entries) -> list[list[Any]]:
     fixed = {p.name: float(p.value) for p in scene.parameters if p.value is not None}
     numbers = {**values, **fixed}
-    own: Arithmetic = {**arithmetics(np.float64).own, "number": float, "power": _power}
+    known = arithmetics(np.float64).own
+    own: Arithmetic = {
+        **known,
+        "number": float,
+        "power": _power,
+        "tan": lambda x: known["sin"](x) / known["cos"](x),
+    }
     with np.errstate(all="ignore"):
         xx, yy, zz, xy, xz, yz = (
             np.float64(0) if f is None else np.asarray(evaluate(f, numbers, own)) for f in entries

@@ -64,7 +64,7 @@ class Point:
 
 
 def prove(library: Library) -> None:
-    """Raise ProofError unless every program satisfies its truth at exact random points.
+    """Raise ProofError unless every program satisfies its problem at exact random points.
 
     Raises NoValueError if no such point is found at which the scene's formulas have values.
     """
@@ -74,7 +74,7 @@ def prove(library: Library) -> None:
             if any(map(_halves_angles, (library.setup, *library.functions, *library.rates))):
                 raise IrrationalError
             _prove_at(library, every, point(library, number))
-        except IrrationalError:
+        except (IrrationalError, ZeroDivisionError):  # a cosine of 1 is 0 in fractions
             with ctx.workprec(BITS):
                 _prove_in_balls(library, every, number)
 

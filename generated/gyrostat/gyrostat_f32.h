@@ -30,14 +30,14 @@ typedef struct {
     float C_3; /* C_3 */
     float I_xy; /* I_xy */
     float C_2; /* C_2 */
-    float J_xx; /* xx of the inverse inertia tensor */
+    float J_xx; /* entry xx of the inverse of the matrix that multiplies the unknowns */
     float I_xx_minus_I_yy; /* I_xx - I_yy */
     float C_1; /* C_1 */
-    float J_xy; /* xy of the inverse inertia tensor */
-    float J_xz; /* xz of the inverse inertia tensor */
-    float J_yy; /* yy of the inverse inertia tensor */
-    float J_yz; /* yz of the inverse inertia tensor */
-    float J_zz; /* zz of the inverse inertia tensor */
+    float J_xy; /* entry xy of the inverse of the matrix that multiplies the unknowns */
+    float J_xz; /* entry xz of the inverse of the matrix that multiplies the unknowns */
+    float J_yy; /* entry yy of the inverse of the matrix that multiplies the unknowns */
+    float J_yz; /* entry yz of the inverse of the matrix that multiplies the unknowns */
+    float J_zz; /* entry zz of the inverse of the matrix that multiplies the unknowns */
     float one_over_C_1; /* 1/C_1 */
     float one_over_C_2; /* 1/C_2 */
     float one_over_C_3; /* 1/C_3 */

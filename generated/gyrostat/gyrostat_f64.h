@@ -30,14 +30,14 @@ typedef struct {
     double C_3; /* C_3 */
     double I_xy; /* I_xy */
     double C_2; /* C_2 */
-    double J_xx; /* xx of the inverse inertia tensor */
+    double J_xx; /* entry xx of the inverse of the matrix that multiplies the unknowns */
     double I_xx_minus_I_yy; /* I_xx - I_yy */
     double C_1; /* C_1 */
-    double J_xy; /* xy of the inverse inertia tensor */
-    double J_xz; /* xz of the inverse inertia tensor */
-    double J_yy; /* yy of the inverse inertia tensor */
-    double J_yz; /* yz of the inverse inertia tensor */
-    double J_zz; /* zz of the inverse inertia tensor */
+    double J_xy; /* entry xy of the inverse of the matrix that multiplies the unknowns */
+    double J_xz; /* entry xz of the inverse of the matrix that multiplies the unknowns */
+    double J_yy; /* entry yy of the inverse of the matrix that multiplies the unknowns */
+    double J_yz; /* entry yz of the inverse of the matrix that multiplies the unknowns */
+    double J_zz; /* entry zz of the inverse of the matrix that multiplies the unknowns */
     double one_over_C_1; /* 1/C_1 */
     double one_over_C_2; /* 1/C_2 */
     double one_over_C_3; /* 1/C_3 */

@@ -28,13 +28,13 @@ typedef struct {
     float J_yy_minus_J_zz; /* J_yy - J_zz */
     float I_w; /* I_w */
     float J_xy; /* J_xy */
-    float k1; /* xx of the inverse inertia tensor */
+    float k1; /* entry xx of the inverse of the matrix that multiplies the unknowns */
     float J_xx_minus_J_yy; /* J_xx - J_yy */
-    float k2; /* xy of the inverse inertia tensor */
-    float k3; /* xz of the inverse inertia tensor */
-    float k4; /* yy of the inverse inertia tensor */
-    float k5; /* yz of the inverse inertia tensor */
-    float k6; /* zz of the inverse inertia tensor */
+    float k2; /* entry xy of the inverse of the matrix that multiplies the unknowns */
+    float k3; /* entry xz of the inverse of the matrix that multiplies the unknowns */
+    float k4; /* entry yy of the inverse of the matrix that multiplies the unknowns */
+    float k5; /* entry yz of the inverse of the matrix that multiplies the unknowns */
+    float k6; /* entry zz of the inverse of the matrix that multiplies the unknowns */
     float one_over_I_w; /* 1/I_w */
 } reaction_wheel_satellite_constants_f32;
 

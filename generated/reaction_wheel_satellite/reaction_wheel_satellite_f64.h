@@ -28,13 +28,13 @@ typedef struct {
     double J_yy_minus_J_zz; /* J_yy - J_zz */
     double I_w; /* I_w */
     double J_xy; /* J_xy */
-    double k1; /* xx of the inverse inertia tensor */
+    double k1; /* entry xx of the inverse of the matrix that multiplies the unknowns */
     double J_xx_minus_J_yy; /* J_xx - J_yy */
-    double k2; /* xy of the inverse inertia tensor */
-    double k3; /* xz of the inverse inertia tensor */
-    double k4; /* yy of the inverse inertia tensor */
-    double k5; /* yz of the inverse inertia tensor */
-    double k6; /* zz of the inverse inertia tensor */
+    double k2; /* entry xy of the inverse of the matrix that multiplies the unknowns */
+    double k3; /* entry xz of the inverse of the matrix that multiplies the unknowns */
+    double k4; /* entry yy of the inverse of the matrix that multiplies the unknowns */
+    double k5; /* entry yz of the inverse of the matrix that multiplies the unknowns */
+    double k6; /* entry zz of the inverse of the matrix that multiplies the unknowns */
     double one_over_I_w; /* 1/I_w */
 } reaction_wheel_satellite_constants_f64;
 

@@ -29,13 +29,13 @@ typedef struct {
     float I_yz; /* I_yz */
     float I_yy_minus_I_zz; /* I_yy - I_zz */
     float I_xy; /* I_xy */
-    float J_xx; /* xx of the inverse inertia tensor */
+    float J_xx; /* entry xx of the inverse of the matrix that multiplies the unknowns */
     float I_xx_minus_I_yy; /* I_xx - I_yy */
-    float J_xy; /* xy of the inverse inertia tensor */
-    float J_xz; /* xz of the inverse inertia tensor */
-    float J_yy; /* yy of the inverse inertia tensor */
-    float J_yz; /* yz of the inverse inertia tensor */
-    float J_zz; /* zz of the inverse inertia tensor */
+    float J_xy; /* entry xy of the inverse of the matrix that multiplies the unknowns */
+    float J_xz; /* entry xz of the inverse of the matrix that multiplies the unknowns */
+    float J_yy; /* entry yy of the inverse of the matrix that multiplies the unknowns */
+    float J_yz; /* entry yz of the inverse of the matrix that multiplies the unknowns */
+    float J_zz; /* entry zz of the inverse of the matrix that multiplies the unknowns */
     float two_over_m; /* 2*1/m */
     float k1; /* I_xz*J_xx - I_yz*J_xy + (I_xx - I_yy)*J_xz */
     float k2; /* I_xy*J_xx + J_xy*(I_xx - I_zz) - I_yz*J_xz */

@@ -29,13 +29,13 @@ typedef struct {
     double I_yz; /* I_yz */
     double I_yy_minus_I_zz; /* I_yy - I_zz */
     double I_xy; /* I_xy */
-    double J_xx; /* xx of the inverse inertia tensor */
+    double J_xx; /* entry xx of the inverse of the matrix that multiplies the unknowns */
     double I_xx_minus_I_yy; /* I_xx - I_yy */
-    double J_xy; /* xy of the inverse inertia tensor */
-    double J_xz; /* xz of the inverse inertia tensor */
-    double J_yy; /* yy of the inverse inertia tensor */
-    double J_yz; /* yz of the inverse inertia tensor */
-    double J_zz; /* zz of the inverse inertia tensor */
+    double J_xy; /* entry xy of the inverse of the matrix that multiplies the unknowns */
+    double J_xz; /* entry xz of the inverse of the matrix that multiplies the unknowns */
+    double J_yy; /* entry yy of the inverse of the matrix that multiplies the unknowns */
+    double J_yz; /* entry yz of the inverse of the matrix that multiplies the unknowns */
+    double J_zz; /* entry zz of the inverse of the matrix that multiplies the unknowns */
     double two_over_m; /* 2*1/m */
     double k1; /* I_xz*J_xx - I_yz*J_xy + (I_xx - I_yy)*J_xz */
     double k2; /* I_xy*J_xx + J_xy*(I_xx - I_zz) - I_yz*J_xz */

@@ -1,7 +1,7 @@
 """Scenes of one body, written with frames, bodies and loads, beside the same body in short form.
 
-The two are read, stated and arranged by roads of their own; what a call costs must not tell them
-apart.
+The two are read into one kind of scene, but name their frames and quantities differently; what a
+call costs must not tell them apart.
 """
 
 import re

@@ -142,3 +142,17 @@ def test_a_step_that_a_function_needs_is_named(name: str, function: str, step: s
 @pytest.mark.parametrize("step", [*FORMS, "angular_velocities_add", "mass_centre_motion"])
 def test_a_step_that_a_plain_body_does_not_need_is_noticed(step: str) -> None:
     assert denied(known_of("free_body"), "moment", ("general_form", step)) == {step}
+
+
+STEM = """
+wanted = ["drive"]
+speeds.W = { unit = "rad/s", range = [0.1, 2], rate = { range = [-1, 1] } }
+frames.arm.angular_velocity = ["0", "0", "W"]
+bodies.bob = { frame = "arm", kind = "principal", moments = [1, 2, 2], mass = 3 }
+loads.pin = { on = "bob", force = "?pin", couple = ["?drive_x", "?side", "?turn"] }
+results.drive = "drive_x*2"
+"""
+
+
+def test_a_result_may_have_the_stem_of_an_unknown_that_it_is_made_of() -> None:
+    assert mechanism(parse_scene(STEM, "stem")).problem("drive").outputs[0].name == "drive"

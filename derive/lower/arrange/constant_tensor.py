@@ -5,7 +5,8 @@ made once and a call multiplies by it: omega_dot = I^-1 (M - omega x (I omega)).
 of two is exact and keeps the determinant in range at any unit of inertia.
 """
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Sequence
 from itertools import permutations
 
 from sympy import Add, Expr, Function, Integer, Matrix, zeros
@@ -13,6 +14,7 @@ from sympy import Add, Expr, Function, Integer, Matrix, zeros
 from derive.lower.apart import apart
 from derive.lower.arrange.block import Block, Solution, Solve
 
+COMPONENT = re.compile("(.*)_([xyz])(_[a-z]+)?")
 SMALL = 3  # rows that cofactors are worth it for
 
 power_of_two = Function("power_of_two")
@@ -32,7 +34,9 @@ def constant_tensor(found: Solution, block: Block, rest: Solve) -> bool:  # noqa
     if order is None:
         return False
     b = found.column("b", block.right[list(order), :])
-    J = inverse(found.named, matrix[list(order), :])
+    J = inverse(
+        found.named, matrix[list(order), :], _axes(list(map(found.pivots.label, block.unknowns)))
+    )
     for k, u in enumerate(block.unknowns):
         found.solved(u, (J[k, :] * b)[0])
     return True
@@ -51,7 +55,20 @@ def _is_tensor(found: Solution, matrix: Matrix) -> bool:
     return symmetric and not found.pivots.vanish(trace, [(0, 0)])
 
 
-def inverse(named: Named, tensor: Matrix) -> Matrix:
+def _axes(unknowns: Sequence[str]) -> Sequence[str]:
+    """Return the axes that unknowns are components along, their numbers if of no one vector.
+
+    >>> _axes(["omega_dot_x", "omega_dot_z"]), _axes(["w_x_dot", "w_y_dot"]), _axes(["p_x", "q_y"])
+    (('x', 'z'), ('x', 'y'), ('1', '2'))
+    """
+    found = [COMPONENT.fullmatch(u) for u in unknowns]
+    vectors = {m.group(1, 3) if m else u for m, u in zip(found, unknowns, strict=True)}
+    axes = tuple(m[2] for m in found if m)
+    alike = len(vectors) == 1 and len({*axes}) == len(unknowns)
+    return axes if alike else tuple("123"[: len(unknowns)])
+
+
+def inverse(named: Named, tensor: Matrix, axes: Sequence[str]) -> Matrix:
     """Return the inverse of a symmetric tensor of at most three rows, block by block."""
     J = zeros(*tensor.shape)
     for block in _blocks(tensor):
@@ -60,7 +77,7 @@ def inverse(named: Named, tensor: Matrix) -> Matrix:
             J[block[0], block[0]] = 1 / part[0]
             continue
         for (i, k), value in _block_inverse(named, part).items():
-            name = f"J_{'xyz'[block[i]]}{'xyz'[block[k]]}"
+            name = f"J_{axes[block[i]]}{axes[block[k]]}"
             J[block[i], block[k]] = J[block[k], block[i]] = named("let", name, value)
     return J
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from mpmath import mp, mpf
 
-from derive.scene import Input, Scene
+from derive.scene import Input, Scene, SceneError
 from derive.scene.formula import Formula, evaluate
 from derive.scene.machine import INERTIAL, Frame
 from derive.verify.cloud.series import ARITHMETIC, Array, Series, each, moving, series, turn
@@ -207,6 +207,8 @@ class History:
         entries = [UNKNOWN * (1 if k < 3 else 0) if f is None else self.value(f).value
                    for k, f in enumerate(self.machine.body(name).inertia)]  # fmt: skip
         xx, yy, zz, xy, xz, yz = entries
+        if not all(map(mp.isfinite, entries)):  # nobody knows the root of what is about zero
+            raise SceneError(f"body '{name}': its inertia has no value that can be told")
         half = (xx + yy + zz) / 2
         return mp.matrix([[half - xx, xy, xz], [xy, half - yy, yz], [xz, yz, half - zz]])
 
