@@ -61,7 +61,10 @@ def options(command: argparse.ArgumentParser) -> None:
         "--until", type=float, metavar="SECONDS", help="move in time by the scene's step_rk4"
     )
     command.add_argument(
-        "--step", type=float, metavar="SECONDS", help=f"length of a step ({STEP:g}, with --until)"
+        "--step",
+        type=float,
+        metavar="SECONDS",
+        help=f"longest step, of which --until is a multiple ({STEP:g})",
     )
     command.add_argument(
         "--plot", type=Path, metavar="FILE", help="write the motion as SVG (with --until)"
@@ -104,7 +107,7 @@ def _solved(given: argparse.Namespace, found: Instrument, values: dict[str, floa
         return Solved(_moved(given, found, values), [])
     try:
         if given.limit:
-            return Solved(list(_limits(given, found, values)), [])
+            return _limits(given, found, values)
         return _every_answer(found, values)
     except LinAlgError as error:
         raise SceneError(
@@ -125,16 +128,19 @@ def _require_one_question(given: argparse.Namespace) -> None:
         )
 
 
-def _limits(
-    given: argparse.Namespace, found: Instrument, values: dict[str, float]
-) -> Iterator[Row]:
+NOWHERE = "none in its range"
+
+
+def _limits(given: argparse.Namespace, found: Instrument, values: dict[str, float]) -> Solved:
     unit = {c: q.unit for q in found.quantities() for c in q.components}
     wanted = found.library.scene.wanted
     if "linearised" not in wanted:
         raise SceneError(f"scene '{found.name}': --limit needs wanted = [..., \"linearised\"]")
+    rows: list[Row] = []
     for name in given.limit:
-        for value in limits(found, values, _known(found, name)):
-            yield "limit of stability", name, f"{value:.12g}", unit.get(name, "")
+        each = [f"{v:.12g}" for v in limits(found, values, _known(found, name))]
+        rows += [("limit of stability", name, v, unit.get(name, "")) for v in each or [NOWHERE]]
+    return Solved(rows, [])
 
 
 def _every_answer(found: Instrument, values: dict[str, float]) -> Solved:

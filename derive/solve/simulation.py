@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
-from math import isfinite
+from math import ceil, isfinite
 from typing import Any
 
 import casadi
@@ -16,6 +16,7 @@ from derive.solve.instrument import Instrument
 
 STEP = "step_rk4"
 WIDTH, HEIGHT, LEFT, GAP = 640, 110, 90, 14
+ROUNDING = 1e-12  # so that 1 s is ten steps of 0.1 s, and no short one more
 MOST = 10_000_000  # steps: what fits into the memory of a small machine
 SHOWN = 600  # points of a line, at most
 
@@ -34,10 +35,13 @@ def simulated(
 ) -> Simulation:
     """Return the motion from the state in ``given``, other inputs held, by ``step_rk4``.
 
+    Steps are as long as each other, at most ``step``, and end at ``until``.
+
     Raises SceneError if the scene does not ask for that step, a state is not given, a time has no
     sense, or the motion does not stay finite.
     """
     count = _count(until, step)
+    step = until / count if count else step
     scene = found.library.scene
     if STEP not in scene.wanted:
         raise SceneError(f"scene '{found.name}': a simulation needs wanted = [..., \"{STEP}\"]")
@@ -70,7 +74,7 @@ def _count(until: float, step: float) -> int:
             f"--until must be at most {MOST:,} steps of --step {step:g}, that is "
             f"{MOST * step:g} s, not {until:g}"
         )
-    return round(until / step)
+    return ceil(until / step * (1 - ROUNDING))
 
 
 def _require_finite(

@@ -108,6 +108,20 @@ def test_every_root_and_every_limit_is_listed(capsys: pytest.CaptureFixture[str]
     assert "79.7890819598" in capsys.readouterr().out
 
 
+@pytest.mark.long
+def test_a_limit_that_is_nowhere_is_said_to_be(capsys: pytest.CaptureFixture[str]) -> None:
+    data = ["m=0.5", "r=0.05", "l=0.06", "g=9.81", "n=150"]
+    assert main(["solve", "sleeping_top", "--set", *data, "--limit", "alpha"]) == 0
+    assert "none in its range" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("step", "count"), [(3e-3, 4), (0.05, 1), (1e-3, 10)])
+def test_a_motion_ends_when_it_is_asked_to(step: float, count: int) -> None:
+    motion = simulated(top(), TOP | START, 0.01, step)
+    assert motion.times[-1] == pytest.approx(0.01, abs=1e-15)
+    assert len(motion.times) - 1 == count
+
+
 def test_a_motion_keeps_its_energy_and_is_plotted(tmp_path: Path) -> None:
     motion = simulated(top(), TOP | START, 1.0, 1e-3)
     ends = [{name: row[k] for name, row in motion.states.items()} for k in (0, -1)]
