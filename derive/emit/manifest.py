@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from derive import __version__
-from derive.emit.c.comment import SETUP_ERROR, of_what
+from derive.emit.c.comment import SETUP_ERROR, holds, of_what
 from derive.emit.c.signature import Names, dense
 from derive.emit.c.source import JACOBIAN_DENSE
 from derive.emit.c.text import pair_functions
@@ -110,6 +110,7 @@ def _setup(library: Library) -> dict[str, Any]:
 
 
 def _function(library: Library, program: Program, figures: Sequence[Measurement]) -> dict[str, Any]:
+    bodies = len(library.scene.bodies)
     return {
         "name": program.name,
         "says": program.says,
@@ -122,7 +123,8 @@ def _function(library: Library, program: Program, figures: Sequence[Measurement]
         "error": _error(program, figures),
         "singular": [{"where": s.where, "outputs": list(s.outputs)} for s in program.singular],
         "postconditions": [
-            {"step": s, "equation": equation_text(LECTURE[s])} for s in program.steps
+            {"step": s, "equation": equation_text(LECTURE[s]), "holds": holds(program, s, bodies)}
+            for s in program.steps
         ],
         "assumptions": list(program.assumptions),
     } | _choice(library, program)

@@ -115,8 +115,9 @@ def unsteady(machine: Scene, balances: Balances, given: Mapping[str, float]) -> 
     for m, x, y in zip(free, found, other, strict=False):
         if not small(x, 1) and abs(x) > abs(x - y):
             unit = balances.frames.words.vocabulary[m.unknown].unit
+            what = "acceleration" if m.kind == "coordinate" else "rate"
             yield (
-                f"'linearised' is about a state that is no equilibrium: the acceleration of "
+                f"'linearised' is about a state that is no equilibrium: the {what} of "
                 f"'{m.name}' is {float(x):.3g} {unit} there, {where}"
             )
 

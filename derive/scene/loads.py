@@ -69,14 +69,11 @@ def _spread(entry: Table, key: str) -> object:
 
 def _note_unknowns(reader: _Reader, name: str, entry: Table, key: str) -> None:
     parts = _spread(entry, key)
-    for place, part in enumerate(parts if isinstance(parts, list) else []):
+    for part in parts if isinstance(parts, list) else []:
         for found in MARK.findall(part) if isinstance(part, str) else []:
             what = f"the {key} of load '{name}'"
             if found not in reader.found:
-                meaning = f"{key} of {name}"
-                if isinstance(entry.entries.get(key), str):
-                    meaning += f" along {AXES[place]}"
-                reader.found[found] = Unknown(identifier(found, what), UNKNOWNS[key], name, meaning)
+                reader.found[found] = Unknown(identifier(found, what), UNKNOWNS[key], name)
 
 
 def _load(reader: _Reader, name: str, given: Table) -> Load:

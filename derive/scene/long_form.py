@@ -220,4 +220,4 @@ def _loads(scene: ShortForm, motion: Motion) -> tuple[list[Load], tuple[Unknown,
         names += held
         force = tuple(map(symbol, held))
     load = Force("external", BODY, "", FRAME, NOWHERE, FRAME, force, couple)  # type: ignore[arg-type]
-    return [load], tuple(Unknown(name, "", "external", "") for name in names)
+    return [load], tuple(Unknown(name, "", "external") for name in names)

@@ -127,7 +127,6 @@ class Unknown:
     name: str
     unit: str
     load: str
-    meaning: str
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from derive.scene.declaration import AXES, Input, Moving
+from derive.scene.formula import ZERO, symbols
 from derive.scene.groups import ANY
-from derive.scene.machine import Group, Groups, Scene
+from derive.scene.machine import Force, Group, Groups, Place, Scene, Unknown
 from derive.scene.results import ENERGIES, MATRICES, unknown_vectors
 from derive.scene.scalars import PER_SECOND
 
@@ -57,24 +58,17 @@ def _answer(name: str, components: tuple[str, ...], unit: str, says: str) -> Gro
 
 
 def _outputs(scene: Scene, states: Iterable[Group]) -> Iterator[Group]:
-    for u in scene.unknowns:
-        yield _answer(u.name, (u.name,), u.unit, u.meaning)
+    acting = {u.name: _acting(scene, u) for u in scene.unknowns}
+    yield from acting.values()
     for name in unknown_vectors(scene.unknowns):
-        first = next(u for u in scene.unknowns if u.name == f"{name}_x")
-        parts = tuple(f"{name}_{a}" for a in AXES)
-        unit, says = first.unit, first.meaning.removesuffix(" along x")
-        if len({u.unit for u in scene.unknowns if u.name in parts}) > 1:
-            unit, says = "", f"{says}, each in its own unit"
-        yield _answer(name, parts, unit, says)
+        yield _vector(name, [acting[f"{name}_{a}"] for a in AXES])
     yield from _accelerations(scene)
     results = {r.name for r in scene.results}
     rates = list(map(_rate_of, states))
     yield from (g for g in rates if g.name not in results)
     for name in ENERGIES:
         yield _answer(name, (name,), "J", name.replace("_", " "))
-    says = f"angular momentum along {scene.momentum.frame}"
-    parts = tuple(f"angular_momentum_{a}" for a in AXES)
-    yield _answer("angular_momentum", parts, "kg m^2/s", says)
+    yield _momentum(scene.momentum)
     for r in scene.results:
         yield _answer(r.name, (r.name,), r.unit, r.meaning)
     yield from (g for g in rates if g.name in results)  # by this name the result is meant
@@ -84,6 +78,46 @@ def _outputs(scene: Scene, states: Iterable[Group]) -> Iterator[Group]:
     unit = scene.steady.unit if scene.steady else ""
     free_of = "" if unit else ", without factors that never vanish, so in no unit"
     yield _answer("steady", parts, unit, f"what vanishes in a steady motion{free_of}")
+
+
+def _acting(scene: Scene, u: Unknown) -> Group:
+    """Return an unknown with the load and the body that it acts on, along the axes of that load.
+
+    An unknown that is no component, but stands in some, is told by the whole load.
+    """
+    load = next(f for f in scene.loads if isinstance(f, Force) and f.name == u.load)
+    kind, three = ("force", load.force) if u.unit == "N" else ("couple", load.couple)
+    axes = [axis for axis, f in zip(AXES, three, strict=True) if u.name in symbols(f)]
+    alone = [axis for axis, f in zip(AXES, three, strict=True) if str(f) == u.name]
+    on = f"on {load.on}" + (f" against {load.against}" if load.against else "")
+    says = f"unknown of the {kind} ({', '.join(map(str, three))}) of {load.name} {on}"
+    if alone == axes and len(axes) == 1:
+        says = f"{kind} of {load.name} {on} along {axes[0]}"
+    return replace(_answer(u.name, (u.name,), u.unit, says), frame=load.along)
+
+
+def _vector(name: str, parts: Sequence[Group]) -> Group:
+    """Return three unknowns as one, by one sentence if they are the vector of a load."""
+    whole, frames = _joined(name, parts), {g.frame for g in parts}
+    said = {g.meaning.removesuffix(f" along {a}") for g, a in zip(parts, AXES, strict=True)}
+    if len(said) == len(frames) == 1 and said.isdisjoint(g.meaning for g in parts):
+        return replace(whole, meaning=said.pop())
+    each = [g.meaning if len(frames) == 1 else f"{g.meaning} of {g.frame}" for g in parts]
+    mixed = len({g.unit for g in parts}) > 1
+    return replace(
+        whole,
+        unit="" if mixed else whole.unit,
+        frame=whole.frame if len(frames) == 1 else "",
+        meaning="; ".join(each) + (", each in its own unit" if mixed else ""),
+    )
+
+
+def _momentum(place: Place) -> Group:
+    """Return the angular momentum of bodies about a point, along the axes of its frame."""
+    at = f"({', '.join(map(str, place.at))})" if set(place.at) != {ZERO} else "the origin"
+    says = f"angular momentum of {', '.join(place.of)} about {at} of {place.frame}"
+    parts = tuple(f"angular_momentum_{a}" for a in AXES)
+    return replace(_answer("angular_momentum", parts, "kg m^2/s", says), frame=place.frame)
 
 
 def _rate_of(g: Group) -> Group:
@@ -99,7 +133,8 @@ def _accelerations(scene: Scene) -> Iterator[Group]:
     for m in (m for m in _moving(scene) if m.free):
         unit = PER_SECOND[m.unit]
         unit = PER_SECOND[unit] if m.kind == "coordinate" else unit
-        one = _answer(m.unknown, (m.unknown,), unit, f"acceleration of {m.vector or m.name}")
+        what = "acceleration" if m.kind == "coordinate" else "rate"
+        one = _answer(m.unknown, (m.unknown,), unit, f"{what} of {m.vector or m.name}")
         yield one
         if m.vector:
             vectors.setdefault(m.answer, []).append(one)

@@ -215,7 +215,7 @@ def _from_parameters(hot, name):
 
 
 def F():
-    """Force of pivot. Inputs: parameters, yaw, yaw_dot, yaw_ddot, pitch, pitch_dot, pitch_ddot, spin, spin_dot, spin_ddot, a_x, a_y."""
+    """Force of pivot on gondola. Inputs: parameters, yaw, yaw_dot, yaw_ddot, pitch, pitch_dot, pitch_ddot, spin, spin_dot, spin_ddot, a_x, a_y."""
     return _built(lambda: _from_parameters(_F(), "centrifuge_gondola_F"))
 
 
@@ -331,7 +331,7 @@ def _F():
 
 
 def M():
-    """Couple of pivot. Inputs: parameters, yaw, yaw_dot, yaw_ddot, pitch, pitch_dot, pitch_ddot, spin, spin_dot, spin_ddot, a_x, a_y."""
+    """Couple of pivot on gondola. Inputs: parameters, yaw, yaw_dot, yaw_ddot, pitch, pitch_dot, pitch_ddot, spin, spin_dot, spin_ddot, a_x, a_y."""
     return _built(lambda: _from_parameters(_M(), "centrifuge_gondola_M"))
 
 

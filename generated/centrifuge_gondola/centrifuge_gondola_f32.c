@@ -182,7 +182,7 @@ int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, fl
 #endif
 #endif
 
-/* Force of pivot. */
+/* Force of pivot on gondola. */
 void centrifuge_gondola_F_f32(const centrifuge_gondola_constants_f32 *constants, float yaw,
     float yaw_dot, float yaw_ddot, float pitch, float pitch_dot, float pitch_ddot, float spin,
     float spin_dot, float spin_ddot, float a_x, float a_y, float F[3])
@@ -273,7 +273,7 @@ void centrifuge_gondola_F_f32(const centrifuge_gondola_constants_f32 *constants,
     F[2] = t80;
 }
 
-/* Couple of pivot. */
+/* Couple of pivot on gondola. */
 void centrifuge_gondola_M_f32(const centrifuge_gondola_constants_f32 *constants, float yaw,
     float yaw_dot, float yaw_ddot, float pitch, float pitch_dot, float pitch_ddot, float spin,
     float spin_dot, float spin_ddot, float a_x, float a_y, float M[3])

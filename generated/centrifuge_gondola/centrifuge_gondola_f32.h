@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 35fa8da42b90b4e0.
+ * Body of these files: sha256 31debb929d5eeaca.
  */
 #ifndef CENTRIFUGE_GONDOLA_F32_H
 #define CENTRIFUGE_GONDOLA_F32_H
@@ -54,7 +54,7 @@ typedef struct {
 int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xz, float e_x,
     float e_z, centrifuge_gondola_constants_f32 *constants);
 
-/* Force of pivot.
+/* Force of pivot on gondola.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            yaw  rad  -3 .. 3  arm
  *            yaw_dot  rad/s  1 .. 3  rate of yaw
@@ -67,7 +67,7 @@ int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, fl
  *            spin_ddot  rad/s^2  -1 .. 1  acceleration of spin
  *            a_x  m/s^2  -50 .. 50  acceleration of the pivot along x
  *            a_y  m/s^2  -5 .. 5  acceleration of the pivot along y
- * Returned:  F[3]  N  force of pivot
+ * Returned:  F[3]  N  along inertial  force of pivot on gondola
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
@@ -82,7 +82,7 @@ void centrifuge_gondola_F_f32(const centrifuge_gondola_constants_f32 *constants,
     float yaw_dot, float yaw_ddot, float pitch, float pitch_dot, float pitch_ddot, float spin,
     float spin_dot, float spin_ddot, float a_x, float a_y, float F[3]);
 
-/* Couple of pivot.
+/* Couple of pivot on gondola.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            yaw  rad  -3 .. 3  arm
  *            yaw_dot  rad/s  1 .. 3  rate of yaw
@@ -95,7 +95,7 @@ void centrifuge_gondola_F_f32(const centrifuge_gondola_constants_f32 *constants,
  *            spin_ddot  rad/s^2  -1 .. 1  acceleration of spin
  *            a_x  m/s^2  -50 .. 50  acceleration of the pivot along x
  *            a_y  m/s^2  -5 .. 5  acceleration of the pivot along y
- * Returned:  M[3]  N m  couple of pivot
+ * Returned:  M[3]  N m  along inertial  couple of pivot on gondola
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
  *            step moving_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]

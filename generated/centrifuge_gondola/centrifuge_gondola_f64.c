@@ -182,7 +182,7 @@ int centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz
 #endif
 #endif
 
-/* Force of pivot. */
+/* Force of pivot on gondola. */
 void centrifuge_gondola_F_f64(const centrifuge_gondola_constants_f64 *constants, double yaw,
     double yaw_dot, double yaw_ddot, double pitch, double pitch_dot, double pitch_ddot, double spin,
     double spin_dot, double spin_ddot, double a_x, double a_y, double F[3])
@@ -273,7 +273,7 @@ void centrifuge_gondola_F_f64(const centrifuge_gondola_constants_f64 *constants,
     F[2] = t80;
 }
 
-/* Couple of pivot. */
+/* Couple of pivot on gondola. */
 void centrifuge_gondola_M_f64(const centrifuge_gondola_constants_f64 *constants, double yaw,
     double yaw_dot, double yaw_ddot, double pitch, double pitch_dot, double pitch_ddot, double spin,
     double spin_dot, double spin_ddot, double a_x, double a_y, double M[3])

@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 56c85ce3fc470ebf.
+ * Body of these files: sha256 16720760a0cc9d4d.
  */
 #ifndef CENTRIFUGE_GONDOLA_F64_H
 #define CENTRIFUGE_GONDOLA_F64_H
@@ -54,7 +54,7 @@ typedef struct {
 int centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xz,
     double e_x, double e_z, centrifuge_gondola_constants_f64 *constants);
 
-/* Force of pivot.
+/* Force of pivot on gondola.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            yaw  rad  -3 .. 3  arm
  *            yaw_dot  rad/s  1 .. 3  rate of yaw
@@ -67,7 +67,7 @@ int centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz
  *            spin_ddot  rad/s^2  -1 .. 1  acceleration of spin
  *            a_x  m/s^2  -50 .. 50  acceleration of the pivot along x
  *            a_y  m/s^2  -5 .. 5  acceleration of the pivot along y
- * Returned:  F[3]  N  force of pivot
+ * Returned:  F[3]  N  along inertial  force of pivot on gondola
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
@@ -82,7 +82,7 @@ void centrifuge_gondola_F_f64(const centrifuge_gondola_constants_f64 *constants,
     double yaw_dot, double yaw_ddot, double pitch, double pitch_dot, double pitch_ddot, double spin,
     double spin_dot, double spin_ddot, double a_x, double a_y, double F[3]);
 
-/* Couple of pivot.
+/* Couple of pivot on gondola.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            yaw  rad  -3 .. 3  arm
  *            yaw_dot  rad/s  1 .. 3  rate of yaw
@@ -95,7 +95,7 @@ void centrifuge_gondola_F_f64(const centrifuge_gondola_constants_f64 *constants,
  *            spin_ddot  rad/s^2  -1 .. 1  acceleration of spin
  *            a_x  m/s^2  -50 .. 50  acceleration of the pivot along x
  *            a_y  m/s^2  -5 .. 5  acceleration of the pivot along y
- * Returned:  M[3]  N m  couple of pivot
+ * Returned:  M[3]  N m  along inertial  couple of pivot on gondola
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
  *            step moving_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]

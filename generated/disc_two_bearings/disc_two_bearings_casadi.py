@@ -223,7 +223,7 @@ def _couple():
 
 
 def R_up():
-    """Force of B. Inputs: parameters, ."""
+    """Force of B on disc along z. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_R_up(), "disc_two_bearings_R_up"))
 
 
@@ -247,7 +247,7 @@ def _R_up():
 
 
 def R_down():
-    """Force of A. Inputs: parameters, ."""
+    """Unknown of the force (A_x, A_y, -R_down) of A on disc. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_R_down(), "disc_two_bearings_R_down"))
 
 

@@ -140,13 +140,13 @@ void disc_two_bearings_couple_f32(const disc_two_bearings_constants_f32 *constan
     *couple = constants->s0010;
 }
 
-/* Force of B. */
+/* Force of B on disc along z. */
 void disc_two_bearings_R_up_f32(const disc_two_bearings_constants_f32 *constants, float *R_up)
 {
     *R_up = constants->k1;
 }
 
-/* Force of A. */
+/* Unknown of the force (A_x, A_y, -R_down) of A on disc. */
 void disc_two_bearings_R_down_f32(const disc_two_bearings_constants_f32 *constants, float *R_down)
 {
     *R_down = constants->s0008;

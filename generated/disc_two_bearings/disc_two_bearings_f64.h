@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 194a06a2f01ae1bb.
+ * Body of these files: sha256 fe2b6d1282391490.
  */
 #ifndef DISC_TWO_BEARINGS_F64_H
 #define DISC_TWO_BEARINGS_F64_H
@@ -57,9 +57,9 @@ int disc_two_bearings_setup_f64(double m, double r, double w, double W, double d
  */
 void disc_two_bearings_couple_f64(const disc_two_bearings_constants_f64 *constants, double *couple);
 
-/* Force of B.
+/* Force of B on disc along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
- * Returned:  R_up  N  force of B
+ * Returned:  R_up  N  along axle  force of B on disc along z
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of R_up; 200000
  *            samples of the ranges, 65536 searched from the worst, 108 hard ones).
@@ -69,9 +69,9 @@ void disc_two_bearings_couple_f64(const disc_two_bearings_constants_f64 *constan
  */
 void disc_two_bearings_R_up_f64(const disc_two_bearings_constants_f64 *constants, double *R_up);
 
-/* Force of A.
+/* Unknown of the force (A_x, A_y, -R_down) of A on disc.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
- * Returned:  R_down  N  force of A
+ * Returned:  R_down  N  along axle  unknown of the force (A_x, A_y, -R_down) of A on disc
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.22, largest 0.9 u of the largest product or sum in the equation (of R_down;
  *            200000 samples of the ranges, 65536 searched from the worst, 108 hard ones).

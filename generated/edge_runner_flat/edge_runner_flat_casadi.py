@@ -197,7 +197,7 @@ def _from_parameters(hot, name):
 
 
 def N():
-    """Force of ground. Inputs: parameters, W."""
+    """Force of ground on roller along z. Inputs: parameters, W."""
     return _built(lambda: _from_parameters(_N(), "edge_runner_flat_N"))
 
 
@@ -279,7 +279,7 @@ def _spin_rel():
 
 
 def hinge_radial():
-    """Force of hinge. Inputs: parameters, W."""
+    """Force of hinge on roller along x. Inputs: parameters, W."""
     return _built(lambda: _from_parameters(_hinge_radial(), "edge_runner_flat_hinge_radial"))
 
 
@@ -306,7 +306,7 @@ def _hinge_radial():
 
 
 def hinge_z():
-    """Force of hinge. Inputs: parameters, W."""
+    """Force of hinge on roller along z. Inputs: parameters, W."""
     return _built(lambda: _from_parameters(_hinge_z(), "edge_runner_flat_hinge_z"))
 
 

@@ -131,7 +131,7 @@ int edge_runner_flat_setup_f32(float m, float r, float L, float g,
 #endif
 #endif
 
-/* Force of ground. */
+/* Force of ground on roller along z. */
 void edge_runner_flat_N_f32(const edge_runner_flat_constants_f32 *constants, float W, float *N)
 {
     const float t0 = W * W;
@@ -158,7 +158,7 @@ void edge_runner_flat_spin_rel_f32(const edge_runner_flat_constants_f32 *constan
     *spin_rel = t0;
 }
 
-/* Force of hinge. */
+/* Force of hinge on roller along x. */
 void edge_runner_flat_hinge_radial_f32(const edge_runner_flat_constants_f32 *constants, float W,
     float *hinge_radial)
 {
@@ -167,7 +167,7 @@ void edge_runner_flat_hinge_radial_f32(const edge_runner_flat_constants_f32 *con
     *hinge_radial = t1;
 }
 
-/* Force of hinge. */
+/* Force of hinge on roller along z. */
 void edge_runner_flat_hinge_z_f32(const edge_runner_flat_constants_f32 *constants, float W,
     float *hinge_z)
 {

@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 cd0b0bee239bdf29.
+ * Body of these files: sha256 e763197c265244a7.
  */
 #ifndef EDGE_RUNNER_FLAT_F32_H
 #define EDGE_RUNNER_FLAT_F32_H
@@ -46,10 +46,10 @@ typedef struct {
 int edge_runner_flat_setup_f32(float m, float r, float L, float g,
     edge_runner_flat_constants_f32 *constants);
 
-/* Force of ground.
+/* Force of ground on roller along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 5  speed of the driven shaft
- * Returned:  N  N  force of ground
+ * Returned:  N  N  along axle  force of ground on roller along z
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.42, largest 2.3 u of the largest product or sum in the equation (of N; 200000
  *            samples of the ranges, 65536 searched from the worst, 114 hard ones).
@@ -84,10 +84,10 @@ void edge_runner_flat_gyro_gain_f32(const edge_runner_flat_constants_f32 *consta
 void edge_runner_flat_spin_rel_f32(const edge_runner_flat_constants_f32 *constants, float W,
     float *spin_rel);
 
-/* Force of hinge.
+/* Force of hinge on roller along x.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 5  speed of the driven shaft
- * Returned:  hinge_radial  N  force of hinge
+ * Returned:  hinge_radial  N  along axle  force of hinge on roller along x
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
@@ -99,10 +99,10 @@ void edge_runner_flat_spin_rel_f32(const edge_runner_flat_constants_f32 *constan
 void edge_runner_flat_hinge_radial_f32(const edge_runner_flat_constants_f32 *constants, float W,
     float *hinge_radial);
 
-/* Force of hinge.
+/* Force of hinge on roller along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 5  speed of the driven shaft
- * Returned:  hinge_z  N  force of hinge
+ * Returned:  hinge_z  N  along axle  force of hinge on roller along z
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.51, largest 2.9 u of the largest product or sum in the equation (of hinge_z;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).

@@ -131,7 +131,7 @@ int edge_runner_flat_setup_f64(double m, double r, double L, double g,
 #endif
 #endif
 
-/* Force of ground. */
+/* Force of ground on roller along z. */
 void edge_runner_flat_N_f64(const edge_runner_flat_constants_f64 *constants, double W, double *N)
 {
     const double t0 = W * W;
@@ -158,7 +158,7 @@ void edge_runner_flat_spin_rel_f64(const edge_runner_flat_constants_f64 *constan
     *spin_rel = t0;
 }
 
-/* Force of hinge. */
+/* Force of hinge on roller along x. */
 void edge_runner_flat_hinge_radial_f64(const edge_runner_flat_constants_f64 *constants, double W,
     double *hinge_radial)
 {
@@ -167,7 +167,7 @@ void edge_runner_flat_hinge_radial_f64(const edge_runner_flat_constants_f64 *con
     *hinge_radial = t1;
 }
 
-/* Force of hinge. */
+/* Force of hinge on roller along z. */
 void edge_runner_flat_hinge_z_f64(const edge_runner_flat_constants_f64 *constants, double W,
     double *hinge_z)
 {

@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 440684dcbb39e9a9.
+ * Body of these files: sha256 2197ec5bef95300b.
  */
 #ifndef EDGE_RUNNER_FLAT_F64_H
 #define EDGE_RUNNER_FLAT_F64_H
@@ -46,10 +46,10 @@ typedef struct {
 int edge_runner_flat_setup_f64(double m, double r, double L, double g,
     edge_runner_flat_constants_f64 *constants);
 
-/* Force of ground.
+/* Force of ground on roller along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 5  speed of the driven shaft
- * Returned:  N  N  force of ground
+ * Returned:  N  N  along axle  force of ground on roller along z
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.42, largest 2.4 u of the largest product or sum in the equation (of N; 200000
  *            samples of the ranges, 65536 searched from the worst, 114 hard ones).
@@ -84,10 +84,10 @@ void edge_runner_flat_gyro_gain_f64(const edge_runner_flat_constants_f64 *consta
 void edge_runner_flat_spin_rel_f64(const edge_runner_flat_constants_f64 *constants, double W,
     double *spin_rel);
 
-/* Force of hinge.
+/* Force of hinge on roller along x.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 5  speed of the driven shaft
- * Returned:  hinge_radial  N  force of hinge
+ * Returned:  hinge_radial  N  along axle  force of hinge on roller along x
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
@@ -100,10 +100,10 @@ void edge_runner_flat_spin_rel_f64(const edge_runner_flat_constants_f64 *constan
 void edge_runner_flat_hinge_radial_f64(const edge_runner_flat_constants_f64 *constants, double W,
     double *hinge_radial);
 
-/* Force of hinge.
+/* Force of hinge on roller along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 5  speed of the driven shaft
- * Returned:  hinge_z  N  force of hinge
+ * Returned:  hinge_z  N  along axle  force of hinge on roller along z
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.52, largest 2.9 u of the largest product or sum in the equation (of hinge_z;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).

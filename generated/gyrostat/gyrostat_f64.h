@@ -107,7 +107,8 @@ int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doubl
  * Returned:  coordinate_rates[3]  rad/s  rates of psi, theta, phi
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  *            wheel_accelerations[3]  rad/s^2  wheel axes  rate of the speed of each wheel
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
+ *            general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.72, largest 12 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
@@ -134,7 +135,8 @@ void gyrostat_state_rate_f64(const gyrostat_constants_f64 *constants, double the
  *            omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  *            wheel_accelerations[3]  rad/s^2  wheel axes  rate of the speed of each wheel
  *            jacobian[84]  nonzeros of the Jacobian, in compressed-column order, each in its own unit
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
+ *            general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.72, largest 14 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst, 162 hard ones).
@@ -161,7 +163,7 @@ void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *consta
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  speed of each wheel relative to the body
  * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
- * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
+ * Follows from, for each body: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.69, largest 7.6 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst, 162 hard
@@ -178,7 +180,7 @@ void gyrostat_kinetic_energy_f64(const gyrostat_constants_f64 *constants, const 
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  speed of each wheel relative to the body
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum about the centre of mass
- * Postcondition: l = I omega   [lecture step angular_momentum]
+ * Follows from, for each body: l = I omega   [lecture step angular_momentum]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.51, largest 6.9 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst, 162

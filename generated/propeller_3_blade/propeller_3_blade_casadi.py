@@ -195,7 +195,7 @@ def _from_parameters(hot, name):
 
 
 def M():
-    """Couple of hub. Inputs: parameters, ."""
+    """Couple of hub on propeller. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_M(), "propeller_3_blade_M"))
 
 

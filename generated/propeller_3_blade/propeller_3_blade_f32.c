@@ -93,7 +93,7 @@ int propeller_3_blade_setup_f32(float blade_mass, float blade_length, float p, f
 #endif
 #endif
 
-/* Couple of hub. */
+/* Couple of hub on propeller. */
 void propeller_3_blade_M_f32(const propeller_3_blade_constants_f32 *constants, float M[3])
 {
     M[0] = 0.0F;

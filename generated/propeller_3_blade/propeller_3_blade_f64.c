@@ -93,7 +93,7 @@ int propeller_3_blade_setup_f64(double blade_mass, double blade_length, double p
 #endif
 #endif
 
-/* Couple of hub. */
+/* Couple of hub on propeller. */
 void propeller_3_blade_M_f64(const propeller_3_blade_constants_f64 *constants, double M[3])
 {
     M[0] = 0.0;

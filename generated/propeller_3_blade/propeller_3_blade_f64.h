@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 4f168fcd9a5cb5ec.
+ * Body of these files: sha256 9aa19fab9bf14c1f.
  */
 #ifndef PROPELLER_3_BLADE_F64_H
 #define PROPELLER_3_BLADE_F64_H
@@ -42,9 +42,9 @@ typedef struct {
 int propeller_3_blade_setup_f64(double blade_mass, double blade_length, double p, double W,
     propeller_3_blade_constants_f64 *constants);
 
-/* Couple of hub.
+/* Couple of hub on propeller.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
- * Returned:  M[3]  N m  couple of hub
+ * Returned:  M[3]  N m  along aircraft  couple of hub on propeller
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0, largest 1 u of the largest product or sum in the equation (of M; 200000 samples
  *            of the ranges, 65536 searched from the worst, 108 hard ones).

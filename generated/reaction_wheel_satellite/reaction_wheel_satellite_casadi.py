@@ -260,7 +260,7 @@ def _from_parameters(hot, name):
 
 
 def body():
-    """Acceleration of w_x, acceleration of w_y and acceleration of w_z. Inputs: parameters, w_x, w_y, w_z, s_1, s_2, s_3, u_1, u_2, u_3."""
+    """Rate of w_x, rate of w_y and rate of w_z. Inputs: parameters, w_x, w_y, w_z, s_1, s_2, s_3, u_1, u_2, u_3."""
     return _built(lambda: _from_parameters(_body(), "reaction_wheel_satellite_body"))
 
 
@@ -341,7 +341,7 @@ def _body():
 
 
 def wheels():
-    """Acceleration of s_1, acceleration of s_2 and acceleration of s_3. Inputs: parameters, w_x, w_y, w_z, s_1, s_2, s_3, u_1, u_2, u_3."""
+    """Rate of s_1, rate of s_2 and rate of s_3. Inputs: parameters, w_x, w_y, w_z, s_1, s_2, s_3, u_1, u_2, u_3."""
     return _built(lambda: _from_parameters(_wheels(), "reaction_wheel_satellite_wheels"))
 
 

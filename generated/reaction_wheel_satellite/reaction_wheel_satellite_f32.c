@@ -239,7 +239,7 @@ int reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float
 #endif
 #endif
 
-/* Acceleration of w_x, acceleration of w_y and acceleration of w_z. */
+/* Rate of w_x, rate of w_y and rate of w_z. */
 void reaction_wheel_satellite_body_f32(const reaction_wheel_satellite_constants_f32 *constants,
     float w_x, float w_y, float w_z, float s_1, float s_2, float s_3, float u_1, float u_2,
     float u_3, float *w_x_dot, float *w_y_dot, float *w_z_dot)
@@ -295,7 +295,7 @@ void reaction_wheel_satellite_body_f32(const reaction_wheel_satellite_constants_
     *w_z_dot = t45;
 }
 
-/* Acceleration of s_1, acceleration of s_2 and acceleration of s_3. */
+/* Rate of s_1, rate of s_2 and rate of s_3. */
 void reaction_wheel_satellite_wheels_f32(const reaction_wheel_satellite_constants_f32 *constants,
     float w_x, float w_y, float w_z, float s_1, float s_2, float s_3, float u_1, float u_2,
     float u_3, float *s_1_dot, float *s_2_dot, float *s_3_dot)

@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 d4c5b58d682192e0.
+ * Body of these files: sha256 896dc39bed1c80a2.
  */
 #ifndef REACTION_WHEEL_SATELLITE_F32_H
 #define REACTION_WHEEL_SATELLITE_F32_H
@@ -56,7 +56,7 @@ typedef struct {
 int reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float J_xy, float J_xz,
     float J_yz, float I_w, reaction_wheel_satellite_constants_f32 *constants);
 
-/* Acceleration of w_x, acceleration of w_y and acceleration of w_z.
+/* Rate of w_x, rate of w_y and rate of w_z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w_x  rad/s  -0.5 .. 0.5  omega of the body along x
  *            w_y  rad/s  -0.5 .. 0.5  omega of the body along y
@@ -67,10 +67,11 @@ int reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float
  *            u_1  N m  -0.05 .. 0.05  motor on wheel 1
  *            u_2  N m  -0.05 .. 0.05  motor on wheel 2
  *            u_3  N m  -0.05 .. 0.05  motor on wheel 3
- * Returned:  w_x_dot  rad/s^2  acceleration of w_x
- *            w_y_dot  rad/s^2  acceleration of w_y
- *            w_z_dot  rad/s^2  acceleration of w_z
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Returned:  w_x_dot  rad/s^2  rate of w_x
+ *            w_y_dot  rad/s^2  rate of w_y
+ *            w_z_dot  rad/s^2  rate of w_z
+ * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
+ *            general_form]
  * Error: median 0.75, largest 9.4 u of the largest product or sum in the equation (of w_y_dot;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 6 add, 14 sub, 26 mul.
@@ -81,7 +82,7 @@ void reaction_wheel_satellite_body_f32(const reaction_wheel_satellite_constants_
     float w_x, float w_y, float w_z, float s_1, float s_2, float s_3, float u_1, float u_2,
     float u_3, float *w_x_dot, float *w_y_dot, float *w_z_dot);
 
-/* Acceleration of s_1, acceleration of s_2 and acceleration of s_3.
+/* Rate of s_1, rate of s_2 and rate of s_3.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w_x  rad/s  -0.5 .. 0.5  omega of the body along x
  *            w_y  rad/s  -0.5 .. 0.5  omega of the body along y
@@ -92,10 +93,11 @@ void reaction_wheel_satellite_body_f32(const reaction_wheel_satellite_constants_
  *            u_1  N m  -0.05 .. 0.05  motor on wheel 1
  *            u_2  N m  -0.05 .. 0.05  motor on wheel 2
  *            u_3  N m  -0.05 .. 0.05  motor on wheel 3
- * Returned:  s_1_dot  rad/s^2  acceleration of s_1
- *            s_2_dot  rad/s^2  acceleration of s_2
- *            s_3_dot  rad/s^2  acceleration of s_3
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Returned:  s_1_dot  rad/s^2  rate of s_1
+ *            s_2_dot  rad/s^2  rate of s_2
+ *            s_3_dot  rad/s^2  rate of s_3
+ * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
+ *            general_form]
  * Error: median 0.51, largest 7.1 u of the largest product or sum in the equation (of s_2_dot;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 6 add, 17 sub, 29 mul.

@@ -239,7 +239,7 @@ int reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, do
 #endif
 #endif
 
-/* Acceleration of w_x, acceleration of w_y and acceleration of w_z. */
+/* Rate of w_x, rate of w_y and rate of w_z. */
 void reaction_wheel_satellite_body_f64(const reaction_wheel_satellite_constants_f64 *constants,
     double w_x, double w_y, double w_z, double s_1, double s_2, double s_3, double u_1, double u_2,
     double u_3, double *w_x_dot, double *w_y_dot, double *w_z_dot)
@@ -295,7 +295,7 @@ void reaction_wheel_satellite_body_f64(const reaction_wheel_satellite_constants_
     *w_z_dot = t45;
 }
 
-/* Acceleration of s_1, acceleration of s_2 and acceleration of s_3. */
+/* Rate of s_1, rate of s_2 and rate of s_3. */
 void reaction_wheel_satellite_wheels_f64(const reaction_wheel_satellite_constants_f64 *constants,
     double w_x, double w_y, double w_z, double s_1, double s_2, double s_3, double u_1, double u_2,
     double u_3, double *s_1_dot, double *s_2_dot, double *s_3_dot)

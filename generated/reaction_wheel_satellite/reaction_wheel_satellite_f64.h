@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 8b317f73565c15b0.
+ * Body of these files: sha256 eea4336b289693ea.
  */
 #ifndef REACTION_WHEEL_SATELLITE_F64_H
 #define REACTION_WHEEL_SATELLITE_F64_H
@@ -56,7 +56,7 @@ typedef struct {
 int reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, double J_xy,
     double J_xz, double J_yz, double I_w, reaction_wheel_satellite_constants_f64 *constants);
 
-/* Acceleration of w_x, acceleration of w_y and acceleration of w_z.
+/* Rate of w_x, rate of w_y and rate of w_z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w_x  rad/s  -0.5 .. 0.5  omega of the body along x
  *            w_y  rad/s  -0.5 .. 0.5  omega of the body along y
@@ -67,10 +67,11 @@ int reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, do
  *            u_1  N m  -0.05 .. 0.05  motor on wheel 1
  *            u_2  N m  -0.05 .. 0.05  motor on wheel 2
  *            u_3  N m  -0.05 .. 0.05  motor on wheel 3
- * Returned:  w_x_dot  rad/s^2  acceleration of w_x
- *            w_y_dot  rad/s^2  acceleration of w_y
- *            w_z_dot  rad/s^2  acceleration of w_z
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Returned:  w_x_dot  rad/s^2  rate of w_x
+ *            w_y_dot  rad/s^2  rate of w_y
+ *            w_z_dot  rad/s^2  rate of w_z
+ * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
+ *            general_form]
  * Error: median 0.74, largest 9.7 u of the largest product or sum in the equation (of w_y_dot;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 6 add, 14 sub, 26 mul.
@@ -81,7 +82,7 @@ void reaction_wheel_satellite_body_f64(const reaction_wheel_satellite_constants_
     double w_x, double w_y, double w_z, double s_1, double s_2, double s_3, double u_1, double u_2,
     double u_3, double *w_x_dot, double *w_y_dot, double *w_z_dot);
 
-/* Acceleration of s_1, acceleration of s_2 and acceleration of s_3.
+/* Rate of s_1, rate of s_2 and rate of s_3.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w_x  rad/s  -0.5 .. 0.5  omega of the body along x
  *            w_y  rad/s  -0.5 .. 0.5  omega of the body along y
@@ -92,10 +93,11 @@ void reaction_wheel_satellite_body_f64(const reaction_wheel_satellite_constants_
  *            u_1  N m  -0.05 .. 0.05  motor on wheel 1
  *            u_2  N m  -0.05 .. 0.05  motor on wheel 2
  *            u_3  N m  -0.05 .. 0.05  motor on wheel 3
- * Returned:  s_1_dot  rad/s^2  acceleration of s_1
- *            s_2_dot  rad/s^2  acceleration of s_2
- *            s_3_dot  rad/s^2  acceleration of s_3
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Returned:  s_1_dot  rad/s^2  rate of s_1
+ *            s_2_dot  rad/s^2  rate of s_2
+ *            s_3_dot  rad/s^2  rate of s_3
+ * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
+ *            general_form]
  * Error: median 0.51, largest 7.4 u of the largest product or sum in the equation (of s_2_dot;
  *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
  * Cost: 6 add, 17 sub, 29 mul.

@@ -271,7 +271,7 @@ def _from_parameters(hot, name):
 
 
 def T():
-    """Force of wire. Inputs: parameters, ."""
+    """Unknown of the force (-T, 0, 0) of wire on rod. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_T(), "rod_wire_vertical_shaft_T"))
 
 
@@ -295,7 +295,7 @@ def _T():
 
 
 def A_x():
-    """Force of pin along x. Inputs: parameters, ."""
+    """Force of pin on rod along x. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_A_x(), "rod_wire_vertical_shaft_A_x"))
 
 
@@ -319,7 +319,7 @@ def _A_x():
 
 
 def A_z():
-    """Force of pin along z. Inputs: parameters, ."""
+    """Force of pin on rod along z. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_A_z(), "rod_wire_vertical_shaft_A_z"))
 
 

@@ -198,20 +198,20 @@ int rod_wire_vertical_shaft_setup_f32(float W, float L, float beta, float w, flo
 #endif
 #endif
 
-/* Force of wire. */
+/* Unknown of the force (-T, 0, 0) of wire on rod. */
 void rod_wire_vertical_shaft_T_f32(const rod_wire_vertical_shaft_constants_f32 *constants, float *T)
 {
     *T = constants->s0008;
 }
 
-/* Force of pin along x. */
+/* Force of pin on rod along x. */
 void rod_wire_vertical_shaft_A_x_f32(const rod_wire_vertical_shaft_constants_f32 *constants,
     float *A_x)
 {
     *A_x = constants->s0005;
 }
 
-/* Force of pin along z. */
+/* Force of pin on rod along z. */
 void rod_wire_vertical_shaft_A_z_f32(const rod_wire_vertical_shaft_constants_f32 *constants,
     float *A_z)
 {

@@ -210,21 +210,21 @@ int rod_wire_vertical_shaft_setup_f64(double W, double L, double beta, double w,
 #endif
 #endif
 
-/* Force of wire. */
+/* Unknown of the force (-T, 0, 0) of wire on rod. */
 void rod_wire_vertical_shaft_T_f64(const rod_wire_vertical_shaft_constants_f64 *constants,
     double *T)
 {
     *T = constants->s0008;
 }
 
-/* Force of pin along x. */
+/* Force of pin on rod along x. */
 void rod_wire_vertical_shaft_A_x_f64(const rod_wire_vertical_shaft_constants_f64 *constants,
     double *A_x)
 {
     *A_x = constants->s0005;
 }
 
-/* Force of pin along z. */
+/* Force of pin on rod along z. */
 void rod_wire_vertical_shaft_A_z_f64(const rod_wire_vertical_shaft_constants_f64 *constants,
     double *A_z)
 {

@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 ab87076d4cdad207.
+ * Body of these files: sha256 93abc4bcc52f583a.
  */
 #ifndef ROD_WIRE_VERTICAL_SHAFT_F64_H
 #define ROD_WIRE_VERTICAL_SHAFT_F64_H
@@ -44,11 +44,13 @@ typedef struct {
 int rod_wire_vertical_shaft_setup_f64(double W, double L, double beta, double w, double g,
     rod_wire_vertical_shaft_constants_f64 *constants);
 
-/* Force of wire.
+/* Unknown of the force (-T, 0, 0) of wire on rod.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
- * Returned:  T  N  force of wire
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Returned:  T  N  along axle  unknown of the force (-T, 0, 0) of wire on rod
+ * Postcondition, M about G, a point at rest, or one that accelerates along the line to G: M =
+ *            I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition, M about any point, M_G about G: M = M_G + rho_G x (m a_G)   [lecture step
+ *            any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
@@ -62,12 +64,14 @@ int rod_wire_vertical_shaft_setup_f64(double W, double L, double beta, double w,
 void rod_wire_vertical_shaft_T_f64(const rod_wire_vertical_shaft_constants_f64 *constants,
     double *T);
 
-/* Force of pin along x.
+/* Force of pin on rod along x.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
- * Returned:  A_x  N  force of pin along x
+ * Returned:  A_x  N  along axle  force of pin on rod along x
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * Postcondition: M = M_G + rho_G x (m a_G)   [lecture step any_point_form]
+ * Postcondition, M about G, a point at rest, or one that accelerates along the line to G: M =
+ *            I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Postcondition, M about any point, M_G about G: M = M_G + rho_G x (m a_G)   [lecture step
+ *            any_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
@@ -81,9 +85,9 @@ void rod_wire_vertical_shaft_T_f64(const rod_wire_vertical_shaft_constants_f64 *
 void rod_wire_vertical_shaft_A_x_f64(const rod_wire_vertical_shaft_constants_f64 *constants,
     double *A_x);
 
-/* Force of pin along z.
+/* Force of pin on rod along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
- * Returned:  A_z  N  force of pin along z
+ * Returned:  A_z  N  along axle  force of pin on rod along z
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Error: median 0, largest 0 u of the largest product or sum in the equation (of A_z; 200000
  *            samples of the ranges, 65536 searched from the worst, 108 hard ones).

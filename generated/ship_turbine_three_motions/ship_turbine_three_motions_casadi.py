@@ -205,7 +205,7 @@ def _from_parameters(hot, name):
 
 
 def roll_case():
-    """Force of A_rolling and force of B_rolling. Inputs: parameters, ."""
+    """Force of A_rolling on rolling along z and force of B_rolling on rolling along z. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_roll_case(), "ship_turbine_three_motions_roll_case"))
 
 
@@ -230,7 +230,7 @@ def _roll_case():
 
 
 def turn_case():
-    """Force of A_turning and force of B_turning. Inputs: parameters, ."""
+    """Force of A_turning on turning along z and force of B_turning on turning along z. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_turn_case(), "ship_turbine_three_motions_turn_case"))
 
 
@@ -255,7 +255,7 @@ def _turn_case():
 
 
 def pitch_case():
-    """Force of A_pitching and force of B_pitching. Inputs: parameters, ."""
+    """Force of A_pitching on pitching along z and force of B_pitching on pitching along z. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_pitch_case(), "ship_turbine_three_motions_pitch_case"))
 
 

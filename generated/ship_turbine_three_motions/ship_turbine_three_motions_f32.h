@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 e5ed0723c015198b.
+ * Body of these files: sha256 f8ab8ebe95f5bd9b.
  */
 #ifndef SHIP_TURBINE_THREE_MOTIONS_F32_H
 #define SHIP_TURBINE_THREE_MOTIONS_F32_H
@@ -49,11 +49,12 @@ typedef struct {
 int ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, float b, float g,
     float turn, float pitch, ship_turbine_three_motions_constants_f32 *constants);
 
-/* Force of A_rolling and force of B_rolling.
+/* Force of A_rolling on rolling along z and force of B_rolling on rolling along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
- * Returned:  A_roll  N  force of A_rolling
- *            B_roll  N  force of B_rolling
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Returned:  A_roll  N  along rolling  force of A_rolling on rolling along z
+ *            B_roll  N  along rolling  force of B_rolling on rolling along z
+ * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
+ *            general_form]
  * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of A_roll; 200000
  *            samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
@@ -63,11 +64,12 @@ int ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, f
 void ship_turbine_three_motions_roll_case_f32(const ship_turbine_three_motions_constants_f32 *constants,
     float *A_roll, float *B_roll);
 
-/* Force of A_turning and force of B_turning.
+/* Force of A_turning on turning along z and force of B_turning on turning along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
- * Returned:  A_turn  N  force of A_turning
- *            B_turn  N  force of B_turning
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Returned:  A_turn  N  along turning  force of A_turning on turning along z
+ *            B_turn  N  along turning  force of B_turning on turning along z
+ * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
+ *            general_form]
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of B_turn; 200000
  *            samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
@@ -77,11 +79,12 @@ void ship_turbine_three_motions_roll_case_f32(const ship_turbine_three_motions_c
 void ship_turbine_three_motions_turn_case_f32(const ship_turbine_three_motions_constants_f32 *constants,
     float *A_turn, float *B_turn);
 
-/* Force of A_pitching and force of B_pitching.
+/* Force of A_pitching on pitching along z and force of B_pitching on pitching along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
- * Returned:  A_pitch  N  force of A_pitching
- *            B_pitch  N  force of B_pitching
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Returned:  A_pitch  N  along pitching  force of A_pitching on pitching along z
+ *            B_pitch  N  along pitching  force of B_pitching on pitching along z
+ * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
+ *            general_form]
  * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of A_pitch;
  *            200000 samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
@@ -94,7 +97,8 @@ void ship_turbine_three_motions_pitch_case_f32(const ship_turbine_three_motions_
 /* B*A_pitch_side - a*B_pitch_side.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  pitch_horizontal_couple  N m  b*A_pitch_side - a*B_pitch_side
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
+ *            general_form]
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of
  *            pitch_horizontal_couple; 200000 samples of the ranges, 65536 searched from the worst,
  *            108 hard ones).

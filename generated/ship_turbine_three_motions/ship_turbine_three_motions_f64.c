@@ -147,7 +147,7 @@ int ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double 
 #endif
 #endif
 
-/* Force of A_rolling and force of B_rolling. */
+/* Force of A_rolling on rolling along z and force of B_rolling on rolling along z. */
 void ship_turbine_three_motions_roll_case_f64(const ship_turbine_three_motions_constants_f64 *constants,
     double *A_roll, double *B_roll)
 {
@@ -155,7 +155,7 @@ void ship_turbine_three_motions_roll_case_f64(const ship_turbine_three_motions_c
     *B_roll = constants->s0013;
 }
 
-/* Force of A_turning and force of B_turning. */
+/* Force of A_turning on turning along z and force of B_turning on turning along z. */
 void ship_turbine_three_motions_turn_case_f64(const ship_turbine_three_motions_constants_f64 *constants,
     double *A_turn, double *B_turn)
 {
@@ -163,7 +163,7 @@ void ship_turbine_three_motions_turn_case_f64(const ship_turbine_three_motions_c
     *B_turn = constants->s0018;
 }
 
-/* Force of A_pitching and force of B_pitching. */
+/* Force of A_pitching on pitching along z and force of B_pitching on pitching along z. */
 void ship_turbine_three_motions_pitch_case_f64(const ship_turbine_three_motions_constants_f64 *constants,
     double *A_pitch, double *B_pitch)
 {

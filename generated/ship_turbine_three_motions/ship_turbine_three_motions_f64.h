@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 d91d6baadee4ab87.
+ * Body of these files: sha256 252e71c184b113d6.
  */
 #ifndef SHIP_TURBINE_THREE_MOTIONS_F64_H
 #define SHIP_TURBINE_THREE_MOTIONS_F64_H
@@ -49,11 +49,12 @@ typedef struct {
 int ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double a, double b,
     double g, double turn, double pitch, ship_turbine_three_motions_constants_f64 *constants);
 
-/* Force of A_rolling and force of B_rolling.
+/* Force of A_rolling on rolling along z and force of B_rolling on rolling along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
- * Returned:  A_roll  N  force of A_rolling
- *            B_roll  N  force of B_rolling
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Returned:  A_roll  N  along rolling  force of A_rolling on rolling along z
+ *            B_roll  N  along rolling  force of B_rolling on rolling along z
+ * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
+ *            general_form]
  * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of A_roll; 200000
  *            samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
@@ -63,11 +64,12 @@ int ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double 
 void ship_turbine_three_motions_roll_case_f64(const ship_turbine_three_motions_constants_f64 *constants,
     double *A_roll, double *B_roll);
 
-/* Force of A_turning and force of B_turning.
+/* Force of A_turning on turning along z and force of B_turning on turning along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
- * Returned:  A_turn  N  force of A_turning
- *            B_turn  N  force of B_turning
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Returned:  A_turn  N  along turning  force of A_turning on turning along z
+ *            B_turn  N  along turning  force of B_turning on turning along z
+ * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
+ *            general_form]
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of B_turn; 200000
  *            samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
@@ -77,11 +79,12 @@ void ship_turbine_three_motions_roll_case_f64(const ship_turbine_three_motions_c
 void ship_turbine_three_motions_turn_case_f64(const ship_turbine_three_motions_constants_f64 *constants,
     double *A_turn, double *B_turn);
 
-/* Force of A_pitching and force of B_pitching.
+/* Force of A_pitching on pitching along z and force of B_pitching on pitching along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
- * Returned:  A_pitch  N  force of A_pitching
- *            B_pitch  N  force of B_pitching
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Returned:  A_pitch  N  along pitching  force of A_pitching on pitching along z
+ *            B_pitch  N  along pitching  force of B_pitching on pitching along z
+ * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
+ *            general_form]
  * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of A_pitch;
  *            200000 samples of the ranges, 65536 searched from the worst, 108 hard ones).
  * Cost: no operations.
@@ -94,7 +97,8 @@ void ship_turbine_three_motions_pitch_case_f64(const ship_turbine_three_motions_
 /* B*A_pitch_side - a*B_pitch_side.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  pitch_horizontal_couple  N m  b*A_pitch_side - a*B_pitch_side
- * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
+ *            general_form]
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of
  *            pitch_horizontal_couple; 200000 samples of the ranges, 65536 searched from the worst,
  *            108 hard ones).

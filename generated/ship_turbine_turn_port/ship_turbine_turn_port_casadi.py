@@ -202,7 +202,7 @@ def _from_parameters(hot, name):
 
 
 def reactions():
-    """Force of A and force of B. Inputs: parameters, ."""
+    """Force of A on rotor along z and force of B on rotor along z. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_reactions(), "ship_turbine_turn_port_reactions"))
 
 

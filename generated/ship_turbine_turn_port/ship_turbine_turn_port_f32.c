@@ -140,7 +140,7 @@ int ship_turbine_turn_port_setup_f32(float m, float k, float p, float v, float R
 #endif
 #endif
 
-/* Force of A and force of B. */
+/* Force of A on rotor along z and force of B on rotor along z. */
 void ship_turbine_turn_port_reactions_f32(const ship_turbine_turn_port_constants_f32 *constants,
     float *R_A, float *R_B)
 {

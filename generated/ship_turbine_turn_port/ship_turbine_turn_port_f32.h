@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 123339d74c39f79e.
+ * Body of these files: sha256 6b0d9e433c04c517.
  */
 #ifndef SHIP_TURBINE_TURN_PORT_F32_H
 #define SHIP_TURBINE_TURN_PORT_F32_H
@@ -47,10 +47,10 @@ typedef struct {
 int ship_turbine_turn_port_setup_f32(float m, float k, float p, float v, float R, float a, float b,
     float g, ship_turbine_turn_port_constants_f32 *constants);
 
-/* Force of A and force of B.
+/* Force of A on rotor along z and force of B on rotor along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
- * Returned:  R_A  N  force of A
- *            R_B  N  force of B
+ * Returned:  R_A  N  along ship  force of A on rotor along z
+ *            R_B  N  along ship  force of B on rotor along z
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.34, largest 1 u of the largest product or sum in the equation (of R_A; 200000
  *            samples of the ranges, 65536 searched from the worst, 108 hard ones).

@@ -140,7 +140,7 @@ int ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, dou
 #endif
 #endif
 
-/* Force of A and force of B. */
+/* Force of A on rotor along z and force of B on rotor along z. */
 void ship_turbine_turn_port_reactions_f64(const ship_turbine_turn_port_constants_f64 *constants,
     double *R_A, double *R_B)
 {

@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 52cebf6c2168da5c.
+ * Body of these files: sha256 5d1739cb487b79ab.
  */
 #ifndef SKEWED_DISC_F64_H
 #define SKEWED_DISC_F64_H
@@ -42,12 +42,12 @@ typedef struct {
 int skewed_disc_setup_f64(double m, double r, double skew, double b,
     skewed_disc_constants_f64 *constants);
 
-/* B*(B_y - A_y), b*(A_x - B_x) and couple of A.
+/* B*(B_y - A_y), b*(A_x - B_x) and couple of A on disc along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w  rad/s  200 .. 400  speed of the shaft
  * Returned:  M_x  N m  b*(B_y - A_y)
  *            M_y  N m  b*(A_x - B_x)
- *            M_z  N m  couple of A
+ *            M_z  N m  along shaft  couple of A on disc along z
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.52, largest 3 u of the largest product or sum in the equation (of M_y; 200000

@@ -16,13 +16,21 @@ SETUP_ERROR = (
     "each constant is worked out in twice the working precision and rounded once: at most 1 ulp, "
     "unless the sum that it is cancels to less than 16 u of its largest product"
 )
+OF_ONE_BODY = ("F", "M", "T", "l", "l_dot", "l_N_dot")
+"""What stands on the left of equations of a body; the others are about axes and points."""
+MOMENTS = {
+    "general_form": "M about G, a point at rest, or one that accelerates along the line to G",
+    "moving_point_form": "M about any point that the body carries",
+    "any_point_form": "M about any point, M_G about G",
+}
+"""About which points the moments of equations are."""
 
 WIDTH = 96
 
 
-def comment(program: Program, figures: Sequence[Measurement]) -> str:
-    """Return the comment block of ``program`` as C text."""
-    lines = [program.says, *_arguments(program), *_postconditions(program)]
+def comment(program: Program, figures: Sequence[Measurement], bodies: int) -> str:
+    """Return the comment block of ``program`` of a scene of so many bodies, as C text."""
+    lines = [program.says, *_arguments(program), *_postconditions(program, bodies)]
     if program.makes("constants"):
         says = "; ".join(f"{number} {words}" for number, words in possible(program).items())
         lines += _labelled("Returns:", f"{says}.") + _labelled("Error:", f"{SETUP_ERROR}.")
@@ -54,7 +62,8 @@ def _arguments(program: Program) -> list[str]:
 
 def _line(q: Quantity, bounds: str) -> str:
     size = f"[{len(q.components)}]" if q.shape and q.role != "constants" else ""
-    frame = f"along {q.frame}" if q.frame in ("B", "xyz", "N") else q.frame
+    words = " " in q.frame  # such as "N from B"; what a frame is called has no space
+    frame = f"along {q.frame}" if q.frame and not words else q.frame
     return "  ".join(part for part in (f"{q.name}{size}", q.unit, frame, bounds, q.meaning) if part)
 
 
@@ -64,13 +73,28 @@ def _range(q: Quantity) -> str:
     return f"{float(q.low):g} .. {float(q.high):g}"
 
 
-def _postconditions(program: Program) -> list[str]:
+def _postconditions(program: Program, bodies: int) -> list[str]:
     lines: list[str] = []
     for name in program.steps:
-        lines += _labelled(
-            "Postcondition:", f"{equation_text(LECTURE[name])}   [lecture step {name}]"
-        )
+        label, of = "Postcondition", holds(program, name, bodies)
+        if of:
+            label = f"{'Follows from' if bodies > 1 else label}, {of}"
+        lines += _labelled(f"{label}:", f"{equation_text(LECTURE[name])}   [lecture step {name}]")
     return lines
+
+
+def holds(program: Program, step: str, bodies: int) -> str:
+    """Return for which bodies and points an equation holds, "" if for the answer as it stands.
+
+    With wheels or further bodies loads, momenta and energies are those of one body at a time, and
+    the answer is made of all. Moments about several points are told apart where they meet.
+    """
+    if equation_text(LECTURE[step]).split()[0] not in OF_ONE_BODY:
+        return ""
+    words = ["for each body"] if bodies > 1 else []
+    if step in MOMENTS and len(MOMENTS.keys() & set(program.steps)) > 1:
+        words.append(MOMENTS[step])
+    return ", ".join(words)
 
 
 def told(singular: Singular) -> str:

@@ -63,9 +63,9 @@ def _header(
     figures: Sequence[Measurement],
     digest: str,
 ) -> str:
-    described = []
+    described, bodies = [], len(library.scene.bodies)
     for program in library.emitted():
-        described.append((comment(program, figures), prototype(program, names, precision)))
+        described.append((comment(program, figures, bodies), prototype(program, names, precision)))
         if program.sparsity:
             says = f"/* The same, the whole matrix: {dense_size(program)} entries. */"
             described.append((says, prototype(dense(program), names, precision)))

@@ -5,7 +5,7 @@ from functools import partial
 
 from markupsafe import Markup
 
-from derive.emit.c.comment import cost, of_what
+from derive.emit.c.comment import SETUP_ERROR, cost, of_what
 from derive.emit.c.source import first_line
 from derive.emit.notation import name_mathml
 from derive.emit.page.code import listing
@@ -35,6 +35,7 @@ def scene_page(library: Library, figures: Sequence[Measurement]) -> str:
         constants=library.constants,
         parameters=library.vocabulary.parameters,
         setup_cost=library.setup.flops(),
+        setup_error=SETUP_ERROR,
         symbol=partial(_symbol, library),
         range_of=_range,
         cost=cost,
