@@ -10,8 +10,8 @@ import pytest
 
 from derive.library.library import Library, library
 from derive.scene import CATALOGUE, Scene, catalogue, load
-from derive.scene.declaration import ShortForm
-from derive.scene.short_form import read_scene
+from derive.scene.short_form.declared import ShortForm
+from derive.scene.short_form.tables import read_scene
 
 
 @cache
@@ -31,7 +31,7 @@ def short_of(name: str) -> ShortForm:
     return short((CATALOGUE / f"{name}.toml").read_text(encoding="utf-8"))
 
 
-SHORT = tuple(name for name in catalogue() if scene_of(name).inverse is not None)
+SHORT = tuple(name for name in catalogue() if "\n[bodies" not in scene_of(name).text)
 """Scenes of the catalogue in short form."""
 
 

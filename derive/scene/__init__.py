@@ -8,19 +8,16 @@ import tomllib
 from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
+from typing import Any
 
 from derive.scene.declaration import Given, Input, Parameter, SceneError, Turning
-from derive.scene.doubtful import doubts, require_sizes
 from derive.scene.escape import brief, visible
-from derive.scene.long_form import written_out
 from derive.scene.machine import Scene
 from derive.scene.names import file_name
-from derive.scene.reader import is_machine, read_machine
-from derive.scene.rules import check, warnings
-from derive.scene.safe import require_values
-from derive.scene.short_form import read_scene
+from derive.scene.reader import read_machine
+from derive.scene.short_form import read_short
 from derive.scene.table import THE_FILE, gate, nearest, shown, table
-from derive.scene.wanted import check_form, idle_times
+from derive.scene.wanted import idle_times
 
 __all__ = [
     "Given",
@@ -118,22 +115,12 @@ def _quoted(name: str) -> str:
     return f"'{brief(visible(name))}'"
 
 
-def _read(document: dict[str, object], name: str, text: str) -> Scene:
-    if is_machine(document):
-        machine = read_machine(document, name, text)
-        require_sizes(machine)
-        check_form(machine.wanted, machine.form, machine.emission)
-        require_values(machine)
-        return replace(machine, warnings=(*machine.warnings, *doubts(machine)))
-    scene = read_scene(document, name, text)
-    said = tuple(table(document.get("known", {}), "known").entries)
-    check(scene, said)
-    check_form(scene.wanted, scene.head["form"], scene.head["emission"])
-    require_values(scene)
-    return written_out(replace(scene, warnings=warnings(scene, said)))
+def _read(document: dict[str, Any], name: str, text: str) -> Scene:
+    read = read_machine if "bodies" in document or "frames" in document else read_short
+    return read(document, name, text)
 
 
-def _document(text: str) -> dict[str, object]:
+def _document(text: str) -> dict[str, Any]:
     if not text.strip():
         raise SceneError("the file is empty")
     if len(text) > LONGEST_FILE:

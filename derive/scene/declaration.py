@@ -1,13 +1,12 @@
-"""What a scene in short form declares, and the scalars and turns of every scene, as plain values.
+"""The scalars, ranges and turns that a scene declares, as plain values.
 
 All numbers are exact fractions, all formulas exact trees, all units SI. Vectors are triples along
 the scene's axes unless said otherwise; a product of inertia is I_xy = +sum x y dm.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Literal
+from typing import Literal
 
 from derive.scene.formula import Formula
 
@@ -16,6 +15,8 @@ AXES: tuple[Axis, ...] = ("x", "y", "z")
 Kind = Literal["coordinate", "speed", "input"]
 Triple = tuple[Formula, Formula, Formula]
 Sextuple = tuple[Formula, Formula, Formula, Formula, Formula, Formula]
+ANY = (Fraction(-1), Fraction(1))
+"""The range of what none is given for."""
 
 
 class SceneError(ValueError):
@@ -50,7 +51,7 @@ class Moving:
     """A coordinate, speed or input; a rate is an input, a formula, or None where it is unknown.
 
     Of an input no rate is known, of a free coordinate or speed the last rate is an unknown. A free
-    coordinate without a rate is an angle of a single body, whose rate its angular velocity fixes.
+    coordinate without a rate has one that the angular velocity of its body fixes.
     A state is summed up from its rate: all that is free, and coordinates that a formula moves. What
     was declared with ``components`` says of which ``vector`` it is one. ``highest`` is what its
     highest rate is called, "" if that follows from its name.
@@ -103,85 +104,9 @@ class Turning:
 
 
 @dataclass(frozen=True)
-class Axes:
-    """The moving axes xyz: body axes, turned from the inertial axes, or Omega given along them."""
-
-    kind: Literal["body", "turned", "given"]
-    turned: tuple[Turning, ...]
-    quaternion: bool
-    fixed_in_body: bool
-    angular_velocity: Triple | None
-
-
-@dataclass(frozen=True)
-class Body:
-    """The rigid body; inertia (xx, yy, zz, xy, xz, yz) and centre along the axes it is turned to.
-
-    The inertia is about the scene's point; ``axis`` is the axis of symmetry, if there is one.
-    """
-
-    kind: Literal["general", "principal", "axisymmetric", "spherical", "rod"]
-    mass: Formula | None
-    inertia: Sextuple
-    centre: Triple | None
-    axis: Axis | None
-    turned: tuple[Turning, ...]
-    spin: Formula | None
-    lengths: Mapping[str, Formula]
-    look: str = ""
-
-
-@dataclass(frozen=True)
-class Wheel:
-    """A balanced axisymmetric wheel on the carrier: relative speed (a state) and motor torque."""
-
-    name: str
-    axis: Triple
-    axial: Formula
-    speed: Input
-    torque: Input
-
-
-@dataclass(frozen=True)
 class Given:
     """A known vector: formulas, or else a range for three fresh inputs."""
 
     low: Fraction | None
     high: Fraction | None
     formulas: Triple | None
-
-
-@dataclass(frozen=True)
-class Point:
-    """The point that moments and inertia refer to; a moving one has a known acceleration."""
-
-    kind: Literal["centre_of_mass", "fixed", "moving"]
-    acceleration: Given | None
-
-
-@dataclass(frozen=True)
-class ShortForm:
-    """A single body as the user declared it, checked.
-
-    head : what its ``Scene`` says of the whole: name, title, text, form, times and the like
-    """
-
-    head: Mapping[str, Any]
-    parameters: tuple[Parameter, ...]
-    coordinates: tuple[Moving, ...]
-    speeds: tuple[Moving, ...]
-    inputs: tuple[Moving, ...]
-    axes: Axes
-    body: Body
-    wheels: tuple[Wheel, ...]
-    point: Point
-    known: Mapping[str, Given]
-    position: Given | None
-    velocity: Given | None
-    warnings: tuple[str, ...]
-
-    @property
-    def wanted(self) -> tuple[str, ...]:
-        """Return the names of the wanted functions."""
-        names: tuple[str, ...] = self.head["wanted"]
-        return names

@@ -1,120 +1,150 @@
-"""What the quantities of a single body are called, and along which axes they lie.
+"""What the quantities of a scene are called: a vector where it was declared so, else a scalar."""
 
-An input of one function may be the answer of another: the moment, and the rate of omega.
-"""
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
-from collections.abc import Iterable, Mapping
-from fractions import Fraction
-
-from derive.scene.declaration import AXES, Given, Input, Moving, ShortForm
-from derive.scene.machine import Group, Groups
-from derive.scene.told import POINTS
-
-ANY = (Fraction(-1), Fraction(1))
-ATTITUDE, WHEELS, OWN, NO_AXES = "N from B", "wheel axes", "", "none"
-"""Along which axes components lie that are three along N or, ``OWN``, along those of the scene."""
-RATE = "rate of angular momentum about {about}"
-QUANTITIES: Mapping[str, tuple[str, str, str]] = {
-    "position": ("m", "N", "position of the centre of mass"),
-    "attitude": ("1", ATTITUDE, "attitude quaternion, scalar first, body to inertial, |q| = 1"),
-    "velocity": ("m/s", "N", "velocity of the centre of mass"),
-    "omega": ("rad/s", OWN, "angular velocity of the body in the inertial frame"),
-    "wheel_speeds": ("rad/s", WHEELS, "speed of each wheel relative to the body"),
-    "omega_dot": ("rad/s^2", OWN, "rate of the components of omega along the axes"),
-    "wheel_accelerations": ("rad/s^2", WHEELS, "rate of the speed of each wheel"),
-    "point_acceleration": ("m/s^2", OWN, "acceleration of the moving point in the inertial frame"),
-    "force": ("N", OWN, "resultant external force"),
-    "moment": ("N m", OWN, "external moment about {about}"),
-    "wheel_torques": ("N m", WHEELS, "torque of its motor on each wheel"),
-    "angular_momentum": ("kg m^2/s", OWN, "angular momentum about {about}"),
-    "rate_in_axes": ("N m", OWN, f"{RATE}, seen from the axes"),
-    "rate_absolute": ("N m", OWN, f"{RATE}, seen from the inertial frame"),
-    "coordinate_rates": ("rad/s", NO_AXES, "rates of {free}"),
-    "position_rate": ("m/s", "N", "rate of the position"),
-    "velocity_rate": ("m/s^2", "N", "rate of the velocity"),
-    "attitude_rate": ("1/s", ATTITUDE, "rate of the attitude quaternion"),
-}
-"""Unit, axes and meaning of each vector."""
-RATES = ("coordinate_rates", "position_rate", "attitude_rate", "velocity_rate", "omega_dot",
-         "wheel_accelerations")  # fmt: skip
+from derive.scene.declaration import ANY, AXES, Input, Moving
+from derive.scene.formula import ZERO, symbols
+from derive.scene.machine import Force, Group, Groups, Place, Scene, Unknown
+from derive.scene.results import ENERGIES, MATRICES, unknown_vectors
+from derive.scene.scalars import PER_SECOND
 
 
-def groups(scene: ShortForm) -> Groups:
-    """Return the quantities that the scene of a single body speaks of, in canonical order."""
-    made = {name for name, given in _given(scene).items() if given and given.formulas is not None}
-    missing = _missing(scene) | made
-    free = [c for c in scene.coordinates if c.free]
-    driven = [c for c in scene.coordinates if not c.free]
-    moving = list[Moving | Input]()
-    for m in (*driven, *scene.speeds):
-        moving += (m, *m.given)
+def grouped(scene: Scene) -> Scene:
+    """Return a machine with what its functions are given and answer, in canonical order."""
+    states = (*_with_rates(m for m in _moving(scene) if m.state), *_quaternions(scene))
+    inputs = tuple(_with_rates(m for m in scene.moving if not m.state))
+    rates = tuple(f"{g.name}_rate" for g in states)
+    return replace(scene, groups=Groups(states, inputs, tuple(_outputs(scene, states)), rates))
 
-    def of(*names: str) -> tuple[Group, ...]:
-        return tuple(_group(scene, name) for name in names if name not in missing)
 
-    whole = scene.position is not None or scene.point.kind != "centre_of_mass"
-    says = "kinetic energy" if whole else "kinetic energy of turning about the centre of mass"
-    energy = Group("kinetic_energy", ("kinetic_energy",), "J", "", None, None, says)
-    states = (*_scalars(free), *of("position", "attitude", "velocity", "omega", "wheel_speeds"))
-    inputs = (
-        *_scalars((*moving, *scene.inputs)),
-        *of("omega_dot", "wheel_accelerations", "point_acceleration", "force", "moment"),
-        *of("wheel_torques"),
+def _moving(scene: Scene) -> tuple[Moving, ...]:
+    return (*scene.coordinates, *scene.speeds)
+
+
+def _quaternions(scene: Scene) -> Iterator[Group]:
+    for frame in scene.frames:
+        if name := frame.attitude:
+            parts = tuple(f"{name}_{p}" for p in ("w", *AXES))
+            says = f"quaternion of {frame.name}, scalar first, to {frame.parent}, of norm 1"
+            yield Group(name, parts, "1", "", *ANY, says)
+
+
+def _with_rates(moving: Iterable[Moving]) -> Iterator[Group]:
+    """Yield what moves, each with its rates that are inputs or states; components as one vector."""
+    found: dict[str, list[Group]] = {}
+    for m in moving:
+        found.setdefault(m.vector or m.name, []).append(of_scalar(m))
+        for rate in m.given:
+            found.setdefault(m.of_vector(rate.name), []).append(of_scalar(rate))
+    for name, parts in found.items():
+        yield _joined(name, parts)
+
+
+def of_scalar(entry: Input | Moving) -> Group:
+    """Return the group of a scalar that is given alone."""
+    return Group(entry.name, (entry.name,), entry.unit, "", entry.low, entry.high, entry.meaning)
+
+
+def _joined(name: str, parts: Sequence[Group]) -> Group:
+    """Return the vector of some scalars, or the scalar that is alone."""
+    if len(parts) == 1:
+        return parts[0]
+    return replace(parts[0], name=name, components=tuple(g.name for g in parts))
+
+
+def _answer(name: str, components: tuple[str, ...], unit: str, says: str) -> Group:
+    return Group(name, components, unit, "", None, None, says)
+
+
+def _outputs(scene: Scene, states: Iterable[Group]) -> Iterator[Group]:
+    acting = {u.name: _acting(scene, u) for u in scene.unknowns}
+    yield from acting.values()
+    for name in unknown_vectors(scene.unknowns):
+        yield _vector(name, [acting[f"{name}_{a}"] for a in AXES])
+    yield from _accelerations(scene)
+    results = {r.name for r in scene.results}
+    rates = list(map(_rate_of, states))
+    yield from (g for g in rates if g.name not in results)
+    for name in ENERGIES:
+        yield _answer(name, (name,), "J", name.replace("_", " "))
+    yield _momentum(scene.momentum)
+    for r in scene.results:
+        yield _answer(r.name, (r.name,), r.unit, r.meaning)
+    yield from (g for g in rates if g.name in results)  # by this name the result is meant
+    yield from _matrices(scene)
+    count = len(scene.steady.unknown) if scene.steady else 1
+    parts = tuple(f"steady_{n + 1}" for n in range(count)) if count > 1 else ("steady",)
+    unit = scene.steady.unit if scene.steady else ""
+    free_of = "" if unit else ", without factors that never vanish, so in no unit"
+    yield _answer("steady", parts, unit, f"what vanishes in a steady motion{free_of}")
+
+
+def _acting(scene: Scene, u: Unknown) -> Group:
+    """Return an unknown with the load and the body that it acts on, along the axes of that load.
+
+    An unknown that is no component, but stands in some, is told by the whole load.
+    """
+    load = next(f for f in scene.loads if isinstance(f, Force) and f.name == u.load)
+    kind, three = ("force", load.force) if u.unit == "N" else ("couple", load.couple)
+    axes = [axis for axis, f in zip(AXES, three, strict=True) if u.name in symbols(f)]
+    alone = [axis for axis, f in zip(AXES, three, strict=True) if str(f) == u.name]
+    on = f"on {load.on}" + (f" against {load.against}" if load.against else "")
+    says = f"unknown of the {kind} ({', '.join(map(str, three))}) of {load.name} {on}"
+    if alone == axes and len(axes) == 1:
+        says = f"{kind} of {load.name} {on} along {axes[0]}"
+    return replace(_answer(u.name, (u.name,), u.unit, says), frame=load.along)
+
+
+def _vector(name: str, parts: Sequence[Group]) -> Group:
+    """Return three unknowns as one, by one sentence if they are the vector of a load."""
+    whole, frames = _joined(name, parts), {g.frame for g in parts}
+    said = {g.meaning.removesuffix(f" along {a}") for g, a in zip(parts, AXES, strict=True)}
+    if len(said) == len(frames) == 1 and said.isdisjoint(g.meaning for g in parts):
+        return replace(whole, meaning=said.pop())
+    each = [g.meaning if len(frames) == 1 else f"{g.meaning} of {g.frame}" for g in parts]
+    mixed = len({g.unit for g in parts}) > 1
+    return replace(
+        whole,
+        unit="" if mixed else whole.unit,
+        frame=whole.frame if len(frames) == 1 else "",
+        meaning="; ".join(each) + (", each in its own unit" if mixed else ""),
     )
-    outputs = (
-        *of("angular_momentum", "rate_in_axes", "rate_absolute"), energy,
-        *([_group(scene, "moment")] if "moment" in made else []),
-        *of("coordinate_rates", "position_rate", "velocity_rate", "attitude_rate"),
-    )  # fmt: skip
-    known = {g.name for g in (*inputs, *outputs)}
-    return Groups(states, inputs, outputs, tuple(name for name in RATES if name in known))
 
 
-def turns_freely(scene: ShortForm) -> bool:
-    """Tell whether omega is a variable of its own and not made of prescribed rates."""
-    alone = scene.axes.kind == "body" and scene.known["angular_velocity"].formulas is None
-    return alone or any(c.free for c in scene.coordinates)
+def _momentum(place: Place) -> Group:
+    """Return the angular momentum of bodies about a point, along the axes of its frame."""
+    at = f"({', '.join(map(str, place.at))})" if set(place.at) != {ZERO} else "the origin"
+    says = f"angular momentum of {', '.join(place.of)} about {at} of {place.frame}"
+    parts = tuple(f"angular_momentum_{a}" for a in AXES)
+    return replace(_answer("angular_momentum", parts, "kg m^2/s", says), frame=place.frame)
 
 
-def _given(scene: ShortForm) -> Mapping[str, Given | None]:
-    """Return the ranges or formulas that the scene gives for vectors."""
-    known = scene.known
-    return {
-        "omega": known["angular_velocity"], "omega_dot": known["angular_acceleration"],
-        "moment": known["moment"], "force": known["force"], "position": scene.position,
-        "velocity": scene.velocity, "point_acceleration": scene.point.acceleration,
-    }  # fmt: skip
+def _rate_of(g: Group) -> Group:
+    """Return the rate of a state."""
+    parts = tuple(f"{c}_rate" for c in g.components)
+    unit = PER_SECOND.get(g.unit, f"{g.unit}/s").replace("rad/s^2/s", "rad/s^3")
+    return _answer(f"{g.name}_rate", parts, unit, f"rate of {g.name}")
 
 
-def _missing(scene: ShortForm) -> set[str]:
-    """Return the vectors of which the scene does not speak."""
-    there = {
-        ("position", "velocity", "position_rate", "velocity_rate", "force"): scene.position,
-        ("attitude", "attitude_rate"): scene.axes.quaternion,
-        ("omega", "omega_dot"): turns_freely(scene),
-        ("wheel_speeds", "wheel_accelerations", "wheel_torques"): scene.wheels,
-        ("point_acceleration",): scene.point.acceleration,
-        ("coordinate_rates",): any(c.free for c in scene.coordinates),
-    }
-    return {name for names, is_so in there.items() if not is_so for name in names}
+def _accelerations(scene: Scene) -> Iterator[Group]:
+    """Yield the highest rate of all that is free, each alone, then those that make up vectors."""
+    vectors: dict[str, list[Group]] = {}
+    for m in (m for m in _moving(scene) if m.free):
+        unit = PER_SECOND[m.unit]
+        unit = PER_SECOND[unit] if m.kind == "coordinate" else unit
+        what = "acceleration" if m.kind == "coordinate" else "rate"
+        one = _answer(m.unknown, (m.unknown,), unit, f"{what} of {m.vector or m.name}")
+        yield one
+        if m.vector:
+            vectors.setdefault(m.answer, []).append(one)
+    yield from (_joined(vector, each) for vector, each in vectors.items())
 
 
-def _group(scene: ShortForm, name: str) -> Group:
-    unit, axes, says = QUANTITIES[name]
-    free = [c.name for c in scene.coordinates if c.free]
-    about = POINTS[scene.point.kind]
-    given, frame = _given(scene).get(name), axes or ("B" if scene.axes.fixed_in_body else "xyz")
-    low, high = (given.low, given.high) if given else ANY
-    components = [f"{name}_{part}" for part in (("w", *AXES) if axes == ATTITUDE else AXES)]
-    if axes == WHEELS:
-        each = [w.torque if name == "wheel_torques" else w.speed for w in scene.wheels]
-        low, high = min(i.low for i in each), max(i.high for i in each)
-        components = [i.name + "_dot" * (name == "wheel_accelerations") for i in each]
-    elif axes == NO_AXES:
-        components, frame = [f"{c}_dot" for c in free], ""
-    says = says.format(about=about, free=", ".join(free))
-    return Group(name, tuple(components), unit, frame, low, high, says)
-
-
-def _scalars(each: Iterable[Moving | Input]) -> Iterable[Group]:
-    return (Group(e.name, (e.name,), e.unit, "", e.low, e.high, e.meaning) for e in each)
+def _matrices(scene: Scene) -> Iterator[Group]:
+    names = [m.name for m in _moving(scene) if m.free]
+    places = range(1, len(names) + 1)
+    for name, by in MATRICES.items():
+        parts = tuple(f"{name}_{i}_{k}" for k in places for i in places)
+        says = f"forces by {by}, column by column, for {', '.join(names)}, each in its own unit"
+        yield _answer(name, parts, "", says)

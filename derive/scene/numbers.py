@@ -10,11 +10,10 @@ from fractions import Fraction
 from itertools import islice, product
 from typing import cast
 
-from derive.scene.declaration import Body, Moving, Parameter, SceneError, Sextuple, Triple
+from derive.scene.declaration import Moving, Parameter, SceneError, Sextuple, Triple
 from derive.scene.escape import at_place, brief
 from derive.scene.formula import FLOATS, ZERO, Formula, evaluate, symbols
 from derive.scene.machine import Entries
-from derive.scene.shape import moved
 
 MOST_ENDS = 256
 """Enough for every combination of the ends of eight ranges."""
@@ -58,7 +57,7 @@ def value(formula: Formula, values: Point, label: str) -> float:
     except (ArithmeticError, ValueError):
         found = math.nan
     if not math.isfinite(found):
-        raise SceneError(f"{label} = '{brief(formula)}' has no value{_where(values, (formula,))}")
+        raise SceneError(f"{label} = '{brief(formula)}' has no value{where(values, (formula,))}")
     return found
 
 
@@ -67,11 +66,11 @@ def positive(formula: Formula, label: str, parameters: tuple[Parameter, ...]) ->
     for values in points_of(parameters, [formula]):
         found = value(formula, values, label)
         if found <= 0:
-            raise SceneError(f"{label} must be positive, not {found:g}{_where(values, (formula,))}")
+            raise SceneError(f"{label} must be positive, not {found:g}{where(values, (formula,))}")
     return formula
 
 
-def _where(values: Point, formulas: Iterable[Formula]) -> str:
+def where(values: Point, formulas: Iterable[Formula]) -> str:
     """Return the parameter values behind a number, as an error shows them."""
     used = dict.fromkeys(name for formula in formulas for name in symbols(formula))
     return at_place({name: values[name] for name in used if name in values})
@@ -99,11 +98,12 @@ def triangle(matrix: Matrix) -> bool:
 
     Along principal axes this is the triangle inequality of the three moments.
     """
-    return semidefinite(_second_moments(matrix), abs(_trace(matrix)))
+    return semidefinite(second_moments(matrix), abs(trace(matrix)))
 
 
-def _second_moments(matrix: Matrix) -> Matrix:
-    half = _trace(matrix) / 2
+def second_moments(matrix: Matrix) -> Matrix:
+    """Return the tensor of second moments, half the trace on its diagonal less the inertia."""
+    half = trace(matrix) / 2
     return tuple(tuple((half if i == j else 0) - matrix[i][j] for j in range(3)) for i in range(3))
 
 
@@ -121,52 +121,19 @@ def semidefinite(matrix: Matrix, size: Fraction) -> bool:
     )
 
 
-def _trace(matrix: Matrix) -> Fraction:
+def trace(matrix: Matrix) -> Fraction:
+    """Return the sum of the moments of inertia."""
     return matrix[0][0] + matrix[1][1] + matrix[2][2]
 
 
-def check_inertia(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str]:
-    """Yield a sentence on an inertia that is not positive definite at the middle of the ranges.
-
-    Of a thin rod only the transverse moment must be positive.
-    """
-    values = middle(ends_of(parameters))
-    if not _possible(body, tensor(body.inertia, values, "body inertia")):
-        yield f"body inertia is not positive definite{_where(values, body.inertia)}"
-
-
-def _possible(body: Body, matrix: Matrix) -> bool:
-    if body.kind != "rod":
-        return definite(matrix)
-    return all(matrix[i][i] > 0 for i in range(3) if "xyz"[i] != body.axis)
-
-
-def doubts(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str]:
-    """Yield what is doubtful about an inertia, and about what it leaves about the mass centre."""
-    yield from _doubts("body inertia", body.inertia, parameters, lambda m: _possible(body, m))
-    if body.mass is None or body.centre is None:
-        return
-    own = moved(body.inertia, -body.mass, body.centre)
-
-    def no_masses(values: Point) -> bool:
-        about, left = (tensor(part, values, "body inertia") for part in (body.inertia, own))
-        size = abs(_trace(about))
-        masses = semidefinite(left, size) and semidefinite(_second_moments(left), size)
-        return semidefinite(about, size) and triangle(about) and not masses
-
-    formulas = (*body.inertia, body.mass, *body.centre)
-    says = "body inertia less that of its mass at body.centre is no masses'"
-    yield from _first(says, points_of(parameters, formulas), formulas, no_masses)
-
-
-def _first(
+def first_wrong(
     says: str, each: Iterable[Point], formulas: Sequence[Formula], wrong: Callable[[Point], bool]
 ) -> Iterator[str]:
     """Yield a sentence with the first values at which something is wrong, if there are any."""
-    yield from islice((f"{says}{_where(v, formulas)}" for v in each if wrong(v)), 1)
+    yield from islice((f"{says}{where(v, formulas)}" for v in each if wrong(v)), 1)
 
 
-def _doubts(
+def tensor_doubts(
     label: str,
     inertia: Sextuple,
     parameters: tuple[Parameter, ...],
@@ -177,9 +144,9 @@ def _doubts(
     indefinite = [v for v, matrix in every if not possible(matrix)]
     broken = [v for v, matrix in every if possible(matrix) and not triangle(matrix)]
     for values in indefinite[:1]:
-        yield f"{label} is not positive definite{_where(values, inertia)}"
+        yield f"{label} is not positive definite{where(values, inertia)}"
     for values in broken[:1]:
-        yield f"{label} breaks the triangle inequality{_where(values, inertia)}"
+        yield f"{label} breaks the triangle inequality{where(values, inertia)}"
 
 
 def check_member(label: str, inertia: Entries, parameters: tuple[Parameter, ...]) -> None:
@@ -197,12 +164,12 @@ def check_member(label: str, inertia: Entries, parameters: tuple[Parameter, ...]
         said = ["unknown" if x is None else f"{x:g}" for x in found]
         raise SceneError(
             f"{label} inertia must be positive definite, not moments {', '.join(said[:3])} with "
-            f"products {', '.join(said[3:])}{_where(values, [f for f in inertia if f is not None])}"
+            f"products {', '.join(said[3:])}{where(values, [f for f in inertia if f is not None])}"
         )
 
 
 def _not_negative(matrix: Matrix) -> bool:
-    return semidefinite(matrix, abs(_trace(matrix)))
+    return semidefinite(matrix, abs(trace(matrix)))
 
 
 def member_doubts(label: str, inertia: Entries, parameters: tuple[Parameter, ...]) -> Iterator[str]:
@@ -213,7 +180,7 @@ def member_doubts(label: str, inertia: Entries, parameters: tuple[Parameter, ...
     """
     if None not in inertia and inertia[:3].count(ZERO) != 2:
         whole = cast("Sextuple", inertia)
-        yield from _doubts(f"{label} inertia", whole, parameters, _not_negative)
+        yield from tensor_doubts(f"{label} inertia", whole, parameters, _not_negative)
 
 
 def check_unit(vector: Triple, label: str, values: Point) -> None:
@@ -222,17 +189,5 @@ def check_unit(vector: Triple, label: str, values: Point) -> None:
     if found == 0:
         raise SceneError(f"{label} is zero; it must be a unit vector")
     if abs(found - 1) > UNIT_LENGTH:
-        where = _where(values, vector)
-        raise SceneError(f"{label} must be a unit vector, not of length {found:.10g}{where}")
-
-
-def carrier_doubts(
-    carrier: Sextuple, formulas: Sequence[Formula], each: Iterable[Point]
-) -> Iterator[str]:
-    """Yield a sentence on the first values at which wheels leave their carrier no inertia.
-
-    carrier : inertia of the body without what its wheels have about their axes
-    """
-    says = "body inertia is that of the whole, but the wheels alone exceed it"
-    label = "body inertia"
-    yield from _first(says, each, formulas, lambda v: not definite(tensor(carrier, v, label)))
+        rule = f"must be a unit vector, not of length {found:.10g}"
+        raise SceneError(f"{label} {rule}{where(values, vector)}")

@@ -9,13 +9,14 @@ from typing import Any
 from derive.scene.bodies import read_member
 from derive.scene.declaration import Input, SceneError
 from derive.scene.demands import of_bodies
+from derive.scene.doubtful import doubts, require_sizes
 from derive.scene.entries import FILE, MOMENTUM, STEADY, TIME, TIME_STEP
 from derive.scene.entry import REQUIRED, Entry, Reading, entries_of
 from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.frames import read_frames
+from derive.scene.groups import grouped
 from derive.scene.loads import read_loads
 from derive.scene.machine import Frame, Member, Place, Result, Scene, Steady, Unknown
-from derive.scene.machine_groups import grouped
 from derive.scene.names import distinct, label
 from derive.scene.numbers import member_doubts
 from derive.scene.results import (
@@ -27,10 +28,11 @@ from derive.scene.results import (
     unknown_vectors,
     written_out,
 )
+from derive.scene.safe import require_values
 from derive.scene.scalars import PER_SECOND, Scalars, read_scalars
 from derive.scene.table import THE_FILE, Scope, Table, formula, keys, several, table
 from derive.scene.unit import BESIDE_SI, dimension, misnamed, spelled
-from derive.scene.wanted import moves
+from derive.scene.wanted import check_form, moves
 
 
 @dataclass(frozen=True)
@@ -50,11 +52,6 @@ MACHINE = Form(
     "is for a single body; with bodies and frames, use bodies, frames and loads",
     (TIME_STEP,),
 )
-
-
-def is_machine(document: Mapping[str, object]) -> bool:
-    """Tell whether a file describes a machine and not a single body."""
-    return "bodies" in document or "frames" in document
 
 
 def read_file(
@@ -91,7 +88,7 @@ def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
     steady = _steady(part["steady"], scalars, unknowns, results, asked)
     made = _made(scalars, frames, results, asked, steady)
     distinct([*_declared(scalars, unknowns, results), *made])
-    return grouped(Scene(
+    scene = Scene(
         **head, parameters=scalars.parameters, coordinates=scalars.coordinates,
         speeds=scalars.speeds, inputs=scalars.inputs,
         frames=frames, bodies=bodies, loads=loads, unknowns=unknowns, results=results,
@@ -100,7 +97,11 @@ def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
         steady=steady, asked=asked, wanted=tuple(asked), demands=of_bodies(bodies),
         warnings=(*_unused(scalars, source), *_doubts(bodies, scalars),
                   *_misnamed(scalars, results)),
-    ))  # fmt: skip
+    )  # fmt: skip
+    require_sizes(scene)
+    check_form(scene.wanted, scene.form, scene.emission)
+    require_values(scene)
+    return grouped(replace(scene, warnings=(*scene.warnings, *doubts(scene))))
 
 
 def _misnamed(scalars: Scalars, results: tuple[Result, ...]) -> list[str]:

@@ -29,9 +29,10 @@ ROUNDING = 1e-12
 SMALLEST_BOX = 2.0**-36
 """Part of a range in which a zero that no sign shows is taken to lie."""
 _WORDS = {
-    "Frame": "frame", "Member": "body", "Force": "load", "Weight": "load", "Spring": "load",
-    "Gradient": "load", "Result": "result", "Wheel": "wheel", "Moving": "coordinate",
+    "Member": "body", "Force": "load", "Weight": "load", "Spring": "load", "Gradient": "load",
+    "Moving": "coordinate", "Scene": "",
 }  # fmt: skip
+"""What those are called whose class has another name; of a whole, its fields are."""
 
 
 def require_values(scene: object) -> None:
@@ -90,8 +91,9 @@ def formulas_of(value: object, label: str = "") -> Iterator[tuple[str, Formula]]
     if isinstance(value, Formula):
         yield label, value
     elif is_dataclass(value):
-        word = _WORDS.get(type(value).__name__)
-        own = f"{word} '{getattr(value, 'name', '')}'" if word else label
+        kind, name = type(value).__name__, getattr(value, "name", "")
+        word = _WORDS.get(kind, kind.lower()) if name else ""
+        own = f"{word} '{name}'" if word else label
         for f in fields(value):
             yield from formulas_of(getattr(value, f.name), own or f.name)
     elif isinstance(value, tuple):

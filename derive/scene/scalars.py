@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
@@ -188,32 +188,6 @@ def read_scalars(part: Mapping[str, Table]) -> Scalars:
     moved = {one.name for one in own} | {s.name for s in speeds if s.free}
     coordinates = tuple(_coordinate(one, scope, moved) for one in own)
     return Scalars(parameters, coordinates, speeds, inputs)
-
-
-def of_one_body(part: Mapping[str, Table]) -> Scalars:
-    """Return the scalars of a single body: angles, free unless they say more, and given speeds.
-
-    The rate of a free angle follows from the angular velocity of the body.
-    """
-    written = dict(part)
-    found = {}
-    for name, value in part["coordinates"].entries.items():
-        entries = {"motion": "free", **table(value, f"coordinate '{name}'").entries}
-        given = [key for key in ("rate", "acceleration") if key in entries]
-        if entries["motion"] == "free" and given:
-            rule = f"is free, so its {given[0]} is found, not given"
-            raise SceneError(f"coordinate '{name}' {rule}")
-        found[name] = entries
-    written["coordinates"] = Table("coordinates", found)
-    scalars = read_scalars(written)
-    for m in (*scalars.coordinates, *scalars.speeds):
-        if m.unit != UNITS[m.kind][0]:
-            raise SceneError(f"{m.kind} '{m.name}' must be in {UNITS[m.kind][0]}, not {m.unit}")
-        if m.free and m.kind == "speed":
-            rule = "needs rate = { range = [low, high] } or rate = 0"
-            raise SceneError(f"speed '{m.name}' {rule}")
-    angles = tuple(replace(c, rate=None) if c.free else c for c in scalars.coordinates)
-    return replace(scalars, coordinates=angles)
 
 
 def _entries(given: Table, kind: str) -> list[tuple[str, Table]]:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from itertools import permutations
 
 from derive.scene.declaration import SceneError
-from derive.scene.table import nearest, shown
+from derive.scene.table import nearest
 
 EQUATIONS = (
     "angular_momentum",
@@ -64,21 +64,6 @@ JACOBIAN, SENSITIVITY = "_jacobian", "_sensitivity"
 JACOBIANS = tuple(f"{name}{JACOBIAN}" for name in EQUATIONS)
 MOTIONS = (*STEPS, *COMPENSATED, *STEP_DERIVATIVES)
 WANTED = (*EQUATIONS, *JACOBIANS, *MOTIONS, *ATTITUDES)
-
-
-def read_wanted(value: object) -> tuple[str, ...]:
-    """Return the wanted functions of a scene file."""
-    if not isinstance(value, list) or not value:
-        raise SceneError(f"wanted must be a list of at least one function, not {shown(value)}")
-    for name in value:
-        if not isinstance(name, str) or name not in WANTED:
-            hint = resembling(name, WANTED) if isinstance(name, str) else ""
-            more = "and more in docs/scenes.md and docs/motion.md"
-            hint = hint or f" (known: {', '.join(EQUATIONS)}, {more})"
-            raise SceneError(f"wanted has {shown(name)}, which is no function{hint}")
-        if value.count(name) > 1:
-            raise SceneError(f"wanted has '{name}' twice")
-    return tuple(value)
 
 
 def resembling(name: str, known: Iterable[str]) -> str:

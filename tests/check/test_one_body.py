@@ -12,7 +12,7 @@ from derive.check.particles import clouds
 from derive.library.library import Library, library
 from derive.program.precision import F64
 from derive.scene import parse_scene
-from derive.scene.long_form import written_out
+from derive.scene.short_form.long_form import written_out
 from derive.scene.wanted import EQUATIONS
 from derive.verify.sample import samples
 from tests.lower import test_unusual_scenes as unusual

@@ -21,10 +21,10 @@ from derive.scene import (
     reader,
     results,
     shape,
-    short_form,
     unit,
 )
 from derive.scene import wanted as scene_wanted
+from derive.scene.short_form.tables import ONE_BODY
 from tests.made import SHORT
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -76,7 +76,7 @@ def test_the_program_of_the_page_prints_the_frequencies_of_a_sleeping_top(
 
 
 def test_every_word_that_a_scene_may_use_stands_on_the_page() -> None:
-    words = [*scene_wanted.EQUATIONS, *short_form.ONE_BODY.tables, *short_form.ONE_BODY.foreign]
+    words = [*scene_wanted.EQUATIONS, *ONE_BODY.tables, *ONE_BODY.foreign]
     words += [*entries.KINDS, *shape.SHAPES, *unit.UNITS]
     own = (*entries.AXES_OF_ONE, *entries.BODY, *entries.POINT, *entries.KNOWN, *entries.WHEEL)
     words += [w for row in own for w in (row.key, *row.words)]
@@ -116,7 +116,7 @@ def test_the_page_of_entries_is_made_from_the_rows_that_the_reader_follows() -> 
 @pytest.mark.parametrize("text", [*ACCEPTED, *EXAMPLE.findall(MOTION)])
 def test_every_key_of_an_example_is_a_row(text: str) -> None:
     keys = set(re.findall(r"^(\w+) *=", text, re.MULTILINE))
-    top = {"kind", "shape", *short_form.ONE_BODY.tables}
+    top = {"kind", "shape", *ONE_BODY.tables}
     assert keys - manual.words() - top - _names(text) == set()
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from derive.scene import CATALOGUE, SceneError, parse_scene
-from derive.scene import rules as scene_rules
+from derive.scene.short_form import rules as scene_rules
 
 TABLE = tomllib.loads((Path(__file__).parent / "refusals.toml").read_text(encoding="utf-8"))
 ROWS = [(name, row["old"], row["new"], row["says"]) for name in TABLE for row in TABLE[name]]

@@ -11,8 +11,8 @@ from math import cos, pi, sin, sqrt
 
 import pytest
 
-from derive.scene.declaration import Body
 from derive.scene.formula import FLOATS, ZERO, evaluate
+from derive.scene.short_form.declared import Body
 from tests.made import short
 
 MASS, RADIUS, LENGTH = 1.7, 0.6, 1.3

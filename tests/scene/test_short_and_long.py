@@ -14,7 +14,8 @@ from mpmath import mp, mpf
 from derive.check.particles import digits
 from derive.library.library import Library, library
 from derive.program.precision import F64
-from derive.scene import load, long_form, parse_scene
+from derive.scene import load, parse_scene
+from derive.scene.short_form import long_form
 from derive.verify.cloud import answers
 from derive.verify.cloud.series import DIGITS
 from derive.verify.equations import equations_of

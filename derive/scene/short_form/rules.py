@@ -9,21 +9,14 @@ import math
 from collections.abc import Iterator
 from itertools import chain, pairwise
 
-from derive.scene.declaration import AXES, SceneError, ShortForm, Turning
-from derive.scene.demands import carrier
+from derive.scene.declaration import AXES, SceneError, Turning
 from derive.scene.doubtful import in_degrees
 from derive.scene.escape import brief
 from derive.scene.formula import ONE, ZERO, symbols
-from derive.scene.numbers import (
-    carrier_doubts,
-    check_inertia,
-    check_unit,
-    doubts,
-    ends_of,
-    middle,
-    points_of,
-)
+from derive.scene.numbers import check_unit, ends_of, middle, points_of
 from derive.scene.safe import formulas_of
+from derive.scene.short_form.declared import ShortForm
+from derive.scene.short_form.inertia import carrier, carrier_doubts, check_inertia, doubts
 from derive.scene.wanted import ROTATIONAL, SPLITTINGS, TORQUE_FREE, moves, step_of
 
 FORWARD = ("acceleration", "state_rate")

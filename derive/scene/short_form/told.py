@@ -5,8 +5,9 @@ Written out with frames, bodies and loads it has names of its own; none of them 
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from derive.scene.declaration import Axes, Body, ShortForm, Turning, Wheel
+from derive.scene.declaration import Turning
 from derive.scene.formula import ZERO, Formula
+from derive.scene.short_form.declared import Axes, Body, ShortForm, Wheel
 from derive.scene.wanted import attitudes_only
 
 POINTS = {

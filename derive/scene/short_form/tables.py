@@ -1,47 +1,24 @@
-"""The scene file: its tables read into declarations, each by one function.
+"""The tables of the short form read into declarations, each by one function.
 
 Every value is checked where it is read (type, unit, range, scalars); what must hold between the
-tables is in ``derive.scene.rules``.
+tables is in ``derive.scene.short_form.rules``.
 """
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, Literal, cast
+from typing import Any, Literal
 
-from derive.scene.bodies import Kind, Substance, of_kind, of_shape
-from derive.scene.declaration import (
-    AXES,
-    Axes,
-    Body,
-    Input,
-    Point,
-    SceneError,
-    Sextuple,
-    ShortForm,
-    Triple,
-    Turning,
-    Wheel,
-)
-from derive.scene.entries import (
-    AXES_OF_ONE,
-    BODY,
-    KNOWN,
-    POINT,
-    POSITION,
-    TIME,
-    TIME_STEP,
-    WHEEL,
-)
+from derive.scene.declaration import Input, SceneError
+from derive.scene.entries import AXES_OF_ONE, KNOWN, POINT, POSITION, TIME, TIME_STEP, WHEEL
 from derive.scene.entry import Reading, entries_of
-from derive.scene.escape import brief
-from derive.scene.formula import ZERO
 from derive.scene.names import distinct
 from derive.scene.reader import SCALARS, Form, read_file
-from derive.scene.scalars import Scalars, of_one_body
-from derive.scene.shape import SHAPES, moved
-from derive.scene.table import Scope, Table, keys, nearest, shown, table
+from derive.scene.scalars import UNITS, Scalars, read_scalars
+from derive.scene.short_form.body import read_body, through_coordinates
+from derive.scene.short_form.declared import Axes, Point, ShortForm, Wheel
+from derive.scene.table import Scope, Table, keys, shown, table
 from derive.scene.unit import ANGULAR_VELOCITY, LENGTH, NONE, VELOCITY, Dimension
-from derive.scene.wanted import attitudes_only, read_wanted
+from derive.scene.wanted import EQUATIONS, WANTED, attitudes_only, resembling
 
 ONE_BODY = Form(
     ("body", "axes", "wheels", "point", "known", "position", *SCALARS),
@@ -56,7 +33,7 @@ def read_scene(document: dict[str, Any], name: str, source: str) -> ShortForm:
     if "body" not in document and attitudes_only(document.get("wanted")):
         document["body"] = {"kind": "spherical", "moment": 1}  # nothing asks about it
     head, part = read_file(document, name, source, ONE_BODY)
-    scalars = of_one_body(part)
+    scalars = _scalars(part)
     wheels = _wheels(document.get("wheels", []), scalars)
     distinct(_declared(scalars, wheels))
     scope = _known_with(scalars, wheels)
@@ -72,13 +49,13 @@ def read_scene(document: dict[str, Any], name: str, source: str) -> ShortForm:
         speeds=scalars.speeds,
         inputs=scalars.inputs,
         axes=axes,
-        body=_body(part["body"], point.kind, scalars),
+        body=read_body(part["body"], point.kind, scalars),
         wheels=wheels,
         point=point,
         known=entries_of(part["known"], KNOWN, by),
         position=place.get("position"),
         velocity=place.get("velocity"),
-        head={**head, "source": "", "wanted": read_wanted(head["wanted"])},
+        head={**head, "source": "", "wanted": _wanted(head["wanted"])},
         warnings=(),
     )
 
@@ -88,7 +65,7 @@ def _axes(given: Table, scalars: Scalars) -> Axes:
     turned, omega = said["turned"], said["angular_velocity"]
     if turned and omega:
         raise SceneError("axes have both turned and angular_velocity; give one of them")
-    _through_coordinates(turned or (), "axes.turned", scalars)
+    through_coordinates(turned or (), "axes.turned", scalars)
     kind: Literal["body", "turned", "given"] = "body"
     if turned or omega:
         kind = "turned" if turned else "given"
@@ -130,61 +107,6 @@ def _declared(scalars: Scalars, wheels: tuple[Wheel, ...]) -> list[tuple[str, st
     return found
 
 
-def _body(given: Table, point: str, scalars: Scalars) -> Body:
-    """Return the body of a scene, its inertia about the scene's point along its own axes.
-
-    point : the kind of the scene's point; a shape is moved to it unless it is the mass centre
-    """
-    if ("shape" in given.entries) == ("kind" in given.entries):
-        raise SceneError("body needs either a kind or a shape")
-    by = Reading(scalars.scopes, {}, scalars.parameters)
-    if "shape" in given.entries:
-        made = of_shape(given, SHAPES, BODY, by)
-        centre = made.said["centre"]
-        if made.said.get("about") == "apex":
-            centre = _from_apex(made, point)
-        made = _at_point(made, centre, point)
-    else:
-        made = of_kind(given, BODY, by)
-        centre = made.said["centre"]
-        for key in ("axial", "transverse"):
-            if made.kind == "axisymmetric" and made.said[key] is None:
-                raise SceneError(f"body needs '{key}'")
-    turned, spin = made.said["turned"] or (), made.said["spin"]
-    _through_coordinates(turned, "body.turned", scalars)
-    return Body(
-        cast("Kind", made.kind), made.mass, cast("Sextuple", made.inertia), centre, made.axis,
-        turned, spin, made.lengths or {}, made.look,
-    )  # fmt: skip
-
-
-def _from_apex(made: Substance, point: str) -> Triple:
-    """Return the mass centre of a cone that opens from the point along its positive axis."""
-    if point == "centre_of_mass":
-        raise SceneError("body.about = 'apex' needs a fixed or moving point, not 'centre_of_mass'")
-    if made.said["centre"] is not None:
-        raise SceneError("body.centre follows from body.about = 'apex'; leave it out")
-    return made.apex()
-
-
-def _at_point(made: Substance, centre: Triple | None, point: str) -> Substance:
-    """Move a shape's inertia to the scene's point, and say what kind of body it is about it."""
-    if point == "centre_of_mass":
-        return made
-    if centre is None:
-        raise SceneError(f"a shape about a {point} point needs body.centre, from that point")
-    assert made.mass is not None  # noqa: S101 - every shape says its mass
-    inertia = moved(cast("Sextuple", made.inertia), made.mass, centre)
-    off = [name for name, length in zip(AXES, centre, strict=True) if length != ZERO]
-    if not off or off == [made.axis]:
-        return replace(made, inertia=inertia)
-    if any(product != ZERO for product in inertia[3:]):
-        return replace(made, kind="general", inertia=inertia, axis=None)
-    if made.kind == "spherical":
-        return replace(made, kind="axisymmetric", inertia=inertia, axis=off[0])
-    return replace(made, kind="principal", inertia=inertia, axis=None)
-
-
 def _point(given: Table, scope: Scope) -> Point:
     said = entries_of(given, POINT, Reading({"known": scope}))
     kind, acceleration = said["kind"], said["acceleration"]
@@ -211,10 +133,42 @@ def _known_with(scalars: Scalars, wheels: tuple[Wheel, ...]) -> Scope:
     return Scope({**known.dimensions, **dimensions}, {**known.others, **others}, known.rule)
 
 
-def _through_coordinates(turned: tuple[Turning, ...], label: str, scalars: Scalars) -> None:
-    """Refuse turns of which one is not through a coordinate."""
-    known = [c.name for c in scalars.coordinates]
-    for turn in turned:
-        if turn.coordinate not in known:
-            rule = f"turns through '{brief(turn.angle)}', which is no coordinate of the scene"
-            raise SceneError(f"{label} {rule}{nearest(str(turn.angle), known)}")
+def _scalars(part: Mapping[str, Table]) -> Scalars:
+    """Return the scalars of a single body: angles, free unless they say more, and given speeds.
+
+    The rate of a free angle follows from the angular velocity of the body.
+    """
+    written = dict(part)
+    found = {}
+    for name, value in part["coordinates"].entries.items():
+        entries = {"motion": "free", **table(value, f"coordinate '{name}'").entries}
+        given = [key for key in ("rate", "acceleration") if key in entries]
+        if entries["motion"] == "free" and given:
+            rule = f"is free, so its {given[0]} is found, not given"
+            raise SceneError(f"coordinate '{name}' {rule}")
+        found[name] = entries
+    written["coordinates"] = Table("coordinates", found)
+    scalars = read_scalars(written)
+    for m in (*scalars.coordinates, *scalars.speeds):
+        if m.unit != UNITS[m.kind][0]:
+            raise SceneError(f"{m.kind} '{m.name}' must be in {UNITS[m.kind][0]}, not {m.unit}")
+        if m.free and m.kind == "speed":
+            rule = "needs rate = { range = [low, high] } or rate = 0"
+            raise SceneError(f"speed '{m.name}' {rule}")
+    angles = tuple(replace(c, rate=None) if c.free else c for c in scalars.coordinates)
+    return replace(scalars, coordinates=angles)
+
+
+def _wanted(value: object) -> tuple[str, ...]:
+    """Return the wanted functions of a scene file."""
+    if not isinstance(value, list) or not value:
+        raise SceneError(f"wanted must be a list of at least one function, not {shown(value)}")
+    for name in value:
+        if not isinstance(name, str) or name not in WANTED:
+            hint = resembling(name, WANTED) if isinstance(name, str) else ""
+            more = "and more in docs/scenes.md and docs/motion.md"
+            hint = hint or f" (known: {', '.join(EQUATIONS)}, {more})"
+            raise SceneError(f"wanted has {shown(name)}, which is no function{hint}")
+        if value.count(name) > 1:
+            raise SceneError(f"wanted has '{name}' twice")
+    return tuple(value)

@@ -6,13 +6,10 @@ is *sought* where accelerations are found from the moment, *given* where the mom
 
 from collections.abc import Sequence
 from dataclasses import replace
-from fractions import Fraction
 from typing import Literal
 
-from derive.scene.declaration import AXES, Input, Kind, Moving, ShortForm, Triple, Turning
-from derive.scene.demands import carrier, of_one_body
+from derive.scene.declaration import ANY, AXES, Input, Kind, Moving, Triple, Turning
 from derive.scene.formula import ONE, ZERO, Formula, apply, symbol
-from derive.scene.groups import groups, turns_freely
 from derive.scene.machine import (
     INERTIAL,
     Entries,
@@ -24,14 +21,16 @@ from derive.scene.machine import (
     Scene,
     Unknown,
 )
-from derive.scene.rules import singular_attitude
 from derive.scene.shape import moved
-from derive.scene.told import spoken, told
+from derive.scene.short_form.declared import ShortForm
+from derive.scene.short_form.inertia import carrier, of_one_body
+from derive.scene.short_form.quantities import groups, turns_freely
+from derive.scene.short_form.rules import singular_attitude
+from derive.scene.short_form.told import spoken, told
 
 FRAME, BODY = "xyz", "body"
 NOWHERE: Triple = (ZERO, ZERO, ZERO)
 Motion = Literal["sought", "given"]
-_ANY = (Fraction(-1), Fraction(1))
 
 
 def written_out(scene: ShortForm) -> Scene:
@@ -76,25 +75,25 @@ def _omega(scene: ShortForm, motion: Motion) -> list[Moving]:
     names = [(f"omega_{a}", f"omega_dot_{a}") for a in AXES]
     if motion == "sought":
         return [_free(name, "rad/s", "speed", None, rate) for name, rate in names]
-    inputs = [Input(rate, "rad/s^2", *_ANY, "") for _, rate in names]
+    inputs = [Input(rate, "rad/s^2", *ANY, "") for _, rate in names]
     rates: Sequence[Input | Formula] = scene.known["angular_acceleration"].formulas or inputs
     return [_driven(n, "rad/s", "speed", r) for (n, _), r in zip(names, rates, strict=True)]
 
 
 def _free(name: str, unit: str, kind: Kind, rate: Input | None, highest: str = "") -> Moving:
-    return Moving(name, unit, *_ANY, "", kind, free=True, state=True, rate=rate, acceleration=None,
+    return Moving(name, unit, *ANY, "", kind, free=True, state=True, rate=rate, acceleration=None,
                   highest=highest)  # fmt: skip
 
 
 def _driven(name: str, unit: str, kind: Kind, rate: Input | Formula | None = None) -> Moving:
-    return Moving(name, unit, *_ANY, "", kind, free=False, state=False, rate=rate,
+    return Moving(name, unit, *ANY, "", kind, free=False, state=False, rate=rate,
                   acceleration=None)  # fmt: skip
 
 
 def _position() -> list[Moving]:
     """Return the coordinates of the mass centre, whose rates have names of their own."""
     return [
-        _free(f"position_{a}", "m", "coordinate", Input(f"velocity_{a}", "m/s", *_ANY, ""),
+        _free(f"position_{a}", "m", "coordinate", Input(f"velocity_{a}", "m/s", *ANY, ""),
               f"velocity_rate_{a}")
         for a in AXES
     ]  # fmt: skip
@@ -181,7 +180,7 @@ def _wheel(scene: ShortForm, n: int, motion: Motion) -> tuple[Moving, Member, Lo
     """Return the speed of a wheel, the wheel, and what its motor and its bearing do to it."""
     wheel, (x, y, z) = scene.wheels[n], scene.wheels[n].axis
     s, u, C = symbol(wheel.speed.name), symbol(wheel.torque.name), wheel.axial
-    rate, moves = Input(f"{wheel.speed.name}_dot", "rad/s^2", *_ANY, ""), wheel.speed.name
+    rate, moves = Input(f"{wheel.speed.name}_dot", "rad/s^2", *ANY, ""), wheel.speed.name
     speed = _driven(moves, "rad/s", "speed", rate)
     if motion == "sought":
         speed = _free(moves, "rad/s", "speed", None)
