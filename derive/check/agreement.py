@@ -75,7 +75,7 @@ def _linked(loaded: ctypes.CDLL, symbol: str, dtype: type) -> Callable[..., Any]
 
 def replay(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether the C of every function gives the bits of its program."""
-    uses_libm = any(kind in LIBM for f in emitted.library.printed() for kind in f.count())
+    uses_libm = any(kind in LIBM for f in emitted.library.printed() for kind in f.count)
     own = linked_arithmetic(emitted) if uses_libm else working(emitted.precision.dtype)
     expected = replayed(emitted.library, each, emitted.precision, own)
     for program in emitted.library.printed():

@@ -75,7 +75,7 @@ def compared(
     names = [c for q in takes for c in q.components]
     differentiated = _differentiated(function)
     wrong, missing = [], []
-    beside = NEAR if "select" in program.count() else ()
+    beside = NEAR if "select" in program.count else ()
     for place in places(takes, each, (0.0, *beside)):
         first, second = differences(library, program, place)
         given = ([w[c] for c in names] for w in (place.values, place.direction))

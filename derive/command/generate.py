@@ -4,10 +4,18 @@ import argparse
 import shlex
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 from derive.command.costs import print_costs
-from derive.command.generation import Made, all_made, gallery_of, lecture_made
+from derive.command.generation import (
+    Made,
+    all_made,
+    gallery_of,
+    lecture_made,
+    made,
+    made_with_savings,
+)
 from derive.command.scenes import samples_argument, scene_argument
 from derive.command.terminal import OUT, complain, console, errors, progress
 from derive.emit.files import (
@@ -52,7 +60,8 @@ def generate(given: argparse.Namespace) -> int:
     """Write, or with --check compare, the files of scenes."""
     require_folder(given.out)
     by = Measuring(sampled_at(given.samples), None if given.anew else given.out)
-    results = made_of(given.scenes, () if given.scenes else (lecture_made,), by)
+    making = partial(made if given.check else made_with_savings, measuring=by)
+    results = made_of(given.scenes, () if given.scenes else (lecture_made,), making)
     texts = {name: text for result in results for name, text in result.texts.items()}
     if not given.scenes:
         texts |= gallery_of(results)
@@ -76,7 +85,7 @@ def _mended(folder: Path, stopped: Sequence[str]) -> str:
 
 
 def made_of(
-    scenes: Sequence[str], also: Sequence[Callable[[], Made]], measuring: Measuring
+    scenes: Sequence[str], also: Sequence[Callable[[], Made]], making: Callable[[str], Made]
 ) -> list[Made]:
     """Return what scenes become, none meaning all, and what is made also; print the warnings."""
     sources = [str(source) for source in scenes or catalogue()]
@@ -84,7 +93,7 @@ def made_of(
     found: dict[int, Made] = {}
     with progress() as shown:
         task = shown.add_task("deriving, proving and measuring")
-        for place, result in all_made(sources, also, measuring):
+        for place, result in all_made(sources, also, making):
             found[place] = result
             done = f"{len(found)} of {len(sources) + len(also)} done"
             shown.update(task, description=f"deriving, proving and measuring: {done}")

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 
 from derive.emit.files import scene_files
@@ -45,8 +45,17 @@ class Made:
 
 def made(source: str, measuring: Measuring) -> Made:
     """Return everything that a scene becomes; its programs are proved before they are printed."""
-    scene = load(source)
-    programs = library(scene)
+    return _made(library(load(source)), measuring)
+
+
+def made_with_savings(source: str, measuring: Measuring) -> Made:
+    """Return everything that a scene becomes, and what its functions were spared."""
+    programs = library(load(source))
+    return replace(_made(programs, measuring), savings=tuple(savings(programs)))
+
+
+def _made(programs: Library, measuring: Measuring) -> Made:
+    scene = programs.scene
     _ranges_of_floats(programs)
     try:
         prove(programs)
@@ -57,9 +66,8 @@ def made(source: str, measuring: Measuring) -> Made:
         raise SceneError(f"scene '{scene.name}': {rule}, but {why}") from None
     _finite(programs, measured.each)
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in programs.mechanism.doubts())
-    costs, spared = cost_rows(programs, measured.each), tuple(savings(programs))
     texts = scene_files(programs, measured.each, measured.digest)
-    return Made(texts, warnings, costs, spared, card(programs))
+    return Made(texts, warnings, cost_rows(programs, measured.each), card=card(programs))
 
 
 def _ranges_of_floats(programs: Library) -> None:
@@ -103,7 +111,7 @@ def cost_rows(programs: Library, measured: Sequence[Measurement]) -> tuple[CostR
     """Return one row a function."""
     name = programs.scene.name
     return tuple(
-        CostRow(name, p.name, p.flops(), p.count().get("div", 0), _errors(p.name, measured))
+        CostRow(name, p.name, p.flops(), p.count.get("div", 0), _errors(p.name, measured))
         for p in programs.printed()
     )
 
@@ -117,16 +125,16 @@ def _errors(function: str, measured: Sequence[Measurement]) -> tuple[str, ...]:
 
 
 def all_made(
-    sources: Sequence[str], also: Sequence[Callable[[], Made]], measuring: Measuring
+    sources: Sequence[str], also: Sequence[Callable[[], Made]], making: Callable[[str], Made]
 ) -> Iterator[tuple[int, Made]]:
     """Yield place and result of every source, then of what is made ``also``, as they are done."""
     if len(sources) + len(also) == 1:
-        yield 0, made(sources[0], measuring) if sources else also[0]()
+        yield 0, making(sources[0]) if sources else also[0]()
         return
     with ProcessPoolExecutor() as pool:
         # What is made also takes longest, so it starts first.
         last = {pool.submit(task): len(sources) + k for k, task in enumerate(also)}
-        scenes = {pool.submit(made, source, measuring): k for k, source in enumerate(sources)}
+        scenes = {pool.submit(making, source): k for k, source in enumerate(sources)}
         waiting = last | scenes
         for future in as_completed(waiting):
             yield waiting[future], future.result()

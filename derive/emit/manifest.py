@@ -104,7 +104,7 @@ def _setup(library: Library) -> dict[str, Any]:
         "returns": "int: 0, or the first rule that the parameters break; see status",
         "status": {str(number): says for number, says in possible(program).items()},
         "arguments": _arguments(program),
-        "cost": cost | program.count(),
+        "cost": cost | program.count,
         "error": SETUP_ERROR,
     }
 
@@ -119,7 +119,7 @@ def _function(library: Library, program: Program, figures: Sequence[Measurement]
         "arguments": _arguments(program),
         "sparsity": {name: _sparsity(s) for name, s in (program.sparsity or {}).items()},
         "arithmetic": program.arithmetic,
-        "cost": {"flops": program.flops()} | program.count(),
+        "cost": {"flops": program.flops()} | program.count,
         "error": _error(program, figures),
         "singular": [{"where": s.where, "outputs": list(s.outputs)} for s in program.singular],
         "postconditions": [

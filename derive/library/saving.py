@@ -46,7 +46,7 @@ def savings(library: Library) -> Iterator[Saving]:
 
 def _plain(library: Library, base: str) -> int | None:
     """Return the operations of a function body by body; None where that does not determine it."""
-    plain = library.mechanism.posed(base).body_by_body()
+    plain = library.mechanism.posed(base).body_by_body
     try:
         way = plain_arrangement(plain, plain.whole(base))
     except (SceneError, UndeterminedError):

@@ -197,7 +197,7 @@ def _divisors(trial: _Trial, usual: NDArray[Any], hits: AbstractSet[Place]) -> l
     hits : places that are told already
     A program that chooses divides on ways that are not taken, and is not looked at.
     """
-    if trial.program.has_arrays or "select" in trial.program.count():
+    if trial.program.has_arrays or "select" in trial.program.count:
         return []
     names = _divided_by(trial.program)
     columns = _drawn(trial, GENERIC, AROUND)

@@ -38,23 +38,23 @@ def slopes_by(graph: Graph, leaf: Value) -> Callable[[Value], Value]:
             memory[node] = ZERO if constant else _by_rule(graph, node, visit)
         return memory[node]
 
-    return lambda value: graph.mul([(value[0], ONE), visit(value[1])])
+    return lambda value: graph.scaled(visit(value[1]), value[0])
 
 
 def _by_rule(graph: Graph, node: int, visit: Callable[[int], Value]) -> Value:
     kind, *rest = graph.nodes[node]
     match kind:
         case "sum":
-            return graph.add([graph.mul([(c, ONE), visit(n)]) for c, n in rest[0]])
+            return graph.add([graph.scaled(visit(n), c) for c, n in rest[0]])
         case "product":
             return graph.add(
                 [_one_factor(graph, rest[0], place, visit) for place in range(len(rest[0]))]
             )
         case "let" | "cut":
-            return graph.mul([(rest[0][0], ONE), visit(rest[0][1])])
+            return graph.scaled(visit(rest[0][1]), rest[0][0])
         case "call":
             partial = RULES[rest[0]](graph, rest[1])
-            inner = [graph.mul([(c, ONE), visit(n)]) for c, n in rest[1]]
+            inner = [graph.scaled(visit(n), c) for c, n in rest[1]]
             return graph.add([graph.mul(pair) for pair in zip(partial, inner, strict=True)])
     return ZERO
 

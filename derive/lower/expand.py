@@ -6,6 +6,7 @@ once in set-up; differences such as I_yy - I_zz then lose nothing to cancellatio
 
 from collections import Counter
 from collections.abc import Callable, Iterable
+from fractions import Fraction
 
 from derive.lower.graph import ONE, UNIT, Graph, Value
 
@@ -31,7 +32,7 @@ def terms(graph: Graph, values: Iterable[Value], kept: frozenset[Family]) -> lis
                 memory[node] = _terms(graph, node, visit)
         return memory[node]
 
-    return [_scaled(graph, visit(node), (coefficient, ONE)) for coefficient, node in values]
+    return [_scaled(graph, visit(node), coefficient) for coefficient, node in values]
 
 
 def family(graph: Graph, node: int) -> Family:
@@ -47,7 +48,7 @@ def families(graph: Graph, value: Value) -> list[Family]:
 
 def _kept(graph: Graph, node: int, visit: Visit) -> Terms:
     factor, inner = graph.nodes[node][1]
-    inside = factored(graph, _scaled(graph, visit(inner), (factor, ONE)))
+    inside = factored(graph, _scaled(graph, visit(inner), factor))
     coefficient, named = graph.let(graph.names[node], inside, graph.families.get(node, ""))
     return {((named, 1),): (coefficient, ONE)} if coefficient else {}
 
@@ -59,9 +60,9 @@ def _terms(graph: Graph, node: int, visit: Visit) -> Terms:
     match kind:
         case "let":
             coefficient, inner = rest[0]
-            return _scaled(graph, visit(inner), (coefficient, ONE))
+            return _scaled(graph, visit(inner), coefficient)
         case "sum":
-            return _added(graph, [_scaled(graph, visit(n), (c, ONE)) for c, n in rest[0]])
+            return _added(graph, [_scaled(graph, visit(n), c) for c, n in rest[0]])
         case "product":
             product: Terms = {(): UNIT}
             for base, power in rest[0]:
@@ -81,8 +82,8 @@ def _powered(graph: Graph, base: int, power: int, visit: Visit) -> Terms:
     return result
 
 
-def _scaled(graph: Graph, these: Terms, factor: Value) -> Terms:
-    return {monomial: graph.mul([factor, c]) for monomial, c in these.items()}
+def _scaled(graph: Graph, these: Terms, factor: Fraction) -> Terms:
+    return {monomial: graph.scaled(c, factor) for monomial, c in these.items()}
 
 
 def _added(graph: Graph, several: list[Terms]) -> Terms:

@@ -82,6 +82,11 @@ class Graph:
         own = flat if content == 1 else [(n, c / content) for n, c in flat]
         return content, self._node(("sum", tuple((c, n) for n, c in own)), [n for n, _ in flat])
 
+    def scaled(self, value: Value, factor: Fraction) -> Value:
+        """Return ``value`` times a number."""
+        coefficient = _times(value[0], factor)
+        return coefficient, value[1] if coefficient else ONE
+
     def mul(self, values: Iterable[Value]) -> Value:
         """Return the product of ``values``, flat, powers collected."""
         coefficient, powers = UNIT[0], dict[int, int]()

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from derive.lower.graph import ONE, UNIT, Graph, Value
+from derive.lower.graph import UNIT, Graph, Value
 
 Signed = tuple[int, int]  # sign, key
 
@@ -52,12 +52,8 @@ def _entered(table: Table, value: Value) -> Signed:
     if abs(coefficient) != 1 and _absorbs(table, node):
         return sign, _scaled_sum(table, abs(coefficient), node)
     powers = graph.nodes[node][1] if graph.nodes[node][0] == "product" else ((node, 1),)
-    constant = graph.mul(
-        [
-            (abs(coefficient), ONE),
-            *(graph.power((UNIT[0], n), p) for n, p in powers if table.known(n)),
-        ]
-    )
+    known = [graph.power((UNIT[0], n), p) for n, p in powers if table.known(n)]
+    constant = graph.scaled(graph.mul(known), abs(coefficient))
     sign *= 1 if constant[0] > 0 else -1
     factors: list[int] = []
     if (abs(constant[0]), constant[1]) != UNIT:

@@ -55,6 +55,10 @@ class Answers:
         found = self._asked(base, quantities, answers, steps)
         return replace(found, says=SAYS[base]) if (base,) == names and base in SAYS else found
 
+    @cached_property
+    def _regular(self) -> Regular:
+        return Regular(self.frames, self.balances)
+
     def _symbols(self, q: Quantity) -> list[Symbol]:
         return [self.frames.sheet.symbols[c] for c in q.components]
 
@@ -76,7 +80,7 @@ class Answers:
             names = [c for c, s in sheet.symbols.items() if s in left]
             raise KeyError(f"'{base}' has no expression for {', '.join(names)}")
         wanted = used & sheet.unknowns
-        rows, unknowns = Regular(self.frames, self.balances).determining(wanted)
+        rows, unknowns = self._regular.determining(wanted)
         written = tuple(self.balances.written(row) for row in rows)
         definitions = sheet.needed([*written, *answers.values()])
         held = tuple(row.balance for row in rows)

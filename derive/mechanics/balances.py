@@ -5,7 +5,7 @@ looked at; only those that are chosen are written out.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
 from typing import Literal
@@ -52,7 +52,7 @@ class Balance:
         return f"{self.kind} on {bodies}{about} along {along}"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Row:
     """A balance with its coefficients at each trial point: the rest first, then the unknowns.
 
@@ -79,9 +79,13 @@ class Row:
 
 @dataclass
 class Balances:
-    """The efforts and loads of a machine, and the balances made of them."""
+    """The efforts and loads of a machine, and the balances made of them.
+
+    expressions : of balances that were written out before
+    """
 
     frames: Frames
+    expressions: dict[Row, Expr] = field(default_factory=dict)
 
     @cached_property
     def sides(self) -> Sides:
@@ -214,6 +218,11 @@ class Balances:
 
     def written(self, row: Row) -> Expr:
         """Return a balance as an expression that is zero, without unknowns that drop out of it."""
+        if row not in self.expressions:
+            self.expressions[row] = self._written(row)
+        return self.expressions[row]
+
+    def _written(self, row: Row) -> Expr:
         frames, sheet, balance = self.frames, self.frames.sheet, row.balance
         e = frames.direction(balance.axis)
         total: Expr = Integer(0)
@@ -257,7 +266,7 @@ class Balances:
 
     def body_by_body(self) -> "Balances":
         """Return the balances of single bodies, about their mass centres only."""
-        fewer = Balances(self.frames)
+        fewer = Balances(self.frames, self.expressions)
         fewer.rows = tuple(r for r in self.rows if len(r.balance.bodies) == 1
                            and (r.balance.kind == "force" or r.balance.central))  # fmt: skip
         return fewer

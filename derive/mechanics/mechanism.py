@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 
 from sympy import Expr, Integer, Pow
 
@@ -77,6 +77,7 @@ class Mechanism:
         found = substituted(own.whole(base), dict.fromkeys(own.words.hidden, Integer(1)))
         return replace(found, name=base, steps=tuple(dict.fromkeys(found.steps)))
 
+    @cached_property
     def body_by_body(self) -> Mechanism:
         """Return the machine with balances of single bodies, about their mass centres only."""
         a = self.answers

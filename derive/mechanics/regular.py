@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from sympy import Integer, Symbol
 
@@ -21,6 +22,10 @@ class Regular:
 
     frames: Frames
     balances: Balances
+
+    @cached_property
+    def _contradiction(self) -> str:
+        return contradiction(self.balances)
 
     def determining(self, wanted: set[Symbol]) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
         """Return balances that determine the unknowns wherever the machine itself does.
@@ -72,7 +77,7 @@ class Regular:
         if not wanted:
             return (), ()
         require_no_ring(self.balances, frozenset(every.index(s) for s in wanted))
-        if self.frames.machine.steady is None and (sentence := contradiction(self.balances)):
-            raise SceneError(sentence)
+        if self.frames.machine.steady is None and self._contradiction:
+            raise SceneError(self._contradiction)
         rows, unknowns = chosen(self.balances, frozenset(every.index(s) for s in wanted), hard)
         return rows, tuple(every[k] for k in sorted(unknowns))

@@ -60,6 +60,7 @@ class Valued:
         """Begin with nothing remembered."""
         self._turned: dict[str, Array] = {}
         self._wrenches: dict[int, tuple[Array, Array]] = {}
+        self._efforts: dict[str, tuple[Array, Array]] = {}
 
     def rotation(self, name: str) -> Array:
         """Return R from a frame to the topmost one that it is linked with."""
@@ -118,10 +119,9 @@ class Valued:
 
     def force(self, bodies: tuple[str, ...]) -> Array:
         """Return mass times acceleration less the forces."""
-        b = self.sides
         total = self.linear(ZERO, INERTIAL)
         for n in bodies:
-            total = total + self.parts(b.efforts[n].force)
+            total = total + self._effort(n)[0]
         for k in self._on(bodies):
             total = total - self._acting(k)[0]
         return total
@@ -129,12 +129,11 @@ class Valued:
     def moment(self, bodies: tuple[str, ...], place: Point) -> Array:
         """Return the rate of angular momentum less the moments, about a point."""
         b, here = self.sides, self.place(place)
-        total = 0 * self.linear(ZERO, INERTIAL)
+        total = self.linear(ZERO, INERTIAL)
         for n in bodies:
-            own = b.efforts[n]
-            arm = self.place(own.centre) - here
-            total = total + self.linear(own.moment, own.frame)
-            total = total + _crossed(arm, self.parts(own.force))
+            force, moment = self._effort(n)
+            arm = self.place(b.efforts[n].centre) - here
+            total = total + moment + _crossed(arm, force)
         for k in self._on(bodies):
             force, couple = self._acting(k)
             total = total - couple - self._crossed_at(k, here, force)
@@ -147,6 +146,12 @@ class Valued:
     def _on(self, bodies: tuple[str, ...]) -> list[int]:
         return [k for k, w in enumerate(self.sides.wrenches) if w.body in bodies]
 
+    def _effort(self, n: str) -> tuple[Array, Array]:
+        if n not in self._efforts:
+            own = self.sides.efforts[n]
+            self._efforts[n] = (self.parts(own.force), self.linear(own.moment, own.frame))
+        return self._efforts[n]
+
     def _acting(self, k: int) -> tuple[Array, Array]:
         if k not in self._wrenches:
             w = self.sides.wrenches[k]
@@ -156,5 +161,5 @@ class Valued:
 
 def _crossed(arm: Array, table: Array) -> Array:
     x, y, z = arm
-    return np.array([y * table[2] - z * table[1], z * table[0] - x * table[2],
-                     x * table[1] - y * table[0]])  # fmt: skip
+    return np.array([table[2] * y - table[1] * z, table[0] * z - table[2] * x,
+                     table[1] * x - table[0] * y])  # fmt: skip

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from typing import Any, Literal
 
 from derive.program.arithmetic import FLOPS
@@ -140,13 +141,14 @@ class Program:
         """Tell whether it is the function that makes what others read: constants, or a plan."""
         return any(q.role == role for q in self.outputs)
 
+    @cached_property
     def count(self) -> dict[str, int]:
         """Return how often each operator is used at most, every turn of a loop counted."""
         return dict(sorted(Counter(_uses(self.ops, {}, {})).items()))
 
     def flops(self) -> int:
         """Return the number of + - * / in the operations, every turn of a loop counted."""
-        return sum(times for operator, times in self.count().items() if operator in FLOPS)
+        return sum(times for operator, times in self.count.items() if operator in FLOPS)
 
     @property
     def has_arrays(self) -> bool:

@@ -169,4 +169,4 @@ def shape(program: Program) -> tuple[Any, ...]:
 
     inputs = [at(q.components) for q in program.inputs]
     ops = [line(one) for one in program.ops]
-    return inputs, ops, at(program.results), program.count()
+    return inputs, ops, at(program.results), program.count

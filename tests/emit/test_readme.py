@@ -92,7 +92,7 @@ def test_the_table_counts_what_the_catalogue_gives() -> None:
         made = library_of(scene)
         wanted = "Jacobian" in label
         program = next(p for p in made.functions if p.name.endswith("_jacobian") == wanted)
-        count = program.count().get("div", 0)
+        count = program.count.get("div", 0)
         assert (program.flops(), f"{count} div" if count else "no division") == (flops, divisions)
 
 

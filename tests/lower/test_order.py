@@ -66,7 +66,7 @@ def test_what_differs_by_its_sign_only_is_computed_once() -> None:
     results = tuple(n.operand for n in (x * y, (-x) * y, x - y, y - x, -x - y, x + y))
     inputs = tuple(Quantity(n, (n,), (), "", "", None, None, "") for n in "xy")
     turned = with_signs_moved(Program("f", "", inputs, (), tuple(tape.ops), results), "t")
-    assert turned.count() == {"add": 1, "mul": 1, "neg": 3, "sub": 1}
+    assert turned.count == {"add": 1, "mul": 1, "neg": 3, "sub": 1}
     values = [Fraction(3, 7), Fraction(-5, 2)]
     x_, y_ = values
     expected = [x_ * y_, -x_ * y_, x_ - y_, y_ - x_, -x_ - y_, x_ + y_]

@@ -30,7 +30,7 @@ EVERY = [
 @pytest.mark.parametrize(("scene", "function"), TARGETS)
 def test_a_hot_function_costs_at_most_its_target(scene, function):
     program = library_of(scene)[function]
-    count = program.count()
+    count = program.count
     calls = count.get("sin", 0) + count.get("cos", 0)
     assert (program.flops(), count.get("div", 0), calls) <= TARGETS[scene, function]
 

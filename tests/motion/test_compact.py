@@ -152,7 +152,7 @@ def test_thirteen_states_with_sensitivities_take_at_most_three_kilobytes(
 def test_what_is_run_is_counted() -> None:
     for name in EVERY:
         _, small = pair(name, "jacobian")
-        counted = dict.fromkeys(small.count(), 0)
+        counted = dict.fromkeys(small.count, 0)
         table = dict(working(np.float64))
 
         def counting(operator: str, counted: dict[str, int] = counted, table: Any = table) -> Any:
@@ -164,4 +164,4 @@ def test_what_is_run_is_counted() -> None:
 
         values = [float(mpf(start(name)[c])) for q in small.inputs for c in q.components]
         assert run(small, table | {o: counting(o) for o in counted}, values)
-        assert counted == small.count()
+        assert counted == small.count

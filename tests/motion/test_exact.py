@@ -33,7 +33,7 @@ def test_a_reference_case_ends_within_its_condition(case: Case, dtype: type) -> 
 
 
 def test_a_motion_costs_four_functions_of_libm_and_less_than_900_operations() -> None:
-    count = flow("general").function.count()
+    count = flow("general").function.count
     assert count["sin"] == count["cos"] == 2
     assert "atan2" not in count
     assert sum(count.values()) < 900

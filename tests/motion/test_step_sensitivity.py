@@ -63,6 +63,6 @@ def test_the_sensitivity_is_the_slope_by_each_parameter(name: str) -> None:
 
 def test_what_parameters_alone_make_is_made_in_set_up() -> None:
     made = sensitive("principal")
-    assert made["step_rk4_sensitivity"].count()["div"] <= 2  # the norm and the length
+    assert made["step_rk4_sensitivity"].count["div"] <= 2  # the norm and the length
     assert made["step_rk4_sensitivity"].flops() <= 905
-    assert made.setup.count()["div"] >= 3
+    assert made.setup.count["div"] >= 3

@@ -139,7 +139,7 @@ def of_what(program: Program) -> str:
 
 def cost(program: Program) -> str:
     """Return the operations of a program in words."""
-    counts = program.count()
+    counts = program.count
     order = ("add", "sub", "mul", "div", "neg", "sqrt", "sin", "cos")
     kinds = (*order, *(kind for kind in counts if kind not in order))
     listed = [f"{counts[kind]} {kind}" for kind in kinds if kind in counts]

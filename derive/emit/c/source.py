@@ -97,7 +97,7 @@ def _source(library: Library, names: Names, precision: Precision) -> str:
     return TEMPLATES.get_template("source.c.jinja").render(
         first_line=f"/* {first_line(library)}",
         header=names.file(precision, "h"),
-        uses_math=any(kind in MATH for p in programs for kind in p.count()),
+        uses_math=any(kind in MATH for p in programs for kind in p.count),
         aside=any("I" in names_in(p) for p in programs),
         pair_functions=[_pair_function(name, names, precision) for name in pairs],
         scalar=precision.scalar,

@@ -14,7 +14,7 @@ from derive.emit.page.equation import LONGEST, written_names
 from derive.emit.templates import TEMPLATES
 from derive.lecture.chapters import LECTURE
 from derive.library.library import Library
-from derive.lower.arrange.plan import arrange
+from derive.lower.arrange.plan import plain_arrangement
 from derive.program.arithmetic import extended, paired, working
 from derive.program.program import Program, Quantity
 from derive.program.run import run
@@ -66,7 +66,7 @@ def _equation(library: Library, program: Program) -> str:
     if problem is None:
         return ""  # a step is no equation of the lecture
     mechanism = library.mechanism.posed(problem.name)
-    way, *_ = arrange(mechanism, problem)
+    way = plain_arrangement(mechanism, mechanism.lean(problem.name).problem)
     values: dict[Expr, Expr] = {}
     for stage in way.stages:
         values[stage.symbol] = stage.value.xreplace(values)

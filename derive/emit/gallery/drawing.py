@@ -70,7 +70,7 @@ def _lines(machine: Scene) -> Iterator[Line]:
         origin, R = values(history.origins[frame.name]), values(history.rotations[frame.name])
         kind = "ground" if frame.name == INERTIAL and shown else "frame"
         for k in range(3):
-            end = origin + size / 2 * R[:, k]
+            end = origin + R[:, k] * (size / 2)
             yield Line(kind, (tuple(origin), tuple(end)), "xyz"[k] if kind == "frame" else "")
     for load in machine.loads:
         if isinstance(load, Force):
@@ -81,7 +81,7 @@ def _forces(history: History, load: Force, size: Any) -> Iterator[Line]:
     place, R = values(history.place(load.frame, load.at)), values(history.rotations[load.along])
     for k, f in enumerate(told(load.force)):
         if f != ZERO:
-            start = place - size / 3 * R[:, k]
+            start = place - R[:, k] * (size / 3)
             yield Line("force", (tuple(start), tuple(place)))
 
 
@@ -96,7 +96,7 @@ def _ellipses(history: History, name: str) -> Iterator[Line]:
 def _around(centre: Any, semi: Sequence[Any], name: str) -> Iterator[Line]:
     for a, b in ((0, 1), (1, 2), (2, 0)):
         turn = [2 * mp.pi * n / STEPS for n in range(STEPS + 1)]
-        points = tuple(tuple(centre + mp.cos(t) * semi[a] + mp.sin(t) * semi[b]) for t in turn)
+        points = tuple(tuple(centre + semi[a] * mp.cos(t) + semi[b] * mp.sin(t)) for t in turn)
         yield Line("body", points, name if a == 0 else "")
 
 

@@ -1,12 +1,13 @@
 """Columns of a problem: quantities that follow each other, and rules that rewrite them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 from sympy import Expr, Integer, Matrix, Symbol
 
 from derive.lower.arrange.block import fresh
+from derive.lower.arrange.like_terms import like_terms
 from derive.lower.arrange.tidy import in_what_is_given
 from derive.mechanics.problem import Problem, substituted
 
@@ -19,12 +20,20 @@ class Known:
     quaternions : the components of each attitude
     named       : what the rule at work has named, since this was last taken
     families    : what components of one column share, in words of this program's own
+    gathered    : the like terms of what rules have looked at
     """
 
     constant: frozenset[Symbol]
     quaternions: Sequence[Matrix]
     named: dict[Symbol, Expr] = field(default_factory=dict)
     families: dict[Symbol, str] = field(default_factory=dict)
+    gathered: dict[Expr, Mapping[Expr, Expr]] = field(default_factory=dict)
+
+    def like_terms(self, e: Expr) -> Mapping[Expr, Expr]:
+        """Return the coefficient of every product of what varies in a sum."""
+        if e not in self.gathered:
+            self.gathered[e] = like_terms(e, self.constant)
+        return self.gathered[e]
 
     def column(self, name: str, values: Matrix) -> Matrix:
         """Return a column with every component named that is not plain."""

@@ -12,7 +12,6 @@ from itertools import permutations
 from sympy import Add, Expr, Integer, Matrix, Mul, Symbol, diag, eye
 
 from derive.lower.arrange.column import Known
-from derive.lower.arrange.like_terms import like_terms
 
 ZERO = Integer(0)
 MOST = 8  # symbols of which three are tried as omega
@@ -22,14 +21,14 @@ Products = Mapping[frozenset[Symbol], Expr]  # coefficients of products of two s
 
 def spherical_part(column: Matrix, known: Known) -> Matrix | None:
     """Return a column with omega x l, and l named, for the products with omega that are in it."""
-    parts = [like_terms(e, known.constant) for e in column]
+    parts = [known.like_terms(e) for e in column]
     pairs = [{pair: c for p, c in own.items() if (pair := _pair(p))} for own in parts]
     symbols = sorted({s for own in pairs for pair in own for s in pair}, key=str)
     if not all(pairs) or len(symbols) > MOST:
         return None
     for omega in permutations(symbols, 3):
         turning = [{pair: c for pair, c in own.items() if pair & {*omega}} for own in pairs]
-        inner = divided(turning, Matrix(omega))
+        inner = divided(turning, omega)
         if inner is not None:
             cross = Matrix(omega).cross(known.column("l", inner))
             rest = [[c * p for p, c in own.items() if _pair(p) not in t]
@@ -45,9 +44,9 @@ def _pair(product: Expr) -> frozenset[Symbol]:
     return frozenset(base for base, _ in powers) if whole else frozenset()
 
 
-def divided(q: Sequence[Products], omega: Matrix) -> Matrix | None:
+def divided(q: Sequence[Products], omega: Sequence[Symbol]) -> Matrix | None:
     """Return l of q = omega x l, None if there is none."""
-    if not all(q) or any(frozenset([w]) in own for w, own in zip(omega, q, strict=True)):
+    if not all(map(_can_be, q, [omega[1:], [omega[2], omega[0]], omega[:2]])):
         return None
     linear: list[dict[Symbol, Expr]] = [{}, {}, {}]
     for s in sorted({s for own in q for pair in own for s in pair}, key=str):
@@ -63,8 +62,13 @@ def divided(q: Sequence[Products], omega: Matrix) -> Matrix | None:
     return Matrix([Add(*(c * s for s, c in own.items())) for own in linear])
 
 
+def _can_be(own: Products, others: Sequence[Symbol]) -> bool:
+    """Tell whether there are products, each with one of the two omegas of the other axes."""
+    return bool(own) and all(not pair.isdisjoint(others) for pair in own)
+
+
 def _is_component(
-    own: Products, k: int, linear: Sequence[Mapping[Symbol, Expr]], omega: Matrix
+    own: Products, k: int, linear: Sequence[Mapping[Symbol, Expr]], omega: Sequence[Symbol]
 ) -> bool:
     """Tell whether products are component ``k`` of omega x l, coefficient by coefficient."""
     i, j = (k + 1) % 3, (k + 2) % 3

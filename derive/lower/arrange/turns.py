@@ -6,7 +6,7 @@ A column that a turn about an axis has made is that turn of what it is where the
 
 from collections.abc import Iterator
 
-from sympy import Expr, Integer, Matrix, cos, sin, zeros
+from sympy import Expr, Integer, Matrix, cos, sin
 
 from derive.lecture.turning import PLACE, turn_matrix
 from derive.lower.arrange.column import Known
@@ -38,7 +38,7 @@ def _last_turns(column: Matrix) -> Iterator[tuple[Matrix, Matrix]]:
         inner = column.xreplace({sin(angle): Integer(0), cos(angle): Integer(1)})
         for axis in (a for a, k in PLACE.items() if not _turns(column[k], angle)):
             for turn in (turn_matrix(axis, angle), turn_matrix(axis, angle).T):
-                if (turn * inner - column).expand() == zeros(3, 1):
+                if all(e.expand() == 0 for e in turn * inner - column):
                     yield turn, inner
 
 

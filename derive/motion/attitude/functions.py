@@ -37,7 +37,7 @@ class AttitudeFunction:
 def attitude_program(name: str) -> Program:
     """Return a formula for attitudes as a program, by its name.
 
-    >>> attitude_program("quaternion_product").count()
+    >>> attitude_program("quaternion_product").count
     {'add': 7, 'mul': 16, 'sub': 5}
     """
     function = next(f for f in FUNCTIONS if f.name == name)
