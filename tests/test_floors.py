@@ -18,8 +18,8 @@ MODULES = ("__init__", "__main__", "cli")
 WITHOUT_SYMPY = (
     *("scene", "program", "motion", "emit/c", "emit/lines"),
     *("emit/casadi_text", "emit/casadi_module"),
-    *("lower/graph", "lower/expand", "lower/table", "lower/share", "lower/write"),
-    *("lower/schedule", "lower/derivative", "lower/forms", "lower/stage"),
+    *("lower/graph", "lower/expand", "lower/numbering", "lower/share", "lower/write"),
+    *("lower/schedule", "lower/derivative", "lower/forms", "lower/setup"),
 )
 """Folders and modules that must not know the symbols."""
 MOST_ASKERS = 10

@@ -11,7 +11,7 @@ from statistics import median
 from bench.motion.ours import emission
 from bench.motion.wrong import ROUNDOFF
 from bench.report.hard_formulas import callable_by_precision, rounded
-from derive.check.call import Function
+from derive.check.call import CFunction
 
 SCENES = {"fast": "gyroscopic", "accurate": "gyroscopic_accurate"}
 NAMES = ("I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
@@ -48,7 +48,7 @@ def gyroscopic(folder: Path) -> Iterator[Gyroscopic]:
 
 
 def _errors(
-    own: Mapping[str, Function], precision: str, asphericity: float
+    own: Mapping[str, CFunction], precision: str, asphericity: float
 ) -> list[tuple[float, float]]:
     """Return the errors of all samples; that of a sphere is none at all, or without bound."""
     dice = random.Random(f"{asphericity}")

@@ -28,7 +28,7 @@ from bench.report.formula_samples import (
     true_unit,
 )
 from bench.report.hard import Hard
-from derive.check.call import Function
+from derive.check.call import CFunction
 from derive.check.call import functions as callable_functions
 from derive.check.compiler import CompilerError, compiled, find_compiler
 
@@ -58,7 +58,7 @@ def formulas(folder: Path) -> Iterator[Hard]:
         yield _row(formula, called)
 
 
-def _row(formula: Formula, called: Mapping[str, Mapping[str, Function]]) -> Hard:
+def _row(formula: Formula, called: Mapping[str, Mapping[str, CFunction]]) -> Hard:
     """Return the row of a formula; the digits of references end with it."""
     import mpmath
 
@@ -74,7 +74,7 @@ def _row(formula: Formula, called: Mapping[str, Mapping[str, Function]]) -> Hard
                 bound, formula.why)  # fmt: skip
 
 
-def callable_by_precision(made: Emission, folder: Path) -> Mapping[str, Mapping[str, Function]]:
+def callable_by_precision(made: Emission, folder: Path) -> Mapping[str, Mapping[str, CFunction]]:
     """Return the functions of a scene, compiled, by precision; none without a compiler."""
     found = {}
     for precision in PRECISIONS:
@@ -126,7 +126,7 @@ def _plain(naive: Form, precision: str, given: Row) -> Row:
         return [float(x) for x in naive([real(x) for x in given], real)]
 
 
-def _ours(function: Function, given: Row) -> Row:
+def _ours(function: CFunction, given: Row) -> Row:
     (name,) = (a.name for a in function.arguments if not a.output)
     (found,) = function({name: given}).values()
     return found

@@ -13,7 +13,7 @@ from bench.motion.wrong import ROUNDOFF
 from bench.report.case_run import PRECISIONS
 from bench.report.hard import Hard
 from bench.report.hard_formulas import SAMPLES, callable_by_precision, rounded
-from derive.check.call import Function
+from derive.check.call import CFunction
 
 Row = list[float]
 
@@ -63,7 +63,7 @@ def _euler(precision: str, inertia: Row, omega: Row, moment: Row) -> Row:
     return [float(x) for x in (applied - np.cross(w, i * w)) / i]
 
 
-def _accurate(own: Mapping[str, Function], inertia: Row, omega: Row, moment: Row) -> Row:
+def _accurate(own: Mapping[str, CFunction], inertia: Row, omega: Row, moment: Row) -> Row:
     names = ("I_xx", "I_yy", "I_zz")
     made = own["setup"]({n: [x] for n, x in zip(names, inertia, strict=True)})
     given = {"constants": made["constants"], "omega": omega, "moment": moment}

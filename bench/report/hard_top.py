@@ -16,7 +16,7 @@ from bench.motion.wrong import ROUNDOFF
 from bench.report.case_run import PRECISIONS
 from bench.report.hard import Hard
 from bench.report.hard_formulas import DIGITS, SAMPLES, callable_by_precision
-from derive.check.call import Function
+from derive.check.call import CFunction
 from derive.program.largest import largest
 
 SECANTS = 8
@@ -33,7 +33,7 @@ class Answer:
     naive_says: str
     naive: Form
     ours_says: str
-    ours: Callable[[Mapping[str, Function], Given, Any], float]
+    ours: Callable[[Mapping[str, CFunction], Given, Any], float]
     true: Callable[[Given], Any]
     bound: float  # in u
     why: str
@@ -46,7 +46,7 @@ def tops(folder: Path) -> Iterator[Hard]:
         yield _row(answer, called)
 
 
-def _row(answer: Answer, called: Mapping[str, Mapping[str, Function]]) -> Hard:
+def _row(answer: Answer, called: Mapping[str, Mapping[str, CFunction]]) -> Hard:
     """Return the row of an answer; the digits of references end with it."""
     import mpmath
 
@@ -93,7 +93,7 @@ def _printed_root(given: Given, real: Any) -> float:
     return float((spin - np.sqrt(inner)) / real(twice))
 
 
-def _by_secants(own: Mapping[str, Function], given: Given, real: Any) -> float:
+def _by_secants(own: Mapping[str, CFunction], given: Given, real: Any) -> float:
     constants = _constants(own, given)
 
     def residual(rate: Any) -> Any:
@@ -110,7 +110,7 @@ def _by_secants(own: Mapping[str, Function], given: Given, real: Any) -> float:
     return float(rate)
 
 
-def _constants(own: Mapping[str, Function], given: Given) -> list[float]:
+def _constants(own: Mapping[str, CFunction], given: Given) -> list[float]:
     names = [a.name for a in own["setup"].arguments if not a.output]
     return own["setup"]({name: [float(given[name])] for name in names})["constants"]
 
@@ -131,7 +131,7 @@ def _one_minus_cosine(given: Given, real: Any) -> float:
     return float(given["l"] * (real(1) - np.cos(given["theta"])))
 
 
-def _sunk(own: Mapping[str, Function], given: Given, real: Any) -> float:
+def _sunk(own: Mapping[str, CFunction], given: Given, real: Any) -> float:
     asked = {"constants": _constants(own, given), "theta": [float(given["theta"])]}
     return float(real(own["sunk"](asked)["sunk"][0]))
 

@@ -25,8 +25,7 @@ from derive.verify.operators import IN_BALLS
 
 BITS = 400
 STATUS = {"mass": MASS, "length": LENGTH, "inertia": INERTIA}
-Values = Mapping[str, float]
-Entries = Mapping[tuple[int, int], Any]
+ByPlace = Mapping[tuple[int, int], Any]
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,7 @@ class Told:
 
 
 @dataclass(frozen=True)
-class Ends:
+class Extremes:
     """Whether all constants are finite, and products of six parameters could overflow or vanish."""
 
     finite: bool
@@ -52,7 +51,7 @@ class Ends:
     tiny: bool
 
 
-def allowed(scene: Scene, values: Values, precision: Precision) -> set[int]:
+def allowed(scene: Scene, values: Mapping[str, float], precision: Precision) -> set[int]:
     """Return each status that the declaration allows: one, or 0 and another where it is close.
 
     values : of set-up's parameters alone
@@ -98,7 +97,7 @@ def _tensor(inertia: Sequence[Formula | None], told: Told) -> dict[tuple[int, in
     }
 
 
-def _judged(tensor: Entries, relation: str, precision: Precision) -> int:
+def _judged(tensor: ByPlace, relation: str, precision: Precision) -> int:
     """Return 1 if a tensor is what it must be as far as it is known, -1 if not, 0 if it is close.
 
     A definite tensor must be told from others but for what pairs leave; of one that may be singular
@@ -119,7 +118,7 @@ def _judged(tensor: Entries, relation: str, precision: Precision) -> int:
     return found
 
 
-def _joined(tensor: Entries, axes: Sequence[int]) -> bool:
+def _joined(tensor: ByPlace, axes: Sequence[int]) -> bool:
     """Tell whether a principal part is known and says more than smaller ones."""
     places = [(i, k) for i in axes for k in axes if i <= k]
     if not all(p in tensor for p in places):
@@ -127,7 +126,7 @@ def _joined(tensor: Entries, axes: Sequence[int]) -> bool:
     return sum(bool(tensor[i, k] != 0) for i, k in places if i != k) >= len(axes) - 1
 
 
-def _minor(tensor: Entries, axes: Sequence[int], less: Any) -> Any:
+def _minor(tensor: ByPlace, axes: Sequence[int], less: Any) -> Any:
     rows = [[tensor[min(i, k), max(i, k)] - (less if i == k else 0) for k in axes] for i in axes]
     return arb_mat(rows).det()
 
@@ -152,14 +151,16 @@ def hostile(
     return [{n: float(precision.dtype(x)) for n, x in values.items()} for values in found]
 
 
-def _odd(values: Values, name: str, dice: Random, ends: Sequence[float]) -> float:
+def _odd(values: Mapping[str, float], name: str, dice: Random, ends: Sequence[float]) -> float:
     x = values[name]
     other = values[dice.choice(sorted(values))]
     choices = (0.0, -x, x * 100, x / 100, other, -other, x * 1e5, x * 1e-5, *ends, -ends[0])
     return dice.choice((*choices, x * (0.5 + dice.random()), x * (0.5 + dice.random())))
 
 
-def fault(scene: Scene, values: Values, precision: Precision, status: int, ends: Ends) -> str:
+def fault(
+    scene: Scene, values: Mapping[str, float], precision: Precision, status: int, ends: Extremes
+) -> str:
     """Return what is wrong with a status that set-up returned; "" if nothing is."""
     may = allowed(scene, values, precision)
     refused = set(SAYS) - {RIGHT, PARAMETER}
@@ -171,15 +172,17 @@ def fault(scene: Scene, values: Values, precision: Precision, status: int, ends:
     return "" if status in may else f"{status}, not {' or '.join(map(str, sorted(may)))}"
 
 
-def ends_of(values: Values, precision: Precision, *, finite: bool) -> Ends:
+def ends_of(values: Mapping[str, float], precision: Precision, *, finite: bool) -> Extremes:
     """Return how far parameters lie from the ends of the floats' range."""
     info = np.finfo(precision.dtype)
     low, high = float(info.smallest_normal) ** (1 / 6), float(info.max) ** (1 / 6)
     sizes = [abs(x) for x in values.values() if isfinite(x)]
-    return Ends(finite, any(x > high for x in sizes), any(0 < x < low for x in sizes))
+    return Extremes(finite, any(x > high for x in sizes), any(0 < x < low for x in sizes))
 
 
-def replayed(setup: Program, each: Sequence[Values], precision: Precision) -> list[int]:
+def replayed(
+    setup: Program, each: Sequence[Mapping[str, float]], precision: Precision
+) -> list[int]:
     """Return what the program says of each set of parameters."""
     names = [c for q in setup.inputs for c in q.components]
     columns = [np.array([values[n] for values in each]) for n in names]

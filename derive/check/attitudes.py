@@ -18,14 +18,11 @@ from derive.check.verdict import JUDGED, Verdict
 from derive.program.largest import largest
 from derive.scene.wanted import ATTITUDES
 
-Array = NDArray[Any]
-Meaning = Callable[..., Array]
-
 COUNT = 200
 ALLOWED = 32.0
 """In u: a formula promises 8 u at most, and a turn of rounded numbers is not far from that."""
 ROUNDED = 1e-6
-UNIT: Array = np.eye(3)
+UNIT: NDArray[Any] = np.eye(3)
 
 
 def definitions(emitted: Emitted) -> Iterator[Verdict]:
@@ -46,10 +43,10 @@ def definitions(emitted: Emitted) -> Iterator[Verdict]:
         yield verdict(emitted, program.name, "definition", JUDGED[worst <= ALLOWED], says)
 
 
-def _drawn(dice: Random, name: str) -> Array:
+def _drawn(dice: Random, name: str) -> NDArray[Any]:
     """Return a sample of an input: quaternions of length 1, matrices that turn."""
-    four: Array = np.array([dice.gauss(0, 1) for _ in range(4)])
-    unit: Array = four / _size(four)
+    four: NDArray[Any] = np.array([dice.gauss(0, 1) for _ in range(4)])
+    unit: NDArray[Any] = four / _size(four)
     match name:
         case "matrix":
             return _columns(unit)
@@ -58,11 +55,11 @@ def _drawn(dice: Random, name: str) -> Array:
         case "attitude" | "left" | "right":
             return unit
         case _:
-            three: Array = np.array([dice.uniform(-3, 3) for _ in range(3)])
+            three: NDArray[Any] = np.array([dice.uniform(-3, 3) for _ in range(3)])
             return three
 
 
-def _gap(name: str, found: Array, given: list[Array]) -> float:
+def _gap(name: str, found: NDArray[Any], given: list[NDArray[Any]]) -> float:
     """Return how far what is found is from what it means, beside the length of that or 1."""
     of_found, of_given = _meaning(name.removeprefix("quaternion_"))
     a, b = of_found(found), of_given(*given)
@@ -72,7 +69,7 @@ def _gap(name: str, found: Array, given: list[Array]) -> float:
     return largest([*apart, *([besides(found, *given)] if besides else [])])
 
 
-def _meaning(name: str) -> tuple[Meaning, Meaning]:
+def _meaning(name: str) -> tuple[Callable[..., NDArray[Any]], Callable[..., NDArray[Any]]]:
     """Return what is made of a formula's result and of what it is given: these are the same."""
     way, _, sequence = name.partition("_euler_")
     if not sequence:
@@ -81,33 +78,33 @@ def _meaning(name: str) -> tuple[Meaning, Meaning]:
     return (angles, _turned) if way == "to" else (_turned, angles)
 
 
-def _as_it_is(x: Array) -> Array:
+def _as_it_is(x: NDArray[Any]) -> NDArray[Any]:
     return x
 
 
-def _turned(q: Array, vectors: Array = UNIT) -> Array:
+def _turned(q: NDArray[Any], vectors: NDArray[Any] = UNIT) -> NDArray[Any]:
     """Return vectors turned by a quaternion, which says an axis and half an angle."""
     return _rodrigues(q[1:], 2 * atan2(_size(q[1:]), q[0]), vectors)
 
 
-def _turned_back(q: Array, vectors: Array) -> Array:
+def _turned_back(q: NDArray[Any], vectors: NDArray[Any]) -> NDArray[Any]:
     return _rodrigues(q[1:], -2 * atan2(_size(q[1:]), q[0]), vectors)
 
 
-def _columns(q: Array) -> Array:
-    found: Array = np.ravel(_turned(q))
+def _columns(q: NDArray[Any]) -> NDArray[Any]:
+    found: NDArray[Any] = np.ravel(_turned(q))
     return found
 
 
-def _of_vector(v: Array) -> Array:
+def _of_vector(v: NDArray[Any]) -> NDArray[Any]:
     return _rodrigues(v, _size(v), UNIT)
 
 
-def _of_mrp(mrp: Array) -> Array:
+def _of_mrp(mrp: NDArray[Any]) -> NDArray[Any]:
     return _rodrigues(mrp, 4 * atan(_size(mrp)), UNIT)
 
 
-def _in_turn(sequence: str, angles: Array) -> Array:
+def _in_turn(sequence: str, angles: NDArray[Any]) -> NDArray[Any]:
     """Return the unit vectors after turns about axes that the turns before have moved.
 
     The same as turns about the axes at rest in the other order: the last angle comes first.
@@ -118,19 +115,19 @@ def _in_turn(sequence: str, angles: Array) -> Array:
     return turns
 
 
-def _rodrigues(axis: Array, angle: float, vectors: Array) -> Array:
+def _rodrigues(axis: NDArray[Any], angle: float, vectors: NDArray[Any]) -> NDArray[Any]:
     """Return vectors turned about an axis: e (e v) + (v - e (e v)) cos + (e x v) sin."""
     e = axis / (_size(axis) or 1.0)
     along = np.multiply.outer((vectors * e).sum(axis=-1), e)
-    found: Array = along + (vectors - along) * cos(angle) + np.cross(e, vectors) * sin(angle)
+    found: NDArray[Any] = along + (vectors - along) * cos(angle) + np.cross(e, vectors) * sin(angle)
     return found
 
 
-def _size(v: Array) -> float:
+def _size(v: NDArray[Any]) -> float:
     return hypot(*v)
 
 
-MEANT: Mapping[str, tuple[Meaning, Meaning]] = {
+MEANT: Mapping[str, tuple[Callable[..., NDArray[Any]], Callable[..., NDArray[Any]]]] = {
     "product": (_turned, lambda left, right: _turned(left, _turned(right))),
     "normalise": (_as_it_is, lambda q: q / _size(q)),
     "exp": (_turned, _of_vector),
@@ -144,7 +141,7 @@ MEANT: Mapping[str, tuple[Meaning, Meaning]] = {
 }
 
 
-def _cosine(left: Array, right: Array) -> float:
+def _cosine(left: NDArray[Any], right: NDArray[Any]) -> float:
     """Return the cosine of half the angle of two turns in a row, by spherical trigonometry."""
     a, b = left[1:], right[1:]
     between = float((a * b).sum()) / (_size(a) * _size(b) or 1.0)

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 SCALARS = {"f32": ctypes.c_float, "f64": ctypes.c_double}
-Values = Mapping[str, Sequence[float]]
 
 
 @dataclass(frozen=True)
@@ -22,7 +21,7 @@ class Argument:
 
 
 @dataclass(frozen=True)
-class Function:
+class CFunction:
     """A loaded C function with its arguments in order; all outputs come last."""
 
     name: str
@@ -31,11 +30,13 @@ class Function:
     arguments: tuple[Argument, ...]
     returns_status: bool
 
-    def __call__(self, given: Values) -> dict[str, list[float]]:
+    def __call__(self, given: Mapping[str, Sequence[float]]) -> dict[str, list[float]]:
         """Return the outputs by name, from inputs by name; every value a list of components."""
         return self.called({a.name: self._memory(a, given) for a in self.arguments})
 
-    def over(self, given: Values, output: str, over: str) -> dict[str, list[float]]:
+    def over(
+        self, given: Mapping[str, Sequence[float]], output: str, over: str
+    ) -> dict[str, list[float]]:
         """Return the outputs where ``output`` is written over the input ``over``."""
         memory = {a.name: self._memory(a, given) for a in self.arguments}
         larger = max(len(memory[output]), len(memory[over]))
@@ -51,18 +52,18 @@ class Function:
         found = {a.name: list(memory[a.name])[: a.length] for a in self.arguments if a.output}
         return found | ({"status": [float(status)]} if self.returns_status else {})
 
-    def _memory(self, argument: Argument, given: Values) -> Any:
+    def _memory(self, argument: Argument, given: Mapping[str, Sequence[float]]) -> Any:
         array = self.scalar * argument.length
         return array() if argument.output else array(*given[argument.name])
 
 
-def functions(manifest: Mapping[str, Any], library: Path, precision: str) -> dict[str, Function]:
+def functions(manifest: Mapping[str, Any], library: Path, precision: str) -> dict[str, CFunction]:
     """Return the functions that a manifest describes, from a compiled library."""
     loaded = ctypes.CDLL(str(library))
     return {f["name"]: _function(f, loaded, precision) for f in manifest["functions"]}
 
 
-def _function(described: Mapping[str, Any], loaded: Any, precision: str) -> Function:
+def _function(described: Mapping[str, Any], loaded: Any, precision: str) -> CFunction:
     scalar = SCALARS[precision]
     arguments = tuple(
         Argument(
@@ -77,4 +78,4 @@ def _function(described: Mapping[str, Any], loaded: Any, precision: str) -> Func
     symbol.argtypes = [scalar if a.kind == "scalar" else ctypes.POINTER(scalar) for a in arguments]
     status = described["returns"].startswith("int")
     symbol.restype = ctypes.c_int if status else None
-    return Function(described["name"], scalar, symbol, arguments, status)
+    return CFunction(described["name"], scalar, symbol, arguments, status)

@@ -39,16 +39,15 @@ GAP = 1e-5
 """Relative: a wrong slope is off by some of itself, a rounded one by 1e-16 times what cancels."""
 REVERSE = True
 ORDERS = ("first", "second (forward)", "second (reverse)")
-Values = Mapping[str, float]
 
 
 @dataclass(frozen=True)
-class Place:
+class Directed:
     """Where a function is differentiated, and along which direction."""
 
     name: str
-    values: Values
-    direction: Values
+    values: Mapping[str, float]
+    direction: Mapping[str, float]
 
 
 def derivatives(library: Library, module: Any, each: Sequence[Sample]) -> Iterator[Verdict]:
@@ -91,7 +90,7 @@ def compared(
 
 def places(
     takes: Sequence[Quantity], each: Sequence[Sample], beside: Sequence[float]
-) -> Iterator[Place]:
+) -> Iterator[Directed]:
     """Yield samples, and the first with each input where a formula may have a case of its own.
 
     beside : how far from axes and zeros to go, relative to the sample
@@ -102,16 +101,18 @@ def places(
     plain = several[0]
     direction = {c: dice.uniform(-1, 1) * max(abs(plain[c]), 0.1) for c in names}
     for sample, values in zip(each, several, strict=True):
-        yield Place(f"at sample {sample.number}", values, direction)
+        yield Directed(f"at sample {sample.number}", values, direction)
     moments = [q.name for q in takes if q.unit == MOMENT and q.low is not None and q.low > 0]
     for one, other in combinations(moments, 2):
-        yield Place(f"{other} as {one}", plain | {other: plain[one]}, direction)
+        yield Directed(f"{other} as {one}", plain | {other: plain[one]}, direction)
     if len(moments) > 1:
-        yield Place("equal moments", plain | dict.fromkeys(moments, plain[moments[0]]), direction)
+        yield Directed(
+            "equal moments", plain | dict.fromkeys(moments, plain[moments[0]]), direction
+        )
     for q in takes:
         for says, special in _special(q, [plain[c] for c in q.components], beside):
             own = dict(zip(q.components, special, strict=True))
-            yield Place(f"{q.name} {says}", plain | own, direction)
+            yield Directed(f"{q.name} {says}", plain | own, direction)
 
 
 def _special(
@@ -140,7 +141,7 @@ def _apart(near: float) -> str:
     return f", {near:.0e} of a sample beside" if near else ""
 
 
-def differences(library: Library, program: Program, place: Place) -> tuple[list[Any], list[Any]]:
+def differences(library: Library, program: Program, place: Directed) -> tuple[list[Any], list[Any]]:
     """Return first and second derivatives of each result, None where there is none."""
     with ctx.workprec(BITS):
         at = {k: _results(library, program, place, k) for n in POINTS for k in (n, -n)}
@@ -182,7 +183,7 @@ def _agreed(up: Sequence[Any], down: Sequence[Any]) -> list[float | None]:
     ]
 
 
-def _results(library: Library, program: Program, place: Place, k: int) -> list[Any]:
+def _results(library: Library, program: Program, place: Directed, k: int) -> list[Any]:
     known = {c: arb(x) + k * SHIFT * arb(place.direction[c]) for c, x in place.values.items()}
     names = [c for q in library.setup.inputs for c in q.components]
     if all(name in known for name in names):

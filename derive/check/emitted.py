@@ -9,7 +9,7 @@ from typing import Any
 
 import casadi
 
-from derive.check.call import Function, functions
+from derive.check.call import CFunction, functions
 from derive.check.compiler import Compiler, compiled
 from derive.check.verdict import Outcome, Verdict
 from derive.emit.casadi_module import imported
@@ -48,7 +48,7 @@ class Emitted:
 
     library: Library
     precision: Precision
-    functions: Mapping[str, Function]
+    functions: Mapping[str, CFunction]
     shared: Path
 
     def constants(self, sample: Sample) -> dict[str, list[float]]:

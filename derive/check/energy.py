@@ -20,7 +20,7 @@ from derive.program.largest import largest
 from derive.program.program import Program, component_names
 from derive.scene import Input, SceneError
 from derive.scene.results import ENERGIES
-from derive.verify.cloud import Answers, answers
+from derive.verify.cloud import CloudAnswers, answers
 from derive.verify.cloud.power import Powers, powers
 from derive.verify.cloud.series import DIGITS
 from derive.verify.convergence import unit_attitude
@@ -33,7 +33,7 @@ STEP_BITS = 150  # a central difference leaves out the square of the step: 90 di
 RATES = "state_rate"
 ROUNDED = 2.0**-40
 """Of the largest term: C's rates are right to a few roundings of theirs, which may be larger."""
-Rates = Callable[[Sample, Mapping[str, Any]], Mapping[str, Any]]
+FindRates = Callable[[Sample, Mapping[str, Any]], Mapping[str, Any]]
 
 
 def energy_balance(made: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
@@ -81,7 +81,7 @@ def _energies(made: Library) -> Iterator[tuple[Program, list[str]]]:
             yield program, names
 
 
-def _gaps(made: Library, rates: Rates, program: Program, each: Sequence[Sample]) -> list[Any]:
+def _gaps(made: Library, rates: FindRates, program: Program, each: Sequence[Sample]) -> list[Any]:
     return [gap for s in each for gap in power_gaps(made, rates, program, s)]
 
 
@@ -105,7 +105,7 @@ def rates_of(made: Library) -> Library | None:
     return library(replace(scene, wanted=(RATES,), asked={RATES: (RATES,)}))
 
 
-def _exactly(rates: Library | None) -> Rates:
+def _exactly(rates: Library | None) -> FindRates:
     """Return the rates of the state as programs give them in long floats."""
     if rates is None:
         return lambda _, __: {}
@@ -114,7 +114,7 @@ def _exactly(rates: Library | None) -> Rates:
     return lambda _, at: dict(zip(states, results(rates, program, at).values(), strict=False))
 
 
-def _emitted(one: Emitted, program: Program, others: Rates) -> Rates:
+def _emitted(one: Emitted, program: Program, others: FindRates) -> FindRates:
     """Return the rates that a function of C gives at a sample, and what others give besides."""
     highest = _highest(one.library)
     states = [c for q in one.library.vocabulary.states for c in q.components]
@@ -129,7 +129,7 @@ def _emitted(one: Emitted, program: Program, others: Rates) -> Rates:
     return rates
 
 
-def power_gaps(made: Library, rates: Rates, program: Program, sample: Sample) -> list[Any]:
+def power_gaps(made: Library, rates: FindRates, program: Program, sample: Sample) -> list[Any]:
     """Return how far the rates of a program's energies are from powers, beside their terms."""
     with ctx.workprec(BITS):
         at = unit_attitude(made, {c: arb(x) for c, x in sample.values.items()})
@@ -152,7 +152,7 @@ def power_gaps(made: Library, rates: Rates, program: Program, sample: Sample) ->
         ]
 
 
-def _in_balance(made: Library, program: Program, at: Mapping[str, Any]) -> Answers | None:
+def _in_balance(made: Library, program: Program, at: Mapping[str, Any]) -> CloudAnswers | None:
     """Return a cloud whose loads and motion do not contradict each other, None if none is so.
 
     Where the motion is prescribed, loads that are known too cannot hold: those it needs do.
@@ -172,7 +172,7 @@ def _negative(acting: Powers, name: str) -> list[Any]:
     return [mpf(0), *(-p for p in loads), *weights]
 
 
-def _velocities(cloud: Answers, at: Mapping[str, Any]) -> dict[str, Any]:
+def _velocities(cloud: CloudAnswers, at: Mapping[str, Any]) -> dict[str, Any]:
     """Return the given rates of what is prescribed, as the scene declares them."""
     with mp.workdps(DIGITS):
         scalars = cloud.history({}).scalars

@@ -13,7 +13,7 @@ from derive.scene import Input, Scene
 from derive.scene.formula import symbols
 from derive.scene.machine import Result
 from derive.scene.results import MATRICES, written_out
-from derive.verify.cloud import Answers, answers
+from derive.verify.cloud import CloudAnswers, answers
 from derive.verify.cloud.series import DIGITS
 from derive.verify.cloud.small import at_rest, slopes
 from derive.verify.convergence import unit_attitude
@@ -119,7 +119,9 @@ def _gaps(
         ]
 
 
-def of_cloud(scene: Scene, cloud: Answers, function: str, names: Sequence[str]) -> dict[str, Any]:
+def of_cloud(
+    scene: Scene, cloud: CloudAnswers, function: str, names: Sequence[str]
+) -> dict[str, Any]:
     """Return the answers of a function that a cloud has, None for those that it has not."""
     if function == "state_rate":
         states = (c for g in scene.groups.states for c in g.components)
@@ -127,7 +129,7 @@ def of_cloud(scene: Scene, cloud: Answers, function: str, names: Sequence[str]) 
     return {name: _of_cloud(scene, cloud, function, name) for name in names}
 
 
-def _of_cloud(machine: Scene, cloud: Answers, function: str, name: str) -> Any:
+def _of_cloud(machine: Scene, cloud: CloudAnswers, function: str, name: str) -> Any:
     """Return an answer of the cloud, None if it has none."""
     if function == "steady" and machine.steady is not None and machine.steady.vanishes is not None:
         return cloud.result(machine.steady.vanishes)
@@ -145,7 +147,7 @@ def _of_cloud(machine: Scene, cloud: Answers, function: str, name: str) -> Any:
     return cloud.result(result.formula)
 
 
-def _of_slopes(machine: Scene, cloud: Answers, result: Result) -> Any:
+def _of_slopes(machine: Scene, cloud: CloudAnswers, result: Result) -> Any:
     """Return a result of the matrices of small motion, None if it rests on more than slopes.
 
     The cloud knows M^-1 D and M^-1 K only, so a result must be the same for any M: it is taken

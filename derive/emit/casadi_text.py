@@ -20,7 +20,6 @@ from derive.program.precision import F64
 from derive.program.program import Line, Op, Operand, Program, Quantity, every_op, placed
 from derive.program.status import possible, tried
 
-Text = Callable[[Operand], str]
 KEPT = "_kept("
 BROKEN = {"finite": "_endless({})", "positive": "{} <= 0.0", "not negative": "{} < 0.0"}
 
@@ -51,7 +50,7 @@ def casadi_file(library: Library) -> str:
 OWN = {name: row.casadi for name, row in WRITTEN.items() if row.casadi}
 
 
-def _pairs(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
+def _pairs(program: Program, place: dict[str, str]) -> tuple[list[str], Callable[[Operand], str]]:
     """Return the lines of a program in pairs, and how to read a result rounded."""
 
     def text(operand: Operand) -> str:
@@ -74,7 +73,9 @@ def _literal(q: Fraction) -> str:
     return repr(float(rounded(q, F64.dtype)))
 
 
-def _language(text: Text, own: Mapping[str, str], before: str, kept: Collection[str]) -> Language:
+def _language(
+    text: Callable[[Operand], str], own: Mapping[str, str], before: str, kept: Collection[str]
+) -> Language:
     """Return how Python builds CasADi; a loop is unrolled where it is built.
 
     before : what stands before the name of an operator that is called
@@ -149,7 +150,7 @@ def _setup(program: Program, scene: str) -> dict[str, object]:
     }
 
 
-def _status(program: Program, stored: Text) -> Iterator[str]:
+def _status(program: Program, stored: Callable[[Operand], str]) -> Iterator[str]:
     """Yield the lines that find the status; the rule that counts most is tried last."""
     for number, kept in reversed(tried(program)):
         tests = (BROKEN[relation].format(stored(value)) for relation, value in kept)
@@ -160,7 +161,9 @@ def _components(quantities: tuple[Quantity, ...]) -> list[str]:
     return [c for q in quantities for c in q.components]
 
 
-def plain_lines(program: Program, place: dict[str, str]) -> tuple[list[str], Text]:
+def plain_lines(
+    program: Program, place: dict[str, str]
+) -> tuple[list[str], Callable[[Operand], str]]:
     """Return the lines of a program in the working precision, and how to read a result."""
 
     known = place | {n: _literal(q[F64.bits]) for n, q in program.numbers.items()}
@@ -203,7 +206,7 @@ def _function(program: Program, scene: str) -> dict[str, object]:
 
 
 def _ends(
-    program: Program, lines: list[str], text: Text, place: dict[str, str]
+    program: Program, lines: list[str], text: Callable[[Operand], str], place: dict[str, str]
 ) -> tuple[list[str], list[str]]:
     """Return the lines with those that mend slopes, and how to read the results."""
     ends = [text(x) for x in program.results]
@@ -218,7 +221,7 @@ def _ends(
     return lines, ends
 
 
-def _with_slope(program: Program, text: Text) -> Iterator[str]:
+def _with_slope(program: Program, text: Callable[[Operand], str]) -> Iterator[str]:
     free, results = (", ".join(map(text, operands)) for operands in (program.free, program.results))
     yield f"free = [{free}]"
     given = ", ".join(q.name for q in program.inputs if q.role != "constants")

@@ -59,7 +59,7 @@ def write(folder: Path, texts: Mapping[str, str]) -> None:
     Raises OutputError, with no file half-written, if a folder or file cannot be written. However
     it ends, nothing temporary is left.
     """
-    staged: list[tuple[Path, Path]] = []
+    prepared: list[tuple[Path, Path]] = []
     try:
         with _told(f"output folder '{folder}' must be writable"):
             for temporary in abandoned(folder, texts):
@@ -68,14 +68,14 @@ def write(folder: Path, texts: Mapping[str, str]) -> None:
                 target = folder / name
                 _require_own(folder, target.parent)
                 target.parent.mkdir(parents=True, exist_ok=True)
-                staged.append((_temporary(target, text), target))
+                prepared.append((_temporary(target, text), target))
             before = unfinished(folder)
             _mark(folder, [*before, *texts])
-            for temporary, target in staged:
+            for temporary, target in prepared:
                 os.replace(temporary, target)
             _mark(folder, [name for name in before if name not in texts])
     finally:
-        for temporary, _ in staged:
+        for temporary, _ in prepared:
             temporary.unlink(missing_ok=True)
 
 

@@ -15,12 +15,12 @@ from derive.program.indexed import (
     Assign,
     Even,
     Index,
+    IndexedOperand,
     Integers,
     Loop,
     Row,
     Same,
     Term,
-    Value,
     Whole,
 )
 from derive.program.program import Line, Op, Operand
@@ -82,7 +82,7 @@ def _written(of: Language, line: Line) -> Iterator[str]:
             yield from of.declared(of, line)
 
 
-def _value(of: Language, value: Value) -> str:
+def _value(of: Language, value: IndexedOperand) -> str:
     match value:
         case str() | Fraction():
             return of.text(value)

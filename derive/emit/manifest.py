@@ -7,7 +7,7 @@ from typing import Any
 
 from derive import __version__
 from derive.emit.c.comment import SETUP_ERROR, holds, of_what
-from derive.emit.c.signature import Names, dense
+from derive.emit.c.signature import CNames, dense
 from derive.emit.c.source import JACOBIAN_DENSE
 from derive.emit.c.text import pair_functions
 from derive.emit.notation import equation_text
@@ -50,7 +50,7 @@ def manifest(library: Library, figures: Sequence[Measurement], digest: str = "")
 
 
 def _files(name: str) -> dict[str, Any]:
-    names = Names(name)
+    names = CNames(name)
     c = {p.name: {"header": names.file(p, "h"), "source": names.file(p, "c")} for p in PRECISIONS}
     return c | {"casadi": f"{name}_casadi.py", "page": f"{name}.html"}
 
@@ -78,7 +78,7 @@ def _functions(library: Library, figures: Sequence[Measurement]) -> list[dict[st
 
 
 def _symbols(library: Library, function: str, casadi: str | None) -> dict[str, Any]:
-    names = Names(library.scene.name)
+    names = CNames(library.scene.name)
     symbols: dict[str, Any] = {p.name: names.symbol(function, p) for p in (F32, F64)}
     return symbols | {"casadi": casadi}
 

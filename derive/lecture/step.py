@@ -20,7 +20,7 @@ from derive.lecture.relations import ContradictionError
 from derive.lecture.tree import renamed, symbols
 from derive.lecture.vectors import Expression, zero
 
-Sides = Expression | tuple[Expression, ...]
+ScalarOrColumn = Expression | tuple[Expression, ...]
 
 
 class StepError(AssertionError):
@@ -38,8 +38,8 @@ class Step:
     name: str
     says: str
     kind: Literal["assume", "define", "deduce"]
-    left: Sides
-    right: Sides
+    left: ScalarOrColumn
+    right: ScalarOrColumn
     using: tuple[str, ...] = ()
     instance: tuple[tuple[str, str], ...] = ()
 

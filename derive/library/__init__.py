@@ -7,7 +7,7 @@ The road, from a file to what is emitted; each line says what comes in, what goe
     Mechanism      -> Problem                mechanics.mechanism.Mechanism.problem
     Problem        -> Arrangement            lower.arrange.plan.arrange
     Arrangement    -> Value                  lower.lower.lower
-    Value          -> Op, Operand            lower.stage.hot
+    Value          -> Op, Operand            lower.setup.hot
     Arranged       -> Program                library.function.function
     Scene          -> Library                library.library.library
     Library        -> Measurement            verify.stated.figures

@@ -14,9 +14,9 @@ from derive.library.function import Graphed
 from derive.library.setting import Setting
 from derive.lower.apart import apart
 from derive.lower.lower import value_of
-from derive.lower.stage import Part
+from derive.lower.setup import SetupPart
 from derive.program.operations import less, select, unit_roundoff
-from derive.program.program import Rule
+from derive.program.program import Precondition
 from derive.program.status import OF_KIND
 from derive.program.tape import Number, Tape, free_prefix
 from derive.scene.demands import kind
@@ -28,15 +28,15 @@ SLACK = 4
 NOTHING = Fraction(1, 2**100)
 """What stands for that slack where all moments vanish, as a point's do."""
 PLACES = {(0, 0): 0, (1, 1): 1, (2, 2): 2, (0, 1): 3, (0, 2): 4, (1, 2): 5}
-Matrix = dict[tuple[int, int], Number]
+SparseMatrix = dict[tuple[int, int], Number]
 
 
-def tried(terms: Graphed, parameters: AbstractSet[str]) -> Part:
+def tried(terms: Graphed, parameters: AbstractSet[str]) -> SetupPart:
     """Return the rules of ``terms`` that rest on nothing but these parameters."""
     tape = Tape(free_prefix("r", terms.graph.leaf_names()))
     setting = Setting(terms, {}, None, tape)
     numbers = set(terms.vocabulary.numbers) | {"pi"}
-    rules: dict[tuple[int, object], Rule] = {}
+    rules: dict[tuple[int, object], Precondition] = {}
     every = terms.scene.demands
     above = {d.formula for d in every if isinstance(d, Above) and d.kind != "inertia"}
     for demand in every:
@@ -45,9 +45,9 @@ def tried(terms: Graphed, parameters: AbstractSet[str]) -> Part:
         for value in _values(setting, demand, parameters | numbers):
             if value.exact is None:  # a number was tried when the scene was read
                 relation = "positive" if isinstance(demand, Above) else demand.relation
-                rule = Rule(OF_KIND[kind(demand)], _says(demand), value.operand, relation)
+                rule = Precondition(OF_KIND[kind(demand)], _says(demand), value.operand, relation)
                 rules.setdefault((rule.status, rule.value), rule)
-    return Part(tuple(tape.ops), dict(setting.given), rules=tuple(rules.values()))
+    return SetupPart(tuple(tape.ops), dict(setting.given), rules=tuple(rules.values()))
 
 
 def _says(demand: Demand) -> str:
@@ -105,7 +105,7 @@ def _number(setting: Setting, formula: Formula) -> Number:
     return setting.parameter(value_of(terms.graph, written, terms.by_symbol()))
 
 
-def _blocks(tensor: Matrix) -> list[tuple[int, ...]]:
+def _blocks(tensor: SparseMatrix) -> list[tuple[int, ...]]:
     """Return groups of axes whose moments and products are all known, none within another.
 
     Axes that no product couples to the rest are groups of their own.
@@ -120,13 +120,13 @@ def _blocks(tensor: Matrix) -> list[tuple[int, ...]]:
     return found
 
 
-def _coupled(tensor: Matrix, axes: Sequence[int]) -> bool:
+def _coupled(tensor: SparseMatrix, axes: Sequence[int]) -> bool:
     """Tell whether products join all these axes to one another, directly or not."""
     products = {p for p in combinations(axes, 2) if tensor[p].exact != 0}
     return len(apart([{k, *(p for p in products if k in p)} for k in axes])) == 1
 
 
-def _eased(tape: Tape, tensor: Matrix, axes: Sequence[int]) -> Matrix:
+def _eased(tape: Tape, tensor: SparseMatrix, axes: Sequence[int]) -> SparseMatrix:
     """Return a tensor with a slack on its diagonal, so that rounding refuses no rod."""
     trace = sum((tensor[i, i] for i in axes[1:]), tensor[axes[0], axes[0]])
     slack = SLACK * unit_roundoff(tape) * trace
@@ -135,7 +135,7 @@ def _eased(tape: Tape, tensor: Matrix, axes: Sequence[int]) -> Matrix:
     return {p: n + slack if p[0] == p[1] else n for p, n in tensor.items()}
 
 
-def _pivots(tensor: Matrix, axes: Sequence[int]) -> Iterator[Number]:
+def _pivots(tensor: SparseMatrix, axes: Sequence[int]) -> Iterator[Number]:
     """Yield the pivots of L D L^T; the tensor is positive definite if all are positive."""
     left = dict(tensor)
     for step, k in enumerate(axes):

@@ -10,12 +10,12 @@ from sympy import Symbol
 from derive.lecture.chapters import LECTURE
 from derive.lower.apart import apart
 from derive.lower.arrange import plan
-from derive.lower.arrange.draft import Arrangement
+from derive.lower.arrange.arrangement import Arrangement
 from derive.lower.expand import families
-from derive.lower.forms import Block, best_values, best_with_jacobian, cost
+from derive.lower.forms import Dependents, best_values, best_with_jacobian, cost
 from derive.lower.graph import Graph, Value
 from derive.lower.lower import lower
-from derive.lower.stage import Constants, hot, used_inputs
+from derive.lower.setup import Constants, hot, used_inputs
 from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.problem import Problem
 from derive.mechanics.rotation import FreeRotation
@@ -112,7 +112,7 @@ def _lowered(terms: Graphed, problem: Problem, way: Arrangement) -> Arranged:
 
 def _best(terms: Graphed, wanted: Arranged) -> list[Value]:
     if wanted.outputs not in terms.best:
-        found = best_values(terms.graph, [Block(output, ()) for output in wanted.outputs])
+        found = best_values(terms.graph, [Dependents(output, ()) for output in wanted.outputs])
         stands = [value for output in wanted.outputs for value in output]
         each = (found, stands)
         terms.best[wanted.outputs] = min(each, key=lambda values: cost(terms.graph, values))
@@ -151,30 +151,30 @@ def _differentiated(
     return min(found, key=lambda one: cost(terms.graph, [*one[0], *(e for r in one[1] for e in r)]))
 
 
-Groups = tuple[tuple[int, ...], ...]
+Partition = tuple[tuple[int, ...], ...]
 
 
-def _one_by_one(wanted: Arranged) -> Groups:
+def _one_by_one(wanted: Arranged) -> Partition:
     return tuple((n,) for n in range(len(wanted.outputs)))
 
 
-def _together(graph: Graph, wanted: Arranged) -> Groups:
+def _together(graph: Graph, wanted: Arranged) -> Partition:
     """Return the places of outputs in groups that share a vector which they vary by."""
     every = ({f for v in output for f in families(graph, v)} for output in wanted.outputs)
     return tuple(apart([{f for f in own if isinstance(f, str)} for own in every]))
 
 
 def _in_groups(
-    graph: Graph, wanted: Arranged, groups: Groups, inputs: tuple[tuple[Value, ...], ...]
+    graph: Graph, wanted: Arranged, groups: Partition, inputs: tuple[tuple[Value, ...], ...]
 ) -> tuple[list[Value], list[list[Value]]]:
-    """Return values and rows in the order of the outputs, each group looked at as one block."""
+    """Return values and rows in the order of the outputs, each group looked at as one."""
     values: dict[int, list[Value]] = {}
     rows: dict[int, list[list[Value]]] = {}
     for group in groups:
-        block = Block(tuple(v for n in group for v in wanted.outputs[n]), inputs)
+        dependents = Dependents(tuple(v for n in group for v in wanted.outputs[n]), inputs)
         before = [v for each in values.values() for v in each]
         before += [entry for each in rows.values() for row in each for entry in row]
-        found, slopes = best_with_jacobian(graph, block, before)
+        found, slopes = best_with_jacobian(graph, dependents, before)
         own, own_rows = iter(found), iter(slopes)
         for n in group:
             size = len(wanted.outputs[n])

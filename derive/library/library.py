@@ -8,7 +8,7 @@ from derive.library.function import Graphed, arranged, function, graphed
 from derive.library.setting import Setting, applied_moment, held
 from derive.library.singular import with_singular
 from derive.library.steps import motions, needs
-from derive.lower.stage import Part, in_pairs, setup, with_low_parts
+from derive.lower.setup import SetupPart, in_pairs, setup, with_low_parts
 from derive.lower.wording import meaning
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.mechanics.problem import Problem
@@ -107,7 +107,7 @@ def _asked(scene: Scene) -> tuple[list[str], list[str]]:
 
 def _moved(
     terms: Graphed, rates: Mapping[str, Program]
-) -> tuple[tuple[Program, ...], Part, dict[str, str]]:
+) -> tuple[tuple[Program, ...], SetupPart, dict[str, str]]:
     """Return what moves the state, its part of set-up, and what is said of its own constants."""
     moment = applied_moment(terms)
     tape = Tape(free_prefix("p", set(terms.taken())), held=held(terms))
@@ -115,11 +115,13 @@ def _moved(
     programs = motions(setting)
     read = {name for program in programs for name in read_by(program)}
     own = {o: each for o, each in tape.names.items() if each[0] in read - tape.held.keys()}
-    part = Part(tuple(tape.ops), dict(setting.given), {o: name for o, (name, _) in own.items()})
+    part = SetupPart(
+        tuple(tape.ops), dict(setting.given), {o: name for o, (name, _) in own.items()}
+    )
     return programs, part, dict(own.values())
 
 
-def _set_up(terms: Graphed, part: Part) -> Program:
+def _set_up(terms: Graphed, part: SetupPart) -> Program:
     """Return the program of set-up, which also tries whether its parameters are admissible."""
     parameters = terms.vocabulary.parameters
     bare = setup(terms.graph, terms.constants, parameters, [part])

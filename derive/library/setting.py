@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from derive.library.function import Graphed
 from derive.lower.graph import Graph, Value
 from derive.lower.lower import value_of
-from derive.lower.stage import exact_number, hot, used_inputs
+from derive.lower.setup import exact_number, hot, used_inputs
 from derive.motion.exact.inertia import Inertia, as_symmetric
 from derive.program.program import Program
 from derive.program.tape import Number, Tape, free_prefix, number

@@ -20,7 +20,6 @@ from derive.program.program import Op, Program, Quantity, Singular, component_na
 from derive.program.run import run
 from derive.scene.formula import Arithmetic
 
-Columns = dict[str, NDArray[Any]]
 GENERIC = 32  # draws from the ranges, beside which a value is beyond measure
 OTHERS = 3  # values of the other inputs at which a place is tried
 BEYOND = 1e9
@@ -29,7 +28,7 @@ QUARTERS = range(-4, 5)  # of a turn, each way
 HALVINGS = 60
 NEAR = 1e-9  # of a place, which halving has found again
 AROUND = 1.5  # of the ranges, in which divisors are looked at
-Place = tuple[tuple[str, ...], float]
+SingularAt = tuple[tuple[str, ...], float]
 
 
 def with_singular(programs: Sequence[Program], setup: Program) -> tuple[Program, ...]:
@@ -55,7 +54,7 @@ class _Trial:
         """Return the inputs that may be set."""
         return tuple(q for q in self.program.inputs if q.role == "value")
 
-    def results(self, columns: Columns) -> NDArray[Any]:
+    def results(self, columns: dict[str, NDArray[Any]]) -> NDArray[Any]:
         """Return the results, a row a component; ``columns`` hold what may be set."""
         given, count = dict(columns), len(next(iter(columns.values())))
         if self.plan is not None and any(q.role == "plan" for q in self.program.inputs):
@@ -66,7 +65,10 @@ class _Trial:
 
 
 def _run(
-    program: Program, given: Columns, known: Mapping[str, float], arithmetic: Arithmetic
+    program: Program,
+    given: dict[str, NDArray[Any]],
+    known: Mapping[str, float],
+    arithmetic: Arithmetic,
 ) -> list[Any]:
     names = [c for q in program.inputs for c in q.components]
     count = len(next(iter(given.values())))
@@ -96,9 +98,9 @@ def _singular(trial: _Trial) -> tuple[Singular, ...]:
     return tuple(dict.fromkeys(told))
 
 
-def _drawn(trial: _Trial, count: int, reach: float) -> Columns:
+def _drawn(trial: _Trial, count: int, reach: float) -> dict[str, NDArray[Any]]:
     """Return draws from the ranges, widened by ``reach``; quaternions have norm 1."""
-    dice, columns = Random(f"derive: {trial.program.name}"), Columns()  # noqa: S311
+    dice, columns = Random(f"derive: {trial.program.name}"), dict[str, NDArray[Any]]()  # noqa: S311
     for q in trial.free():
         low, high = (float(x) if x is not None else d for x, d in ((q.low, -1.0), (q.high, 1.0)))
         middle, half = (low + high) / 2, (high - low) / 2 * reach
@@ -112,9 +114,9 @@ def _drawn(trial: _Trial, count: int, reach: float) -> Columns:
     return columns
 
 
-def _places(trial: _Trial) -> list[Place]:
+def _places(trial: _Trial) -> list[SingularAt]:
     """Return the places to try: components that are set together, and to what."""
-    places: list[Place] = []
+    places: list[SingularAt] = []
     for q in trial.free():
         if q.unit == "rad" and not q.shape:
             places += [(q.components, k * np.pi / 2) for k in QUARTERS]
@@ -127,7 +129,7 @@ def _places(trial: _Trial) -> list[Place]:
     return [*places, (rest, 0.0)] if rest else places
 
 
-def _hits(trial: _Trial, places: Sequence[Place], usual: NDArray[Any]) -> list[frozenset[str]]:
+def _hits(trial: _Trial, places: Sequence[SingularAt], usual: NDArray[Any]) -> list[frozenset[str]]:
     """Return at each place the components that have no value there, whatever the others are."""
     columns = {n: np.tile(x, len(places)) for n, x in _drawn(trial, OTHERS, 1.0).items()}
     for k, (components, value) in enumerate(places):
@@ -140,7 +142,7 @@ def _hits(trial: _Trial, places: Sequence[Place], usual: NDArray[Any]) -> list[f
     return [frozenset(c for c, bad in zip(names, column, strict=True) if bad) for column in every.T]
 
 
-def _told(trial: _Trial, found: Sequence[tuple[Place, frozenset[str]]]) -> list[Singular]:
+def _told(trial: _Trial, found: Sequence[tuple[SingularAt, frozenset[str]]]) -> list[Singular]:
     """Return the places in words: turns of an angle together, and none that another holds."""
     told: list[Singular] = []
     least: list[frozenset[str]] = []
@@ -191,7 +193,7 @@ def _turns(name: str, quarters: set[int]) -> str:
     return f"{name} = {', '.join(f'{k} pi/2' for k in sorted(quarters))}"
 
 
-def _divisors(trial: _Trial, usual: NDArray[Any], hits: AbstractSet[Place]) -> list[Singular]:
+def _divisors(trial: _Trial, usual: NDArray[Any], hits: AbstractSet[SingularAt]) -> list[Singular]:
     """Return zeros of divisors that change sign around the ranges, one of each divisor.
 
     hits : places that are told already
@@ -212,7 +214,7 @@ def _divisors(trial: _Trial, usual: NDArray[Any], hits: AbstractSet[Place]) -> l
     return told
 
 
-def _near(at: Columns, hits: AbstractSet[Place]) -> bool:
+def _near(at: dict[str, NDArray[Any]], hits: AbstractSet[SingularAt]) -> bool:
     """Tell whether a state is at a place, but for rounding."""
     return any(all(abs(at[c][0] - value) < NEAR for c in names) for names, value in hits)
 
@@ -231,7 +233,7 @@ def _divided_by(program: Program) -> dict[str, set[str]]:
     return found
 
 
-def _values(trial: _Trial, operand: str, columns: Columns) -> NDArray[Any]:
+def _values(trial: _Trial, operand: str, columns: dict[str, NDArray[Any]]) -> NDArray[Any]:
     """Return the values of an operand on the way."""
     ops = trial.program.ops
     last = next((k for k, op in enumerate(ops) if isinstance(op, Op) and op.result == operand), -1)
@@ -239,7 +241,9 @@ def _values(trial: _Trial, operand: str, columns: Columns) -> NDArray[Any]:
     return replace(trial, program=part).results(columns)[0]  # type: ignore[no-any-return]
 
 
-def _zero(trial: _Trial, divisor: str, ends: tuple[Columns, Any, Any]) -> Columns:
+def _zero(
+    trial: _Trial, divisor: str, ends: tuple[dict[str, NDArray[Any]], Any, Any]
+) -> dict[str, NDArray[Any]]:
     """Return a state between two draws at which a divisor vanishes."""
     columns, up, down = ends
     low, high = ({c: x[[k]] for c, x in columns.items()} for k in (up, down))
@@ -252,7 +256,9 @@ def _zero(trial: _Trial, divisor: str, ends: tuple[Columns, Any, Any]) -> Column
     return high
 
 
-def _at(trial: _Trial, state: Columns, own: set[str], usual: NDArray[Any]) -> list[Singular]:
+def _at(
+    trial: _Trial, state: dict[str, NDArray[Any]], own: set[str], usual: NDArray[Any]
+) -> list[Singular]:
     """Return what is told of a state, if an output has no value there."""
     beyond = ~(np.abs(trial.results(state)[:, 0]) / BEYOND <= usual)
     names = component_names(trial.program)

@@ -10,7 +10,7 @@ from fractions import Fraction
 
 from derive.lecture.chapters import LECTURE
 from derive.library.setting import Setting
-from derive.lower.stage import used_inputs
+from derive.lower.setup import used_inputs
 from derive.motion import runge_kutta
 from derive.motion.attitude.functions import attitude_program
 from derive.motion.compensated import remainder
@@ -49,7 +49,7 @@ SLOPES = {
     "sensitivity": "state_rate_sensitivity",
 }
 """What the derivatives of a step rest on, by kind."""
-Ends = tuple[Sequence[Quantity], Sequence[Quantity]]  # what may go in, and what comes out
+Signature = tuple[Sequence[Quantity], Sequence[Quantity]]  # what may go in, and what comes out
 
 
 def needs(scene: Scene) -> tuple[str, ...]:
@@ -131,7 +131,7 @@ def _seconds(name: str, range_: Given, says: str) -> Quantity:
 
 
 def _program(
-    name: str, says: str, tape: Tape, ends: Ends, values: Iterable[Number | Fraction | int]
+    name: str, says: str, tape: Tape, ends: Signature, values: Iterable[Number | Fraction | int]
 ) -> Program:
     """Return what a tape holds of ``values``; of the inputs, those that they rest on."""
     results = tuple(seen_from(tape, number(value)) for value in values)

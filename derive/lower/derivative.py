@@ -5,7 +5,7 @@ from fractions import Fraction
 
 from derive.lower.graph import ONE, ZERO, Graph, Value
 
-Rule = Callable[[Graph, tuple[Value, ...]], tuple[Value, ...]]
+Differentiation = Callable[[Graph, tuple[Value, ...]], tuple[Value, ...]]
 
 
 def _minus(value: Value) -> Value:
@@ -13,7 +13,7 @@ def _minus(value: Value) -> Value:
 
 
 # The partial derivatives of a call by each of its operands.
-RULES: dict[str, Rule] = {
+RULES: dict[str, Differentiation] = {
     "sin": lambda g, v: (g.call("cos", *v),),
     "cos": lambda g, v: (_minus(g.call("sin", *v)),),
     "sqrt": lambda g, v: (g.mul([g.number(Fraction(1, 2)), g.power(g.call("sqrt", *v), -1)]),),

@@ -11,20 +11,20 @@ from fractions import Fraction
 from derive.lower.graph import ONE, UNIT, Graph, Value
 
 Monomial = tuple[tuple[int, int], ...]
-Terms = dict[Monomial, Value]
-Visit = Callable[[int], Terms]
+Expanded = dict[Monomial, Value]
+Visit = Callable[[int], Expanded]
 Family = str | int
 
 
-def terms(graph: Graph, values: Iterable[Value], kept: frozenset[Family]) -> list[Terms]:
+def terms(graph: Graph, values: Iterable[Value], kept: frozenset[Family]) -> list[Expanded]:
     """Return for each value the coefficient, made of parameters, of every monomial in variables.
 
     Calls, cuts and denominators that vary count as variables of their own, and so do the lets
     whose family is ``kept``; what these stand for is multiplied out in itself.
     """
-    memory: dict[int, Terms] = {}
+    memory: dict[int, Expanded] = {}
 
-    def visit(node: int) -> Terms:
+    def visit(node: int) -> Expanded:
         if node not in memory:
             if graph.nodes[node][0] == "let" and family(graph, node) in kept:
                 memory[node] = _kept(graph, node, visit)
@@ -46,14 +46,14 @@ def families(graph: Graph, value: Value) -> list[Family]:
     return list(dict.fromkeys(family(graph, n) for n in varying if graph.nodes[n][0] == "let"))
 
 
-def _kept(graph: Graph, node: int, visit: Visit) -> Terms:
+def _kept(graph: Graph, node: int, visit: Visit) -> Expanded:
     factor, inner = graph.nodes[node][1]
     inside = factored(graph, _scaled(graph, visit(inner), factor))
     coefficient, named = graph.let(graph.names[node], inside, graph.families.get(node, ""))
     return {((named, 1),): (coefficient, ONE)} if coefficient else {}
 
 
-def _terms(graph: Graph, node: int, visit: Visit) -> Terms:
+def _terms(graph: Graph, node: int, visit: Visit) -> Expanded:
     if graph.fixed[node]:
         return {(): (UNIT[0], node)}
     kind, *rest = graph.nodes[node]
@@ -64,29 +64,29 @@ def _terms(graph: Graph, node: int, visit: Visit) -> Terms:
         case "sum":
             return _added(graph, [_scaled(graph, visit(n), c) for c, n in rest[0]])
         case "product":
-            product: Terms = {(): UNIT}
+            product: Expanded = {(): UNIT}
             for base, power in rest[0]:
                 product = _multiplied(graph, product, _powered(graph, base, power, visit))
             return product
     return {((node, 1),): UNIT}
 
 
-def _powered(graph: Graph, base: int, power: int, visit: Visit) -> Terms:
+def _powered(graph: Graph, base: int, power: int, visit: Visit) -> Expanded:
     if power < 0:
         if graph.fixed[base]:
             return {(): graph.power((UNIT[0], base), power)}
         return {((base, power),): UNIT}
-    result: Terms = {(): UNIT}
+    result: Expanded = {(): UNIT}
     for _ in range(power):
         result = _multiplied(graph, result, visit(base))
     return result
 
 
-def _scaled(graph: Graph, these: Terms, factor: Fraction) -> Terms:
+def _scaled(graph: Graph, these: Expanded, factor: Fraction) -> Expanded:
     return {monomial: graph.scaled(c, factor) for monomial, c in these.items()}
 
 
-def _added(graph: Graph, several: list[Terms]) -> Terms:
+def _added(graph: Graph, several: list[Expanded]) -> Expanded:
     gathered: dict[Monomial, list[Value]] = {}
     for these in several:
         for monomial, coefficient in these.items():
@@ -95,8 +95,8 @@ def _added(graph: Graph, several: list[Terms]) -> Terms:
     return {monomial: c for monomial, c in added.items() if c[0]}
 
 
-def _multiplied(graph: Graph, left: Terms, right: Terms) -> Terms:
-    products: list[Terms] = []
+def _multiplied(graph: Graph, left: Expanded, right: Expanded) -> Expanded:
+    products: list[Expanded] = []
     for first, a in left.items():
         for second, b in right.items():
             powers = Counter(dict(first))
@@ -107,12 +107,12 @@ def _multiplied(graph: Graph, left: Terms, right: Terms) -> Terms:
     return _added(graph, products)
 
 
-def collected(graph: Graph, these: Terms) -> Value:
+def collected(graph: Graph, these: Expanded) -> Value:
     """Return the sum of ``these`` as it stands."""
     return graph.add([_term(graph, monomial, c) for monomial, c in these.items()])
 
 
-def grouped(graph: Graph, these: Terms) -> Value:
+def grouped(graph: Graph, these: Expanded) -> Value:
     """Return the sum of ``these``, terms with the same parameters gathered in front of them."""
     groups: dict[int, list[Value]] = {}
     for monomial, (factor, node) in these.items():
@@ -126,7 +126,7 @@ def _term(graph: Graph, monomial: Monomial, coefficient: Value) -> Value:
     return graph.mul([coefficient, *(graph.power((UNIT[0], n), p) for n, p in monomial)])
 
 
-def factored(graph: Graph, these: Terms) -> Value:
+def factored(graph: Graph, these: Expanded) -> Value:
     """Return the sum of ``these``, the most common factor taken outside again and again."""
     uses = Counter(node for monomial in these for node, power in monomial if power > 0)
     if not uses:

@@ -1,9 +1,9 @@
 """The forms a function may take, and the choice among them by what they cost.
 
-A block of outputs can be computed as it was arranged, or multiplied out over the variables with
+A group of outputs can be computed as it was arranged, or multiplied out over the variables with
 coefficients made in set-up, with or without common factors taken outside. With its Jacobian at
-hand, a block that is homogeneous in its inputs follows from that by Euler's theorem,
-y = sum over blocks z of (dy/dz) z / degree. Fewest operations win; a tie goes to the first form.
+hand, a group that is homogeneous in its inputs follows from that by Euler's theorem,
+y = sum over quantities z of (dy/dz) z / degree. Fewest operations win, then the first form.
 """
 
 from collections import Counter
@@ -14,21 +14,21 @@ from itertools import accumulate, product
 from math import prod
 
 from derive.lower.derivative import slopes_by
-from derive.lower.expand import Family, Terms, collected, degree, factored, families, terms
+from derive.lower.expand import Expanded, Family, collected, degree, factored, families, terms
 from derive.lower.graph import Graph, Value
 from derive.lower.homogeneous import powers
-from derive.lower.schedule import draft
+from derive.lower.schedule import unoriented
 from derive.program.arithmetic import FLOPS
 from derive.program.program import Op
 
 MANY_TERMS = 60  # beyond this, multiplying out has never been the cheaper form
 MANY_CHOICES = 30
 FINALISTS = 4  # of values and of Jacobians, each judged alone, that are then judged together
-WAYS: tuple[Callable[[Graph, Terms], Value], ...] = (factored, collected)
+WAYS: tuple[Callable[[Graph, Expanded], Value], ...] = (factored, collected)
 
 
 @dataclass(frozen=True)
-class Block:
+class Dependents:
     """Outputs that belong together, and the inputs, by quantity, of their derivatives."""
 
     values: tuple[Value, ...]
@@ -39,7 +39,7 @@ def cost(graph: Graph, outputs: Sequence[Value]) -> tuple[int, int]:
     """Return the number of + - * /, then of all operations and loads, that ``outputs`` take."""
     values = tuple(outputs)
     if values not in graph.costs:
-        ops = draft(graph, values, lambda node: graph.fixed[node])
+        ops = unoriented(graph, values, lambda node: graph.fixed[node])
         graph.costs[values] = sum(op.operator in FLOPS for op in ops), len(ops) + _loads(ops)
     return graph.costs[values]
 
@@ -56,25 +56,25 @@ def _loads(ops: Sequence[Op]) -> int:
     return sum(n > 1 for n in uses.values()) + sum(n > 1 for n in alone)
 
 
-def value_forms(graph: Graph, block: Block) -> list[tuple[Value, ...]]:
-    """Return the ways to compute the values of ``block``, the arranged one first."""
-    forms = [block.values]
-    kept = dict.fromkeys(f for value in block.values for f in families(graph, value))
+def value_forms(graph: Graph, group: Dependents) -> list[tuple[Value, ...]]:
+    """Return the ways to compute the values of ``group``, the arranged one first."""
+    forms = [group.values]
+    kept = dict.fromkeys(f for value in group.values for f in families(graph, value))
     for stop in (frozenset[Family](), *(frozenset([name]) for name in kept)):
-        expanded = _expanded(graph, block, stop)
+        expanded = _expanded(graph, group, stop)
         if expanded is not None:
             forms += [tuple(way(graph, t) for t in expanded) for way in WAYS]
     return list(dict.fromkeys(forms))
 
 
-def _expanded(graph: Graph, block: Block, kept: frozenset[Family]) -> list[Terms] | None:
-    expanded = terms(graph, block.values, kept)
+def _expanded(graph: Graph, group: Dependents, kept: frozenset[Family]) -> list[Expanded] | None:
+    expanded = terms(graph, group.values, kept)
     return None if any(len(t) > MANY_TERMS for t in expanded) else expanded
 
 
-def best_values(graph: Graph, blocks: Sequence[Block]) -> list[Value]:
-    """Return the cheapest values of all blocks together."""
-    forms = [value_forms(graph, block) for block in blocks]
+def best_values(graph: Graph, groups: Sequence[Dependents]) -> list[Value]:
+    """Return the cheapest values of all groups together."""
+    forms = [value_forms(graph, group) for group in groups]
     if prod(len(each) for each in forms) > MANY_CHOICES:
         forms = [[min(each, key=lambda form: cost(graph, form))] for each in forms]
     best = min(_choices(forms), key=lambda values: cost(graph, values))
@@ -92,18 +92,18 @@ def jacobian(graph: Graph, values: Iterable[Value], leaves: Sequence[Value]) -> 
 
 
 def best_with_jacobian(
-    graph: Graph, block: Block, shared: Sequence[Value]
+    graph: Graph, group: Dependents, shared: Sequence[Value]
 ) -> tuple[list[Value], list[list[Value]]]:
-    """Return the cheapest values and Jacobian rows of ``block``.
+    """Return the cheapest values and Jacobian rows of ``group``.
 
     Derivatives by parameters have no say in the choice: there are many, mostly made in set-up.
 
     shared : values that are computed anyway, which both may use
     """
-    leaves = [leaf for quantity in block.inputs for leaf in quantity]
-    varying = tuple(q for q in block.inputs if not all(graph.fixed[node] for _, node in q))
-    values, rows = _best_by_varying(graph, Block(block.values, varying), shared)
-    if len(varying) == len(block.inputs):
+    leaves = [leaf for quantity in group.inputs for leaf in quantity]
+    varying = tuple(q for q in group.inputs if not all(graph.fixed[node] for _, node in q))
+    values, rows = _best_by_varying(graph, Dependents(group.values, varying), shared)
+    if len(varying) == len(group.inputs):
         return values, rows
     own = [leaf for quantity in varying for leaf in quantity]
     fixed = [leaf for leaf in leaves if leaf not in own]
@@ -115,15 +115,15 @@ def best_with_jacobian(
 
 
 def _best_by_varying(
-    graph: Graph, block: Block, shared: Sequence[Value]
+    graph: Graph, group: Dependents, shared: Sequence[Value]
 ) -> tuple[list[Value], list[list[Value]]]:
-    leaves = [leaf for quantity in block.inputs for leaf in quantity]
-    forms = value_forms(graph, block)
+    leaves = [leaf for quantity in group.inputs for leaf in quantity]
+    forms = value_forms(graph, group)
     jacobians = _cheapest(graph, [jacobian(graph, form, leaves) for form in forms])
     forms = sorted(forms, key=lambda form: cost(graph, form))[:FINALISTS]
     choices: list[tuple[tuple[int, int], tuple[Value, ...], list[list[Value]]]] = []
     for rows in jacobians:
-        homogeneous = by_euler(graph, block, rows)
+        homogeneous = by_euler(graph, group, rows)
         either = [*forms, *([homogeneous] if homogeneous else [])]
         choices += [(cost(graph, [*shared, *form, *_flat(rows)]), form, rows) for form in either]
     _, best, rows = min(choices, key=lambda choice: choice[0])
@@ -139,28 +139,32 @@ def _flat(rows: Sequence[Sequence[Value]]) -> list[Value]:
 
 
 def by_euler(
-    graph: Graph, block: Block, rows: Sequence[Sequence[Value]]
+    graph: Graph, group: Dependents, rows: Sequence[Sequence[Value]]
 ) -> tuple[Value, ...] | None:
-    """Return the values of ``block`` from its Jacobian, None if Euler's theorem does not apply."""
-    expanded = _expanded(graph, block, frozenset())
+    """Return the values of ``group`` from its Jacobian, None if Euler's theorem does not apply."""
+    expanded = _expanded(graph, group, frozenset())
     if expanded is None:
         return None
-    own = [frozenset(leaf[1] for leaf in quantity) for quantity in block.inputs]
+    own = [frozenset(leaf[1] for leaf in quantity) for quantity in group.inputs]
     degrees = powers([degree(m, nodes) for nodes in own] for terms in expanded for m in terms)
     if degrees is None:
         return None
-    starts = list(accumulate(map(len, block.inputs), initial=0))
-    return tuple(_contracted(graph, block, row, starts, degrees) for row in rows)
+    starts = list(accumulate(map(len, group.inputs), initial=0))
+    return tuple(_contracted(graph, group, row, starts, degrees) for row in rows)
 
 
 def _contracted(
-    graph: Graph, block: Block, row: Sequence[Value], starts: Sequence[int], degrees: dict[int, int]
+    graph: Graph,
+    group: Dependents,
+    row: Sequence[Value],
+    starts: Sequence[int],
+    degrees: dict[int, int],
 ) -> Value:
-    leaves = Counter(k for q, k in degrees.items() for _ in block.inputs[q])
+    leaves = Counter(k for q, k in degrees.items() for _ in group.inputs[q])
     parts: dict[int, list[Value]] = {}
     for q, k in degrees.items():
-        outside = k if len(block.values) < leaves[k] else 1
-        for i, leaf in enumerate(block.inputs[q]):
+        outside = k if len(group.values) < leaves[k] else 1
+        for i, leaf in enumerate(group.inputs[q]):
             scaled = graph.cut("scaled", graph.mul([graph.number(Fraction(outside, k)), leaf]))
             entry = graph.let("entry", row[starts[q] + i])
             parts.setdefault(outside, []).append(graph.mul([entry, scaled]))

@@ -9,12 +9,12 @@ from collections.abc import Iterable, Sequence
 
 from derive.lower.apart import apart
 
-Row = Sequence[int | None]
+Degrees = Sequence[int | None]
 Choice = tuple[tuple[int, int], ...]  # quantities, each with its power
 MOST_STEPS = 10_000  # a bound; the scenes of the tests take fewer than 50
 
 
-def powers(rows: Iterable[Row], most: int = MOST_STEPS) -> dict[int, int] | None:
+def powers(rows: Iterable[Degrees], most: int = MOST_STEPS) -> dict[int, int] | None:
     """Return quantities with powers k such that sum(degree / k) = 1 in every row.
 
     The fewest quantities, of these the first, then the lowest powers; None if there are none, or

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, pi, sin, tan
 
-from derive.lower.arrange.draft import Arrangement
+from derive.lower.arrange.arrangement import Arrangement
 from derive.lower.derivative import RULES
 from derive.lower.graph import Graph, Value
 
@@ -16,11 +16,11 @@ def lower(graph: Graph, arrangement: Arrangement, leaves: Mapping[Symbol, Value]
     leaves : the graph's value of every input's symbol
     """
     known = dict(leaves)
-    for stage in arrangement.stages:
-        name, value = stage.symbol.name, value_of(graph, stage.value, known)
-        let = stage.kind == "let"
-        named = graph.let(name, value, stage.family) if let else graph.cut(name, value)
-        known[stage.symbol] = named
+    for definition in arrangement.definitions:
+        name, value = definition.symbol.name, value_of(graph, definition.value, known)
+        let = definition.kind == "let"
+        named = graph.let(name, value, definition.family) if let else graph.cut(name, value)
+        known[definition.symbol] = named
     return [value_of(graph, e, known) for e in arrangement.outputs]
 
 

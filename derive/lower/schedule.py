@@ -3,8 +3,8 @@
 from collections.abc import Callable, Sequence
 
 from derive.lower.graph import ONE, Graph, Value
+from derive.lower.numbering import Numbering, SignedKey, enter
 from derive.lower.share import halve, orient, share_products, share_sums
-from derive.lower.table import Signed, Table, enter
 from derive.lower.write import Writer, shared_reciprocals
 from derive.program.program import Op, Operand
 from derive.program.tape import Tape
@@ -13,24 +13,26 @@ from derive.program.tape import Tape
 def schedule(
     graph: Graph,
     outputs: Sequence[Value],
-    known: Callable[[int], bool],
+    fixed: Callable[[int], bool],
     constant: Callable[[Value], Operand],
     prefix: str,
 ) -> tuple[tuple[Op, ...], tuple[Operand, ...]]:
     """Return operations that compute ``outputs``, and the operands that hold them.
 
-    known    : tells which nodes are constants of this stage
+    fixed    : tells which nodes are constants here
     constant : gives the operand of a constant
     """
-    table, results = _shared(graph, outputs, known)
-    results = orient(table, results)
-    return _written(table, outputs, results, constant, prefix)
+    numbering, results = _shared(graph, outputs, fixed)
+    results = orient(numbering, results)
+    return _written(numbering, outputs, results, constant, prefix)
 
 
-def draft(graph: Graph, outputs: Sequence[Value], known: Callable[[int], bool]) -> tuple[Op, ...]:
+def unoriented(
+    graph: Graph, outputs: Sequence[Value], fixed: Callable[[int], bool]
+) -> tuple[Op, ...]:
     """Return the operations of ``schedule`` but for the signs: quicker, to judge a form by."""
-    table, results = _shared(graph, outputs, known)
-    return _written(table, outputs, results, _as_it_comes, "t")[0]
+    numbering, results = _shared(graph, outputs, fixed)
+    return _written(numbering, outputs, results, _as_it_comes, "t")[0]
 
 
 def _as_it_comes(value: Value) -> Operand:
@@ -38,25 +40,25 @@ def _as_it_comes(value: Value) -> Operand:
 
 
 def _shared(
-    graph: Graph, outputs: Sequence[Value], known: Callable[[int], bool]
-) -> tuple[Table, list[Signed | None]]:
-    table = Table(graph, known)
-    results = [None if known(value[1]) else enter(table, value) for value in outputs]
-    halve(table)
-    share_products(table)
-    share_sums(table)
-    return table, results
+    graph: Graph, outputs: Sequence[Value], fixed: Callable[[int], bool]
+) -> tuple[Numbering, list[SignedKey | None]]:
+    numbering = Numbering(graph, fixed)
+    results = [None if fixed(value[1]) else enter(numbering, value) for value in outputs]
+    halve(numbering)
+    share_products(numbering)
+    share_sums(numbering)
+    return numbering, results
 
 
 def _written(
-    table: Table,
+    numbering: Numbering,
     outputs: Sequence[Value],
-    results: Sequence[Signed | None],
+    results: Sequence[SignedKey | None],
     constant: Callable[[Value], Operand],
     prefix: str,
 ) -> tuple[tuple[Op, ...], tuple[Operand, ...]]:
-    writer = Writer(table, constant, Tape(prefix))
-    shared_reciprocals(table, writer)
+    writer = Writer(numbering, constant, Tape(prefix))
+    shared_reciprocals(numbering, writer)
     operands = [
         constant(value) if result is None else writer.signed(result)
         for value, result in zip(outputs, results, strict=True)

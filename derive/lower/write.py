@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from derive.lower.graph import Value
-from derive.lower.table import Signed, Table
+from derive.lower.numbering import Numbering, SignedKey
 from derive.program.program import Operand
 from derive.program.tape import Tape
 
@@ -15,7 +15,7 @@ from derive.program.tape import Tape
 class Writer:
     """Writes operations in the order in which the outputs need them."""
 
-    table: Table
+    numbering: Numbering
     constant: Callable[[Value], Operand]
     tape: Tape
     done: dict[int, Operand] = field(default_factory=dict)
@@ -29,7 +29,7 @@ class Writer:
             self.done[key] = self._write(key)
         return self.done[key]
 
-    def signed(self, term: Signed) -> Operand:
+    def signed(self, term: SignedKey) -> Operand:
         """Return the operand that holds a signed key."""
         sign, key = term
         operand = self.operand(key)
@@ -38,21 +38,21 @@ class Writer:
         return -operand if isinstance(operand, Fraction) else self._emit("neg", operand)
 
     def _write(self, key: int) -> Operand:
-        table = self.table
-        if key in table.leaves:
-            return table.leaves[key]
-        if key in table.constants:
-            return self.constant(table.constants[key])
-        if key in table.calls:
-            function, terms = table.calls[key]
+        numbering = self.numbering
+        if key in numbering.leaves:
+            return numbering.leaves[key]
+        if key in numbering.constants:
+            return self.constant(numbering.constants[key])
+        if key in numbering.calls:
+            function, terms = numbering.calls[key]
             return self._emit(function, *(self.signed(term) for term in terms))
-        if key in table.inverse:
-            return self._emit("div", Fraction(1), self.operand(table.inverse[key]))
-        if key in table.addends:
-            return self._sum(table.addends[key])
-        return self._multiplied(table.factors[key])
+        if key in numbering.inverse:
+            return self._emit("div", Fraction(1), self.operand(numbering.inverse[key]))
+        if key in numbering.addends:
+            return self._sum(numbering.addends[key])
+        return self._multiplied(numbering.factors[key])
 
-    def _sum(self, addends: list[Signed]) -> Operand:
+    def _sum(self, addends: list[SignedKey]) -> Operand:
         plus = [key for sign, key in addends if sign > 0]
         minus = [key for sign, key in addends if sign < 0]
         first, *rest = plus or minus
@@ -67,10 +67,14 @@ class Writer:
 
     def _multiplied(self, factors: list[int]) -> Operand:
         shared = {f for f in factors if f in self.done}
-        top = [f for f in factors if f not in self.table.inverse or f in shared]
-        top.sort(key=lambda f: f in self.table.constants)  # constants last: they come from memory
+        top = [f for f in factors if f not in self.numbering.inverse or f in shared]
+        top.sort(
+            key=lambda f: f in self.numbering.constants
+        )  # constants last: they come from memory
         bottom = [
-            self.table.inverse[f] for f in factors if f in self.table.inverse and f not in shared
+            self.numbering.inverse[f]
+            for f in factors
+            if f in self.numbering.inverse and f not in shared
         ]
         total: Operand = self.operand(top[0]) if top else Fraction(1)
         for key in top[1:]:
@@ -83,8 +87,8 @@ class Writer:
         return self._emit("div", total, divisor)
 
 
-def shared_reciprocals(table: Table, writer: Writer) -> None:
-    uses = Counter(f for factors in table.factors.values() for f in set(factors))
-    for inverse in table.inverse:
+def shared_reciprocals(numbering: Numbering, writer: Writer) -> None:
+    uses = Counter(f for factors in numbering.factors.values() for f in set(factors))
+    for inverse in numbering.inverse:
         if uses[inverse] > 1:
             writer.operand(inverse)

@@ -8,7 +8,7 @@ from functools import cached_property
 from sympy import Expr, Integer, Matrix, Symbol
 
 from derive.lecture.stated import stated
-from derive.mechanics.balances import Balances, Row
+from derive.mechanics.balances import Balances, ValuedBalance
 from derive.mechanics.bodies import (
     centre,
     centre_velocity,
@@ -90,7 +90,7 @@ class Answers:
         return Problem(base, says, outputs, answers, definitions, written,
                        unknowns, held, tuple(dict.fromkeys(every)))  # fmt: skip
 
-    def _balanced(self, rows: Iterable[Row]) -> tuple[str, ...]:
+    def _balanced(self, rows: Iterable[ValuedBalance]) -> tuple[str, ...]:
         """Return the lecture steps that balances are written by."""
         return tuple(dict.fromkeys(s for row in rows for s in self.balances.steps(row)))
 
@@ -257,7 +257,7 @@ class Answers:
         rates = [c.rate for c in self.machine.coordinates if c.free]
         return [self.frames.sheet.symbols[r.name] for r in rates if isinstance(r, Input)]
 
-    def _at_rest(self, count: int) -> list[Row]:
+    def _at_rest(self, count: int) -> list[ValuedBalance]:
         """Return so many independent balances that no reaction enters and that do not vanish."""
         free = [m.unknown for m in (*self.machine.coordinates, *self.machine.speeds) if m.free]
         every, symbols = self.balances.unknowns, self.frames.sheet.symbols
@@ -274,7 +274,7 @@ class Answers:
         return [rows[k] for k in kept]
 
 
-def _lasts(row: Row) -> bool:
+def _lasts(row: ValuedBalance) -> bool:
     """Tell whether a balance still says something where nothing but the steady motion is left."""
     rest = row.values[-1]
     return bool(abs(rest[0]) > NOTHING * max(map(abs, rest)))

@@ -8,19 +8,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
-from typing import Literal
+from typing import Any, Literal
 
 from mpmath import mp
+from numpy.typing import NDArray
 from sympy import Expr, Integer, Matrix, Symbol
 
 from derive.lecture.stated import stated
 from derive.mechanics.bodies import carries, form_about, moment_about
-from derive.mechanics.frames import ZERO, Frames, Point
+from derive.mechanics.frames import ZERO, Frames, Located
 from derive.mechanics.loads import Wrench
 from derive.mechanics.own_axes import called
 from derive.mechanics.probe import DIGITS, NOTHING, POINTS
 from derive.mechanics.sheet import AXES
-from derive.mechanics.valued import Array, Sides, Valued, sides, trial_points
+from derive.mechanics.valued import Sides, Valued, sides, trial_points
 from derive.scene.machine import Force, Spring
 
 MOST_TOGETHER = 6
@@ -33,7 +34,7 @@ class Balance:
 
     bodies: tuple[str, ...]
     kind: Literal["force", "moment"]
-    point: Point | None
+    point: Located | None
     spot: str
     frame: str
     axis: str
@@ -53,14 +54,14 @@ class Balance:
 
 
 @dataclass(frozen=True, eq=False)
-class Row:
+class ValuedBalance:
     """A balance with its coefficients at each trial point: the rest first, then the unknowns.
 
     The last point is at rest, where what is independent elsewhere may not be.
     """
 
     balance: Balance
-    values: tuple[Array, ...]
+    values: tuple[NDArray[Any], ...]
 
     @cached_property
     def holds(self) -> frozenset[int]:
@@ -85,7 +86,7 @@ class Balances:
     """
 
     frames: Frames
-    expressions: dict[Row, Expr] = field(default_factory=dict)
+    expressions: dict[ValuedBalance, Expr] = field(default_factory=dict)
 
     @cached_property
     def sides(self) -> Sides:
@@ -98,19 +99,19 @@ class Balances:
         return self.sides.unknowns
 
     @cached_property
-    def rows(self) -> tuple[Row, ...]:
+    def rows(self) -> tuple[ValuedBalance, ...]:
         """Return every balance that holds anything, plainest first."""
         with mp.workdps(DIGITS):
             most = min(len(self.sides.efforts), MOST_TOGETHER)
             return tuple(row for row in self._every(most) if not row.empty)
 
     @cached_property
-    def alone(self) -> tuple[Row, ...]:
+    def alone(self) -> tuple[ValuedBalance, ...]:
         """Return the balances of single bodies."""
         with mp.workdps(DIGITS):
             return tuple(row for row in self._every(1) if not row.empty)
 
-    def _every(self, most: int) -> Iterator[Row]:
+    def _every(self, most: int) -> Iterator[ValuedBalance]:
         own = {name: effort.frame for name, effort in self.sides.efforts.items()}
         valued = [Valued(self.sides, probe) for probe in trial_points(self.frames)]
         for size in range(1, most + 1):
@@ -131,7 +132,7 @@ class Balances:
                     reached |= ends
         return reached == set(bodies)
 
-    def _on(self, bodies: tuple[str, ...], valued: Sequence[Valued]) -> Iterator[Row]:
+    def _on(self, bodies: tuple[str, ...], valued: Sequence[Valued]) -> Iterator[ValuedBalance]:
         axes = self._axes(bodies, valued[0])
         forces = [v.force(bodies) for v in valued]
         for frame, axis in axes:
@@ -147,15 +148,15 @@ class Balances:
         self,
         balance: Balance,
         valued: Sequence[Valued],
-        vectors: Sequence[Array],
-    ) -> Row:
+        vectors: Sequence[NDArray[Any]],
+    ) -> ValuedBalance:
         values = tuple(
             v.direction(balance.frame, balance.axis) @ vector
             for v, vector in zip(valued, vectors, strict=True)
         )
-        return Row(balance, values)
+        return ValuedBalance(balance, values)
 
-    def _central(self, bodies: tuple[str, ...], place: Point, valued: Valued) -> bool:
+    def _central(self, bodies: tuple[str, ...], place: Located, valued: Valued) -> bool:
         """Tell whether a point is the mass centre of the one body, whatever it is called."""
         centre = self.sides.efforts[bodies[0]].centre
         if len(bodies) > 1 or not self._reachable(centre[0], bodies):
@@ -175,7 +176,7 @@ class Balances:
 
     def _axes(self, bodies: tuple[str, ...], valued: Valued) -> list[tuple[str, str]]:
         found: list[tuple[str, str]] = []
-        seen: list[Array] = []
+        seen: list[NDArray[Any]] = []
         members = [self.frames.machine.body(name) for name in bodies]
         spun = [(m.frame, m.name) for m in members if m.spin_axis is not None]
         whole = [(frame, axis) for frame in self._frames_of(bodies) for axis in AXES]
@@ -186,12 +187,12 @@ class Balances:
                 seen.append(e)
         return found
 
-    def _points(self, bodies: tuple[str, ...], valued: Valued) -> list[tuple[str, Point]]:
+    def _points(self, bodies: tuple[str, ...], valued: Valued) -> list[tuple[str, Located]]:
         """Return the points that moments of these bodies may be taken about."""
         acting = [w for w in self.sides.wrenches if w.body in bodies and w.force != ZERO]
         inner = {w.load for w in acting if sum(v.load == w.load for v in acting) > 1}
         alone = bodies if len(bodies) == 1 else ()
-        near: list[tuple[str, Point]] = [
+        near: list[tuple[str, Located]] = [
             *(
                 (f"the origin of {called(frame)}", (frame, ZERO))
                 for frame in self._frames_of(bodies)
@@ -199,8 +200,8 @@ class Balances:
             *((f"the mass centre of {b}", self.sides.efforts[b].centre) for b in alone),
             *((f"the point of {w.load}", w.point) for w in acting if w.load not in inner),
         ]
-        found: list[tuple[str, Point]] = []
-        seen: list[Array] = []
+        found: list[tuple[str, Located]] = []
+        seen: list[NDArray[Any]] = []
         for spot, place in near:
             if not self._reachable(place[0], bodies):
                 continue
@@ -216,13 +217,13 @@ class Balances:
         ends += [w.point[0] for w in self.sides.wrenches if w.body in bodies and w.force != ZERO]
         return all(self.frames.placed(frame, e) and self.frames.linked(frame, e) for e in ends)
 
-    def written(self, row: Row) -> Expr:
+    def written(self, row: ValuedBalance) -> Expr:
         """Return a balance as an expression that is zero, without unknowns that drop out of it."""
         if row not in self.expressions:
             self.expressions[row] = self._written(row)
         return self.expressions[row]
 
-    def _written(self, row: Row) -> Expr:
+    def _written(self, row: ValuedBalance) -> Expr:
         frames, sheet, balance = self.frames, self.frames.sheet, row.balance
         e = frames.direction(balance.axis)
         total: Expr = Integer(0)
@@ -246,7 +247,7 @@ class Balances:
         kept = {u: c for u, c in slopes.items() if self.unknowns.index(u) in row.holds}
         return sheet.linear("balance", rest + sum((c * u for u, c in kept.items()), Integer(0)))
 
-    def steps(self, row: Row) -> tuple[str, ...]:
+    def steps(self, row: ValuedBalance) -> tuple[str, ...]:
         """Return the lecture steps by which a balance is written."""
         point, frames = row.balance.point, self.frames
         if point is None:
@@ -271,11 +272,11 @@ class Balances:
                            and (r.balance.kind == "force" or r.balance.central))  # fmt: skip
         return fewer
 
-    def at(self, row: Row, valued: Valued) -> Array:
+    def at(self, row: ValuedBalance, valued: Valued) -> NDArray[Any]:
         """Return the coefficients of a balance at another place: the rest, then the unknowns."""
         b = row.balance
         vector = valued.force(b.bodies) if b.point is None else valued.moment(b.bodies, b.point)
-        found: Array = valued.direction(b.frame, b.axis) @ vector
+        found: NDArray[Any] = valued.direction(b.frame, b.axis) @ vector
         return found
 
     def carried_vectors(self, balance: Balance) -> int:
@@ -285,7 +286,7 @@ class Balances:
         own += [w.along for w in self.sides.wrenches if w.body in balance.bodies]
         return sum(frame != balance.frame for frame in own)
 
-    def _shift(self, balance: Balance, place: Point, force: Matrix) -> Matrix:
+    def _shift(self, balance: Balance, place: Located, force: Matrix) -> Matrix:
         """Return the moment of a force at a place about the point of a balance."""
         assert balance.point is not None  # noqa: S101
         if force == ZERO:

@@ -8,7 +8,7 @@ from sympy import Expr, Matrix, zeros
 
 from derive.lecture.stated import stated
 from derive.lecture.turning import reduced
-from derive.mechanics.frames import ZERO, Frames, Parts, Point
+from derive.mechanics.frames import ZERO, ByFrame, Frames, Located
 from derive.mechanics.probe import vanishes
 from derive.mechanics.words import inertia_name, mass_name
 from derive.scene.machine import INERTIAL
@@ -23,8 +23,8 @@ class Effort:
 
     body: str
     frame: str
-    centre: Point
-    force: Parts
+    centre: Located
+    force: ByFrame
     moment: Matrix
 
 
@@ -43,7 +43,7 @@ def tensor(frames: Frames, body: str) -> Matrix:
     return Matrix([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]])
 
 
-def centre(frames: Frames, body: str) -> Point:
+def centre(frames: Frames, body: str) -> Located:
     """Return the mass centre of a body in the frame of its own axes."""
     member = frames.machine.body(body)
     if member.turned:
@@ -64,7 +64,7 @@ def effort(frames: Frames, body: str) -> Effort:
     return Effort(body, frames.own(body), (name, at), force, moment(frames, body))
 
 
-def attached(frames: Frames, place: Point) -> Point:
+def attached(frames: Frames, place: Located) -> Located:
     """Return a point in the first frame of the chain that carries it at a place of its own."""
     name, at = place
     while frames.fixed_in_parent(name):
@@ -128,7 +128,7 @@ def _moment(
     return sheet.column(f"{label}.M", stated(step, known | dict(about)))
 
 
-def carries(frames: Frames, body: str, place: Point) -> bool:
+def carries(frames: Frames, body: str, place: Located) -> bool:
     """Tell whether a point moves with a body: fixed in its axes, and on the axis it spins on."""
     own, G = centre(frames, body)
     if place[0] != own or frames.sheet.rate_of_column(place[1]) != ZERO:

@@ -9,7 +9,7 @@ import numpy as np
 from mpmath import mp, mpf
 from numpy.typing import NDArray
 
-from derive.mechanics.balances import Balances, Row
+from derive.mechanics.balances import Balances, ValuedBalance
 from derive.mechanics.probe import (
     DIGITS,
     NOTHING,
@@ -29,8 +29,7 @@ MOST_SETS = 20_000
 MOST_TOLD = 2  # balances that a sentence names
 CLEAR = mpf(10) ** -25  # of a row of size one: what elimination leaves of 60 digits is far below
 
-Array = NDArray[Any]
-Chosen = tuple[tuple[Row, ...], frozenset[int]]
+Chosen = tuple[tuple[ValuedBalance, ...], frozenset[int]]
 
 
 def chosen(balances: Balances, wanted: frozenset[int], hard: Sequence[Probe] = ()) -> Chosen:
@@ -61,8 +60,8 @@ def chosen(balances: Balances, wanted: frozenset[int], hard: Sequence[Probe] = (
             if kept:
                 return tuple(within[k] for k in kept), unknowns
             continue
-        for tables in ((0, -1), (0,)):
-            each = [[_coefficients(row, point) for row in within] for point in tables]
+        for points in ((0, -1), (0,)):
+            each = [[_coefficients(row, point) for row in within] for point in points]
             kept = independent_at_all(each, len(unknowns))
             if len(kept) == len(unknowns):
                 return tuple(within[k] for k in kept), unknowns
@@ -70,15 +69,18 @@ def chosen(balances: Balances, wanted: frozenset[int], hard: Sequence[Probe] = (
 
 
 def _clear(
-    balances: Balances, within: Sequence[Row], unknowns: frozenset[int], hard: Sequence[Probe]
+    balances: Balances,
+    within: Sequence[ValuedBalance],
+    unknowns: frozenset[int],
+    hard: Sequence[Probe],
 ) -> list[int]:
     """Return the first rows that are independent at hard places, by as much as can be had."""
-    tables = _tables(balances, within, unknowns, hard)
+    matrices = _matrices(balances, within, unknowns, hard)
     for floor in FLOORS:
         kept: list[int] = []
-        bases: list[list[Array]] = [[] for _ in tables]
+        bases: list[list[NDArray[Any]]] = [[] for _ in matrices]
         for n in range(len(within)):
-            left = [_off(table[n], basis) for table, basis in zip(tables, bases, strict=True)]
+            left = [_off(matrix[n], basis) for matrix, basis in zip(matrices, bases, strict=True)]
             if all(np.linalg.norm(own) > floor for own in left):
                 for basis, own in zip(bases, left, strict=True):
                     basis.append(own / np.linalg.norm(own))
@@ -88,9 +90,12 @@ def _clear(
     return []
 
 
-def _tables(
-    balances: Balances, rows: Sequence[Row], unknowns: frozenset[int], hard: Sequence[Probe]
-) -> list[Array]:
+def _matrices(
+    balances: Balances,
+    rows: Sequence[ValuedBalance],
+    unknowns: frozenset[int],
+    hard: Sequence[Probe],
+) -> list[NDArray[Any]]:
     """Return the coefficients of rows at a trial point and at hard places, scaled to size 1."""
     places = [1 + k for k in sorted(unknowns)]
     with mp.workdps(DIGITS):
@@ -100,15 +105,15 @@ def _tables(
             each.append([balances.at(row, valued) for row in rows])
     found = []
     for own in each:
-        table = np.array([[float(values[k]) for k in places] for values in own])
+        matrix = np.array([[float(values[k]) for k in places] for values in own])
         for axis in (1, 0, 1):
-            size = np.linalg.norm(table, axis=axis, keepdims=True)
-            table = table / np.where(size > 0, size, 1)
-        found.append(table)
+            size = np.linalg.norm(matrix, axis=axis, keepdims=True)
+            matrix = matrix / np.where(size > 0, size, 1)
+        found.append(matrix)
     return found
 
 
-def _off(row: Array, basis: Sequence[Array]) -> Array:
+def _off(row: NDArray[Any], basis: Sequence[NDArray[Any]]) -> NDArray[Any]:
     """Return what is left of a row beside the directions of others."""
     for direction in (*basis, *basis):
         row = row - (row @ direction) * direction
@@ -118,8 +123,8 @@ def _off(row: Array, basis: Sequence[Array]) -> Array:
 def clearly_told(balances: Balances, unknowns: frozenset[int], place: Probe) -> bool:
     """Tell whether all balances that hold only these unknowns tell them apart at a place."""
     within = [row for row in balances.rows if row.holds and row.holds <= unknowns]
-    table = _tables(balances, within, unknowns, [place])[1]
-    size = np.linalg.svd(table, compute_uv=False)
+    matrix = _matrices(balances, within, unknowns, [place])[1]
+    size = np.linalg.svd(matrix, compute_uv=False)
     return len(size) == len(unknowns) and bool(size[-1] > FLOORS[-1] * size[0])
 
 
@@ -135,15 +140,17 @@ def require_no_ring(balances: Balances, wanted: frozenset[int]) -> None:
         raise SceneError(loop)
 
 
-def _cannot_be_told(balances: Balances, rows: Sequence[Row], wanted: frozenset[int]) -> bool:
+def _cannot_be_told(
+    balances: Balances, rows: Sequence[ValuedBalance], wanted: frozenset[int]
+) -> bool:
     """Tell whether even all balances together leave some wanted unknown open."""
     count = len(balances.unknowns)
-    table = [_coefficients(row) for row in rows]
-    others = [{k: v for k, v in row.items() if k not in wanted} for row in table]
-    return len(independent(table, count)) - len(independent(others, count)) < len(wanted)
+    matrix = [_coefficients(row) for row in rows]
+    others = [{k: v for k, v in row.items() if k not in wanted} for row in matrix]
+    return len(independent(matrix, count)) - len(independent(others, count)) < len(wanted)
 
 
-def _sets(rows: Sequence[Row], wanted: frozenset[int]) -> Iterator[frozenset[int]]:
+def _sets(rows: Sequence[ValuedBalance], wanted: frozenset[int]) -> Iterator[frozenset[int]]:
     """Yield sets of unknowns that hold the wanted ones, small ones first."""
     others = sorted(frozenset(k for row in rows for k in row.holds) - wanted)
     tried = 0
@@ -156,7 +163,7 @@ def _sets(rows: Sequence[Row], wanted: frozenset[int]) -> Iterator[frozenset[int
     yield wanted | frozenset(others)
 
 
-def _coefficients(row: Row, point: int = 0) -> dict[int, Any]:
+def _coefficients(row: ValuedBalance, point: int = 0) -> dict[int, Any]:
     return {k: row.values[point][1 + k] for k in sorted(row.holds)}
 
 
@@ -210,18 +217,20 @@ def closed_loop(machine: Scene, unknowns: set[str]) -> str:
 def _joint(balances: Balances, k: int) -> list[int]:
     """Return the unknowns without which ``k`` would be determined."""
     with mp.workdps(DIGITS):
-        table = [_coefficients(row) for row in balances.rows if row.holds]
+        matrix = [_coefficients(row) for row in balances.rows if row.holds]
         count = len(balances.unknowns)
         for size in (1, 2, 3):
             for left in combinations([n for n in range(count) if n != k], size):
-                fewer = [{n: v for n, v in row.items() if n not in left} for row in table]
+                fewer = [{n: v for n, v in row.items() if n not in left} for row in matrix]
                 rest = [{n: v for n, v in row.items() if n != k} for row in fewer]
                 if len(independent(fewer, count)) > len(independent(rest, count)):
                     return list(left)
     return []
 
 
-def unbalanced(balances: Balances, still: frozenset[int] = frozenset()) -> tuple[Row, ...]:
+def unbalanced(
+    balances: Balances, still: frozenset[int] = frozenset()
+) -> tuple[ValuedBalance, ...]:
     """Return the balances that hold no unknown but ``still`` ones and yet do not vanish."""
     found = [row for row in balances.rows if row.holds <= still and _leaves_something(row)]
     return tuple(
@@ -236,7 +245,7 @@ def unbalanced(balances: Balances, still: frozenset[int] = frozenset()) -> tuple
     )
 
 
-def _leaves_something(row: Row) -> bool:
+def _leaves_something(row: ValuedBalance) -> bool:
     return all(abs(values[0]) > NOTHING * max(map(abs, values)) for values in row.values[:POINTS])
 
 
@@ -256,7 +265,7 @@ def contradiction(balances: Balances) -> str:
             "declare a load with an unknown more, or leave a motion free")  # fmt: skip
 
 
-def _least(rows: Sequence[Row], point: int) -> Sequence[Row]:
+def _least(rows: Sequence[ValuedBalance], point: int) -> Sequence[ValuedBalance]:
     """Return those of contradictory balances without any of which the others can be satisfied."""
     for row in rows:
         fewer = [other for other in rows if other is not row]
@@ -265,13 +274,13 @@ def _least(rows: Sequence[Row], point: int) -> Sequence[Row]:
     return rows
 
 
-def _contradicted(rows: Sequence[Row], point: int) -> list[Row]:
+def _contradicted(rows: Sequence[ValuedBalance], point: int) -> list[ValuedBalance]:
     """Return the first balance that those before it leave no solution for, and those, at a point.
 
     Nothing comes back if all balances can be satisfied.
     """
     kept: list[tuple[int, list[Any]]] = []
-    before: list[Row] = []
+    before: list[ValuedBalance] = []
     with mp.workdps(DIGITS):
         for row in rows:
             values = list(row.values[point])

@@ -16,8 +16,8 @@ from derive.scene.declaration import Turning
 from derive.scene.machine import INERTIAL, Frame
 
 ZERO = zeros(3, 1)
-Point = tuple[str, Matrix]
-Parts = Mapping[str, Matrix]  # a vector as a sum of columns, each along the axes of a frame
+Located = tuple[str, Matrix]
+ByFrame = Mapping[str, Matrix]  # a vector as a sum of columns, each along the axes of a frame
 
 
 @dataclass
@@ -135,15 +135,15 @@ class Frames:
         return -stated("velocity_of_particle", known)
 
     @cached_property
-    def acceleration(self) -> Mapping[str, Parts]:
+    def acceleration(self) -> Mapping[str, ByFrame]:
         """Return the acceleration of every frame's origin, each part along its own axes."""
-        found: dict[str, Parts] = {INERTIAL: {}}
+        found: dict[str, ByFrame] = {INERTIAL: {}}
         for name, frame in self.each.items():
             if name != INERTIAL:
                 found[name] = self._accelerated(frame, found)
         return found
 
-    def _accelerated(self, frame: Frame, found: Mapping[str, Parts]) -> Parts:
+    def _accelerated(self, frame: Frame, found: Mapping[str, ByFrame]) -> ByFrame:
         name = frame.name
         if frame.acceleration is not None:
             return {name: self.words.column(frame.acceleration)}
@@ -154,7 +154,7 @@ class Frames:
         offset = self.words.column(frame.origin)
         return self.accelerated(frame.parent, offset, found[frame.parent])
 
-    def accelerated(self, name: str, offset: Matrix, origin: Parts) -> Parts:
+    def accelerated(self, name: str, offset: Matrix, origin: ByFrame) -> ByFrame:
         """Return the acceleration of a point placed in a frame, by that of the frame's origin."""
         seen = self.acceleration_seen(name, offset)
         own = self.sheet.column(f"{name}.a_seen", seen, "acceleration_seen_from_axes")
@@ -268,13 +268,13 @@ class Frames:
         """Return the nearest frame of the chain whose origin has no known place in its parent."""
         return next(n for n in self.chain(name) if n == INERTIAL or not _has_place(self.each[n]))
 
-    def apart(self, start: Point, end: Point, along: str) -> Matrix:
+    def apart(self, start: Located, end: Located, along: str) -> Matrix:
         """Return the vector from one point to another, along the axes of a frame."""
         top = self.common(start[0], end[0])
         here, there = (self._from(top, point) for point in (start, end))
         return self.carried(there - here, top, along)
 
-    def _from(self, top: str, point: Point) -> Matrix:
+    def _from(self, top: str, point: Located) -> Matrix:
         """Return where a point is from the origin of a frame that carries it, along its axes."""
         name, at = point
         while name != top:

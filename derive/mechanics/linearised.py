@@ -12,9 +12,9 @@ import networkx as nx
 from mpmath import mp, mpf
 from sympy import Expr, Integer, Matrix, Symbol, zeros
 
-from derive.mechanics.balances import Balances, Row
+from derive.mechanics.balances import Balances, ValuedBalance
 from derive.mechanics.choice import chosen
-from derive.mechanics.probe import DIGITS, Probe, at_rest, independent, point, small, solved
+from derive.mechanics.probe import DIGITS, Probe, at_rest, independent, random_probe, small, solved
 from derive.mechanics.valued import Valued
 from derive.mechanics.words import Words
 from derive.scene import Input, Scene, SceneError
@@ -40,7 +40,7 @@ class Linearised:
     """
 
     matrices: Mapping[str, Matrix]
-    rows: tuple[Row, ...]
+    rows: tuple[ValuedBalance, ...]
     written: tuple[Expr, ...]
 
 
@@ -69,13 +69,13 @@ def linearised(machine: Scene, balances: Balances) -> Linearised:
     places = [sheet.symbols[m.name] if m.kind == "coordinate" else None for m in free]
     about = _Expansion(base, [*velocities, *(p for p in places if p is not None)])
     about.define(sheet.needed(written))
-    table = _Table(balances, about, written, reactions)
+    eliminated = _Eliminated(balances, about, written, reactions)
     columns = {
-        "mass_matrix": table.coefficients(accelerations),
-        "damping_matrix": table.slopes(velocities),
-        "stiffness_matrix": table.slopes(places),
+        "mass_matrix": eliminated.coefficients(accelerations),
+        "damping_matrix": eliminated.slopes(velocities),
+        "stiffness_matrix": eliminated.slopes(places),
     }
-    made = {name: table.reduced(column) for name, column in columns.items()}
+    made = {name: eliminated.reduced(column) for name, column in columns.items()}
     own = _own_rows(made["mass_matrix"], balances)
     matrices = {name: _in_order(matrix, own) for name, matrix in made.items()}
     return Linearised(matrices, tuple(rows), tuple(written))
@@ -125,7 +125,7 @@ def unsteady(machine: Scene, balances: Balances, given: Mapping[str, float]) -> 
 def _accelerations(
     machine: Scene,
     balances: Balances,
-    rows: Sequence[Row],
+    rows: Sequence[ValuedBalance],
     places: Sequence[int],
     given: Mapping[str, float],
 ) -> list[Any]:
@@ -141,8 +141,8 @@ def _accelerations(
                          for n, f in machine.about.items()}  # fmt: skip
         probe.define(sheet.definitions)
         valued = Valued(balances.sides, probe)
-        table = [balances.at(row, valued) for row in rows]
-        return solved([[row[1 + k] for k in places] for row in table], [-row[0] for row in table])
+        matrix = [balances.at(row, valued) for row in rows]
+        return solved([[row[1 + k] for k in places] for row in matrix], [-row[0] for row in matrix])
 
 
 def _middle(words: Words) -> Probe:
@@ -157,7 +157,7 @@ def _middle(words: Words) -> Probe:
 
 def _own_rows(mass: Matrix, balances: Balances) -> list[tuple[int, int]]:
     """Return for each free coordinate the row that is its own, and the sign of its mass there."""
-    probe = point(balances.frames.words, 0)
+    probe = random_probe(balances.frames.words, 0)
     size = mass.shape[0]
     values = [[float(probe.value(mass[i, k])) for k in range(size)] for i in range(size)]
     graph = nx.Graph()
@@ -212,7 +212,7 @@ class _Expansion:
 
 
 @dataclass
-class _Table:
+class _Eliminated:
     """Balances expanded at the given motion, and the reactions that are eliminated from them."""
 
     balances: Balances
@@ -239,10 +239,10 @@ class _Table:
             )
 
     def _pivots(self) -> list[int]:
-        probe = point(self.balances.frames.words, 0)
-        table = [{k: probe.value(self.held[n, k]) for k in range(len(self.reactions))
+        probe = random_probe(self.balances.frames.words, 0)
+        matrix = [{k: probe.value(self.held[n, k]) for k in range(len(self.reactions))
                   if self.held[n, k] != 0} for n in range(len(self.rows))]  # fmt: skip
-        return independent(table, len(self.reactions))
+        return independent(matrix, len(self.reactions))
 
     def coefficients(self, unknowns: Sequence[Symbol]) -> Matrix:
         """Return the coefficients of the accelerations."""

@@ -7,8 +7,8 @@ from sympy import Expr, Integer, Matrix, Rational, sqrt
 
 from derive.lecture.stated import stated
 from derive.mechanics.bodies import centre, mass, tensor
-from derive.mechanics.frames import ZERO, Frames, Point
-from derive.mechanics.probe import NOTHING, at_rest, point, vanishes
+from derive.mechanics.frames import ZERO, Frames, Located
+from derive.mechanics.probe import NOTHING, at_rest, random_probe, vanishes
 from derive.scene import SceneError
 from derive.scene.machine import INERTIAL, Force, Gradient, Load, Spring, Weight
 
@@ -19,7 +19,7 @@ class Wrench:
 
     load: str
     body: str
-    point: Point
+    point: Located
     along: str
     force: Matrix
     couple: Matrix
@@ -100,7 +100,10 @@ def _spring(frames: Frames, load: Spring) -> Iterator[Wrench]:
 def _require_length(frames: Frames, load: Spring, square: Expr) -> None:
     """Refuse a spring or damper whose ends coincide: its force would have no direction."""
     words, sheet = frames.words, frames.sheet
-    for probe, where in ((point(words, 0), ""), (at_rest(words), " where all that varies is 0")):
+    for probe, where in (
+        (random_probe(words, 0), ""),
+        (at_rest(words), " where all that varies is 0"),
+    ):
         probe.define(sheet.needed([square]))
         if abs(probe.value(square)) <= NOTHING:
             raise SceneError(

@@ -65,7 +65,7 @@ class Probe:
             self.values[symbol] = self.value(value)
 
 
-def point(words: Words, number: int) -> Probe:
+def random_probe(words: Words, number: int) -> Probe:
     """Return random values of all arguments and of the data left out."""
     dice = Random(f"{SEED} {number}")  # noqa: S311 - trial values, no secret
     book = words.vocabulary
@@ -84,7 +84,7 @@ def vanishes(words: Words, value: Expr) -> bool:
     """Tell whether a value is zero whatever a machine does, and its unknowns are."""
     rest, slopes = words.sheet.split(value)
     for number in range(POINTS):
-        probe = point(words, number)
+        probe = random_probe(words, number)
         probe.define(words.sheet.needed([value]))
         if any(abs(probe.value(part)) > NOTHING for part in (rest, *slopes.values())):
             return False
@@ -93,7 +93,7 @@ def vanishes(words: Words, value: Expr) -> bool:
 
 def at_rest(words: Words) -> Probe:
     """Return the first trial point with everything that varies at zero where it may be zero."""
-    found, book = point(words, 0), words.vocabulary
+    found, book = random_probe(words, 0), words.vocabulary
     for q in (*book.states, *book.inputs):
         low, high = q.ends
         if q.shape == () and low <= 0 <= high:
@@ -127,18 +127,20 @@ def solved(rows: Sequence[Sequence[Any]], right: Sequence[Any]) -> list[Any]:
         sizes = [max(map(abs, row)) for row in rows]
         if not all(sizes):
             raise ZeroDivisionError
-        table = [[x / s for x in (*row, b)] for row, b, s in zip(rows, right, sizes, strict=True)]
-        for k in range(len(table)):
-            best = max(range(k, len(table)), key=lambda n: abs(table[n][k]))
-            table[k], table[best] = table[best], table[k]
-            pivot = table[k]
+        augmented = [
+            [x / s for x in (*row, b)] for row, b, s in zip(rows, right, sizes, strict=True)
+        ]
+        for k in range(len(augmented)):
+            best = max(range(k, len(augmented)), key=lambda n: abs(augmented[n][k]))
+            augmented[k], augmented[best] = augmented[best], augmented[k]
+            pivot = augmented[k]
             if small(pivot[k], 1):
                 raise ZeroDivisionError
             pivot[:] = [x / pivot[k] for x in pivot]
-            for row in table:
+            for row in augmented:
                 if row is not pivot and row[k]:
                     row[:] = [x - row[k] * p for x, p in zip(row, pivot, strict=True)]
-        return [row[-1] for row in table]
+        return [row[-1] for row in augmented]
 
 
 def independent(rows: Iterable[Mapping[int, Any]], wanted: int) -> list[int]:
@@ -146,12 +148,12 @@ def independent(rows: Iterable[Mapping[int, Any]], wanted: int) -> list[int]:
     return independent_at_all([rows], wanted)
 
 
-def independent_at_all(tables: Sequence[Iterable[Mapping[int, Any]]], wanted: int) -> list[int]:
-    """Return the places of the first rows that are independent in every one of several tables."""
-    kept: list[list[tuple[int, dict[int, Any]]]] = [[] for _ in tables]
+def independent_at_all(matrices: Sequence[Iterable[Mapping[int, Any]]], wanted: int) -> list[int]:
+    """Return the places of the first rows that are independent in every one of several matrices."""
+    kept: list[list[tuple[int, dict[int, Any]]]] = [[] for _ in matrices]
     places: list[int] = []
     with mp.workdps(DIGITS):
-        for place, rows in enumerate(zip(*tables, strict=True)):
+        for place, rows in enumerate(zip(*matrices, strict=True)):
             if len(places) == wanted:
                 break
             left = [_reduced(row, own) for row, own in zip(rows, kept, strict=True)]

@@ -6,7 +6,7 @@ from functools import cached_property
 
 from sympy import Integer, Symbol
 
-from derive.mechanics.balances import Balances, Row
+from derive.mechanics.balances import Balances, ValuedBalance
 from derive.mechanics.choice import chosen, clearly_told, contradiction, require_no_ring
 from derive.mechanics.frames import Frames
 from derive.mechanics.probe import Probe
@@ -27,7 +27,9 @@ class Regular:
     def _contradiction(self) -> str:
         return contradiction(self.balances)
 
-    def determining(self, wanted: set[Symbol]) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
+    def determining(
+        self, wanted: set[Symbol]
+    ) -> tuple[tuple[ValuedBalance, ...], tuple[Symbol, ...]]:
         """Return balances that determine the unknowns wherever the machine itself does.
 
         Where those chosen are found to depend on each other, others are, for that place too.
@@ -50,7 +52,7 @@ class Regular:
             raise SceneError(f"the divisor of {names} {rule}, and no other balances were found")
         return first
 
-    def _weakest(self, rows: tuple[Row, ...], unknowns: tuple[Symbol, ...]) -> Weakest:
+    def _weakest(self, rows: tuple[ValuedBalance, ...], unknowns: tuple[Symbol, ...]) -> Weakest:
         """Return where the balances are nearest to depending on each other."""
         if not rows:
             return Weakest(1.0, {})
@@ -68,7 +70,7 @@ class Regular:
 
     def _chosen(
         self, wanted: set[Symbol], hard: Sequence[Probe]
-    ) -> tuple[tuple[Row, ...], tuple[Symbol, ...]]:
+    ) -> tuple[tuple[ValuedBalance, ...], tuple[Symbol, ...]]:
         every = self.balances.unknowns
         missing = [s for s in wanted if s not in every]
         if missing:

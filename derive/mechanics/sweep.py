@@ -14,13 +14,14 @@ from mpmath import mp, mpf
 from numpy.typing import NDArray
 from sympy import Add, Expr, Mul, Pow, Rational, Symbol, pi, tan
 
-from derive.mechanics.probe import DIGITS, Probe, point
+from derive.mechanics.probe import DIGITS, Probe, random_probe
 from derive.mechanics.words import Words
 from derive.program.program import Quantity
 from derive.scene.escape import at_place
 
-Array = NDArray[Any]
-Sized = tuple[Array, Array]  # values at all points, and the sizes of the terms they are made of
+Sized = tuple[
+    NDArray[Any], NDArray[Any]
+]  # values at all points, and the sizes of the terms they are made of
 RANDOM, CORNERS, NEAR = 96, 24, 2
 SPECIAL = (0.0, np.pi / 4, np.pi / 2, np.pi, 3 * np.pi / 2)
 STARTS, ROUNDS = 3, 40  # a round halves the steps at least every second time
@@ -30,18 +31,18 @@ SEED = "derive: sweep"
 
 
 @dataclass(frozen=True)
-class Ranges:
+class Box:
     """The range of every component that an expression may hold, and which of them are angles."""
 
     symbols: tuple[Symbol, ...]
     names: tuple[str, ...]
-    low: Array
-    high: Array
+    low: NDArray[Any]
+    high: NDArray[Any]
     turns: tuple[bool, ...]
     fixed: frozenset[Symbol]
     quaternions: tuple[slice, ...]
 
-    def points(self) -> Array:
+    def points(self) -> NDArray[Any]:
         """Return points of the ranges, (points, components)."""
         dice, size = Random(SEED), len(self.symbols)  # noqa: S311 - trial points, no secret
         rows = [[dice.random() for _ in range(size)] for _ in range(RANDOM)]
@@ -62,14 +63,14 @@ class Ranges:
         return [x for x in dict.fromkeys(each) if self.low[k] <= x <= self.high[k]]
 
 
-def ranges(words: Words) -> Ranges:
+def ranges(words: Words) -> Box:
     """Return the ranges of all that is given, and of data left out by the user."""
     book = words.vocabulary
     each: list[tuple[Symbol, str, Quantity]] = [
         (book.symbols[c], c, q) for q in book.given() for c in q.components
     ]
     ends = [tuple(map(float, q.ends)) for _, _, q in each] + [(1.0, 2.0)] * len(words.hidden)
-    return Ranges(
+    return Box(
         (*(s for s, _, _ in each), *words.hidden),
         (*(c for _, c, _ in each), *words.hidden.values()),
         np.array([low for low, _ in ends]),
@@ -82,7 +83,7 @@ def ranges(words: Words) -> Ranges:
 
 
 @dataclass
-class Field:
+class Sweep:
     """Values of symbols at many points, and of expressions as they are asked for."""
 
     values: dict[Symbol, Sized]
@@ -123,18 +124,18 @@ class Field:
         return value, size**exponent if exponent > 0 else abs(value)
 
 
-def _attitudes(rows: Array) -> Array:
+def _attitudes(rows: NDArray[Any]) -> NDArray[Any]:
     """Return quaternions of length 1 along rows; none is turned where all four are zero."""
     rows = np.where(np.any(rows != 0, axis=1, keepdims=True), rows, np.eye(4)[0])
     return np.asarray(rows / np.linalg.norm(rows, axis=1, keepdims=True))
 
 
-def field_at(of: Ranges, points: Array, definitions: Mapping[Symbol, Expr]) -> Field:
+def sweep_at(of: Box, points: NDArray[Any], definitions: Mapping[Symbol, Expr]) -> Sweep:
     """Return all values at points; what moves has the size of its range, or nothing is at rest."""
     reach, points = np.maximum(abs(of.low), abs(of.high)), points.copy()
     for own in of.quaternions:
         points[:, own] = _attitudes(points[:, own])
-    found = Field({
+    found = Sweep({
         s: (points[:, k], abs(points[:, k]) if s in of.fixed else np.full(len(points), reach[k]))
         for k, s in enumerate(of.symbols)
     })  # fmt: skip
@@ -146,7 +147,7 @@ def field_at(of: Ranges, points: Array, definitions: Mapping[Symbol, Expr]) -> F
 
 def probe_at(words: Words, place: Mapping[str, float], definitions: Mapping[Symbol, Expr]) -> Probe:
     """Return a place as a trial point, every named quantity valued."""
-    of, probe = ranges(words), point(words, 0)
+    of, probe = ranges(words), random_probe(words, 0)
     probe.values |= {s: mpf(place[n]) for s, n in zip(of.symbols, of.names, strict=True)}
     with mp.workdps(DIGITS):
         for own in of.quaternions:
@@ -182,14 +183,14 @@ class Weakest:
 
 
 def weakest(
-    of: Ranges, definitions: Mapping[Symbol, Expr], measure: Callable[[Field], Any]
+    of: Box, definitions: Mapping[Symbol, Expr], measure: Callable[[Sweep], Any]
 ) -> Weakest:
     """Return the smallest value of a measure on the ranges that points and a search find."""
 
-    def at(points: Array) -> Array:
+    def at(points: NDArray[Any]) -> NDArray[Any]:
         with np.errstate(all="ignore"):
-            found = np.broadcast_to(measure(field_at(of, points, definitions)), len(points))
-        sizes: Array = np.nan_to_num(found, nan=0.0)
+            found = np.broadcast_to(measure(sweep_at(of, points, definitions)), len(points))
+        sizes: NDArray[Any] = np.nan_to_num(found, nan=0.0)
         return sizes
 
     points = of.points()
@@ -203,8 +204,8 @@ def weakest(
 
 
 def _followed(
-    of: Ranges, at: Callable[[Array], Array], here: Array, size: float
-) -> tuple[float, Array]:
+    of: Box, at: Callable[[NDArray[Any]], NDArray[Any]], here: NDArray[Any], size: float
+) -> tuple[float, NDArray[Any]]:
     """Return the smallest value near a point, by steps along every component, ever shorter."""
     step, width = 0.25, of.high - of.low
     sides = np.vstack([np.diag(width), -np.diag(width)])
@@ -220,7 +221,7 @@ def _followed(
     return size, here
 
 
-def block(found: Field, entries: list[list[Expr]]) -> Array:
+def matrices(found: Sweep, entries: list[list[Expr]]) -> NDArray[Any]:
     """Return matrices of entries at all points, rows and columns scaled by the sizes of terms."""
     pairs = [[found.of(e) for e in row] for row in entries]
     shape = np.broadcast_shapes(*(v.shape for row in pairs for v, _ in row), (1,))
@@ -232,11 +233,11 @@ def block(found: Field, entries: list[list[Expr]]) -> Array:
         scale = sizes.max(axis=axis, keepdims=True)
         scale = np.where(scale > 0, scale, 1)
         values, sizes = values / scale, sizes / scale
-    scaled: Array = np.nan_to_num(values)
+    scaled: NDArray[Any] = np.nan_to_num(values)
     return scaled
 
 
-def regular(found: Field, entries: list[list[Expr]]) -> Array:
+def regular(found: Sweep, entries: list[list[Expr]]) -> NDArray[Any]:
     """Return the smallest singular value of scaled matrices at all points."""
-    sizes: Array = np.linalg.svd(block(found, entries), compute_uv=False)
+    sizes: NDArray[Any] = np.linalg.svd(matrices(found, entries), compute_uv=False)
     return sizes[:, -1]

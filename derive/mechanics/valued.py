@@ -10,12 +10,10 @@ from numpy.typing import NDArray
 from sympy import Matrix, Symbol
 
 from derive.mechanics.bodies import Effort, effort
-from derive.mechanics.frames import ZERO, Frames, Parts, Point
+from derive.mechanics.frames import ZERO, ByFrame, Frames, Located
 from derive.mechanics.loads import Wrench, wrenches
-from derive.mechanics.probe import POINTS, Probe, at_rest, point
+from derive.mechanics.probe import POINTS, Probe, at_rest, random_probe
 from derive.scene.machine import INERTIAL
-
-Array = NDArray[Any]
 
 
 @dataclass(frozen=True)
@@ -43,7 +41,7 @@ def sides(frames: Frames) -> Sides:
 
 def trial_points(frames: Frames) -> tuple[Probe, ...]:
     """Return the trial points, all that is named so far valued."""
-    found = (*(point(frames.words, n) for n in range(POINTS)), at_rest(frames.words))
+    found = (*(random_probe(frames.words, n) for n in range(POINTS)), at_rest(frames.words))
     for probe in found:
         probe.define(frames.sheet.definitions)
     return found
@@ -58,11 +56,11 @@ class Valued:
 
     def __post_init__(self) -> None:
         """Begin with nothing remembered."""
-        self._turned: dict[str, Array] = {}
-        self._wrenches: dict[int, tuple[Array, Array]] = {}
-        self._efforts: dict[str, tuple[Array, Array]] = {}
+        self._turned: dict[str, NDArray[Any]] = {}
+        self._wrenches: dict[int, tuple[NDArray[Any], NDArray[Any]]] = {}
+        self._efforts: dict[str, tuple[NDArray[Any], NDArray[Any]]] = {}
 
-    def rotation(self, name: str) -> Array:
+    def rotation(self, name: str) -> NDArray[Any]:
         """Return R from a frame to the topmost one that it is linked with."""
         frames = self.sides.frames
         if name not in self._turned:
@@ -75,36 +73,38 @@ class Valued:
                 self._turned[name] = self.rotation(frames.each[name].parent) @ own
         return self._turned[name]
 
-    def direction(self, frame: str, axis: str) -> Array:
+    def direction(self, frame: str, axis: str) -> NDArray[Any]:
         """Return the unit vector of an axis of a frame."""
-        found: Array = self.rotation(frame) @ self.array(self.sides.frames.direction(axis))[:, 0]
+        found: NDArray[Any] = (
+            self.rotation(frame) @ self.array(self.sides.frames.direction(axis))[:, 0]
+        )
         return found
 
-    def array(self, matrix: Matrix) -> Array:
+    def array(self, matrix: Matrix) -> NDArray[Any]:
         """Return the values of a matrix."""
         rows, columns = matrix.shape
         return np.array([[self.probe.value(matrix[i, k]) for k in range(columns)]
                          for i in range(rows)])  # fmt: skip
 
-    def linear(self, vector: Matrix, frame: str) -> Array:
+    def linear(self, vector: Matrix, frame: str) -> NDArray[Any]:
         """Return a vector's rest and its coefficients of each unknown, (3, 1 + unknowns)."""
-        table = np.array([[mp.mpf(0)] * (1 + len(self.sides.unknowns)) for _ in range(3)])
+        columns = np.array([[mp.mpf(0)] * (1 + len(self.sides.unknowns)) for _ in range(3)])
         for i in range(3):
             rest, slopes = self.sides.frames.sheet.split(vector[i])
-            table[i, 0] = self.probe.value(rest)
+            columns[i, 0] = self.probe.value(rest)
             for u, slope in slopes.items():
-                table[i, 1 + self.sides.unknowns.index(u)] = self.probe.value(slope)
-        turned: Array = self.rotation(frame) @ table
+                columns[i, 1 + self.sides.unknowns.index(u)] = self.probe.value(slope)
+        turned: NDArray[Any] = self.rotation(frame) @ columns
         return turned
 
-    def parts(self, vector: Parts) -> Array:
+    def parts(self, vector: ByFrame) -> NDArray[Any]:
         """Return a vector that is a sum of parts along several frames."""
         total = self.linear(ZERO, INERTIAL)
         for name, part in vector.items():
             total = total + self.linear(part, name)
         return total
 
-    def place(self, place: Point) -> Array:
+    def place(self, place: Located) -> NDArray[Any]:
         """Return where a point is from the origin of the topmost frame that it is placed in."""
         frames = self.sides.frames
         name, at = place[0], self.rotation(place[0]) @ self.array(place[1])[:, 0]
@@ -115,9 +115,9 @@ class Valued:
             own = self.array(frames.words.column(frames.each[name].origin))[:, 0]
             at = at + self.rotation(parent) @ own
             name = parent
-        return at
+        return np.asarray(at)
 
-    def force(self, bodies: tuple[str, ...]) -> Array:
+    def force(self, bodies: tuple[str, ...]) -> NDArray[Any]:
         """Return mass times acceleration less the forces."""
         total = self.linear(ZERO, INERTIAL)
         for n in bodies:
@@ -126,7 +126,7 @@ class Valued:
             total = total - self._acting(k)[0]
         return total
 
-    def moment(self, bodies: tuple[str, ...], place: Point) -> Array:
+    def moment(self, bodies: tuple[str, ...], place: Located) -> NDArray[Any]:
         """Return the rate of angular momentum less the moments, about a point."""
         b, here = self.sides, self.place(place)
         total = self.linear(ZERO, INERTIAL)
@@ -139,27 +139,27 @@ class Valued:
             total = total - couple - self._crossed_at(k, here, force)
         return total
 
-    def _crossed_at(self, k: int, here: Array, force: Array) -> Array:
+    def _crossed_at(self, k: int, here: NDArray[Any], force: NDArray[Any]) -> NDArray[Any]:
         w = self.sides.wrenches[k]
         return 0 * force if w.force == ZERO else _crossed(self.place(w.point) - here, force)
 
     def _on(self, bodies: tuple[str, ...]) -> list[int]:
         return [k for k, w in enumerate(self.sides.wrenches) if w.body in bodies]
 
-    def _effort(self, n: str) -> tuple[Array, Array]:
+    def _effort(self, n: str) -> tuple[NDArray[Any], NDArray[Any]]:
         if n not in self._efforts:
             own = self.sides.efforts[n]
             self._efforts[n] = (self.parts(own.force), self.linear(own.moment, own.frame))
         return self._efforts[n]
 
-    def _acting(self, k: int) -> tuple[Array, Array]:
+    def _acting(self, k: int) -> tuple[NDArray[Any], NDArray[Any]]:
         if k not in self._wrenches:
             w = self.sides.wrenches[k]
             self._wrenches[k] = (self.linear(w.force, w.along), self.linear(w.couple, w.along))
         return self._wrenches[k]
 
 
-def _crossed(arm: Array, table: Array) -> Array:
+def _crossed(arm: NDArray[Any], columns: NDArray[Any]) -> NDArray[Any]:
     x, y, z = arm
-    return np.array([table[2] * y - table[1] * z, table[0] * z - table[2] * x,
-                     table[1] * x - table[0] * y])  # fmt: skip
+    return np.array([columns[2] * y - columns[1] * z, columns[0] * z - columns[2] * x,
+                     columns[1] * x - columns[0] * y])  # fmt: skip

@@ -8,14 +8,13 @@ from derive.motion.exact.diagonal import principal_axes
 from derive.motion.exact.inertia import Inertia
 from derive.program.operations import at_most, both, either, select, splitter
 from derive.program.pairs import two_product, two_sum
-from derive.program.tape import Number, Tape, named, number, seen_from
+from derive.program.tape import Number, Tape, Vector, named, number, seen_from
 
-Vector = Sequence[Number]
 Change = Callable[[Vector], list[Number]]
 
 
 @dataclass(frozen=True)
-class Axes:
+class BodyAxes:
     """Moments about a, b, c, and how a vector goes from the axes x, y, z to these and back.
 
     unit : kg m^2, what the moments are measured in
@@ -29,7 +28,7 @@ class Axes:
     rows: tuple[Vector, ...] = ()
 
 
-def axes_of(tape: Tape, body: Inertia) -> Axes:
+def axes_of(tape: Tape, body: Inertia) -> BodyAxes:
     """Return the axes of a body; ``tape`` is that of the function in which vectors change."""
     match body.kind:
         case "general":
@@ -41,7 +40,7 @@ def axes_of(tape: Tape, body: Inertia) -> Axes:
     return _chosen(tape, body)
 
 
-def counted_from(first: int, body: Inertia) -> Axes:
+def counted_from(first: int, body: Inertia) -> BodyAxes:
     """Return the axes x, y, z counted round from the one that is a; c is then a body's own."""
 
     def along(v: Vector) -> list[Number]:
@@ -50,10 +49,10 @@ def counted_from(first: int, body: Inertia) -> Axes:
     def back(v: Vector) -> list[Number]:
         return [v[(i - first) % 3] for i in range(3)]
 
-    return Axes(along(body.tensor[:3]), number(1), along, back)
+    return BodyAxes(along(body.tensor[:3]), number(1), along, back)
 
 
-def _chosen(tape: Tape, body: Inertia) -> Axes:
+def _chosen(tape: Tape, body: Inertia) -> BodyAxes:
     """Return the axes where parameters decide which is which: two flags of set-up."""
     x, y, z = body.tensor[:3]
     tests = []
@@ -66,7 +65,7 @@ def _chosen(tape: Tape, body: Inertia) -> Axes:
         cases = [[v[(i + step * first) % 3] for i in range(3)] for first in range(3)]
         return [select(is_x, p, select(is_y, q, r)) for p, q, r in zip(*cases, strict=True)]
 
-    return Axes(
+    return BodyAxes(
         choice(at_x, at_y, body.tensor[:3], 1),
         number(1),
         lambda v: choice(hot_x, hot_y, v, 1),
@@ -87,7 +86,7 @@ def _between(p: Number, q: Number, r: Number) -> Number:
     return either(both(at_most(p, q), at_most(q, r)), both(at_most(r, q), at_most(q, p)))
 
 
-def principal(body: Inertia) -> Axes:
+def principal(body: Inertia) -> BodyAxes:
     """Return the principal axes of any tensor, the smallest moment first."""
     found = principal_axes(body)
     rows = [
@@ -100,7 +99,7 @@ def principal(body: Inertia) -> Axes:
     xx, yy, zz = body.tensor[:3]
     unit = (xx + yy + zz) / (found.moments[0] + found.moments[1] + found.moments[2])
     columns = [[row[i] for row in rows] for i in range(3)]
-    return Axes(
+    return BodyAxes(
         list(found.moments),
         unit,
         lambda v: times(rows, v),

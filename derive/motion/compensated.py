@@ -14,9 +14,8 @@ from collections.abc import Sequence
 from derive.motion.attitude.quaternion import norm_squared
 from derive.program.operations import sqrt
 from derive.program.program import Quantity
-from derive.program.tape import Number
+from derive.program.tape import Number, Vector
 
-Vector = Sequence[Number]
 REMAINDER = "remainder"
 """The quantity that carries what rounding left; it has no range but that of rounding."""
 

@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import Any, Literal
 
 Counters = Mapping[str, int]
-Tables = Mapping[str, Any]
+ArrayValues = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Index:
         inside = f"{self.counter}{more}" if self.counter else str(self.plus)
         return f"{self.table}[{inside}]" if self.table else inside
 
-    def at(self, counters: Counters, tables: Tables) -> int:
+    def at(self, counters: Counters, tables: ArrayValues) -> int:
         """Return the number where loops have got to."""
         place = counters.get(self.counter, 0) + self.plus
         return int(tables[self.table][place]) if self.table else place
@@ -45,7 +45,7 @@ class Element:
     def __str__(self) -> str:
         return self.array + "".join(f"[{place}]" for place in self.places)
 
-    def at(self, counters: Counters, tables: Tables) -> str:
+    def at(self, counters: Counters, tables: ArrayValues) -> str:
         """Return its name where loops have got to."""
         return self.array + "".join(f"[{place.at(counters, tables)}]" for place in self.places)
 
@@ -70,10 +70,10 @@ class Term:
     """An operator on values that have no names of their own."""
 
     operator: str
-    operands: tuple[Value, ...]
+    operands: tuple[IndexedOperand, ...]
 
 
-Value = str | Fraction | Element | Whole | Same | Term
+IndexedOperand = str | Fraction | Element | Whole | Same | Term
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ class Assign:
     """
 
     target: str | Element
-    value: Value
+    value: IndexedOperand
     adds: Literal["", "add", "sub"] = ""
     makes: Literal["", "constant", "variable"] = ""
 
@@ -140,7 +140,7 @@ class Loop:
         if self.done is not None and any(isinstance(line, Indexed) for line in self.body):
             raise ValueError("a loop that ends when something is done must carry what it changes")
 
-    def turns(self, counters: Counters, tables: Tables) -> Iterator[dict[str, int]]:
+    def turns(self, counters: Counters, tables: ArrayValues) -> Iterator[dict[str, int]]:
         """Yield the counters of each turn."""
         first, last = self.first.at(counters, tables), self.last.at(counters, tables)
         for n, now in enumerate(range(first, last, self.step)):
@@ -159,7 +159,7 @@ class Even:
     half: str
     body: tuple[Any, ...]
 
-    def turns(self, counters: Counters, _: Tables) -> Iterator[dict[str, int]]:
+    def turns(self, counters: Counters, _: ArrayValues) -> Iterator[dict[str, int]]:
         """Yield the half, if the counter is even."""
         now = counters[self.counter]
         if now % 2 == 0:
@@ -169,7 +169,9 @@ class Even:
 Indexed = Arrays | Integers | Row | Assign | Loop | Even
 
 
-def value_at(value: Value, arithmetic: Tables, known: Mapping[str, Any], at: Counters) -> Any:
+def value_at(
+    value: IndexedOperand, arithmetic: ArrayValues, known: Mapping[str, Any], at: Counters
+) -> Any:
     """Return a value in an arithmetic, where loops have got to."""
     match value:
         case str():
@@ -203,7 +205,7 @@ def names_in(line: Indexed) -> set[str]:
     return {value for value in read if isinstance(value, str)}
 
 
-def _within(value: Value) -> Iterator[Value]:
+def _within(value: IndexedOperand) -> Iterator[IndexedOperand]:
     yield value
     if isinstance(value, Term):
         for operand in value.operands:

@@ -5,17 +5,17 @@ from typing import TypeVar
 
 from derive.program.program import Sparsity
 
-Entry = TypeVar("Entry")
+T = TypeVar("T")
 
 
 def compressed(
-    matrix: Sequence[Sequence[Entry]],
+    matrix: Sequence[Sequence[T]],
     rows: Sequence[str],
     columns: Sequence[str],
-    vanishes: Callable[[Entry], bool],
-) -> tuple[Sparsity, list[Entry]]:
+    vanishes: Callable[[T], bool],
+) -> tuple[Sparsity, list[T]]:
     """Return the pattern and the nonzeros of a matrix, column by column."""
-    colind, row, nonzeros = [0], list[int](), list[Entry]()
+    colind, row, nonzeros = [0], list[int](), list[T]()
     for column in range(len(columns)):
         own = [i for i, entries in enumerate(matrix) if not vanishes(entries[column])]
         row += own

@@ -87,7 +87,7 @@ Line = Op | Indexed
 
 
 @dataclass(frozen=True)
-class Rule:
+class Precondition:
     """What set-up's parameters must keep: a value above zero, or not below it.
 
     status : what set-up returns if not        says : the rule in words, with its quantity
@@ -129,7 +129,7 @@ class Program:
     steps: tuple[str, ...] = ()
     assumptions: tuple[str, ...] = ()
     sparsity: Mapping[str, Sparsity] | None = None
-    rules: tuple[Rule, ...] = ()
+    rules: tuple[Precondition, ...] = ()
     arithmetic: Literal["working", "pairs"] = "working"
     singular: tuple[Singular, ...] = ()
     free: tuple[Operand, ...] = ()

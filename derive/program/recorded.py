@@ -11,11 +11,11 @@ from derive.program.tape import Number, Tape, number, operation, seen_from
 from derive.scene.functions import PLAIN
 
 OneLine = TypeVar("OneLine", bound=Line)
-Named = TypeVar("Named", bound=Line | Operand)
-Body = Callable[[list[Number]], tuple[Sequence[Number], Number | None]]
+Renamable = TypeVar("Renamable", bound=Line | Operand)
+LoopBody = Callable[[list[Number]], tuple[Sequence[Number], Number | None]]
 
 
-def repeat(tape: Tape, passes: int, start: Sequence[Number], body: Body) -> list[Number]:
+def repeat(tape: Tape, passes: int, start: Sequence[Number], body: LoopBody) -> list[Number]:
     """Record a loop: ``body`` takes what is carried, and returns it anew and the truth of done.
 
     A loop that is there already, whatever its values are called, is not recorded twice.
@@ -84,7 +84,7 @@ def called(tape: Tape, program: Program, values: Mapping[str, Number]) -> list[N
     return [value(result) for result in program.results]
 
 
-def renamed(lines: Sequence[Named], names: Mapping[str, Operand]) -> tuple[Named, ...]:
+def renamed(lines: Sequence[Renamable], names: Mapping[str, Operand]) -> tuple[Renamable, ...]:
     """Return lines or operands with operands called by new ``names``; results keep theirs."""
 
     def one(line: Any) -> Any:

@@ -8,7 +8,7 @@ folded; nothing is re-ordered, so an error-free transformation stays one.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -118,6 +118,9 @@ class Number:
     def exact(self) -> Fraction | None:
         """Return the exact number that this is, None if it is a value on a tape."""
         return self.operand if isinstance(self.operand, Fraction) else None
+
+
+Vector = Sequence[Number]
 
 
 def number(x: Number | int | Fraction) -> Number:

@@ -22,8 +22,8 @@ UNIT_LENGTH = 1e-9
 ROUNDING = 1e-12
 """Slack of the triangle inequality, relative to the trace: a disc obeys it with equality."""
 
-Matrix = tuple[tuple[Fraction, ...], ...]
-Point = Mapping[str, float]
+FractionMatrix = tuple[tuple[Fraction, ...], ...]
+Valuation = Mapping[str, float]
 Ranges = Mapping[str, tuple[float, float]]
 
 
@@ -32,25 +32,25 @@ def ends_of(entries: Iterable[Parameter | Moving]) -> Ranges:
     return {entry.name: (float(entry.low), float(entry.high)) for entry in entries}
 
 
-def middle(ranges: Ranges) -> Point:
+def middle(ranges: Ranges) -> Valuation:
     """Return the middle of every range."""
     return {name: (low + high) / 2 for name, (low, high) in ranges.items()}
 
 
-def points(ranges: Ranges) -> Iterator[Point]:
+def points(ranges: Ranges) -> Iterator[Valuation]:
     """Yield the middle of the ranges and combinations of their ends, at most MOST_ENDS."""
     yield middle(ranges)
     for values in islice(product(*map(dict.fromkeys, ranges.values())), MOST_ENDS):
         yield dict(zip(ranges, values, strict=True))
 
 
-def points_of(parameters: Iterable[Parameter], formulas: Iterable[Formula]) -> list[Point]:
+def points_of(parameters: Iterable[Parameter], formulas: Iterable[Formula]) -> list[Valuation]:
     """Return the points to try of the parameters that formulas are made of."""
     used = {name for formula in formulas for name in symbols(formula)}
     return [*points(ends_of(p for p in parameters if p.name in used))]
 
 
-def value(formula: Formula, values: Point, label: str) -> float:
+def value(formula: Formula, values: Valuation, label: str) -> float:
     """Return a formula's value, finite or refused."""
     try:
         found = float(evaluate(formula, values, FLOATS))
@@ -70,30 +70,30 @@ def positive(formula: Formula, label: str, parameters: tuple[Parameter, ...]) ->
     return formula
 
 
-def where(values: Point, formulas: Iterable[Formula]) -> str:
+def where(values: Valuation, formulas: Iterable[Formula]) -> str:
     """Return the parameter values behind a number, as an error shows them."""
     used = dict.fromkeys(name for formula in formulas for name in symbols(formula))
     return at_place({name: values[name] for name in used if name in values})
 
 
-def tensor(inertia: Sextuple, values: Point, label: str) -> Matrix:
+def tensor(inertia: Sextuple, values: Valuation, label: str) -> FractionMatrix:
     """Return the inertia tensor at given parameters; its products enter with a minus sign."""
     xx, yy, zz, xy, xz, yz = (Fraction(value(part, values, label)) for part in inertia)
     return (xx, -xy, -xz), (-xy, yy, -yz), (-xz, -yz, zz)
 
 
-def definite(matrix: Matrix) -> bool:
+def definite(matrix: FractionMatrix) -> bool:
     """Return whether a symmetric matrix is positive definite: its leading minors are positive."""
     (a, d, _), (_, b, _), _ = matrix
     return a > 0 and a * b > d * d and _determinant(matrix) > 0
 
 
-def _determinant(matrix: Matrix) -> Fraction:
+def _determinant(matrix: FractionMatrix) -> Fraction:
     (a, d, e), (_, b, f), (_, _, c) = matrix
     return a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e)
 
 
-def triangle(matrix: Matrix) -> bool:
+def triangle(matrix: FractionMatrix) -> bool:
     """Return whether masses can have this inertia: the tensor of second moments is semi-definite.
 
     Along principal axes this is the triangle inequality of the three moments.
@@ -101,13 +101,13 @@ def triangle(matrix: Matrix) -> bool:
     return semidefinite(second_moments(matrix), abs(trace(matrix)))
 
 
-def second_moments(matrix: Matrix) -> Matrix:
+def second_moments(matrix: FractionMatrix) -> FractionMatrix:
     """Return the tensor of second moments, half the trace on its diagonal less the inertia."""
     half = trace(matrix) / 2
     return tuple(tuple((half if i == j else 0) - matrix[i][j] for j in range(3)) for i in range(3))
 
 
-def semidefinite(matrix: Matrix, size: Fraction) -> bool:
+def semidefinite(matrix: FractionMatrix, size: Fraction) -> bool:
     """Return whether no principal minor is negative, but for rounding beside ``size``."""
     slack = size * Fraction(ROUNDING)
     grown = tuple(
@@ -121,13 +121,16 @@ def semidefinite(matrix: Matrix, size: Fraction) -> bool:
     )
 
 
-def trace(matrix: Matrix) -> Fraction:
+def trace(matrix: FractionMatrix) -> Fraction:
     """Return the sum of the moments of inertia."""
     return matrix[0][0] + matrix[1][1] + matrix[2][2]
 
 
 def first_wrong(
-    says: str, each: Iterable[Point], formulas: Sequence[Formula], wrong: Callable[[Point], bool]
+    says: str,
+    each: Iterable[Valuation],
+    formulas: Sequence[Formula],
+    wrong: Callable[[Valuation], bool],
 ) -> Iterator[str]:
     """Yield a sentence with the first values at which something is wrong, if there are any."""
     yield from islice((f"{says}{where(v, formulas)}" for v in each if wrong(v)), 1)
@@ -137,7 +140,7 @@ def tensor_doubts(
     label: str,
     inertia: Sextuple,
     parameters: tuple[Parameter, ...],
-    possible: Callable[[Matrix], bool],
+    possible: Callable[[FractionMatrix], bool],
 ) -> Iterator[str]:
     """Yield a sentence on the first inertia that is not definite, and one on the first triangle."""
     every = [(v, tensor(inertia, v, label)) for v in points_of(parameters, inertia)]
@@ -168,7 +171,7 @@ def check_member(label: str, inertia: Entries, parameters: tuple[Parameter, ...]
         )
 
 
-def _not_negative(matrix: Matrix) -> bool:
+def _not_negative(matrix: FractionMatrix) -> bool:
     return semidefinite(matrix, abs(trace(matrix)))
 
 
@@ -183,7 +186,7 @@ def member_doubts(label: str, inertia: Entries, parameters: tuple[Parameter, ...
         yield from tensor_doubts(f"{label} inertia", whole, parameters, _not_negative)
 
 
-def check_unit(vector: Triple, label: str, values: Point) -> None:
+def check_unit(vector: Triple, label: str, values: Valuation) -> None:
     """Refuse a vector that is zero or not of unit length at these values."""
     found = math.hypot(*(value(part, values, label) for part in vector))
     if found == 0:

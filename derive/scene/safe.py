@@ -20,7 +20,7 @@ from derive.scene.declaration import SceneError
 from derive.scene.escape import at_place, brief
 from derive.scene.formula import FLOATS, Formula, apply, evaluate, symbols
 from derive.scene.functions import INTERVALS
-from derive.scene.numbers import Point, Ranges, middle, points
+from derive.scene.numbers import Ranges, Valuation, middle, points
 
 BETWEEN, BOXES = 64, 2000
 """Points tried between; boxes that a proof may take."""
@@ -51,7 +51,7 @@ def ranges_of(scene: object) -> Ranges:
     return {"pi": (math.pi, math.pi), **dict(_ranges(scene))}
 
 
-def negative(part: Formula, ranges: Ranges) -> Point | None:
+def negative(part: Formula, ranges: Ranges) -> Valuation | None:
     """Return a place on the ranges where a formula is negative, None if none was found."""
     used = symbols(part)
     if any(name not in ranges for name in used):
@@ -146,7 +146,7 @@ def _nothing(part: Formula) -> bool:
     return all(math.isfinite(size) and abs(x) <= ROUNDING * size for x, size in sized)
 
 
-def _sized(part: Formula, values: Point) -> tuple[float, float]:
+def _sized(part: Formula, values: Valuation) -> tuple[float, float]:
     """Return a formula's value and the size of its terms, nan where it has none."""
     try:
         return float(evaluate(part, values, FLOATS)), _size(part, values)
@@ -154,13 +154,13 @@ def _sized(part: Formula, values: Point) -> tuple[float, float]:
         return math.nan, math.nan
 
 
-def _size(part: Formula, values: Point) -> float:
+def _size(part: Formula, values: Valuation) -> float:
     if part.operator in ("add", "sub"):
         return reduce(add, (_size(p, values) for p in part.operands), 0.0)
     return max(abs(float(evaluate(part, values, FLOATS))), 0.0)
 
 
-def _points(box: Ranges) -> Iterator[Point]:
+def _points(box: Ranges) -> Iterator[Valuation]:
     """Yield the middle, corners, and points between."""
     yield from points(box)
     random = Random(1)  # noqa: S311 (points to try, no secret)
@@ -168,9 +168,9 @@ def _points(box: Ranges) -> Iterator[Point]:
         yield {n: random.uniform(*ends) for n, ends in box.items()}
 
 
-def _place(kind: str, part: Formula, box: Ranges) -> Point | None:
+def _place(kind: str, part: Formula, box: Ranges) -> Valuation | None:
     """Return a place where a radicand is negative or a divisor vanishes, None if none is found."""
-    signs: dict[bool, Point] = {}
+    signs: dict[bool, Valuation] = {}
     for point in _points(box):
         found, size = _sized(part, point)
         if found < -ROUNDING * size if kind == "radicand" else abs(found) <= ROUNDING * size:
@@ -182,7 +182,7 @@ def _place(kind: str, part: Formula, box: Ranges) -> Point | None:
     return _searched(kind, part, box)
 
 
-def _between(part: Formula, below: Point, above: Point) -> Point:
+def _between(part: Formula, below: Valuation, above: Valuation) -> Valuation:
     """Return where a formula changes its sign on the way from one point to another."""
     for _ in range(60):
         half = {n: (below[n] + above[n]) / 2 for n in below}
@@ -193,7 +193,7 @@ def _between(part: Formula, below: Point, above: Point) -> Point:
     return below
 
 
-def _searched(kind: str, part: Formula, box: Ranges) -> Point | None:
+def _searched(kind: str, part: Formula, box: Ranges) -> Valuation | None:
     """Return a place that breaks the rule, found by halving the boxes that are not proved safe.
 
     A radicand is negative at the middle of a box; that a divisor is 0 a smallest box tells.

@@ -11,7 +11,7 @@ from fractions import Fraction
 from derive.scene.declaration import Axis, Sextuple, Triple
 from derive.scene.formula import ZERO, Formula, number
 
-Terms = tuple[tuple[Fraction, str], ...]
+LinearForm = tuple[tuple[Fraction, str], ...]
 
 
 @dataclass(frozen=True)
@@ -19,8 +19,8 @@ class Round:
     """A shape with an axis, or a sphere: its moments along the axis and across it."""
 
     kind: str
-    axial: Terms
-    transverse: Terms
+    axial: LinearForm
+    transverse: LinearForm
 
     @property
     def lengths(self) -> tuple[str, ...]:
@@ -56,7 +56,7 @@ CONE_CENTRE = Fraction(3, 4)
 """How far the mass centre of a cone lies from its apex, in heights."""
 
 
-def moment(terms: Terms, mass: Formula, lengths: Mapping[str, Formula]) -> Formula:
+def moment(terms: LinearForm, mass: Formula, lengths: Mapping[str, Formula]) -> Formula:
     """Return the moment of inertia that a row of terms says, in kg m^2."""
     result = ZERO
     for factor, name in terms:

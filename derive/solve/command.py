@@ -19,7 +19,7 @@ from derive.solve.instrument import Instrument, opened
 from derive.solve.motions import frequencies, growth, limits, roots
 from derive.solve.simulation import plot, simulated
 
-Row = tuple[str, str, str, str]
+PrintedRow = tuple[str, str, str, str]
 FACTORS = {"": 1.0, "deg": pi / 180, "rpm": 2 * pi / 60}
 """Units that a value may be set in beside SI: ``skew=3deg``."""
 OF = {"deg": NONE, "rpm": ANGULAR_VELOCITY}
@@ -28,13 +28,13 @@ NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,6})?
 
 
 @dataclass(frozen=True)
-class Solved:
+class Printout:
     """Rows of what, where from, value and unit; what stays unanswered, a clause a function; doubts.
 
     doubts : warnings about the values that were set
     """
 
-    rows: list[Row]
+    rows: list[PrintedRow]
     unanswered: list[str]
     doubts: tuple[str, ...] = ()
 
@@ -71,7 +71,9 @@ def options(command: argparse.ArgumentParser) -> None:
     )
 
 
-def _moved(given: argparse.Namespace, found: Instrument, values: dict[str, float]) -> list[Row]:
+def _moved(
+    given: argparse.Namespace, found: Instrument, values: dict[str, float]
+) -> list[PrintedRow]:
     """Return the state at the end of a motion, its plot written if a file is named."""
     if given.plot is not None:
         _require_another_file(given.plot, given.scene)
@@ -91,7 +93,7 @@ def _require_another_file(file: Path, scene: str) -> None:
             raise SceneError(f"--plot {file}: the scene itself lies there; name another file")
 
 
-def solved(given: argparse.Namespace) -> Solved:
+def solved(given: argparse.Namespace) -> Printout:
     """Return what was asked for, and what stays unanswered because a value is not set.
 
     Raises SceneError for options that do not go together, and for values without an answer.
@@ -102,9 +104,9 @@ def solved(given: argparse.Namespace) -> Solved:
     return replace(_solved(given, found, values), doubts=found.doubts(values))
 
 
-def _solved(given: argparse.Namespace, found: Instrument, values: dict[str, float]) -> Solved:
+def _solved(given: argparse.Namespace, found: Instrument, values: dict[str, float]) -> Printout:
     if given.until is not None:
-        return Solved(_moved(given, found, values), [])
+        return Printout(_moved(given, found, values), [])
     try:
         if given.limit:
             return _limits(given, found, values)
@@ -131,20 +133,20 @@ def _require_one_question(given: argparse.Namespace) -> None:
 NOWHERE = "none in its range"
 
 
-def _limits(given: argparse.Namespace, found: Instrument, values: dict[str, float]) -> Solved:
+def _limits(given: argparse.Namespace, found: Instrument, values: dict[str, float]) -> Printout:
     unit = {c: q.unit for q in found.quantities() for c in q.components}
     wanted = found.library.scene.wanted
     if "linearised" not in wanted:
         raise SceneError(f"scene '{found.name}': --limit needs wanted = [..., \"linearised\"]")
-    rows: list[Row] = []
+    rows: list[PrintedRow] = []
     for name in given.limit:
         each = [f"{v:.12g}" for v in limits(found, values, _known(found, name))]
         rows += [("limit of stability", name, v, unit.get(name, "")) for v in each or [NOWHERE]]
-    return Solved(rows, [])
+    return Printout(rows, [])
 
 
-def _every_answer(found: Instrument, values: dict[str, float]) -> Solved:
-    answered = Solved([], [])
+def _every_answer(found: Instrument, values: dict[str, float]) -> Printout:
+    answered = Printout([], [])
     for name in found.library.scene.wanted:
         missing = _missing(found, name, values)
         if missing:
@@ -204,7 +206,7 @@ def _missing(found: Instrument, name: str, values: dict[str, float]) -> list[str
     return [c for c in found.needed(name.removesuffix("_jacobian")) if c not in given]
 
 
-def _rows(found: Instrument, name: str, values: dict[str, float]) -> Iterator[Row]:
+def _rows(found: Instrument, name: str, values: dict[str, float]) -> Iterator[PrintedRow]:
     if _unknowns(found, name, values):
         unit = {c: q.unit for q in found.quantities() for c in q.components}
         for number, root in enumerate(roots(found, values), 1):

@@ -19,8 +19,6 @@ from derive.scene import SceneError, load
 from derive.scene.machine import Tensor
 from derive.scene.numbers import member_doubts
 
-Values = Mapping[str, Any]
-
 
 @dataclass(frozen=True)
 class Instrument:
@@ -48,7 +46,7 @@ class Instrument:
         own = [c for q in program.inputs if q.role != "constants" for c in q.components]
         return (*(c for q in self.library.setup.inputs for c in q.components), *own)
 
-    def answer(self, function: str, given: Values) -> dict[str, Any]:
+    def answer(self, function: str, given: Mapping[str, Any]) -> dict[str, Any]:
         """Return the components of a function's results; a value may be a number or CasADi's SX.
 
         Raises SceneError if something that the function needs is not given.
@@ -61,14 +59,14 @@ class Instrument:
         found = self._called(program, given)
         return dict(zip([c for q in program.outputs for c in q.components], found, strict=True))
 
-    def require_admissible(self, given: Values) -> None:
+    def require_admissible(self, given: Mapping[str, Any]) -> None:
         """Raise SceneError for parameters that set-up refuses; symbols are not tried."""
         setup = self.library.setup
         values = [self._value(q, q.name, given) for q in setup.inputs]
         if all(isinstance(x, int | float) for x in values) and (why := refusal(setup, values)):
             raise SceneError(f"scene '{self.name}': {why}")
 
-    def doubts(self, given: Values) -> tuple[str, ...]:
+    def doubts(self, given: Mapping[str, Any]) -> tuple[str, ...]:
         """Return warnings about parameters that set-up takes: inertias that no masses can have."""
         scene = self.library.scene
         pinned = tuple(
@@ -86,7 +84,7 @@ class Instrument:
         own = {n: x for n, x in given.items() if n not in scene.about}
         return (*found, *self.library.mechanism.doubts_at(own)) if whole else found
 
-    def _called(self, program: Program, given: Values) -> list[Any]:
+    def _called(self, program: Program, given: Mapping[str, Any]) -> list[Any]:
         if program.name not in self.built:
             self.built[program.name] = getattr(self.module, program.name)()
         arguments = [self._column(q, given) for q in program.inputs if q.role != "constants"]
@@ -103,10 +101,10 @@ class Instrument:
         numbers = all(isinstance(r, casadi.DM) for r in results)
         return [float(x) for x in found] if numbers else found
 
-    def _column(self, q: Quantity, given: Values) -> Any:
+    def _column(self, q: Quantity, given: Mapping[str, Any]) -> Any:
         return casadi.vertcat(*(self._value(q, c, given) for c in q.components))
 
-    def _value(self, q: Quantity, component: str, given: Values) -> Any:
+    def _value(self, q: Quantity, component: str, given: Mapping[str, Any]) -> Any:
         """Return a value; what does not matter to the function but stands beside it, in range."""
         middle = float(((q.low or 0) + (q.high or 0)) / 2)
         return given.get(component, middle)

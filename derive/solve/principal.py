@@ -9,15 +9,15 @@ from derive.motion.exact import diagonal
 from derive.motion.exact.inertia import Inertia
 from derive.program.tape import Number, number
 
-Column = tuple[float, float, float]
+Direction = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class PrincipalAxes:
     """Moments in kg m^2, ascending, and their unit vectors, a right-handed triad."""
 
-    moments: Column
-    directions: tuple[Column, Column, Column]
+    moments: Direction
+    directions: tuple[Direction, Direction, Direction]
 
 
 def principal_axes(tensor: Sequence[Sequence[float]]) -> PrincipalAxes:
@@ -53,11 +53,11 @@ def _refuse_unfit(rows: Sequence[Sequence[float]]) -> None:
             )
 
 
-def _floats(values: Sequence[Number]) -> Column:
+def _floats(values: Sequence[Number]) -> Direction:
     x, y, z = (float(v.exact or 0) for v in values)
     return x, y, z
 
 
-def _times(sign: float, row: Column) -> Column:
+def _times(sign: float, row: Direction) -> Direction:
     x, y, z = (sign * part + 0.0 for part in row)
     return x, y, z

@@ -41,8 +41,8 @@ EXACT = 1e-40
 ROUNDED = 1e-17
 """A relative error that rounding covers: a closed form may end there, with its series."""
 
-State = list[Any]
-Rate = Callable[[State], State]
+StateVector = list[Any]
+RightHandSide = Callable[[StateVector], StateVector]
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class Order:
         return f"{largest(self.errors):.1g}" if self.closed else f"{self.measured:.2f}"
 
 
-def rate_of(library: Library, values: Mapping[str, Any]) -> Rate:
+def rate_of(library: Library, values: Mapping[str, Any]) -> RightHandSide:
     """Return the rate of the state as the lecture's equations give it, other inputs held."""
     mechanism = library.mechanism
     problem = library.problems.get("state_rate") or mechanism.problem("state_rate")
@@ -81,7 +81,7 @@ def rate_of(library: Library, values: Mapping[str, Any]) -> Rate:
     states = _states(library)
     rates = [c for q in problem.outputs for c in q.components]
 
-    def rate(state: State) -> State:
+    def rate(state: StateVector) -> StateVector:
         given = {**values, **dict(zip(states, state, strict=True))}
         found = solution(equations, given, (), BALLS)
         return [found[name].value.mid() for name in rates]
@@ -89,9 +89,9 @@ def rate_of(library: Library, values: Mapping[str, Any]) -> Rate:
     return rate
 
 
-def moved(rate: Rate, state: State, time: Any, levels: int) -> State:
+def moved(rate: RightHandSide, state: StateVector, time: Any, levels: int) -> StateVector:
     """Return the state after ``time`` by extrapolation from 2, 4, ... 2 ``levels`` substeps."""
-    rows: list[State] = []
+    rows: list[StateVector] = []
     for level in range(1, levels + 1):
         row = [_midpoint(rate, state, time, 2 * level)]
         for k, before in enumerate(rows[-1] if rows else []):
@@ -102,7 +102,7 @@ def moved(rate: Rate, state: State, time: Any, levels: int) -> State:
     return [x.mid() for x in rows[-1][-1]]
 
 
-def _midpoint(rate: Rate, state: State, time: Any, steps: int) -> State:
+def _midpoint(rate: RightHandSide, state: StateVector, time: Any, steps: int) -> StateVector:
     """Return Gragg's midpoint rule with so many substeps, an even number."""
     h = time / steps
     before, here = state, [(x + h * v).mid() for x, v in zip(state, rate(state), strict=True)]
@@ -120,7 +120,7 @@ class Course:
 
     given: Mapping[str, Any]
     lengths: tuple[Any, Any]
-    ends: tuple[State, State]
+    ends: tuple[StateVector, StateVector]
 
 
 def course(library: Library, name: str, values: Mapping[str, float]) -> Course:
@@ -189,7 +189,7 @@ def unit_attitude(library: Library, values: dict[str, Any]) -> dict[str, Any]:
     return values
 
 
-def _turning(library: Library, rates: State, state: State) -> float:
+def _turning(library: Library, rates: StateVector, state: StateVector) -> float:
     """Return the fastest relative rate, 1/s, among the quantities of the state."""
     fastest = 1e-30
     for _, own in placed(library.vocabulary.states):

@@ -21,11 +21,9 @@ GAP = 1e-70
 """A relative difference between what a difference leaves out, 2^-260, and a wrong slope."""
 ERROR = "attitude_error_"
 
-Values = Mapping[str, Any]
-
 
 @dataclass(frozen=True)
-class Slope:
+class ComparedSlope:
     """One derivative: by which input, of which output, as returned and as differences give it."""
 
     row: str
@@ -34,7 +32,9 @@ class Slope:
     gap: float
 
 
-def slopes(library: Library, program: Program, values: Mapping[str, float]) -> Iterator[Slope]:
+def slopes(
+    library: Library, program: Program, values: Mapping[str, float]
+) -> Iterator[ComparedSlope]:
     """Yield every derivative that a step gives, in its pattern or not, beside its difference."""
     ((output, pattern),) = (program.sparsity or {}).items()
     with ctx.workprec(BITS):
@@ -52,7 +52,7 @@ def slopes(library: Library, program: Program, values: Mapping[str, float]) -> I
             size = largest([1.0, *map(abs, rises)])
             for i, row in enumerate(pattern.rows):
                 found = entries.get((i, k), arb(0))
-                yield Slope(row, column, float(found), abs(float(found - rises[i])) / size)
+                yield ComparedSlope(row, column, float(found), abs(float(found - rises[i])) / size)
 
 
 def _attitude(library: Library) -> tuple[str, ...]:
@@ -61,7 +61,9 @@ def _attitude(library: Library) -> tuple[str, ...]:
     return next((q.components for q in states if q.is_quaternion), ())
 
 
-def _shifted(values: Values, column: str, parts: Sequence[str], sign: int) -> dict[str, Any]:
+def _shifted(
+    values: Mapping[str, Any], column: str, parts: Sequence[str], sign: int
+) -> dict[str, Any]:
     """Return the values with one of them, or the attitude by an error about one axis, shifted."""
     if not column.startswith(ERROR):
         return {**values, column: values[column] + sign * SHIFT}
@@ -71,7 +73,11 @@ def _shifted(values: Values, column: str, parts: Sequence[str], sign: int) -> di
     return {**values, **dict(zip(parts, turned, strict=True))}
 
 
-def _difference(ends: tuple[Values, Values, Values], row: str, parts: Sequence[str]) -> Any:
+def _difference(
+    ends: tuple[Mapping[str, Any], Mapping[str, Any], Mapping[str, Any]],
+    row: str,
+    parts: Sequence[str],
+) -> Any:
     """Return by how much two results of a step differ, seen from a third one between them."""
     here, above, below = ends
     if not row.startswith(ERROR):

@@ -16,9 +16,9 @@ from derive.lower.arrange.matching import blocks
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.mechanics.problem import Problem
 from derive.scene import Scene
-from derive.verify.valuation import Atom, Atoms, Monomial, Polynomial, terms
+from derive.verify.valuation import Atom, AtomPowers, Atoms, Polynomial, terms
 
-Coefficient = tuple[tuple[Monomial, Fraction], ...]
+Coefficient = tuple[tuple[AtomPowers, Fraction], ...]
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Part:
     """A term whose coefficient is kept by its place."""
 
     coefficient: int
-    factors: Monomial
+    factors: AtomPowers
 
 
 Sum = tuple[Part, ...]

@@ -56,7 +56,7 @@ WIDE_BALLS: Arithmetic = {
 
 
 @dataclass(frozen=True)
-class Point:
+class ExactSample:
     """Exact values of parameters and inputs, the constants made of them, and their arithmetic."""
 
     arithmetic: Arithmetic
@@ -73,7 +73,7 @@ def prove(library: Library) -> None:
         try:
             if any(map(_halves_angles, (library.setup, *library.functions, *library.rates))):
                 raise IrrationalError
-            _prove_at(library, every, point(library, number))
+            _prove_at(library, every, exact_sample(library, number))
         except (IrrationalError, ZeroDivisionError):  # a cosine of 1 is 0 in fractions
             with ctx.workprec(BITS):
                 _prove_in_balls(library, every, number)
@@ -96,20 +96,20 @@ def _prove_in_balls(library: Library, every: Mapping[str, Equations], number: in
     raise NoValueError("no random point was found at which all roots exist")
 
 
-def _exists(equations: Equations, at: Point) -> bool:
+def _exists(equations: Equations, at: ExactSample) -> bool:
     true = solution(equations, at.values, (), at.arithmetic)
     return all(known.value.is_finite() for known in true.values())
 
 
-def point(library: Library, number: int) -> Point:
+def exact_sample(library: Library, number: int) -> ExactSample:
     """Return random fractions for all parameters and inputs of a library."""
-    return Point(FRACTIONS, dict(_dice(library, number)))
+    return ExactSample(FRACTIONS, dict(_dice(library, number)))
 
 
-def ball_point(library: Library, number: int) -> Point:
+def ball_point(library: Library, number: int) -> ExactSample:
     """Return the same fractions as narrow balls, all above zero."""
     values = {name: arb(abs(x)) for name, x in _dice(library, number)}
-    return Point(WIDE_BALLS, values)
+    return ExactSample(WIDE_BALLS, values)
 
 
 def _dice(library: Library, number: int) -> Iterator[tuple[str, Any]]:
@@ -120,7 +120,7 @@ def _dice(library: Library, number: int) -> Iterator[tuple[str, Any]]:
             yield name, fmpq(top, dice.randint(1, SPAN // 100))
 
 
-def _prove_at(library: Library, every: Mapping[str, Equations], at: Point) -> None:
+def _prove_at(library: Library, every: Mapping[str, Equations], at: ExactSample) -> None:
     constants = results_by_name(lectured(library), at.arithmetic, at.values)
     for name, equations in every.items():
         functions = [
@@ -148,7 +148,7 @@ def lectured(library: Library) -> Program:
 
 
 def first_fault(
-    program: Program, true: Mapping[str, Solved], constants: Mapping[str, Any], at: Point
+    program: Program, true: Mapping[str, Solved], constants: Mapping[str, Any], at: ExactSample
 ) -> tuple[str, Any] | None:
     """Return the first output component that is not what the equations say, and by how much."""
     given = {c: None for q in program.inputs if q.role == "constants" for c in q.components}

@@ -15,8 +15,8 @@ from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, pi, sin, tan
 from derive.scene.formula import Arithmetic
 from derive.verify.operators import SLOPES
 
-Monomial = tuple[tuple[int, int], ...]  # (atom, power), by atom
-Polynomial = dict[Monomial, Fraction]
+AtomPowers = tuple[tuple[int, int], ...]  # (atom, power), by atom
+Polynomial = dict[AtomPowers, Fraction]
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Atom:
 
     kind: str  # "symbol" | "pi" | "inverse" | a function with a slope
     symbol: Symbol | None
-    inner: tuple[tuple[Monomial, Fraction], ...]
+    inner: tuple[tuple[AtomPowers, Fraction], ...]
 
 
 @dataclass
@@ -47,7 +47,7 @@ class Atoms:
         """Return where a symbol stands."""
         return self.place(Atom("symbol", symbol, ()))
 
-    def within(self, monomial: Monomial) -> set[int]:
+    def within(self, monomial: AtomPowers) -> set[int]:
         """Return the atoms of a monomial, and those that its functions are made of."""
         found: set[int] = set()
         for atom, _ in monomial:
@@ -124,7 +124,7 @@ def multiplied(first: Polynomial, *others: Polynomial) -> Polynomial:
     return product
 
 
-def _joined(a: Monomial, b: Monomial) -> Monomial:
+def _joined(a: AtomPowers, b: AtomPowers) -> AtomPowers:
     powers = dict(a)
     for atom, power in b:
         powers[atom] = powers.get(atom, 0) + power
@@ -142,25 +142,25 @@ def raised(x: Any, power: int) -> Any:
 
 
 @dataclass(frozen=True)
-class Term:
+class CollectedTerm:
     """A coefficient made of parameters, times powers of atoms that vary."""
 
-    coefficient: tuple[tuple[Monomial, Fraction], ...]
-    factors: Monomial
+    coefficient: tuple[tuple[AtomPowers, Fraction], ...]
+    factors: AtomPowers
 
 
-def terms(polynomial: Polynomial, varies: Callable[[int], bool]) -> tuple[Term, ...]:
+def terms(polynomial: Polynomial, varies: Callable[[int], bool]) -> tuple[CollectedTerm, ...]:
     """Return a polynomial's terms, all that goes with the same varying factors in one."""
-    grouped: dict[Monomial, Polynomial] = {}
+    grouped: dict[AtomPowers, Polynomial] = {}
     for monomial, number in polynomial.items():
         varying = tuple((a, p) for a, p in monomial if varies(a))
         fixed = tuple((a, p) for a, p in monomial if not varies(a))
         grouped.setdefault(varying, {})[fixed] = number
-    return tuple(Term(tuple(c.items()), factors) for factors, c in grouped.items())
+    return tuple(CollectedTerm(tuple(c.items()), factors) for factors, c in grouped.items())
 
 
 def value(
-    polynomial: Iterable[tuple[Monomial, Fraction]],
+    polynomial: Iterable[tuple[AtomPowers, Fraction]],
     atoms: Mapping[int, Any],
     arithmetic: Arithmetic,
 ) -> Any:

@@ -1,6 +1,6 @@
 """Set-up tells parameters that no body has from others, by the same number in every language."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -10,7 +10,7 @@ import casadi
 import numpy as np
 import pytest
 
-from derive.check.admission import Values, ends_of, fault, hostile, replayed
+from derive.check.admission import ends_of, fault, hostile, replayed
 from derive.check.compiler import find_compiler
 from derive.check.emitted import Files, loaded
 from derive.check.refusals import casadi_status, refusal
@@ -138,7 +138,7 @@ def test_no_definite_tensor_is_refused_for_being_close_to_singular(
     precision: Precision, condition: float
 ) -> None:
     setup, dice = made("free_body").setup, np.random.default_rng(9)
-    each: list[Values] = []
+    each: list[Mapping[str, float]] = []
     for _ in range(200):
         turn, _ = np.linalg.qr(dice.normal(size=(3, 3)))
         small = [1, dice.choice([1, 1 / condition]), 1 / condition]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from derive.emit.notation import name_mathml
-from derive.emit.page.equation import Line, passages, written_names
+from derive.emit.page.equation import PageEquation, passages, written_names
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.scene import catalogue, parse_scene
 from derive.scene.wanted import EQUATIONS, base_of
@@ -104,7 +104,7 @@ def functions(known: Mechanism) -> list[str]:
     return [name for name in dict.fromkeys(map(base_of, known.scene.wanted)) if name in EQUATIONS]
 
 
-def unsaid(known: Mechanism, lines: list[Line]) -> Iterator[str]:
+def unsaid(known: Mechanism, lines: list[PageEquation]) -> Iterator[str]:
     """Yield what is read in these equations and is neither given nor on a left-hand side.
 
     A name is looked for as the page shows it, so that no algebra is shared with the page.
@@ -120,14 +120,14 @@ def unsaid(known: Mechanism, lines: list[Line]) -> Iterator[str]:
         yield from LETTERS.findall(name.sub("", right))
 
 
-def renamed(lines: list[Line]) -> list[str]:
+def renamed(lines: list[PageEquation]) -> list[str]:
     """Return the right-hand sides that are nothing but the left-hand side of another equation."""
     sides = [[part.removeprefix("<mrow>") for part in _sides(line)] for line in lines]
     lefts = {left for left, _ in sides}
     return [right for _, right in sides if right.removesuffix("</mrow>") in lefts]
 
 
-def _sides(line: Line) -> list[str]:
+def _sides(line: PageEquation) -> list[str]:
     return EQUALS.split(TAGS.sub("", line.mathml), maxsplit=1)
 
 

@@ -1,6 +1,6 @@
 """The cheapest of many forms is found without a look at every choice of them."""
 
-from derive.lower.forms import Block, best_values, value_forms
+from derive.lower.forms import Dependents, best_values, value_forms
 from derive.lower.graph import Graph
 
 
@@ -10,7 +10,7 @@ def test_forty_blocks_of_two_forms_each_take_the_cheapest_of_each():
     blocks = []
     for n in range(40):
         x, y, z = (graph.variable(f"{name}{n}") for name in "xyz")
-        blocks.append(Block((graph.add([graph.mul([x, y]), graph.mul([x, z])]),), ()))
+        blocks.append(Dependents((graph.add([graph.mul([x, y]), graph.mul([x, z])]),), ()))
     assert {len(value_forms(graph, block)) for block in blocks} == {2}
     found = best_values(graph, blocks)
     assert [graph.nodes[node][0] for _, node in found] == ["product"] * 40

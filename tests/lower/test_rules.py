@@ -9,7 +9,7 @@ from sympy import Matrix
 
 from derive.library.library import library
 from derive.lower.arrange import column, plan
-from derive.lower.arrange.block import Block, Rule, Solution, Solve
+from derive.lower.arrange.block import Block, BlockRule, Solution, Solve
 from derive.lower.arrange.constant_coefficients import constant_coefficients
 from derive.lower.arrange.constant_tensor import constant_tensor
 from derive.lower.arrange.quaternion import quaternion_rate, turned_by_quaternion
@@ -19,7 +19,7 @@ from derive.scene import Scene, load
 from derive.verify.prove import ProofError, prove
 from tests.lower.test_long_form import CATALOGUE, LONG, operations
 
-Any = Rule | column.Rule
+Any = BlockRule | column.ColumnRule
 SCENES = Path(__file__).parent.parent / "mechanics" / "scenes"
 CASES: dict[Any, tuple[Path, str]] = {
     constant_tensor: (LONG / "free_body.toml", "acceleration"),
@@ -74,7 +74,7 @@ def wrong(rule: Any, change: Callable[[Matrix], Matrix]) -> Any:
     def of_block(found: Solution, block: Block, rest: Solve) -> bool:
         return rule(found, replace(block, right=change(block.right)), rest)
 
-    def of_column(values: Matrix, known: column.Known) -> Matrix | None:
+    def of_column(values: Matrix, known: column.NamedColumns) -> Matrix | None:
         made = rule(values, known)
         return None if made is None else change(made)
 

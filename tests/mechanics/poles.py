@@ -8,14 +8,16 @@ balances, not of those that were chosen, which are what is tried.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from mpmath import mp, mpf
+from numpy.typing import NDArray
 
 from derive.library.library import Library
 from derive.mechanics.mechanism import Mechanism
-from derive.mechanics.probe import DIGITS, Probe, point
-from derive.mechanics.valued import Array, Valued
+from derive.mechanics.probe import DIGITS, Probe, random_probe
+from derive.mechanics.valued import Valued
 from derive.program.precision import F64
 from derive.program.program import Quantity, placed
 from derive.verify.columns import Column
@@ -131,7 +133,9 @@ def regular(made: Library, base: str, place: dict[str, float]) -> bool:
 def told(mechanism: Mechanism, wanted: list[object], place: dict[str, float]) -> float:
     """Return how clearly all balances of a machine tell some unknowns: a singular value."""
     balances, symbols = mechanism.answers.balances, mechanism.vocabulary.symbols
-    probe = Probe(point(mechanism.words, 0).values | {symbols[c]: mpf(x) for c, x in place.items()})
+    probe = Probe(
+        random_probe(mechanism.words, 0).values | {symbols[c]: mpf(x) for c, x in place.items()}
+    )
     with mp.workdps(DIGITS):
         probe.define(mechanism.words.sheet.definitions)
         valued = Valued(balances.sides, probe)
@@ -145,7 +149,7 @@ def told(mechanism: Mechanism, wanted: list[object], place: dict[str, float]) ->
     return float(np.linalg.svd(_beside(table[:, own], others), compute_uv=False)[-1])
 
 
-def _beside(table: Array, others: Array) -> Array:
+def _beside(table: NDArray[Any], others: NDArray[Any]) -> NDArray[Any]:
     """Return what is left of columns beside the directions of others."""
     u, size, _ = np.linalg.svd(others, full_matrices=False)
     u = u[:, size > REGULAR**2]

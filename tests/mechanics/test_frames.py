@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 from mpmath import mp
+from numpy.typing import NDArray
 from sympy import Expr, Matrix
 
 from derive.mechanics.mechanism import mechanism
-from derive.mechanics.probe import Probe, point
+from derive.mechanics.probe import Probe, random_probe
 from derive.mechanics.sheet import Sheet
-from derive.mechanics.valued import Array
 from derive.scene import load
 from derive.verify.cloud.history import History
 from derive.verify.cloud.series import DIGITS, each
@@ -26,7 +26,7 @@ SCENES = (
 AGREE = mp.mpf(10) ** -40
 
 
-def values_of(matrix: Matrix, probe: "Probe | Later") -> Array:
+def values_of(matrix: Matrix, probe: "Probe | Later") -> NDArray[Any]:
     return np.array([probe.value(e) for e in matrix], dtype=object)
 
 
@@ -37,7 +37,7 @@ def test_frames_turn_and_accelerate_as_their_positions_say(source: str | Path) -
     frames, words = known.answers.frames, known.words
     frames.acceleration, frames.Omega_dot  # noqa: B018 - they name what they need on the sheet
     with mp.workdps(DIGITS):
-        probe = point(words, 0)
+        probe = random_probe(words, 0)
         probe.values |= {
             u: mp.mpf(k + 2) / 7 for k, u in enumerate(sorted(words.sheet.unknowns, key=str))
         }

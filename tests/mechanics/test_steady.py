@@ -12,7 +12,7 @@ from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.scene import SceneError, parse_scene
 from derive.scene.machine import LEFT_OVER
 from derive.solve import opened, roots
-from derive.solve.command import Row, solved
+from derive.solve.command import PrintedRow, solved
 
 HOOP = Path(__file__).parent / "scenes" / "hoop_steady.toml"
 PENDULUM = """
@@ -97,7 +97,7 @@ def test_what_vanishes_and_what_is_found_have_their_units(tmp_path: Path) -> Non
     assert [row[3] for row in left if row[0] == "steady"] == ["N m"]
 
 
-def _solved(scene: str, values: dict[str, float]) -> list[Row]:
+def _solved(scene: str, values: dict[str, float]) -> list[PrintedRow]:
     texts = [f"{name}={value}" for name, value in values.items()]
     return solved(parser().parse_args(["solve", scene, "--set", *texts])).rows
 

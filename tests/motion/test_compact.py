@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from derive.check.compiler import CompilerError, compiled, find_compiler
-from derive.emit.c.signature import Names, prototype
+from derive.emit.c.signature import CNames, prototype
 from derive.emit.c.text import body
 from derive.emit.templates import TEMPLATES
 from derive.motion.runge_kutta import step
@@ -75,7 +75,7 @@ def test_rounding_in_loops_is_as_small(name: str, dtype: type) -> None:
 def c_source(program: Program, precision: Precision) -> str:
     """Return a file with one function: the struct of constants, and the step in loops."""
     assert program.has_arrays
-    kind, head = precision.scalar, prototype(program, Names("body"), precision)
+    kind, head = precision.scalar, prototype(program, CNames("body"), precision)
     fields = [c for q in program.inputs if q.role == "constants" for c in q.components]
     lines = "\n".join(f"    {line}" for line in body(program, precision))
     struct = " ".join(f"{kind} {field};" for field in fields)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from derive.check.compiler import CompilerError, compiled, find_compiler
-from derive.emit.c.signature import Names, prototype
+from derive.emit.c.signature import CNames, prototype
 from derive.emit.c.text import body
 from derive.emit.casadi_text import plain_lines
 from derive.emit.templates import TEMPLATES
@@ -25,7 +25,7 @@ from tests.motion.solution import (
 
 
 def c_source(step: TaylorStep, precision: Precision) -> str:
-    head = prototype(in_loops(step), Names("body"), precision)
+    head = prototype(in_loops(step), CNames("body"), precision)
     lines = "\n".join(f"    {line}" for line in body(in_loops(step), precision))
     contraction_off = TEMPLATES.get_template("contraction_off.c.jinja").render()
     return f"{contraction_off}#include <math.h>\n{head};\n{head}\n{{\n{lines}\n}}\n"

@@ -7,13 +7,13 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from derive.scene import CATALOGUE, SceneError, parse_scene
-from derive.scene.numbers import Matrix, definite, triangle
+from derive.scene.numbers import FractionMatrix, definite, triangle
 
 WHOLE = st.integers(-9, 9)
 PARTICLES = st.lists(st.tuples(st.integers(1, 9), WHOLE, WHOLE, WHOLE), min_size=1, max_size=6)
 
 
-def cloud_tensor(particles: list[tuple[int, int, int, int]]) -> Matrix:
+def cloud_tensor(particles: list[tuple[int, int, int, int]]) -> FractionMatrix:
     """Return the inertia tensor of a cloud of particles (mass, x, y, z) about the origin."""
     rows = [[Fraction(0)] * 3 for _ in range(3)]
     for mass, *place in particles:

@@ -28,7 +28,7 @@ from derive.program.largest import largest
 from derive.program.precision import F64
 from derive.program.program import Op, Program
 from derive.scene import Scene
-from derive.verify.cloud import Answers, answers
+from derive.verify.cloud import CloudAnswers, answers
 from derive.verify.convergence import Order
 from derive.verify.draw import with_motion
 from derive.verify.measure import Errors
@@ -105,7 +105,7 @@ def _without_slope(program: Program, place: int) -> Program:
 
 
 def test_an_answer_of_the_cloud_without_a_value_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    def spoilt_answers(machine: Scene, given: Mapping[str, float]) -> Answers:
+    def spoilt_answers(machine: Scene, given: Mapping[str, float]) -> CloudAnswers:
         found = answers(machine, given)
         found.__dict__["unknowns"] = found.unknowns | {"beta_ddot": mpf("nan")}
         return found

@@ -2,14 +2,14 @@
 
 from fractions import Fraction
 
-from derive.emit.c.signature import Names
+from derive.emit.c.signature import CNames
 from derive.emit.operators import literal
 from derive.library.library import Library
 from derive.program.precision import Precision
 from derive.program.program import Quantity
 
 
-def example(library: Library, names: Names, precision: Precision) -> list[str]:
+def example(library: Library, names: CNames, precision: Precision) -> list[str]:
     """Return a few lines of C that use the first function."""
     program = library.printed()[0]
     lines = []

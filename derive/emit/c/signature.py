@@ -11,7 +11,7 @@ WIDTH = 100
 
 
 @dataclass(frozen=True)
-class Names:
+class CNames:
     """What a scene's files and symbols are called."""
 
     scene: str
@@ -39,7 +39,7 @@ def _parameter(q: Quantity, scene: str, precision: Precision, const: str, pointe
     return f"{precision.scalar} {pointer}{q.name}"
 
 
-def prototype(program: Program, names: Names, precision: Precision) -> str:
+def prototype(program: Program, names: CNames, precision: Precision) -> str:
     """Return the declaration of a function without its semicolon."""
     result = "int" if program.makes("constants") else "void"
     arguments = parameters(program, names.scene, precision) or ["void"]

@@ -8,7 +8,7 @@ from derive import __version__
 from derive.emit.c.comment import comment
 from derive.emit.c.example import example
 from derive.emit.c.scope import declared_in_c, require_free, require_no_symbol
-from derive.emit.c.signature import Names, dense, dense_size, prototype
+from derive.emit.c.signature import CNames, dense, dense_size, prototype
 from derive.emit.c.text import definition, pair_body, pair_functions, table
 from derive.emit.operators import literal
 from derive.emit.templates import TEMPLATES
@@ -35,7 +35,7 @@ def c_files(library: Library, figures: Sequence[Measurement]) -> dict[str, str]:
 def _pair_of_files(
     library: Library, precision: Precision, figures: Sequence[Measurement]
 ) -> dict[str, str]:
-    names = Names(library.scene.name)
+    names = CNames(library.scene.name)
     source = _source(library, names, precision)
     header = _header(
         library, names, precision, figures, hashlib.sha256(source.encode()).hexdigest()[:16]
@@ -58,7 +58,7 @@ def first_line(library: Library) -> str:
 
 def _header(
     library: Library,
-    names: Names,
+    names: CNames,
     precision: Precision,
     figures: Sequence[Measurement],
     digest: str,
@@ -91,7 +91,7 @@ def names_in(program: Program) -> set[str]:
     return members | {q.name for q in every}
 
 
-def _source(library: Library, names: Names, precision: Precision) -> str:
+def _source(library: Library, names: CNames, precision: Precision) -> str:
     programs = library.emitted()
     pairs = pair_functions(p for p in programs if p.arithmetic == "pairs")
     return TEMPLATES.get_template("source.c.jinja").render(
@@ -109,7 +109,7 @@ def _source(library: Library, names: Names, precision: Precision) -> str:
     )
 
 
-def _definitions(library: Library, names: Names, precision: Precision) -> list[dict[str, str]]:
+def _definitions(library: Library, names: CNames, precision: Precision) -> list[dict[str, str]]:
     found = []
     for program in library.printed():
         written = definition(program, names.scene, precision)
@@ -124,7 +124,7 @@ def _definitions(library: Library, names: Names, precision: Precision) -> list[d
     return found
 
 
-def _pair_function(name: str, names: Names, precision: Precision) -> str:
+def _pair_function(name: str, names: CNames, precision: Precision) -> str:
     bits = precision.bits
     pi_high, pi_low = pair_of(PI, precision.dtype)
     return (
@@ -173,7 +173,7 @@ def _sine(precision: Precision) -> dict[str, object]:
     }
 
 
-def _setup_definition(program: Program, names: Names, precision: Precision) -> str:
+def _setup_definition(program: Program, names: CNames, precision: Precision) -> str:
     lines = pair_body(program, names.scene, precision)
     members = [c for q in program.outputs for c in q.components]
     require_free(names.scene, "setup", members, ())
@@ -182,7 +182,7 @@ def _setup_definition(program: Program, names: Names, precision: Precision) -> s
     return f"{prototype(program, names, precision)}\n{{\n{text}\n}}"
 
 
-def _dense_definition(program: Program, names: Names, precision: Precision) -> str:
+def _dense_definition(program: Program, names: CNames, precision: Precision) -> str:
     pattern = next(iter((program.sparsity or {}).values()))
     spots = [c * len(pattern.rows) + r for r, c in pattern.places()]
     passed = [q.name for q in (*program.inputs, *program.outputs[:-1])] + ["nonzeros"]

@@ -12,7 +12,6 @@ from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, 
 from derive.program.precision import Precision
 from derive.program.program import Op, Operand, Program, Quantity, every_op
 
-Text = Callable[[Operand], str]
 UNSIGNED_CHAR = 255
 OWN = {name: row.c for name, row in WRITTEN.items() if row.c}
 
@@ -81,7 +80,7 @@ def pair_body(program: Program, scene: str, precision: Precision) -> list[str]:
 
 
 def _language(
-    text: Text,
+    text: Callable[[Operand], str],
     own: Mapping[str, str],
     call: Callable[[str], str],
     kind: str,
@@ -155,7 +154,7 @@ def _head(line: Loop | Even) -> list[str]:
     return [f"for (int {i} = {line.first}, {m} = {start}; {i} < {end}; ++{i}, --{m}) {{"]
 
 
-def _stores(program: Program, text: Text, precision: Precision) -> list[str]:
+def _stores(program: Program, text: Callable[[Operand], str], precision: Precision) -> list[str]:
     """Return the stores; an input that is also a result is read first: outputs may lie over it."""
     slots = [slot for q in program.outputs for slot in _slots(q)]
     arrays = {c for q in program.inputs if q.shape and q.role != "constants" for c in q.components}

@@ -68,8 +68,8 @@ def _equation(library: Library, program: Program) -> str:
     mechanism = library.mechanism.posed(problem.name)
     way = plain_arrangement(mechanism, mechanism.lean(problem.name).problem)
     values: dict[Expr, Expr] = {}
-    for stage in way.stages:
-        values[stage.symbol] = stage.value.xreplace(values)
+    for definition in way.definitions:
+        values[definition.symbol] = definition.value.xreplace(values)
     whole = mechanism.whole(problem.name)
     names = written_names(mechanism)
     each = [e.xreplace(values) for e in way.outputs]

@@ -25,15 +25,15 @@ WIDTH, HEIGHT, MARGIN = 260, 180, 18
 STEPS = 36  # of an ellipse
 SIGHT = ((0.82, -0.57, 0.0), (0.26, 0.37, 0.89))  # what is right and what is up, seen from x, y, z
 
-Point = tuple[Any, Any, Any]
+Position = tuple[Any, Any, Any]
 
 
 @dataclass(frozen=True)
-class Line:
+class Polyline:
     """A line through points in space, and what it stands for."""
 
     kind: str
-    points: tuple[Point, ...]
+    points: tuple[Position, ...]
     label: str = ""
 
 
@@ -60,7 +60,7 @@ def well_inside(machine: Scene) -> dict[str, Any]:
     return found
 
 
-def _lines(machine: Scene) -> Iterator[Line]:
+def _lines(machine: Scene) -> Iterator[Polyline]:
     history = History(machine, well_inside(machine))
     shown = () if attitudes_only(list(machine.wanted)) else machine.bodies
     bodies = [line for b in shown for line in _ellipses(history, b.name)]
@@ -71,21 +71,21 @@ def _lines(machine: Scene) -> Iterator[Line]:
         kind = "ground" if frame.name == INERTIAL and shown else "frame"
         for k in range(3):
             end = origin + R[:, k] * (size / 2)
-            yield Line(kind, (tuple(origin), tuple(end)), "xyz"[k] if kind == "frame" else "")
+            yield Polyline(kind, (tuple(origin), tuple(end)), "xyz"[k] if kind == "frame" else "")
     for load in machine.loads:
         if isinstance(load, Force):
             yield from _forces(history, load, size)
 
 
-def _forces(history: History, load: Force, size: Any) -> Iterator[Line]:
+def _forces(history: History, load: Force, size: Any) -> Iterator[Polyline]:
     place, R = values(history.place(load.frame, load.at)), values(history.rotations[load.along])
     for k, f in enumerate(told(load.force)):
         if f != ZERO:
             start = place - R[:, k] * (size / 3)
-            yield Line("force", (tuple(start), tuple(place)))
+            yield Polyline("force", (tuple(start), tuple(place)))
 
 
-def _ellipses(history: History, name: str) -> Iterator[Line]:
+def _ellipses(history: History, name: str) -> Iterator[Polyline]:
     """Return the three principal ellipses of a body."""
     centre = values(history.centre(name))
     reached = [values(place) - centre for _, place in history.particles(name)[:-1:2]]
@@ -93,14 +93,14 @@ def _ellipses(history: History, name: str) -> Iterator[Line]:
     yield from _around(centre, semi, name)
 
 
-def _around(centre: Any, semi: Sequence[Any], name: str) -> Iterator[Line]:
+def _around(centre: Any, semi: Sequence[Any], name: str) -> Iterator[Polyline]:
     for a, b in ((0, 1), (1, 2), (2, 0)):
         turn = [2 * mp.pi * n / STEPS for n in range(STEPS + 1)]
         points = tuple(tuple(centre + semi[a] * mp.cos(t) + semi[b] * mp.sin(t)) for t in turn)
-        yield Line("body", points, name if a == 0 else "")
+        yield Polyline("body", points, name if a == 0 else "")
 
 
-def _reach(points: Iterable[Point]) -> Any:
+def _reach(points: Iterable[Position]) -> Any:
     """Return the size of what is drawn."""
     each = list(points)
     if not each:
@@ -109,12 +109,12 @@ def _reach(points: Iterable[Point]) -> Any:
     return max(spans) or mpf(1)
 
 
-def _seen(point: Point) -> tuple[Any, Any]:
+def _seen(point: Position) -> tuple[Any, Any]:
     right, up = (sum((s * x for s, x in zip(way, point, strict=True)), mpf(0)) for way in SIGHT)
     return right, -up
 
 
-def _svg(lines: Sequence[Line], says: str) -> str:
+def _svg(lines: Sequence[Polyline], says: str) -> str:
     flat = [[_seen(p) for p in line.points] for line in lines]
     xs, ys = zip(*(p for line in flat for p in line), strict=True)
     wide, high = max(xs) - min(xs) or mpf(1), max(ys) - min(ys) or mpf(1)

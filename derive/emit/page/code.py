@@ -6,7 +6,7 @@ from html import escape
 
 from markupsafe import Markup
 
-from derive.emit.c.signature import Names, prototype
+from derive.emit.c.signature import CNames, prototype
 from derive.emit.c.text import definition
 from derive.program.precision import F64
 from derive.program.program import Program
@@ -22,7 +22,7 @@ def listing(program: Program, scene: str, links: Mapping[str, str]) -> Markup:
     lines = definition(program, scene, F64)
     components = [c for q in program.outputs for c in q.components] if links else []
     first_store = len(lines) - len(components)
-    shown = [escape(prototype(program, Names(scene), F64)), "{"]
+    shown = [escape(prototype(program, CNames(scene), F64)), "{"]
     shown += [f"    {escape(line)}" for line in lines[:first_store]]
     for line, component in zip(lines[first_store:], components, strict=True):
         shown.append(f"    {_store(line, component, links)}")

@@ -35,11 +35,11 @@ _LETTERS = {
     "position_rate": ("p_dot",), "velocity_rate": ("v_dot",),
 }  # fmt: skip
 
-Equation = tuple[Symbol, Expr, Expr]  # what it determines, left side, right side
+Determined = tuple[Symbol, Expr, Expr]  # what it determines, left side, right side
 
 
 @dataclass(frozen=True)
-class Line:
+class PageEquation:
     """One equation of the scene, what it determines, and the place to link to."""
 
     place: str
@@ -53,7 +53,7 @@ class Passage:
 
     steps: tuple[Step, ...]
     general: tuple[str, ...]
-    lines: tuple[Line, ...]
+    lines: tuple[PageEquation, ...]
 
 
 def letter(quantity: str, taken: frozenset[str]) -> str:
@@ -165,7 +165,7 @@ def passages(mechanism: Mechanism, base: str) -> tuple[Passage, ...]:
     mechanism = mechanism.posed(base)
     problem = _shown(mechanism, base)
     named, rows, answers = _put_together(problem)
-    motion: list[Equation] = [(s, s, value) for s, value in named.items()]
+    motion: list[Determined] = [(s, s, value) for s, value in named.items()]
     found = {value: s for s, value in reversed(answers.items()) if value in problem.unknowns}
     each = _balanced(problem, rows, _loads(mechanism))
     balanced = [(found.get(u, u), *sides) for u, *sides in each]
@@ -232,7 +232,7 @@ def _loads(mechanism: Mechanism) -> frozenset[Symbol]:
     return frozenset(mechanism.vocabulary.symbols[c] for q in given for c in q.components)
 
 
-def _balanced(problem: Problem, rows: list[Expr], loads: frozenset[Symbol]) -> Iterator[Equation]:
+def _balanced(problem: Problem, rows: list[Expr], loads: frozenset[Symbol]) -> Iterator[Determined]:
     """Yield each unknown with the row that determines it."""
     unknowns = problem.unknowns
     holds = [frozenset(k for k, u in enumerate(unknowns) if u in r.free_symbols) for r in rows]
@@ -260,12 +260,12 @@ def arranged(
 
 
 def _passage(
-    mechanism: Mechanism, base: str, steps: tuple[str, ...], equations: list[Equation],
+    mechanism: Mechanism, base: str, steps: tuple[str, ...], equations: list[Determined],
     names: dict[Symbol, str],
 ) -> Passage:  # fmt: skip
     label = mechanism.words.sheet.label
     lines = tuple(
-        Line(
+        PageEquation(
             f"{base}.{label(s)}".replace(" ", "_"),
             label(s),
             sympy_equation_mathml(left, right, names),

@@ -1,14 +1,12 @@
-"""A block of linear balances: what it holds, and the stages that solve it as they are found."""
+"""A block of linear balances: what it holds, and the definitions that solve it."""
 
 from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass, field
 
 from sympy import Expr, Integer, Matrix, Symbol
 
-from derive.lower.arrange.draft import Stage
-from derive.lower.arrange.pivots import Pivots
-
-Place = tuple[int, int]
+from derive.lower.arrange.arrangement import Definition
+from derive.lower.arrange.pivots import MatrixEntry, Pivots
 
 
 @dataclass(frozen=True)
@@ -22,7 +20,7 @@ class Block:
 
 @dataclass
 class Solution:
-    """Stages that solve balances, and what is known of the symbols in them.
+    """Definitions that solve balances, and what is known of the symbols in them.
 
     fixed  : what rests on parameters only
     pivots : finds where pivots vanish, and others that do not
@@ -30,14 +28,14 @@ class Solution:
 
     fixed: frozenset[Symbol]
     pivots: Pivots
-    stages: list[Stage] = field(default_factory=list)
+    definitions: list[Definition] = field(default_factory=list)
 
     def named(self, kind: str, name: str, value: Expr, family: str = "") -> Expr:
         """Return a symbol for a value, unless it is plain."""
         if value.is_Symbol or value.is_Number or (-value).is_Symbol:
             return value
-        symbol = fresh(name, {stage.symbol for stage in self.stages})
-        self.stages.append(Stage(kind, symbol, value, family))
+        symbol = fresh(name, {definition.symbol for definition in self.definitions})
+        self.definitions.append(Definition(kind, symbol, value, family))
         self.pivots.define(symbol, value)
         if value.free_symbols <= self.fixed:
             self.fixed |= {symbol}
@@ -49,7 +47,7 @@ class Solution:
 
     def solved(self, unknown: Symbol, value: Expr) -> None:
         """Note the value of an unknown."""
-        self.stages.append(Stage("let", unknown, value))
+        self.definitions.append(Definition("let", unknown, value))
 
     def is_fixed(self, entries: Iterable[Expr]) -> bool:
         """Tell whether entries rest on parameters only."""
@@ -65,7 +63,7 @@ def fresh(name: str, taken: Container[Symbol]) -> Symbol:
 
 
 Solve = Callable[[Solution, Block], None]
-Rule = Callable[[Solution, Block, Solve], bool]
+BlockRule = Callable[[Solution, Block, Solve], bool]
 """A way to solve some blocks, which tells whether this was one; what is left it hands on."""
 
 
@@ -80,7 +78,7 @@ def by_determinants(found: Solution, block: Block) -> None:
         found.solved(u, inverse * top)
 
 
-def by_pivots(found: Solution, block: Block, taken: Sequence[Place], rest: Solve) -> None:
+def by_pivots(found: Solution, block: Block, taken: Sequence[MatrixEntry], rest: Solve) -> None:
     """Eliminate by pivots at (row, column), solve what is left, and go back."""
     A, b = block.matrix.as_mutable(), list(block.right)
     rows, columns = [r for r, _ in taken], list(range(A.rows))

@@ -13,7 +13,7 @@ from derive.mechanics.problem import Problem, substituted
 
 
 @dataclass
-class Known:
+class NamedColumns:
     """What is known of symbols, and the columns that rules have named.
 
     constant    : what rests on parameters only
@@ -54,53 +54,53 @@ class Known:
         return found
 
 
-Rule = Callable[[Matrix, Known], Matrix | None]
+ColumnRule = Callable[[Matrix, NamedColumns], Matrix | None]
 """A column written in another way, with what is named on the way; None if there is no such way."""
 
 
-def in_definitions(problem: Problem, rule: Rule, known: Known) -> Problem:
+def in_definitions(problem: Problem, rule: ColumnRule, columns: NamedColumns) -> Problem:
     """Return the problem with columns of named quantities rewritten wherever a rule applies."""
     done: dict[Symbol, Expr] = {}
     symbols = list(problem.definitions)
     while symbols:
         own = symbols[:3]
-        made = _rewritten(Matrix([problem.definitions[s] for s in own]), rule, known)
+        made = _rewritten(Matrix([problem.definitions[s] for s in own]), rule, columns)
         new = [problem.definitions[own[0]]] if made is None else [*made]
-        done |= known.taken() | dict(zip(own, new, strict=False))
+        done |= columns.taken() | dict(zip(own, new, strict=False))
         symbols = symbols[len(new) :]
     return substituted(replace(problem, definitions=done), {})
 
 
-def _rewritten(column: Matrix, rule: Rule, known: Known) -> Matrix | None:
+def _rewritten(column: Matrix, rule: ColumnRule, columns: NamedColumns) -> Matrix | None:
     """Return a column rewritten, its components taken as x, y, z or as z, y, x."""
     orders = ((0, 1, 2), (2, 1, 0)) if column.rows == 3 else ()
     for order in orders:
-        made = rule(column[list(order), :], known)
+        made = rule(column[list(order), :], columns)
         if made is not None:
             return made[list(order), :]
     return None
 
 
-def in_answers(problem: Problem, rule: Rule, known: Known, size: int) -> Problem:
+def in_answers(problem: Problem, rule: ColumnRule, columns: NamedColumns, size: int) -> Problem:
     """Return the problem with answers rewritten, ``size`` one after another, by a rule."""
     answers, symbols = dict(problem.answers), list(problem.answers)
     for own in (symbols[k : k + size] for k in range(len(symbols) - size + 1)):
-        made = rule(Matrix([answers[s] for s in own]), known)
+        made = rule(Matrix([answers[s] for s in own]), columns)
         answers |= {} if made is None else dict(zip(own, made, strict=True))
-    return replace(problem, answers=answers, definitions={**problem.definitions, **known.taken()})
+    return replace(problem, answers=answers, definitions={**problem.definitions, **columns.taken()})
 
 
-def in_rows(problem: Problem, rule: Rule, known: Known) -> Problem:
+def in_rows(problem: Problem, rule: ColumnRule, columns: NamedColumns) -> Problem:
     """Return the problem with three of its rows rewritten, all that varies written out in them."""
-    rests = [in_what_is_given(problem, rest, known.constant) for rest, _ in problem.parts]
+    rests = [in_what_is_given(problem, rest, columns.constant) for rest, _ in problem.parts]
     short = [n for n, rest in enumerate(rests) if rest is not None and rest != 0]
     for places in combinations(short, 3):
-        made = rule(Matrix([rests[n] for n in places]), known)
+        made = rule(Matrix([rests[n] for n in places]), columns)
         if made is None:
             continue
         rows = list(problem.rows)
         for n, e in zip(places, made, strict=True):
             rows[n] = e + sum((c * u for u, c in problem.parts[n][1].items()), Integer(0))
-        definitions = {**problem.definitions, **known.taken()}
+        definitions = {**problem.definitions, **columns.taken()}
         return substituted(replace(problem, definitions=definitions, rows=tuple(rows)), {})
     return problem

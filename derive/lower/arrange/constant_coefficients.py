@@ -6,7 +6,8 @@ that rests on parameters only; so what is left holds fewer unknowns and no other
 
 from sympy import Matrix
 
-from derive.lower.arrange.block import Block, Place, Solution, Solve, by_pivots
+from derive.lower.arrange.block import Block, Solution, Solve, by_pivots
+from derive.lower.arrange.pivots import MatrixEntry
 
 
 def constant_coefficients(found: Solution, block: Block, rest: Solve) -> bool:
@@ -18,9 +19,9 @@ def constant_coefficients(found: Solution, block: Block, rest: Solve) -> bool:
     return True
 
 
-def _pivots(found: Solution, matrix: Matrix) -> list[Place]:
+def _pivots(found: Solution, matrix: Matrix) -> list[MatrixEntry]:
     """Return (row, column) of constant coefficients, those first that leave the fewest entries."""
-    A, taken = matrix.as_mutable(), list[Place]()
+    A, taken = matrix.as_mutable(), list[MatrixEntry]()
     rows, columns = list(range(A.rows)), list(range(A.rows))
     while len(rows) > 1 and not found.is_fixed(A.extract(rows, columns)):
         places = [
@@ -38,7 +39,7 @@ def _pivots(found: Solution, matrix: Matrix) -> list[Place]:
     return taken
 
 
-def _fill(A: Matrix, place: Place, rows: list[int], columns: list[int]) -> int:
+def _fill(A: Matrix, place: MatrixEntry, rows: list[int], columns: list[int]) -> int:
     """Return how many entries an elimination changes."""
     r, c = place
     across = sum(A[r, k] != 0 for k in columns if k != c)

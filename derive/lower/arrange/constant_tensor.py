@@ -18,7 +18,7 @@ COMPONENT = re.compile("(.*)_([xyz])(_[a-z]+)?")
 SMALL = 3  # rows that cofactors are worth it for
 
 power_of_two = Function("power_of_two")
-Named = Callable[[str, str, Expr], Expr]
+Namer = Callable[[str, str, Expr], Expr]
 
 
 def constant_tensor(found: Solution, block: Block, rest: Solve) -> bool:  # noqa: ARG001
@@ -68,7 +68,7 @@ def _axes(unknowns: Sequence[str]) -> Sequence[str]:
     return axes if alike else tuple("123"[: len(unknowns)])
 
 
-def inverse(named: Named, tensor: Matrix, axes: Sequence[str]) -> Matrix:
+def inverse(named: Namer, tensor: Matrix, axes: Sequence[str]) -> Matrix:
     """Return the inverse of a symmetric tensor of at most three rows, block by block."""
     J = zeros(*tensor.shape)
     for block in _blocks(tensor):
@@ -88,7 +88,7 @@ def _blocks(tensor: Matrix) -> list[tuple[int, ...]]:
     return apart([{n, *(k for k in axes if tensor[n, k] != 0)} for n in axes])
 
 
-def _block_inverse(named: Named, part: Matrix) -> dict[tuple[int, int], Expr]:
+def _block_inverse(named: Namer, part: Matrix) -> dict[tuple[int, int], Expr]:
     n = part.shape[0]
     scale = named("let", "scale", power_of_two(part.trace()))
     unit = Matrix(n, n, lambda i, k: part[min(i, k), max(i, k)])

@@ -4,14 +4,14 @@ from collections.abc import Mapping, Sequence
 
 import networkx as nx
 
-Group = tuple[tuple[int, ...], tuple[int, ...]]
+BlockIndices = tuple[tuple[int, ...], tuple[int, ...]]
 
 
 class UndeterminedError(ArithmeticError):
     """Equations that do not determine their unknowns."""
 
 
-def blocks(holds: Sequence[frozenset[int]]) -> list[Group]:
+def blocks(holds: Sequence[frozenset[int]]) -> list[BlockIndices]:
     """Return (equations, unknowns) of each block, earlier ones first.
 
     holds : the unknowns of each equation

@@ -6,22 +6,23 @@ from typing import Any
 
 import numpy as np
 from mpmath import mp
+from numpy.typing import NDArray
 from sympy import Expr, Function, Matrix, Symbol, cos, sin, tan
 
-from derive.mechanics.probe import DIGITS, Probe, point
+from derive.mechanics.probe import DIGITS, Probe, random_probe
 from derive.mechanics.sheet import below
-from derive.mechanics.sweep import Array, Field, Ranges, block, field_at, ranges, weakest
+from derive.mechanics.sweep import Box, Sweep, matrices, ranges, sweep_at, weakest
 from derive.mechanics.words import Words
 from derive.scene import SceneError
 
-Place = tuple[int, int]
+MatrixEntry = tuple[int, int]
 
 
 @dataclass
 class Pivots:
     """The ranges, a trial point, the named quantities below, and what the unknowns are called."""
 
-    ranges: Ranges
+    ranges: Box
     probe: Probe
     definitions: dict[Symbol, Expr]
     label: Callable[[Symbol], str]
@@ -47,17 +48,17 @@ class Pivots:
                     A[r] = [a - factor * p for a, p in zip(A[r], A[pivot], strict=True)]
         return rows
 
-    def vanish(self, matrix: Matrix, places: Sequence[Place]) -> bool:
+    def vanish(self, matrix: Matrix, places: Sequence[MatrixEntry]) -> bool:
         """Tell whether some pivot vanishes, taken one after another at (row, column)."""
         return weakest(self.ranges, self._below(matrix), self._measure(matrix, places)).vanishes
 
-    def chosen(self, matrix: Matrix, unknowns: Sequence[Symbol], left: int) -> list[Place]:
+    def chosen(self, matrix: Matrix, unknowns: Sequence[Symbol], left: int) -> list[MatrixEntry]:
         """Return (row, column) of the pivots to take until so many rows are ``left``.
 
         Raises SceneError where none is found, naming the divisor and where it vanishes.
         """
-        found = field_at(self.ranges, self.ranges.points(), self._below(matrix))
-        A, taken = block(found, matrix.tolist()), list[Place]()
+        found = sweep_at(self.ranges, self.ranges.points(), self._below(matrix))
+        A, taken = matrices(found, matrix.tolist()), list[MatrixEntry]()
         rows, columns = list(range(matrix.rows)), list(range(matrix.rows))
         while len(rows) > left:
             sizes = {(r, c): float(abs(A[:, r, c]).min()) for r in rows for c in columns}
@@ -75,12 +76,12 @@ class Pivots:
     def _below(self, matrix: Matrix) -> Mapping[Symbol, Expr]:
         return below(self.definitions, matrix)
 
-    def _measure(self, matrix: Matrix, places: Sequence[Place]) -> Callable[[Field], Any]:
+    def _measure(self, matrix: Matrix, places: Sequence[MatrixEntry]) -> Callable[[Sweep], Any]:
         """Return the smallest pivot, and singular value of what is left, of scaled matrices."""
 
-        def smallest(found: Field) -> Array:
-            A = block(found, matrix.tolist())
-            each: list[Array] = []
+        def smallest(found: Sweep) -> NDArray[Any]:
+            A = matrices(found, matrix.tolist())
+            each: list[NDArray[Any]] = []
             for r, c in places:
                 each.append(abs(A[:, r, c]))
                 A = _eliminated(A, r, c)
@@ -90,22 +91,23 @@ class Pivots:
             if rows:
                 left = np.nan_to_num(A[:, rows][:, :, columns])
                 each.append(np.linalg.svd(left, compute_uv=False)[:, -1])
-            least: Array = np.min(each, axis=0)
+            least: NDArray[Any] = np.min(each, axis=0)
             return least
 
         return smallest
 
 
-def _eliminated(A: Array, r: int, c: int) -> Array:
+def _eliminated(A: NDArray[Any], r: int, c: int) -> NDArray[Any]:
     """Return matrices with a row taken off all others, so that their entries in a column vanish."""
     with np.errstate(all="ignore"):
         factor = A[:, :, c] / A[:, r, c][:, None]
         factor[:, r] = 0
-        return A - factor[:, :, None] * A[:, r, :][:, None, :]
+        left: NDArray[Any] = A - factor[:, :, None] * A[:, r, :][:, None, :]
+    return left
 
 
 def pivots(words: Words, definitions: Mapping[Symbol, Expr]) -> Pivots:
     """Return the pivots of balances that stand on some named quantities."""
-    probe = point(words, 0)
+    probe = random_probe(words, 0)
     probe.define(definitions)
     return Pivots(ranges(words), probe, dict(definitions), words.sheet.label)

@@ -10,12 +10,17 @@ from dataclasses import dataclass, field, replace
 
 from sympy import Symbol
 
-from derive.lower.arrange.block import Rule, Solution
-from derive.lower.arrange.column import Known, in_answers, in_definitions, in_rows
-from derive.lower.arrange.column import Rule as ColumnRule
+from derive.lower.arrange.arrangement import Arrangement, Definition
+from derive.lower.arrange.block import BlockRule, Solution
+from derive.lower.arrange.column import (
+    ColumnRule,
+    NamedColumns,
+    in_answers,
+    in_definitions,
+    in_rows,
+)
 from derive.lower.arrange.constant_coefficients import constant_coefficients
 from derive.lower.arrange.constant_tensor import constant_tensor
-from derive.lower.arrange.draft import Arrangement, Stage
 from derive.lower.arrange.pivots import pivots
 from derive.lower.arrange.quaternion import quaternion_rate, turned_by_quaternion
 from derive.lower.arrange.solve import solve
@@ -38,7 +43,7 @@ from derive.mechanics.vocabulary import Vocabulary
 OF_COLUMNS: tuple[ColumnRule, ...] = (turns_one_by_one, turned_by_quaternion, spherical_part)
 OF_ANSWERS: tuple[ColumnRule, ...] = (quaternion_rate,)
 OF_ROWS: tuple[ColumnRule, ...] = (spherical_part,)
-OF_BLOCKS: tuple[Rule, ...] = (constant_tensor, constant_coefficients)
+OF_BLOCKS: tuple[BlockRule, ...] = (constant_tensor, constant_coefficients)
 MOST_TERMS = 60  # of a named quantity that rules have found; its users may multiply it out
 
 
@@ -50,7 +55,7 @@ class Way:
     """
 
     problem: Problem
-    rules: tuple[Rule, ...] = ()
+    rules: tuple[BlockRule, ...] = ()
     families: Mapping[Symbol, str] = field(default_factory=dict)
     most: int = MANY_TERMS
 
@@ -64,7 +69,7 @@ def arrange(mechanism: Mechanism, problem: Problem) -> tuple[Arrangement, ...]:
 
 
 def plain_arrangement(mechanism: Mechanism, problem: Problem) -> Arrangement:
-    """Return the stages of a problem by what serves every problem."""
+    """Return the definitions of a problem by what serves every problem."""
     return _arranged(mechanism, Way(prepared(mechanism, problem)))
 
 
@@ -78,7 +83,7 @@ def _ruled(mechanism: Mechanism, problem: Problem) -> Way:
     """Return a problem with its columns rewritten by rules, then its like terms gathered."""
     vocabulary = mechanism.vocabulary
     attitudes = [vocabulary.column(q.name) for q in vocabulary.states if q.is_quaternion]
-    own = Known(constants(problem, vocabulary), attitudes)
+    own = NamedColumns(constants(problem, vocabulary), attitudes)
     for rule in OF_COLUMNS:
         problem = in_definitions(problem, rule, own)
     for rule in OF_ANSWERS:
@@ -97,21 +102,25 @@ def _written_out(mechanism: Mechanism, problem: Problem) -> Way:
 
 
 def _arranged(mechanism: Mechanism, way: Way) -> Arrangement:
-    """Return the stages of a problem: named quantities, solved balances, answers."""
+    """Return the definitions of a problem: named quantities, solved balances, answers."""
     problem, of = way.problem, way.families
-    stages = [Stage("let", s, value, of.get(s, "")) for s, value in problem.definitions.items()]
+    definitions = [
+        Definition("let", s, value, of.get(s, "")) for s, value in problem.definitions.items()
+    ]
     if problem.rows:
         own = pivots(mechanism.words, problem.definitions)
         found = Solution(constants(problem, mechanism.vocabulary), own)
         solve(found, problem.parts, problem.unknowns, way.rules)
-        stages += found.stages
+        definitions += found.definitions
     sums = sums_in_common(problem.answers.values(), constants(problem, mechanism.vocabulary))
-    stages += [Stage("cut", s, value) for s, value in sums.items()]
+    definitions += [Definition("cut", s, value) for s, value in sums.items()]
     names = {value: s for s, value in sums.items()}
     answers = tuple(e.xreplace(names) for e in problem.answers.values())
-    used = [stage.value for stage in stages] + [e for e in answers if not e.is_Symbol]
+    used = [definition.value for definition in definitions] + [
+        e for e in answers if not e.is_Symbol
+    ]
     done = {s for e in used for s in e.free_symbols if s in answers}
-    return Arrangement(tuple(staged(stages, way.most, done)), answers)
+    return Arrangement(tuple(with_cuts(definitions, way.most, done)), answers)
 
 
 def constants(problem: Problem, vocabulary: Vocabulary) -> frozenset[Symbol]:
@@ -123,14 +132,16 @@ def constants(problem: Problem, vocabulary: Vocabulary) -> frozenset[Symbol]:
     return frozenset(found)
 
 
-def staged(stages: Iterable[Stage], most: int, done: AbstractSet[Symbol]) -> Iterator[Stage]:
+def with_cuts(
+    definitions: Iterable[Definition], most: int, done: AbstractSet[Symbol]
+) -> Iterator[Definition]:
     """Yield named quantities, those cut off that would multiply out to more than ``most`` terms.
 
     done : what is computed in any case, and so is cut off too
     """
     sizes: dict[Symbol, int] = {}
-    for stage in stages:
-        size = terms(stage.value, sizes)
-        kind = "cut" if size > most or stage.symbol in done else stage.kind
-        sizes[stage.symbol] = 1 if kind == "cut" else size
-        yield replace(stage, kind=kind)
+    for definition in definitions:
+        size = terms(definition.value, sizes)
+        kind = "cut" if size > most or definition.symbol in done else definition.kind
+        sizes[definition.symbol] = 1 if kind == "cut" else size
+        yield replace(definition, kind=kind)

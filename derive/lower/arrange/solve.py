@@ -1,21 +1,20 @@
 """Blocks of linear balances solved one by one: a quotient, determinants, or elimination."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from sympy import Expr, Integer, Matrix, Symbol
 
-from derive.lower.arrange.block import Block, Rule, Solution, by_determinants, by_pivots
+from derive.lower.arrange.block import Block, BlockRule, Solution, by_determinants, by_pivots
 from derive.lower.arrange.matching import blocks
+from derive.mechanics.sheet import Split
 
 SMALL = 3  # blocks up to this size are solved by determinants
 
-Split = tuple[Expr, Mapping[Symbol, Expr]]
-
 
 def solve(
-    found: Solution, rows: Sequence[Split], unknowns: Sequence[Symbol], rules: Sequence[Rule]
+    found: Solution, rows: Sequence[Split], unknowns: Sequence[Symbol], rules: Sequence[BlockRule]
 ) -> None:
-    """Add stages that yield every unknown, each block from those before.
+    """Add definitions that yield every unknown, each block from those before.
 
     rows  : of each the part without unknowns, and each unknown's coefficient
     rules : tried on each block before what serves every block

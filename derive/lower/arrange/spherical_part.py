@@ -11,7 +11,7 @@ from itertools import permutations
 
 from sympy import Add, Expr, Integer, Matrix, Mul, Symbol, diag, eye
 
-from derive.lower.arrange.column import Known
+from derive.lower.arrange.column import NamedColumns
 
 ZERO = Integer(0)
 MOST = 8  # symbols of which three are tried as omega
@@ -19,9 +19,9 @@ MOST = 8  # symbols of which three are tried as omega
 Products = Mapping[frozenset[Symbol], Expr]  # coefficients of products of two symbols
 
 
-def spherical_part(column: Matrix, known: Known) -> Matrix | None:
+def spherical_part(column: Matrix, columns: NamedColumns) -> Matrix | None:
     """Return a column with omega x l, and l named, for the products with omega that are in it."""
-    parts = [known.like_terms(e) for e in column]
+    parts = [columns.like_terms(e) for e in column]
     pairs = [{pair: c for p, c in own.items() if (pair := _pair(p))} for own in parts]
     symbols = sorted({s for own in pairs for pair in own for s in pair}, key=str)
     if not all(pairs) or len(symbols) > MOST:
@@ -30,7 +30,7 @@ def spherical_part(column: Matrix, known: Known) -> Matrix | None:
         turning = [{pair: c for pair, c in own.items() if pair & {*omega}} for own in pairs]
         inner = divided(turning, omega)
         if inner is not None:
-            cross = Matrix(omega).cross(known.column("l", inner))
+            cross = Matrix(omega).cross(columns.column("l", inner))
             rest = [[c * p for p, c in own.items() if _pair(p) not in t]
                     for own, t in zip(parts, turning, strict=True)]  # fmt: skip
             return cross + Matrix([Add(*terms) for terms in rest])

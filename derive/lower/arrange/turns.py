@@ -9,12 +9,12 @@ from collections.abc import Iterator
 from sympy import Expr, Integer, Matrix, cos, sin
 
 from derive.lecture.turning import PLACE, turn_matrix
-from derive.lower.arrange.column import Known
+from derive.lower.arrange.column import NamedColumns
 
 LONGEST = 300  # operations of a column that is multiplied out
 
 
-def turns_one_by_one(column: Matrix, known: Known) -> Matrix | None:
+def turns_one_by_one(column: Matrix, columns: NamedColumns) -> Matrix | None:
     """Return a column made by two or more turns as those turns one after another."""
     if sum(e.count_ops() for e in column) > LONGEST:
         return None
@@ -27,7 +27,7 @@ def turns_one_by_one(column: Matrix, known: Known) -> Matrix | None:
         return None
     vector = inner
     for turn in reversed(turns):
-        vector = turn * known.column("turned", vector)
+        vector = turn * columns.column("turned", vector)
     return vector
 
 

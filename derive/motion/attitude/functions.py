@@ -11,7 +11,7 @@ from derive.program.recorded import needed
 from derive.program.tape import Number, Tape
 from derive.scene.wanted import SEQUENCES
 
-Formula = Callable[..., list[Number]]
+OverNumbers = Callable[..., list[Number]]
 
 PARTS = ("w", "x", "y", "z")
 ENTRIES = ("xx", "yx", "zx", "xy", "yy", "zy", "xz", "yz", "zz")
@@ -30,7 +30,7 @@ class AttitudeFunction:
     says: str
     inputs: tuple[Quantity, ...]
     outputs: tuple[Quantity, ...]
-    formula: Formula
+    formula: OverNumbers
     within: int
 
 
@@ -103,7 +103,7 @@ def _euler(sequence: str) -> tuple[AttitudeFunction, AttitudeFunction]:
 
 
 def _of(
-    formula: Formula,
+    formula: OverNumbers,
     name: str,
     inputs: tuple[Quantity, ...],
     output: Quantity,

@@ -6,18 +6,18 @@ from collections.abc import Sequence
 
 from derive.motion.attitude.lengths import largest, length_of, squares
 from derive.motion.attitude.quaternion import product
-from derive.motion.exact.diagonal import Row, Three, principal_axes
+from derive.motion.exact.diagonal import Three, principal_axes
 from derive.motion.exact.inertia import Inertia
 from derive.motion.exact.tumbling import tumble
 from derive.program.operations import cos, less, power_of_two, select, sin, sqrt
 from derive.program.tape import Number, named, number
 
-Motion = tuple[list[Number], list[Number]]
+TurnAndMomentum = tuple[list[Number], list[Number]]
 
 
 def flow_exact(
     body: Inertia, attitude: Sequence[Number], omega: Sequence[Number], time: Number
-) -> Motion:
+) -> TurnAndMomentum:
     """Return the attitude (4,) and the angular velocity (3,) of a free body after ``time``.
 
     attitude : scalar first, Hamilton, body to inertial, of any length, which it keeps
@@ -42,13 +42,13 @@ def turned(
     return turn, after, size
 
 
-def principal(body: Inertia) -> tuple[Three, tuple[Row, Row, Row]]:
+def principal(body: Inertia) -> tuple[Three, tuple[list[Number], list[Number], list[Number]]]:
     """Return three moments over the second, which lies between the others, and their axes.
 
     The axes are right-handed unit vectors along body axes, as rows. Slopes of the motion rest on
     this and on the turn, which is why ``Program.free`` holds the three.
     """
-    axes: list[Row] = [[number(int(i == j)) for j in range(3)] for i in range(3)]
+    axes: list[list[Number]] = [[number(int(i == j)) for j in range(3)] for i in range(3)]
     if body.kind == "spherical":
         return (number(1), number(1), number(1)), (axes[0], axes[1], axes[2])
     if body.kind == "axisymmetric":
@@ -60,7 +60,7 @@ def principal(body: Inertia) -> tuple[Three, tuple[Row, Row, Row]]:
     return (one / two, number(1), three / two), found.axes
 
 
-def _along_body(body: Inertia, omega: Three, time: Number) -> Motion:
+def _along_body(body: Inertia, omega: Three, time: Number) -> TurnAndMomentum:
     """Return the turn and the angular velocity along body axes."""
     if body.kind == "spherical":
         return spun(omega, time), list(omega)
@@ -75,7 +75,7 @@ def _along_body(body: Inertia, omega: Three, time: Number) -> Motion:
     return [scalar, *(_dot(n, vector) for n in columns)], [_dot(n, after) for n in columns]
 
 
-def _along_principal(moments: Three, omega: Three, time: Number) -> Motion:
+def _along_principal(moments: Three, omega: Three, time: Number) -> TurnAndMomentum:
     """Return the motion along principal axes; moments that are numbers may be simpler than told."""
     one, two, three = moments
     if one.exact is not None and one.exact == three.exact:
@@ -87,7 +87,7 @@ def _along_principal(moments: Three, omega: Three, time: Number) -> Motion:
     return tumble(moments, omega, time)
 
 
-def _named(k: int, row: Row) -> Row:
+def _named(k: int, row: list[Number]) -> list[Number]:
     says = "principal axis {}, along {}"
     return [named(f"axis_{k}_{n}", e, says.format(k, n)) for n, e in zip("xyz", row, strict=True)]
 

@@ -21,12 +21,11 @@ BITS = 192  # kept of an exact root, and of exact numbers from turn to turn
 PASSES = 8  # over the three pairs of axes; six reach 2^-106 from any tensor tried
 TURNS = ((0, 1, 2), (0, 2, 1), (1, 2, 0))
 
-Row = list[Number]
 Three = tuple[Number, Number, Number]
 
 
 @dataclass(frozen=True)
-class PrincipalAxes:
+class Diagonal:
     """Moments over ``size``, smallest first, and the axes they belong to.
 
     size : a power of two near their sum
@@ -34,11 +33,11 @@ class PrincipalAxes:
     """
 
     moments: Three
-    axes: tuple[Row, Row, Row]
+    axes: tuple[list[Number], list[Number], list[Number]]
     size: Number
 
 
-def principal_axes(body: Inertia) -> PrincipalAxes:
+def principal_axes(body: Inertia) -> Diagonal:
     """Return the principal axes of a body, in set-up.
 
     Source: cyclic rotations of Jacobi, Crelle 30 (1846) 51, in the form of Golub and Van Loan 8.5.
@@ -51,7 +50,7 @@ def principal_axes(body: Inertia) -> PrincipalAxes:
         moments, rows = _turned_to_principal(moments, products, rows)
     for i, j in ((0, 1), (1, 2), (0, 1)):
         moments, rows = _in_order(i, j, moments, rows)
-    return PrincipalAxes((moments[0], moments[1], moments[2]), (rows[0], rows[1], rows[2]), size)
+    return Diagonal((moments[0], moments[1], moments[2]), (rows[0], rows[1], rows[2]), size)
 
 
 def root(x: Number) -> Number:
@@ -69,8 +68,8 @@ def quotient(a: Number, b: Number, otherwise: int) -> Number:
 
 
 def _in_order(
-    i: int, j: int, moments: Sequence[Number], rows: Sequence[Row]
-) -> tuple[list[Number], list[Row]]:
+    i: int, j: int, moments: Sequence[Number], rows: Sequence[list[Number]]
+) -> tuple[list[Number], list[list[Number]]]:
     """Return moments and axes with those of i and j exchanged where the first is larger."""
     m, r = list(moments), list(rows)
     a, b = moments[i], moments[j]
@@ -82,8 +81,8 @@ def _in_order(
 
 
 def _turned_to_principal(
-    moments: Sequence[Number], products: Sequence[Number], rows: Sequence[Row]
-) -> tuple[list[Number], list[Row]]:
+    moments: Sequence[Number], products: Sequence[Number], rows: Sequence[list[Number]]
+) -> tuple[list[Number], list[list[Number]]]:
     values = [*moments, *products, *(x for row in rows for x in row)]
     tapes = [x.tape for x in values if x.tape is not None]
     if tapes:

@@ -46,7 +46,7 @@ def ladder(complement: Number, rungs: int = RUNGS) -> Ladder:
 
 
 @dataclass(frozen=True)
-class Values:
+class JacobiFunctions:
     """sn, cn, dn at an argument; then sn cn, sn^2, cn^2 and dn of the first rung at the same."""
 
     sn: Number
@@ -55,7 +55,7 @@ class Values:
     first: tuple[Number, Number, Number, Number]
 
 
-def functions(means: Ladder, sine: Number, cosine: Number) -> Values:
+def functions(means: Ladder, sine: Number, cosine: Number) -> JacobiFunctions:
     """Return the elliptic functions of u from sine and cosine of M u.
 
     cs = y / sine climbs from cot by factors dn: only y changes, and nothing divides by zero.
@@ -69,7 +69,7 @@ def functions(means: Ladder, sine: Number, cosine: Number) -> Values:
         rungs.append((y, dn))
         y, dn = y * dn, (b[n] * high + low) / (a[n] * high + low)
     scale = 1 / sqrt(square + y * y)
-    return Values(sine * scale, y * scale, dn, _first(a[1], sine, square, *rungs[-1]))
+    return JacobiFunctions(sine * scale, y * scale, dn, _first(a[1], sine, square, *rungs[-1]))
 
 
 def _first(
@@ -90,7 +90,7 @@ class Angle:
     direction: Complex
 
 
-def angle(means: Ladder, at: Values, weight: Number, pole: Number) -> Angle:
+def angle(means: Ladder, at: JacobiFunctions, weight: Number, pole: Number) -> Angle:
     """Return twice T(u) = kappa int_0^u P^2 / (C^2 + P^2), on the first rung, where C = a cs.
 
     weight, pole : kappa and P there; P >= a, and kappa^2 = (P^2 - a^2) (P^2 - b^2) / P^2

@@ -7,7 +7,7 @@ from typing import Literal
 from derive.program.operations import less, select
 from derive.program.tape import Number
 
-Tensor = tuple[Number, Number, Number, Number, Number, Number]
+SixEntries = tuple[Number, Number, Number, Number, Number, Number]
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Inertia:
              principal with two equal moments across ``axis``, "spherical" has three equal ones
     """
 
-    tensor: Tensor
+    tensor: SixEntries
     kind: Literal["general", "principal", "axisymmetric", "spherical"]
     axis: Literal["x", "y", "z"] | None
 
@@ -30,7 +30,7 @@ class Inertia:
         return (k + 1) % 3, (k + 2) % 3, k
 
 
-def as_symmetric(tensor: Tensor) -> Inertia:
+def as_symmetric(tensor: SixEntries) -> Inertia:
     """Return the most special body that has this tensor: equal moments are the same number."""
     xx, yy, zz, *products = tensor
     if any(n.exact != 0 for n in products):

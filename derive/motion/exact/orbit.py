@@ -21,7 +21,7 @@ NEARLY_ZERO = Fraction(1, 2**100)
 
 
 @dataclass(frozen=True)
-class Role:
+class EndAxis:
     """What set-up knows of axis 1 or 3 in the role of a, over I_2.
 
     part  : r^2 = I_c (I_b - I_a) / (I_b (I_c - I_a)); it becomes 1 - r^2 if a and c change places
@@ -36,14 +36,14 @@ class Role:
     speed: Number
 
 
-def role_of_a(moments: Three) -> tuple[Role, Role]:
+def role_of_a(moments: Three) -> tuple[EndAxis, EndAxis]:
     """Return the roles of axis 1 and of axis 3, constants of set-up."""
     i1, i2, i3 = moments
     across = i2 * (i3 - i1)
     parts = quotient(i3 * (i2 - i1), across, 1), quotient(i1 * (i3 - i2), across, 0)
     speed = across / (i1 * i3)
     one, three = (
-        Role(
+        EndAxis(
             named(f"moment_{k}", i / i2, f"principal moment {k} over moment 2"),
             named(f"inverse_moment_{k}", i2 / i, f"1 / moment_{k}"),
             named(f"part_{k}", part, f"share of m_2^2 that is added to m_{4 - k}^2"),
@@ -69,8 +69,8 @@ class Orbit:
 
     m: Three
     spin: Number
-    a: Role
-    c: Role
+    a: EndAxis
+    c: EndAxis
     high: Number
     across_squared: Number
     length: Number
@@ -102,7 +102,7 @@ class Orbit:
         return [select(self.a_is_1, a, c), v[1], select(self.a_is_1, c, a)]
 
 
-def orbit(one: Role, three: Role, omega: Three) -> Orbit:
+def orbit(one: EndAxis, three: EndAxis, omega: Three) -> Orbit:
     """Return the orbit of an angular velocity along axes 1, 2, 3.
 
     Source: Celledoni, Fasso, Saefstroem and Zanna, SIAM J. Sci. Comput. 30 (2008) 2084, section 2,
@@ -129,6 +129,6 @@ def orbit(one: Role, three: Role, omega: Three) -> Orbit:
     return Orbit(m, absolute(spin), *found)
 
 
-def _chosen(condition: Number, yes: Role, no: Role) -> Role:
+def _chosen(condition: Number, yes: EndAxis, no: EndAxis) -> EndAxis:
     pairs = zip(vars(yes).values(), vars(no).values(), strict=True)
-    return Role(*(select(condition, a, b) for a, b in pairs))
+    return EndAxis(*(select(condition, a, b) for a, b in pairs))

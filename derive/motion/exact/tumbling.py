@@ -15,8 +15,8 @@ from derive.motion.exact.elliptic import (
     HALF,
     Angle,
     Complex,
+    JacobiFunctions,
     Ladder,
-    Values,
     angle,
     functions,
     ladder,
@@ -58,7 +58,7 @@ def _until_over(path: Orbit, time: Number) -> tuple[Number, Number]:
     return select(path.separatrix, moving, time), select(path.separatrix, time - moving, 0)
 
 
-def _added(path: Orbit, at: Values) -> Three:
+def _added(path: Orbit, at: JacobiFunctions) -> Three:
     """Return the momentum after the motion, along a, b, c.
 
     Source: DLMF 22.8(i), with 1 - k^2 sn^2 sn^2 as cn^2 + sn^2 dn^2, times A, C / r and C. That
@@ -77,7 +77,7 @@ def _added(path: Orbit, at: Values) -> Three:
     )
 
 
-def _third_kind(path: Orbit, means: Ladder, at: Values) -> Angle:
+def _third_kind(path: Orbit, means: Ladder, at: JacobiFunctions) -> Angle:
     """Return psi, the turn about a in the frames that the shortest turns from m to a make.
 
     psi' = (2 T + |m| m_a / I_a) / (|m| + m_a). From phase 0 it is of the third kind on the first
@@ -110,7 +110,7 @@ def _mean_rate(path: Orbit, third: Angle) -> Number:
     return select(tumbles, b, path.spin) + rest
 
 
-def _added_angle(path: Orbit, at: Values, after: Three) -> Complex:
+def _added_angle(path: Orbit, at: JacobiFunctions, after: Three) -> Complex:
     """Return a complex number at half of psi less that from phase 0, by the addition theorem.
 
     x = 1 + d1 + d2 + d3 + A/|m| (d1 d2 + d2 d3 + d3 d1 + d1 d2 d3) and

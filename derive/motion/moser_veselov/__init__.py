@@ -9,7 +9,7 @@ out once, by ``plan_dmv``; the sums carry their rounding remainder from call to 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from derive.motion.axes import Axes, counted_from, lacking, principal, times
+from derive.motion.axes import BodyAxes, counted_from, lacking, principal, times
 from derive.motion.compensated import closely_added, compensated_add, compensated_sums
 from derive.motion.exact.inertia import Inertia, in_order
 from derive.motion.moser_veselov.closed_steps import (
@@ -25,14 +25,14 @@ from derive.motion.moser_veselov.preprocessing import D, S, coefficients, summed
 from derive.motion.splitting.turns import quaternion_change
 from derive.program.operations import absolute, less, select, splitter
 from derive.program.pairs import two_product
-from derive.program.tape import Number, Tape, named, number
+from derive.program.tape import Number, Tape, Vector, named, number
 
 CYCLIC = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
-Plan = list[tuple[str, Number, str]]
-Vector = Sequence[Number]
 
 
-def plan_dmv(tape: Tape, body: Inertia, omega: Vector, time_step: Number) -> Plan:
+def plan_dmv(
+    tape: Tape, body: Inertia, omega: Vector, time_step: Number
+) -> list[tuple[str, Number, str]]:
     """Return what every step of one torque-free motion has in common: name, value, meaning.
 
     omega : (3,) rad/s along body axes, at any instant of the motion      time_step : s, in which
@@ -47,7 +47,7 @@ def plan_dmv(tape: Tape, body: Inertia, omega: Vector, time_step: Number) -> Pla
             return plan_revolution(body, omega, time_step, about_momentum)
     axes = _axes(body)
     s, moments, ratios = _ratios(axes, omega, time_step)
-    plan: Plan = []
+    plan: list[tuple[str, Number, str]] = []
     factor = splitter(tape)
     moves = less(0, absolute(time_step))  # in no time nothing changes, whatever gain is
     quarter = select(moves, time_step * Fraction(1, 4), 1)
@@ -87,7 +87,7 @@ def plan_slopes(tape: Tape, body: Inertia, omega: Vector, time_step: Number) -> 
 
 
 def _ratios(
-    axes: Axes, omega: Vector, time_step: Number
+    axes: BodyAxes, omega: Vector, time_step: Number
 ) -> tuple[Number, list[Number], list[Number]]:
     """Return s, the moments, and those over the modified body's."""
     s, d, moments = _modified(axes.moments, axes.along([time_step * w for w in omega]))
@@ -102,14 +102,14 @@ def _share(n: int, s: Number, moments: Vector, ratios: Vector) -> Number:
     return s * asymmetry / (ratios[j] * ratios[k])
 
 
-def _back(tape: Tape, axes: Axes) -> Plan:
+def _back(tape: Tape, axes: BodyAxes) -> list[tuple[str, Number, str]]:
     says = "what the way back from principal axes lacks by rounding"
     rows = zip(AXES, lacking(tape, axes.rows) if axes.rows else (), strict=False)
     each = ((x, zip("abc", row, strict=True)) for x, row in rows)
     return [(f"back_{x}{a}", entry, says) for x, row in each for a, entry in row]
 
 
-def _axes(body: Inertia) -> Axes:
+def _axes(body: Inertia) -> BodyAxes:
     return principal(body) if body.kind == "general" else counted_from(0, body)
 
 

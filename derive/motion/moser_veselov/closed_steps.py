@@ -12,7 +12,6 @@ from derive.motion.exact.inertia import Inertia
 from derive.program.operations import cos, less, select, sin, sqrt
 from derive.program.tape import Number, named, number
 
-Plan = list[tuple[str, Number, str]]
 AXES = "xyz"
 DOUBLED, TERMS = 24, 6
 """Up to 2^20 rad: of 2^-4 rad, six terms leave out 2^-64."""
@@ -24,7 +23,7 @@ About = Callable[[Sequence[Number], Number], tuple[Number, Number]]
 
 def plan_revolution(
     body: Inertia, omega: Sequence[Number], time_step: Number, about: About
-) -> Plan:
+) -> list[tuple[str, Number, str]]:
     """Return what every step of a body of revolution has in common: name, value, meaning."""
     i, j, k = body.places
     across, own = body.tensor[i], body.tensor[k]
@@ -45,7 +44,9 @@ def plan_revolution(
     ]
 
 
-def plan_sphere(omega: Sequence[Number], time_step: Number, about: About) -> Plan:
+def plan_sphere(
+    omega: Sequence[Number], time_step: Number, about: About
+) -> list[tuple[str, Number, str]]:
     """Return what every step of a sphere has in common: the attitude change itself."""
     sine, versed = about(omega, time_step)
     names = zip(AXES, omega, strict=True)

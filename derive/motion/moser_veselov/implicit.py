@@ -3,17 +3,16 @@
 c_i = al W_i + e_i c_j c_k with al = 1 + |c|^2: c is tan(angle/2) times the axis of the step's turn.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from fractions import Fraction
 
 from derive.program.operations import absolute, at_most, sqrt
 from derive.program.recorded import repeat
-from derive.program.tape import Number, Tape
+from derive.program.tape import Number, Tape, Vector
 
 AXES = "xyz"
 PASSES = 16  # three or four suffice; at one radian a step, ten
 QUARTER = Fraction(1, 4)
-Vector = Sequence[Number]
 
 
 def scaled(plan: Mapping[str, Number], name: str, vector: Vector) -> list[Number]:

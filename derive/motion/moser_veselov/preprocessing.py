@@ -15,12 +15,12 @@ from fractions import Fraction
 from derive.program.operations import horner
 from derive.program.tape import Number, number
 
-Polynomial = tuple[tuple[int, ...], ...]
-Row = tuple[tuple[int, Polynomial], ...]
+PiPolynomial = tuple[tuple[int, ...], ...]
+PiRow = tuple[tuple[int, PiPolynomial], ...]
 
 # Row k holds, for i = 0..k, the coefficient of delta^(k-i) H^i: a denominator and, by powers of
 # pi and then of tau, the numerator. Found from the published series by exact expansion.
-S: tuple[Row, ...] = (
+S: tuple[PiRow, ...] = (
     ((6, ((2,), (0, 1))), (6, ((-2, -1),))),
     (
         (30, ((1,), (-3, 1), (0, 0, 1))),
@@ -41,7 +41,7 @@ S: tuple[Row, ...] = (
         (45360, ((2, 1, 39, -95, 62),)),
     ),
 )
-D: tuple[Row, ...] = (
+D: tuple[PiRow, ...] = (
     ((3, ((-1,),)), (6, ((0, 1),))),
     ((60, ((-2,), (0, -1))), (60, ((8, 2), (0, 0, -1))), (60, ((0, -1, -2),))),
     (
@@ -60,7 +60,7 @@ D: tuple[Row, ...] = (
 )
 
 
-def coefficients(series: Sequence[Row], tau: Number, pi: Number) -> list[list[Number]]:
+def coefficients(series: Sequence[PiRow], tau: Number, pi: Number) -> list[list[Number]]:
     """Return a series' coefficients for one body: row k, i = 0..k, of delta^(k-i) H^i."""
     return [
         [

@@ -46,11 +46,11 @@ class Stages:
     rates: list[Row]
     slopes: list[Matrix]
     by: list[Matrix]
-    turn: Turning | None
+    turn: StageTurns | None
 
 
 @dataclass(frozen=True)
-class Turning:
+class StageTurns:
     """Quarter-step vectors of the stages, what multiplies each from the right, and P - 1."""
 
     quarters: list[Row]
@@ -126,7 +126,7 @@ def one_and(q: Sequence[Number]) -> Row:
     return [1 + q[0], *q[1:]]
 
 
-def turning(omegas: Sequence[Sequence[Number]], time_step: Number) -> Turning:
+def turning(omegas: Sequence[Sequence[Number]], time_step: Number) -> StageTurns:
     """Return how a step turns, from the angular velocities (4 stages of 3, body axes, rad/s)."""
     quarter = time_step * Fraction(1, 2) * Fraction(1, 2)
     b1, b2, b3, b4 = ([number(0), *(w * quarter for w in omega)] for omega in omegas)
@@ -138,10 +138,10 @@ def turning(omegas: Sequence[Sequence[Number]], time_step: Number) -> Turning:
     total = added(added(added(product(b1, right1), twice_second), twice_third), b4)
     increment = [x * THIRD for x in total]
     rights = [right1, right2, one_and(b4), [number(1), *[number(0)] * 3]]
-    return Turning([b1, b2, b3, b4], rights, increment)
+    return StageTurns([b1, b2, b3, b4], rights, increment)
 
 
-def turn_slopes(turn: Turning, scale: Number) -> list[Matrix]:
+def turn_slopes(turn: StageTurns, scale: Number) -> list[Matrix]:
     """Return K_1 ... K_4 (3, 3) but for a factor: ``scale`` stands for h / (12 |P|^2)."""
     b1, b2, b3, _ = turn.quarters
     whole = [x * scale for x in conjugate(one_and(turn.increment))]

@@ -14,12 +14,12 @@ from derive.program.indexed import (
     Assign,
     Element,
     Index,
+    IndexedOperand,
     Integers,
     Loop,
     Row,
     Same,
     Term,
-    Value,
 )
 from derive.program.program import Line, Operand, Program, Sparsity
 from derive.program.recorded import renamed
@@ -30,7 +30,7 @@ ZERO, ONE = Fraction(0), Fraction(1)
 
 
 @dataclass(frozen=True)
-class Columns:
+class Carried:
     """The derivatives that are carried: pattern of the rates' Jacobian and of the step's.
 
     first : which of the rates' columns the first of the step's is
@@ -48,7 +48,7 @@ def compact(system: System, step: Program) -> Program:
         own = step.sparsity["jacobian"]
         if not {*own.columns} <= {*system.columns}:
             return step
-        columns = Columns(pattern_of(system), own, system.columns.index(own.columns[0]))
+        columns = Carried(pattern_of(system), own, system.columns.index(own.columns[0]))
         rate = system.slopes or rate
     starts = [place.start for place in system.quaternions]
     attitude = range(starts[0], starts[0] + 4) if starts else None
@@ -66,11 +66,11 @@ def _at(array: str, *counters: str) -> Element:
     return Element(array, tuple(Index(counter) for counter in counters))
 
 
-def _times(a: Value, b: Value) -> Term:
+def _times(a: IndexedOperand, b: IndexedOperand) -> Term:
     return Term("mul", (a, b))
 
 
-def _plus(a: Value, b: Value) -> Term:
+def _plus(a: IndexedOperand, b: IndexedOperand) -> Term:
     return Term("add", (a, b))
 
 
@@ -79,7 +79,7 @@ def _each(counter: str, places: range, *body: Line) -> Loop:
 
 
 def _stages(
-    names: Sequence[str], rate: Program, columns: Columns | None, step: Program
+    names: Sequence[str], rate: Program, columns: Carried | None, step: Program
 ) -> Iterator[Line]:
     """Yield what works out the state after the step, before its attitude has length one."""
     states = range(len(names))
@@ -141,7 +141,7 @@ def _unit(attitude: range) -> Iterator[Line]:
     yield _each("i", attitude, Assign(q, _times(q, "scale")))
 
 
-def _columns(n: int, columns: Columns, attitude: range | None) -> Iterator[Line]:
+def _columns(n: int, columns: Carried, attitude: range | None) -> Iterator[Line]:
     """Yield the loop over the columns of derivatives."""
     every, first = len(columns.rates.columns), columns.first
     own, place = Same(Index("i"), Index("column")), Index("column", -first)

@@ -19,7 +19,7 @@ from derive.motion.attitude.quaternion import conjugate, norm_squared
 from derive.motion.runge_kutta.classic import (
     THIRD,
     Stages,
-    Turning,
+    StageTurns,
     normalised,
     one_and,
     stages,
@@ -160,7 +160,7 @@ def _on_the_sphere(q: Row, rows: Matrix) -> Matrix:
     return minus(rows, product([[x] for x in q], product([q], rows)))
 
 
-def _turned(system: System, stages: Stages, turn: Turning) -> Back:
+def _turned(system: System, stages: Stages, turn: StageTurns) -> Back:
     """Return the derivatives (3, n) and (3, m) of v, if the attitude q changes by q (0, v)."""
     n, omega = len(stages.start), system.place("omega") or slice(0)
     scale = stages.time_step * Fraction(1, 12) / norm_squared(one_and(turn.increment))

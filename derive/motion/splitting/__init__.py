@@ -5,11 +5,11 @@ l_c. The first commutes with the others and is one turn about l; the others turn
 axes a and c. A body of revolution needs one of the two only, and the step is then exact.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
-from derive.motion.axes import Axes, axes_of
+from derive.motion.axes import BodyAxes, axes_of
 from derive.motion.compensated import compensated_sums
 from derive.motion.exact.inertia import Inertia
 from derive.motion.splitting.schemes import NYSTROEM6, S6, S10, STRANG, Scheme
@@ -21,10 +21,9 @@ from derive.motion.splitting.turns import (
     turn_about,
     turn_with,
 )
-from derive.program.tape import Number, Tape, named, number
+from derive.program.tape import Number, Tape, Vector, named, number
 
 SCHEMES = {2: STRANG, 4: S6, 6: S10}
-Vector = Sequence[Number]
 Moment = Callable[[list[Number]], Vector]
 Flow = Callable[[Fraction, State], State]
 
@@ -77,7 +76,7 @@ def step_split(tape: Tape, body: Inertia, order: int, start: Start) -> list[Numb
     return after + [w + change for w, change in zip(start.omega, gains, strict=True)]
 
 
-def _end(axes: Axes, body: Inertia, order: int, start: Start) -> State:
+def _end(axes: BodyAxes, body: Inertia, order: int, start: Start) -> State:
     """Return the state in which a step ends."""
     ratios = _ratios(axes)
     begin = at_rest([r * w for r, w in zip(ratios, axes.along(start.omega), strict=True)])
@@ -91,7 +90,7 @@ def _end(axes: Axes, body: Inertia, order: int, start: Start) -> State:
     return _spun(pieces, SCHEMES[order], pieces.swing(Fraction(1), begin))
 
 
-def _ratios(axes: Axes) -> list[Number]:
+def _ratios(axes: BodyAxes) -> list[Number]:
     return [
         named(f"ratio_{axis}", _over(m, axes.moments[1]), f"moment about {axis} over that about b")
         for axis, m in zip("abc", axes.moments, strict=True)
@@ -102,7 +101,7 @@ def _over(a: Number, b: Number) -> Number:
     return number(1) if a == b else a / b
 
 
-def _of_omega(axes: Axes, change: Vector) -> list[Number]:
+def _of_omega(axes: BodyAxes, change: Vector) -> list[Number]:
     """Return the change of omega along x, y, z from that of mu along a, b, c."""
     inverse = [
         named(f"inverse_{axis}", _over(axes.moments[1], m), f"moment b over that about {axis}")
@@ -111,7 +110,7 @@ def _of_omega(axes: Axes, change: Vector) -> list[Number]:
     return axes.back([c * i for c, i in zip(change, inverse, strict=True)])
 
 
-def _pieces(body: Inertia, axes: Axes, start: Start) -> Pieces:
+def _pieces(body: Inertia, axes: BodyAxes, start: Start) -> Pieces:
     quarter = Fraction(1, 4) * start.time_step
     middle = axes.moments[1]
 
@@ -129,7 +128,7 @@ def _pieces(body: Inertia, axes: Axes, start: Start) -> Pieces:
     )
 
 
-def _kicks(axes: Axes, start: Start, moment: Moment) -> Flow:
+def _kicks(axes: BodyAxes, start: Start, moment: Moment) -> Flow:
     compliance = 1 / (axes.unit * axes.moments[1])
     push = start.time_step * named("compliance", compliance, "one over the moment about b")
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from derive.program.operations import horner
-from derive.program.tape import Number, number
+from derive.program.tape import Number, Vector, number
 
 CYCLIC = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 
@@ -17,8 +17,6 @@ CYCLIC = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 # relative error is x^12/1.4e9: below rounding for turns up to 1.1 rad, 3e-11 at half a revolution.
 NUMERATOR = (Fraction(1), Fraction(-4, 33), Fraction(1, 495))
 DENOMINATOR = (Fraction(1), Fraction(-5, 11), Fraction(2, 99), Fraction(-1, 10395))
-
-Vector = Sequence[Number]
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 from derive.motion.runge_kutta.system import TIME_STEP, next_of
 from derive.motion.taylor.proposal import PROPOSED, next_length
-from derive.motion.taylor.recurrences import Draft, record
+from derive.motion.taylor.recurrences import Recurrences, record
 from derive.motion.taylor.series import TaylorStep
 from derive.program.program import Op, Operand, Program, Quantity
 
@@ -25,8 +25,11 @@ def taylor_step(
     """
     names = [c for q in states for c in q.components]
     rates = {x: r for x, r in zip(names, rate.results, strict=True) if r != 0}
-    draft = _drafted(rate, set(rates))
-    moving = {x: (r, draft.term(r) if draft.moves(r) else Fraction(0)) for x, r in rates.items()}
+    recurrences = _recurrences(rate, set(rates))
+    moving = {
+        x: (r, recurrences.term(r) if recurrences.moves(r) else Fraction(0))
+        for x, r in rates.items()
+    }
     close, proposed = _close(order, states, tuple(moving))
     step = TaylorStep(
         name="step_taylor" if order == 20 else f"step_taylor{order}",
@@ -34,11 +37,11 @@ def taylor_step(
         inputs=(*_read(rate, states, inputs), time_step),
         outputs=(*map(next_of, states), PROPOSED),
         order=order,
-        start=tuple(draft.start),
-        products=tuple(draft.products),
-        squares=tuple(draft.squares),
-        each=tuple(draft.each),
-        kept=tuple(draft.kept),
+        start=tuple(recurrences.start),
+        products=tuple(recurrences.products),
+        squares=tuple(recurrences.squares),
+        each=tuple(recurrences.each),
+        kept=tuple(recurrences.kept),
         rates=moving,
         close=close,
         results=(*(_after(x) if x in moving else x for x in names), proposed),
@@ -47,14 +50,14 @@ def taylor_step(
     return step
 
 
-def _drafted(rate: Program, moving: set[str]) -> Draft:
+def _recurrences(rate: Program, moving: set[str]) -> Recurrences:
     """Return the terms of every operation of a rate, of which these components move."""
-    draft = Draft(moving, _joining(rate))
+    recurrences = Recurrences(moving, _joining(rate))
     for op in rate.ops:
         if not isinstance(op, Op):
             raise ValueError(f"'{rate.name}' has a loop, of which there is no Taylor series")
-        record(draft, op, rate.ops)
-    return draft
+        record(recurrences, op, rate.ops)
+    return recurrences
 
 
 def _read(

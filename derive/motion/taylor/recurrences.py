@@ -12,16 +12,16 @@ from derive.program.program import Op, Operand
 
 
 @dataclass(frozen=True)
-class Sum:
+class OrderTerm:
     """A term of order k: signed products, their ends (order 0 times order k), and lone terms."""
 
     products: tuple[tuple[int, str, str], ...] = ()
     ends: tuple[tuple[int, Operand, str], ...] = ()
     lone: tuple[tuple[int, str], ...] = ()
 
-    def plus(self, sign: int, other: "Sum") -> "Sum":
+    def plus(self, sign: int, other: "OrderTerm") -> "OrderTerm":
         """Return this sum with another added or taken away."""
-        return Sum(
+        return OrderTerm(
             self.products + tuple((sign * s, a, b) for s, a, b in other.products),
             self.ends + tuple((sign * s, a, b) for s, a, b in other.ends),
             self.lone + tuple((sign * s, a) for s, a in other.lone),
@@ -29,7 +29,7 @@ class Sum:
 
 
 @dataclass
-class Draft:
+class Recurrences:
     """A series in the making.
 
     moving : values that change along the step      joins : values that one addition alone reads
@@ -45,7 +45,7 @@ class Draft:
     squares: list[Convolution] = field(default_factory=list)
     kept: dict[str, None] = field(default_factory=dict)
     same: dict[str, str] = field(default_factory=dict)
-    sums: dict[str, Sum] = field(default_factory=dict)
+    sums: dict[str, OrderTerm] = field(default_factory=dict)
 
     def once(self, name: str, operator: str, *operands: Operand) -> str:
         """Record an operation of order 0 that the rate does not have, and return its name."""
@@ -75,13 +75,13 @@ class Draft:
         self.kept[name] = None
         return name
 
-    def summed(self, value: Operand) -> Sum:
+    def summed(self, value: Operand) -> OrderTerm:
         """Return a moving value's term as a sum; what nothing else reads is not written itself."""
         if value in self.sums and value in self.joins:
             return self.sums.pop(str(value))
-        return Sum(lone=((1, self.term(value)),))
+        return OrderTerm(lone=((1, self.term(value)),))
 
-    def write(self, value: str, total: Sum) -> str:
+    def write(self, value: str, total: OrderTerm) -> str:
         """Record a sum as ``value``'s term of order k: what the loop has summed, ends, the rest."""
         parts: list[tuple[int, str]] = []
         for name, found, square in (
@@ -105,102 +105,109 @@ class Draft:
 TWIN = {"sin": "cos", "cos": "sin"}
 
 
-def record(draft: Draft, op: Op, ops: Sequence[object]) -> None:
+def record(recurrences: Recurrences, op: Op, ops: Sequence[object]) -> None:
     """Record an operation at order 0 and, if it changes along the step, at order k."""
-    if op not in draft.start:
-        draft.start.append(op)
-    if not any(map(draft.moves, op.operands)):
+    if op not in recurrences.start:
+        recurrences.start.append(op)
+    if not any(map(recurrences.moves, op.operands)):
         return
-    draft.moving.add(op.result)
+    recurrences.moving.add(op.result)
     if op.operator in ("add", "sub", "neg"):
-        _linear(draft, op)
+        _linear(recurrences, op)
     elif op.operator == "mul":
-        _product(draft, op)
+        _product(recurrences, op)
     elif op.operator == "div":
-        _quotient(draft, op)
+        _quotient(recurrences, op)
     elif op.operator == "sqrt":
-        _root(draft, op)
+        _root(recurrences, op)
     elif op.operator in TWIN:
-        _sine_and_cosine(draft, op, ops)
+        _sine_and_cosine(recurrences, op, ops)
     else:
         raise ValueError(f"'{op.operator}' has no Taylor recurrence")
 
 
-def _linear(draft: Draft, op: Op) -> None:
+def _linear(recurrences: Recurrences, op: Op) -> None:
     signs = (-1,) if op.operator == "neg" else (1, -1 if op.operator == "sub" else 1)
-    parts = [(s, o) for s, o in zip(signs, op.operands, strict=True) if draft.moves(o)]
-    if any(o in draft.sums and o in draft.joins for _, o in parts):
-        total = Sum()
+    parts = [(s, o) for s, o in zip(signs, op.operands, strict=True) if recurrences.moves(o)]
+    if any(o in recurrences.sums and o in recurrences.joins for _, o in parts):
+        total = OrderTerm()
         for sign, operand in parts:
-            total = total.plus(sign, draft.summed(operand))
-        draft.sums[op.result] = total
+            total = total.plus(sign, recurrences.summed(operand))
+        recurrences.sums[op.result] = total
     elif len(parts) == 2:
-        draft.at_k(f"{op.result}_k", op.operator, *(draft.term(o) for _, o in parts))
+        recurrences.at_k(f"{op.result}_k", op.operator, *(recurrences.term(o) for _, o in parts))
     elif parts[0][0] > 0:
-        draft.same[op.result] = draft.term(parts[0][1]).removesuffix("_k")
+        recurrences.same[op.result] = recurrences.term(parts[0][1]).removesuffix("_k")
     else:
-        draft.at_k(f"{op.result}_k", "neg", draft.term(parts[0][1]))
+        recurrences.at_k(f"{op.result}_k", "neg", recurrences.term(parts[0][1]))
 
 
-def _product(draft: Draft, op: Op) -> None:
+def _product(recurrences: Recurrences, op: Op) -> None:
     a, b = op.operands
-    if not (draft.moves(a) and draft.moves(b)):
-        terms = (draft.term(o) if draft.moves(o) else o for o in op.operands)
-        draft.at_k(f"{op.result}_k", "mul", *terms)
+    if not (recurrences.moves(a) and recurrences.moves(b)):
+        terms = (recurrences.term(o) if recurrences.moves(o) else o for o in op.operands)
+        recurrences.at_k(f"{op.result}_k", "mul", *terms)
         return
-    ends: tuple[tuple[int, Operand, str], ...] = ((1, a, draft.term(b)), (1, b, draft.term(a)))
+    ends: tuple[tuple[int, Operand, str], ...] = (
+        (1, a, recurrences.term(b)),
+        (1, b, recurrences.term(a)),
+    )
     if a == b:
-        ends = ((1, draft.once(f"{a}_twice", "add", a, a), draft.term(a)),)
-    draft.sums[op.result] = Sum(((1, draft.kept_terms(a), draft.kept_terms(b)),), ends)
+        ends = ((1, recurrences.once(f"{a}_twice", "add", a, a), recurrences.term(a)),)
+    recurrences.sums[op.result] = OrderTerm(
+        ((1, recurrences.kept_terms(a), recurrences.kept_terms(b)),), ends
+    )
 
 
-def _quotient(draft: Draft, op: Op) -> None:
+def _quotient(recurrences: Recurrences, op: Op) -> None:
     """c = a / b: b_0 c_k = a_k - sum b_j c_(k-j), j = 1 .. k."""
     a, b = op.operands
     name = f"{b}_inverse" if isinstance(b, str) else f"{op.result}_divisor_inverse"
-    inverse = draft.once(name, "div", Fraction(1), b)
-    if not draft.moves(b):
-        draft.at_k(f"{op.result}_k", "mul", draft.term(a), inverse)
+    inverse = recurrences.once(name, "div", Fraction(1), b)
+    if not recurrences.moves(b):
+        recurrences.at_k(f"{op.result}_k", "mul", recurrences.term(a), inverse)
         return
-    total = draft.summed(a) if draft.moves(a) else Sum()
-    draft.kept[op.result] = None
-    unknown = Sum(((1, draft.kept_terms(b), op.result),), ((1, op.result, draft.term(b)),))
-    if not draft.moves(a):
-        taken = draft.write(f"{op.result}_taken", unknown)
-        numerator = draft.at_k(f"{op.result}_numerator", "neg", taken)
+    total = recurrences.summed(a) if recurrences.moves(a) else OrderTerm()
+    recurrences.kept[op.result] = None
+    unknown = OrderTerm(
+        ((1, recurrences.kept_terms(b), op.result),), ((1, op.result, recurrences.term(b)),)
+    )
+    if not recurrences.moves(a):
+        taken = recurrences.write(f"{op.result}_taken", unknown)
+        numerator = recurrences.at_k(f"{op.result}_numerator", "neg", taken)
     else:
-        numerator = draft.write(f"{op.result}_numerator", total.plus(-1, unknown))
-    draft.at_k(f"{op.result}_k", "mul", numerator, inverse)
+        numerator = recurrences.write(f"{op.result}_numerator", total.plus(-1, unknown))
+    recurrences.at_k(f"{op.result}_k", "mul", numerator, inverse)
 
 
-def _root(draft: Draft, op: Op) -> None:
+def _root(recurrences: Recurrences, op: Op) -> None:
     """r = sqrt(a): 2 r_0 r_k = a_k - sum r_j r_(k-j), 0 < j < k."""
     r = op.result
-    half = draft.once(f"{r}_half_inverse", "div", Fraction(1, 2), r)
-    a = draft.term(op.operands[0])
-    draft.kept[r] = None
-    draft.squares.append(Convolution(f"{r}_squares", ((r, r),), ()))
-    rest = draft.at_k(f"{r}_numerator", "sub", a, f"{r}_squares")
-    draft.at_k(f"{r}_k", "mul", rest, half)
+    half = recurrences.once(f"{r}_half_inverse", "div", Fraction(1, 2), r)
+    a = recurrences.term(op.operands[0])
+    recurrences.kept[r] = None
+    recurrences.squares.append(Convolution(f"{r}_squares", ((r, r),), ()))
+    rest = recurrences.at_k(f"{r}_numerator", "sub", a, f"{r}_squares")
+    recurrences.at_k(f"{r}_k", "mul", rest, half)
 
 
-def _sine_and_cosine(draft: Draft, op: Op, ops: Sequence[object]) -> None:
+def _sine_and_cosine(recurrences: Recurrences, op: Op, ops: Sequence[object]) -> None:
     """k s_k = sum j u_j c_(k-j), k c_k = -sum j u_j s_(k-j), j = 1 .. k."""
-    if op.result in draft.kept:
+    if op.result in recurrences.kept:
         return
     (u,) = op.operands
     twins = [
         o.result for o in ops if isinstance(o, Op) and o == Op(o.result, TWIN[op.operator], (u,))
     ]
-    twin = draft.once(twins[0] if twins else f"{op.result}_twin", TWIN[op.operator], u)
+    twin = recurrences.once(twins[0] if twins else f"{op.result}_twin", TWIN[op.operator], u)
     sine, cosine = (op.result, twin) if op.operator == "sin" else (twin, op.result)
-    draft.moving |= {sine, cosine}
+    recurrences.moving |= {sine, cosine}
     slope = f"{u}_slope"
-    draft.at_k(f"{slope}_k", "mul", ORDER, draft.term(u))
-    draft.kept |= dict.fromkeys((slope, sine, cosine))
+    recurrences.at_k(f"{slope}_k", "mul", ORDER, recurrences.term(u))
+    recurrences.kept |= dict.fromkeys((slope, sine, cosine))
     for value, other, negative in ((sine, cosine, False), (cosine, sine, True)):
-        total = Sum(((1, slope, other),), ((1, other, f"{slope}_k"),))
-        whole = draft.write(f"{value}_whole", total)
+        total = OrderTerm(((1, slope, other),), ((1, other, f"{slope}_k"),))
+        whole = recurrences.write(f"{value}_whole", total)
         if negative:
-            whole = draft.at_k(f"{value}_negative", "neg", whole)
-        draft.at_k(f"{value}_k", "mul", whole, INVERSE)
+            whole = recurrences.at_k(f"{value}_negative", "neg", whole)
+        recurrences.at_k(f"{value}_k", "mul", whole, INVERSE)

@@ -10,7 +10,17 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 
-from derive.program.indexed import Arrays, Assign, Element, Even, Index, Loop, Term, Value, Whole
+from derive.program.indexed import (
+    Arrays,
+    Assign,
+    Element,
+    Even,
+    Index,
+    IndexedOperand,
+    Loop,
+    Term,
+    Whole,
+)
 from derive.program.program import Line, Op, Operand, Program, Quantity
 
 # What is known by these names at order k: k, 1/k and h/(k + 1).
@@ -23,7 +33,7 @@ SAFETY = Fraction(9, 10)  # of a step whose last term is u
 # known beforehand. It matters in float only, where order 16 would lose three digits.
 SLOWEST = Fraction(1, 4)
 
-Pairs = tuple[tuple[str, str], ...]
+FactorPairs = tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
@@ -35,8 +45,8 @@ class Convolution:
     """
 
     result: str
-    plus: Pairs
-    minus: Pairs
+    plus: FactorPairs
+    minus: FactorPairs
 
 
 @dataclass(frozen=True)
@@ -115,13 +125,13 @@ def _term(name: str, counter: str, plus: int = 0) -> Element:
     return Element(f"{name}_terms", (Index(counter, plus),))
 
 
-def _times(a: Value, b: Value) -> Term:
+def _times(a: IndexedOperand, b: IndexedOperand) -> Term:
     return Term("mul", (a, b))
 
 
 def _order(step: TaylorStep) -> Iterator[Line]:
     """Yield the body of the loop over k: terms of order k, those of the states of order k + 1."""
-    given: dict[str, Value] = {
+    given: dict[str, IndexedOperand] = {
         SHARE: Term("div", ("time_step", Whole(Index(K, 1)))),
         ORDER: Whole(Index(K)),
         INVERSE: Term("div", (Fraction(1), Whole(Index(K)))),

@@ -7,8 +7,8 @@ from derive.scene.demands import in_order, of_substance
 from derive.scene.formula import Formula
 from derive.scene.machine import Above, Demand, Entries, Tensor
 from derive.scene.numbers import (
-    Matrix,
-    Point,
+    FractionMatrix,
+    Valuation,
     definite,
     ends_of,
     first_wrong,
@@ -68,7 +68,7 @@ def check_inertia(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str
         yield f"body inertia is not positive definite{where(values, body.inertia)}"
 
 
-def _possible(body: Body, matrix: Matrix) -> bool:
+def _possible(body: Body, matrix: FractionMatrix) -> bool:
     if body.kind != "rod":
         return definite(matrix)
     return all(matrix[i][i] > 0 for i in range(3) if "xyz"[i] != body.axis)
@@ -81,7 +81,7 @@ def doubts(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str]:
         return
     own = moved(body.inertia, -body.mass, body.centre)
 
-    def no_masses(values: Point) -> bool:
+    def no_masses(values: Valuation) -> bool:
         about, left = (tensor(part, values, "body inertia") for part in (body.inertia, own))
         size = abs(trace(about))
         masses = semidefinite(left, size) and semidefinite(second_moments(left), size)
@@ -93,7 +93,7 @@ def doubts(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str]:
 
 
 def carrier_doubts(
-    carrier: Sextuple, formulas: Sequence[Formula], each: Iterable[Point]
+    carrier: Sextuple, formulas: Sequence[Formula], each: Iterable[Valuation]
 ) -> Iterator[str]:
     """Yield a sentence on the first values at which wheels leave their carrier no inertia.
 

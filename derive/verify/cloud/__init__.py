@@ -5,6 +5,6 @@ body's declared tensor only particles are made that have it; no angular momentum
 or choice of balances is known here, so what this agrees with is right for other reasons.
 """
 
-from derive.verify.cloud.solution import Answers, answers
+from derive.verify.cloud.solution import CloudAnswers, answers
 
-__all__ = ["Answers", "answers"]
+__all__ = ["CloudAnswers", "answers"]

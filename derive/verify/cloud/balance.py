@@ -5,13 +5,16 @@ from typing import Any
 
 import numpy as np
 from mpmath import mp, mpf
+from numpy.typing import NDArray
 
 from derive.scene.formula import ZERO
 from derive.scene.machine import Force, Gradient, Load, Spring, Weight
 from derive.verify.cloud.history import History
-from derive.verify.cloud.series import Array, crossed, each
+from derive.verify.cloud.series import crossed, each
 
-Acting = tuple[str, Array, Array, Array]  # a body, the place, the force and the couple along N
+Acting = tuple[
+    str, NDArray[Any], NDArray[Any], NDArray[Any]
+]  # a body, the place, the force and the couple along N
 
 
 def left_over(history: History) -> list[Any]:
@@ -32,7 +35,7 @@ def left_over(history: History) -> list[Any]:
     return rows
 
 
-def values(array: Array) -> Array:
+def values(array: NDArray[Any]) -> NDArray[Any]:
     """Return what is there at time zero."""
     return each(lambda x: x.value, array)
 
@@ -53,7 +56,7 @@ def acting(history: History, load: Load) -> Iterator[Acting]:
             yield from _spring(history, load)
 
 
-def along(history: History, frame: str, formulas: tuple[Any, ...]) -> Array:
+def along(history: History, frame: str, formulas: tuple[Any, ...]) -> NDArray[Any]:
     """Return a vector given along the axes of a frame, along N."""
     if all(f == ZERO for f in formulas):
         return np.array([mpf(0)] * 3, dtype=object)

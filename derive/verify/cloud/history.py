@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 from mpmath import mp, mpf
+from numpy.typing import NDArray
 
 from derive.scene import Input, Scene, SceneError
 from derive.scene.formula import Formula, evaluate
 from derive.scene.machine import INERTIAL, Frame
-from derive.verify.cloud.series import ARITHMETIC, Array, Series, each, moving, series, turn
+from derive.verify.cloud.series import ARITHMETIC, Series, each, moving, series, turn
 
 UNKNOWN = mpf(1)  # a mass or moment that the user left out, and that must not matter
 
@@ -73,14 +74,14 @@ class History:
         found: Series = evaluate(formula, self.scalars, ARITHMETIC)
         return found
 
-    def column(self, formulas: tuple[Formula, ...]) -> Array:
+    def column(self, formulas: tuple[Formula, ...]) -> NDArray[Any]:
         """Return formulas as a column of series."""
         return np.array([self.value(f) for f in formulas], dtype=object)
 
     @cached_property
-    def rotations(self) -> dict[str, Array]:
+    def rotations(self) -> dict[str, NDArray[Any]]:
         """Return the axes of every frame: components along it to components along N."""
-        found: dict[str, Array] = {}
+        found: dict[str, NDArray[Any]] = {}
         for frame in self.machine.frames:
             if frame.name == INERTIAL:
                 found[frame.name] = turn("x", series(0))
@@ -88,7 +89,7 @@ class History:
             found[frame.name] = found[frame.parent] @ self._in_parent(frame)
         return found
 
-    def _in_parent(self, frame: Frame) -> Array:
+    def _in_parent(self, frame: Frame) -> NDArray[Any]:
         if frame.angular_velocity is not None:  # along its own axes
             skew = self._skew(frame.angular_velocity)
             return _carried_on(each(series, self._start(frame)), lambda R: R @ skew)
@@ -97,12 +98,12 @@ class History:
             R = R @ turn(one.axis, self.value(one.angle))
         return R
 
-    def _skew(self, rate: tuple[Formula, ...]) -> Array:
+    def _skew(self, rate: tuple[Formula, ...]) -> NDArray[Any]:
         x, y, z = self.column(rate)
         zero = series(0)
         return np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]], dtype=object)
 
-    def _start(self, frame: Frame) -> Array:
+    def _start(self, frame: Frame) -> NDArray[Any]:
         if not frame.attitude:
             return np.array([[mpf(i == k) for k in range(3)] for i in range(3)], dtype=object)
         parts = [self.values[f"{frame.attitude}_{p}"] for p in "wxyz"]
@@ -114,9 +115,9 @@ class History:
         ], dtype=object)  # fmt: skip
 
     @cached_property
-    def origins(self) -> dict[str, Array]:
+    def origins(self) -> dict[str, NDArray[Any]]:
         """Return where the origin of every frame is, along N."""
-        found: dict[str, Array] = {}
+        found: dict[str, NDArray[Any]] = {}
         still = np.array([series(0)] * 3, dtype=object)
         for frame in self.machine.frames:
             if frame.name == INERTIAL:
@@ -131,18 +132,18 @@ class History:
                 found[frame.name] = found[frame.parent] + placed
         return found
 
-    def _velocity(self, frame: Frame) -> Array:
+    def _velocity(self, frame: Frame) -> NDArray[Any]:
         """Return the velocity of an origin: given, or such that the particle in contact rests."""
         R = self.rotations[frame.name]
         if frame.velocity is not None:
-            given: Array = R @ self.column(frame.velocity)
+            given: NDArray[Any] = R @ self.column(frame.velocity)
             return given
         assert frame.rolls is not None  # noqa: S101
         Q = self.body(frame.rolls.body)
-        found: Array = -(each(lambda v: v.rate(), Q) @ Q.T) @ R @ self.column(frame.rolls.at)
+        found: NDArray[Any] = -(each(lambda v: v.rate(), Q) @ Q.T) @ R @ self.column(frame.rolls.at)
         return found
 
-    def body(self, name: str) -> Array:
+    def body(self, name: str) -> NDArray[Any]:
         """Return the axes fixed in a body, to those of N: it spins in its frame's turned axes."""
         member = self.machine.body(name)
         R = self.rotations[member.frame]
@@ -150,7 +151,7 @@ class History:
             R = R @ turn(one.axis, self.value(one.angle))
         if member.angular_velocity is not None:  # along the axes of its frame
             skew = self._skew(member.angular_velocity)
-            return R @ _carried_on(turn("x", series(0)), lambda Q: skew @ Q)
+            return np.asarray(R @ _carried_on(turn("x", series(0)), lambda Q: skew @ Q))
         if member.axis is None or (member.spin is None and member.axial_speed is None):
             return R
         if member.spin is not None:
@@ -158,23 +159,23 @@ class History:
         else:
             assert member.axial_speed is not None  # noqa: S101
             speed = self.value(member.axial_speed) - self._along(R, member.axis)
-        return R @ turn(member.axis, speed.integral(mpf(0)))
+        return np.asarray(R @ turn(member.axis, speed.integral(mpf(0))))
 
     @staticmethod
-    def _along(R: Array, axis: str) -> Series:
+    def _along(R: NDArray[Any], axis: str) -> Series:
         """Return how fast axes turn about one of themselves."""
         k = "xyz".index(axis)
         turning: Series = (R.T @ each(lambda v: v.rate(), R))[k - 1, k - 2]
         return turning
 
-    def centre(self, name: str) -> Array:
+    def centre(self, name: str) -> NDArray[Any]:
         """Return where the mass centre of a body is."""
         member = self.machine.body(name)
         return self.place(member.frame, member.centre)
 
-    def place(self, frame: str, at: tuple[Formula, ...]) -> Array:
+    def place(self, frame: str, at: tuple[Formula, ...]) -> NDArray[Any]:
         """Return where a point given in a frame is."""
-        found: Array = self.origins[frame] + self.rotations[frame] @ self.column(at)
+        found: NDArray[Any] = self.origins[frame] + self.rotations[frame] @ self.column(at)
         return found
 
     def mass(self, name: str) -> Any:
@@ -182,7 +183,7 @@ class History:
         own = self.machine.body(name).mass
         return UNKNOWN if own is None else self.value(own).value
 
-    def particles(self, name: str) -> list[tuple[Any, Array]]:
+    def particles(self, name: str) -> list[tuple[Any, NDArray[Any]]]:
         """Return masses and places of particles with the body's mass and second moments.
 
         Two on each principal axis and one at the centre. Where an inertia is less than nothing,
@@ -213,7 +214,7 @@ class History:
         return mp.matrix([[half - xx, xy, xz], [xy, half - yy, yz], [xz, yz, half - zz]])
 
 
-def _carried_on(start: Array, rate: Callable[[Array], Array]) -> Array:
+def _carried_on(start: NDArray[Any], rate: Callable[[NDArray[Any]], NDArray[Any]]) -> NDArray[Any]:
     """Return the axes that go on at a rate from where they are."""
     R = start
     for _ in range(2):

@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 from mpmath import mp
+from numpy.typing import NDArray
 
 from derive.scene.formula import ZERO
 from derive.scene.machine import Spring, Weight
 from derive.verify.cloud.balance import acting, along, values
 from derive.verify.cloud.history import History
-from derive.verify.cloud.series import DIGITS, Array, crossed, each
-from derive.verify.cloud.solution import Answers
+from derive.verify.cloud.series import DIGITS, crossed, each
+from derive.verify.cloud.solution import CloudAnswers
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class Powers:
     conservative: tuple[Any, ...]
 
 
-def powers(answers: Answers) -> Powers:
+def powers(answers: CloudAnswers) -> Powers:
     """Return the powers of a machine's loads, reactions included.
 
     Of reactions that the particles do not tell apart any will do: together they do the same work.
@@ -41,7 +42,9 @@ def powers(answers: Answers) -> Powers:
         return Powers(tuple(every), tuple(_conservative(history)))
 
 
-def _power(history: History, body: str, place: Array, force: Array, couple: Array) -> list[Any]:
+def _power(
+    history: History, body: str, place: NDArray[Any], force: NDArray[Any], couple: NDArray[Any]
+) -> list[Any]:
     """Return the powers of a force on the body's particle at a place, and of a couple."""
     centre, Q = history.centre(body), history.body(body)
     spin = each(lambda x: x.velocity, Q) @ values(Q).T

@@ -17,7 +17,6 @@ from derive.verify.operators import IN_BALLS
 
 DIGITS, BITS = 50, 200  # of the numbers that go in and come out, and of balls between
 ORDER = 3  # value, rate, half the acceleration
-Array = NDArray[Any]
 
 
 @dataclass(frozen=True)
@@ -110,13 +109,13 @@ ARITHMETIC: Arithmetic = {
 }
 
 
-def each(function: Callable[[Series], Any], array: Array) -> Array:
+def each(function: Callable[[Series], Any], array: NDArray[Any]) -> NDArray[Any]:
     """Return an array with a function taken of every entry."""
-    found: Array = np.vectorize(function, otypes=[object])(array)
+    found: NDArray[Any] = np.vectorize(function, otypes=[object])(array)
     return found
 
 
-def turn(axis: str, angle: Series) -> Array:
+def turn(axis: str, angle: Series) -> NDArray[Any]:
     """Return the turn about an axis that takes components along new axes to the old."""
     k = "xyz".index(axis)
     i, j = (k + 1) % 3, (k + 2) % 3
@@ -127,6 +126,6 @@ def turn(axis: str, angle: Series) -> Array:
     return R
 
 
-def crossed(a: Array, b: Array) -> Array:
+def crossed(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
     """Return a vector product."""
     return np.array([a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] for k in range(3)], dtype=object)

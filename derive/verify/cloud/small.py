@@ -7,7 +7,7 @@ from mpmath import matrix, mp, mpf
 
 from derive.scene import Input, Scene
 from derive.verify.cloud.series import DIGITS
-from derive.verify.cloud.solution import Answers, answers
+from derive.verify.cloud.solution import CloudAnswers, answers
 
 STEP = mpf(10) ** -15  # a central difference of 50 digits keeps twenty
 
@@ -45,7 +45,7 @@ def at_rest(machine: Scene, given: Mapping[str, float]) -> bool:
 def _base(machine: Scene, given: Mapping[str, float]) -> dict[str, Any]:
     """Return the motion about which the scene is linearised."""
     values = {name: mpf(x) for name, x in given.items()}
-    start = Answers(machine, values | dict.fromkeys(machine.about, mpf(0)))
+    start = CloudAnswers(machine, values | dict.fromkeys(machine.about, mpf(0)))
     return values | {name: start.result(f) for name, f in machine.about.items()}
 
 

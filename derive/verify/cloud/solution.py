@@ -19,7 +19,7 @@ NOTHING = mpf(10) ** (8 - DIGITS)
 
 
 @dataclass
-class Answers:
+class CloudAnswers:
     """A machine at given values; unknowns, energies and momenta as the cloud has them."""
 
     machine: Scene
@@ -145,7 +145,7 @@ class Answers:
             return history.value(written_out(formula, self.machine.results)).value
 
 
-def answers(machine: Scene, given: Mapping[str, float]) -> Answers:
+def answers(machine: Scene, given: Mapping[str, float]) -> CloudAnswers:
     """Return what the cloud of ``machine`` answers at values of all that is given."""
     with mp.workdps(DIGITS):
-        return Answers(machine, {name: mpf(x) for name, x in given.items()})
+        return CloudAnswers(machine, {name: mpf(x) for name, x in given.items()})

@@ -18,9 +18,9 @@ from derive.program.program import (
     Line,
     Op,
     Operand,
+    Precondition,
     Program,
     Quantity,
-    Rule,
     every_op,
     operands_of,
 )
@@ -81,7 +81,7 @@ def exact_number(graph: Graph, value: Value) -> Fraction | None:
 
 
 @dataclass(frozen=True)
-class Part:
+class SetupPart:
     """A part of set-up that was recorded on a tape of its own.
 
     given : the graph's value of each input of the tape
@@ -92,7 +92,7 @@ class Part:
     ops: tuple[Line, ...]
     given: Mapping[str, Value]
     names: Mapping[str, str] = field(default_factory=dict)
-    rules: tuple[Rule, ...] = ()
+    rules: tuple[Precondition, ...] = ()
 
 
 def hot(
@@ -133,7 +133,7 @@ def with_low_parts(made: Program) -> Program:
 
 
 def setup(
-    graph: Graph, constants: Constants, parameters: Sequence[Quantity], parts: Sequence[Part]
+    graph: Graph, constants: Constants, parameters: Sequence[Quantity], parts: Sequence[SetupPart]
 ) -> Program:
     """Return the program that makes the constants from the parameters.
 
@@ -144,7 +144,7 @@ def setup(
     first, found = schedule(graph, values, lambda n: n == ONE, lambda value: value[0], prefix)
     left = iter(found)
     made = list(islice(left, len(constants.names)))
-    ops, given, rules = list[Line](first), list(made), list[Rule]()
+    ops, given, rules = list[Line](first), list(made), list[Precondition]()
     for part in parts:
         at = dict(zip(part.given, left, strict=False))
         made += [at.get(o, o) for o in part.names]

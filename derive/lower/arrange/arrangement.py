@@ -1,4 +1,4 @@
-"""Stages as they are found: what is computed on the way, each with a name."""
+"""Definitions as they are found: what is computed on the way, each with a name."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,7 @@ from sympy import Expr, Symbol
 
 
 @dataclass(frozen=True)
-class Stage:
+class Definition:
     """One named value: a let may be multiplied out by its users, a cut may not.
 
     family : what components of one vector or tensor share, in words of this program's own; a value
@@ -21,7 +21,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class Arrangement:
-    """Stages in order, and the output components."""
+    """Definitions in order, and the output components."""
 
-    stages: tuple[Stage, ...]
+    definitions: tuple[Definition, ...]
     outputs: tuple[Expr, ...]
