@@ -172,10 +172,6 @@ def undetermined(balances: Balances, wanted: frozenset[int]) -> str:
     label = balances.frames.sheet.label
     names = [label(u) for u in balances.unknowns]
     holding = [row for row in balances.rows if row.holds]
-    for k in sorted(wanted):
-        here = [row for row in holding if k in row.holds]
-        if not here:
-            return f"no balance holds '{names[k]}', so it cannot be found"
     loop = closed_loop(balances.frames.machine, {names[k] for k in wanted})
     if loop:
         return loop

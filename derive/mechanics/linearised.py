@@ -14,6 +14,7 @@ from sympy import Expr, Integer, Matrix, Symbol, zeros
 
 from derive.mechanics.balances import Balances, ValuedBalance
 from derive.mechanics.choice import chosen
+from derive.mechanics.inertia import require_held
 from derive.mechanics.probe import DIGITS, Probe, at_rest, independent, random_probe, small, solved
 from derive.mechanics.valued import Valued
 from derive.mechanics.words import Words
@@ -56,10 +57,7 @@ def linearised(machine: Scene, balances: Balances) -> Linearised:
         raise SceneError("'linearised' needs a free coordinate or speed")
     accelerations = [sheet.symbols[m.unknown] for m in free]
     every = balances.unknowns
-    missing = [a for a in accelerations if a not in every]
-    if missing:
-        raise SceneError(f"no balance holds '{sheet.label(missing[0])}'; "
-                         "nothing that has mass moves with it")  # fmt: skip
+    require_held(balances, accelerations)
     rows, held = chosen(balances, frozenset(every.index(a) for a in accelerations))
     written = [balances.written(row) for row in rows]
     reactions = [every[k] for k in sorted(held) if every[k] not in accelerations]

@@ -11,6 +11,7 @@ from sympy import Expr, Integer, Pow
 from derive.mechanics.answers import Answers
 from derive.mechanics.balances import Balances
 from derive.mechanics.frames import Frames
+from derive.mechanics.inertia import vanishing
 from derive.mechanics.linearised import unsteady
 from derive.mechanics.matter import Lean, lean
 from derive.mechanics.problem import Problem, substituted
@@ -98,17 +99,18 @@ class Mechanism:
 
     def pole(self, base: str) -> str:
         """Return words on what a function divides by that vanishes in its ranges, "" if nothing."""
-        problem, words = self.whole(base), self.posed(base).words
-        entries = [[own.get(u, Integer(0)) for u in problem.unknowns] for _, own in problem.parts]
+        own, problem = self.posed(base), self.whole(base)
+        entries = [[row.get(u, Integer(0)) for u in problem.unknowns] for _, row in problem.parts]
         divided = [(problem.unknowns, entries)] if entries else []
         values = {**problem.definitions, **problem.answers}
         divided += [((s,), [[d]]) for s, value in values.items() for d in _divisors(value)]
-        of = ranges(words)
+        of = ranges(own.words)
         for symbols, matrix in divided:
             worst = weakest(of, problem.definitions, partial(regular, entries=matrix))
             if worst.vanishes:
-                names = ", ".join(f"'{words.sheet.label(s)}'" for s in symbols)
-                return f"the divisor of {names} vanishes {worst.where}"
+                says = vanishing(own.answers.balances, symbols, matrix, worst)
+                names = ", ".join(f"'{own.words.sheet.label(s)}'" for s in symbols)
+                return says or f"the divisor of {names} vanishes {worst.where}"
         return ""
 
     def dropped(self, base: str) -> Mapping[str, tuple[str, ...]]:

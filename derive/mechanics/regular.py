@@ -4,11 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from sympy import Integer, Symbol
+from sympy import Expr, Integer, Symbol
 
 from derive.mechanics.balances import Balances, ValuedBalance
 from derive.mechanics.choice import chosen, clearly_told, contradiction, require_no_ring
 from derive.mechanics.frames import Frames
+from derive.mechanics.inertia import require_held, vanishing
 from derive.mechanics.probe import Probe
 from derive.mechanics.sweep import Weakest, probe_at, ranges, regular, weakest
 from derive.scene import SceneError
@@ -47,6 +48,8 @@ class Regular:
                 break
         worst = self._weakest(*first)
         if rows and self._told(first[1], worst):
+            if says := self._vanishing(first, worst):
+                raise SceneError(says)
             names = ", ".join(f"'{self.frames.sheet.label(u)}'" for u in first[1])
             rule = f"vanishes {worst.where}, where the machine itself is regular"
             raise SceneError(f"the divisor of {names} {rule}, and no other balances were found")
@@ -56,11 +59,20 @@ class Regular:
         """Return where the balances are nearest to depending on each other."""
         if not rows:
             return Weakest(1.0, {})
-        sheet = self.frames.sheet
-        slopes = [sheet.split(self.balances.written(row))[1] for row in rows]
-        entries = [[own.get(u, Integer(0)) for u in unknowns] for own in slopes]
-        below = sheet.needed([e for row in entries for e in row])
+        entries = self._entries(rows, unknowns)
+        below = self.frames.sheet.needed([e for row in entries for e in row])
         return weakest(ranges(self.frames.words), below, lambda at: regular(at, entries))
+
+    def _vanishing(
+        self, chosen_: tuple[tuple[Row, ...], tuple[Symbol, ...]], worst: Weakest
+    ) -> str:
+        """Return words on an unknown that no balance holds at a place, "" if each is held."""
+        return vanishing(self.balances, chosen_[1], self._entries(*chosen_), worst)
+
+    def _entries(self, rows: tuple[Row, ...], unknowns: tuple[Symbol, ...]) -> list[list[Expr]]:
+        """Return what balances multiply the unknowns by."""
+        slopes = [self.frames.sheet.split(self.balances.written(row))[1] for row in rows]
+        return [[own.get(u, Integer(0)) for u in unknowns] for own in slopes]
 
     def _told(self, unknowns: tuple[Symbol, ...], worst: Weakest) -> bool:
         """Tell whether the machine itself determines the unknowns where some balances do not."""
@@ -72,10 +84,7 @@ class Regular:
         self, wanted: set[Symbol], hard: Sequence[Probe]
     ) -> tuple[tuple[ValuedBalance, ...], tuple[Symbol, ...]]:
         every = self.balances.unknowns
-        missing = [s for s in wanted if s not in every]
-        if missing:
-            name = self.frames.sheet.label(missing[0])
-            raise SceneError(f"no balance holds '{name}', so it cannot be found")
+        require_held(self.balances, wanted)
         if not wanted:
             return (), ()
         require_no_ring(self.balances, frozenset(every.index(s) for s in wanted))

@@ -10,8 +10,8 @@ import pytest
 from derive.emit.notation import name_mathml
 from derive.emit.page.equation import PageEquation, passages, written_names
 from derive.mechanics.mechanism import Mechanism, mechanism
-from derive.scene import catalogue, parse_scene
-from derive.scene.wanted import EQUATIONS, base_of
+from derive.scene import SceneError, catalogue, parse_scene
+from derive.scene.wanted import ATTITUDES, base_of, moves
 from tests.made import scene_of, thinned
 from tests.scene.test_docs import ACCEPTED, EXAMPLE, MOTION
 
@@ -83,7 +83,28 @@ axis   = "z"
 centre = ["0", "0", "l"]
 turned = ["z phi"]
 """
-USERS = {"rotor": ROTOR, "flywheel": FLYWHEEL}
+GYRO = """
+wanted = ["H"]
+[parameters]
+D = { unit = "kg m^2", range = [0.1, 0.2] }
+A = { unit = "kg m^2", range = [1, 2] }
+B = { unit = "kg m^2", range = [1, 2] }
+C = { unit = "kg m^2", range = [1, 2] }
+[coordinates]
+psi   = { unit = "rad", range = [-3, 3] }
+theta = { unit = "rad", range = [0.3, 1] }
+phi   = { unit = "rad", range = [-3, 3] }
+[frames]
+inner.turned = ["z psi", "x theta", "z phi"]
+[bodies]
+gyro = { frame = "inner", kind = "general", moments = ["A", "B", "C"], products = ["D", "D", "0"] }
+[loads]
+pivot = { on = "gyro", force = "?p" }
+[results]
+H = "angular_momentum_z"
+"""
+"""A result that is nothing but a named quantity: its line shows what that is made of."""
+USERS = {"rotor": ROTOR, "flywheel": FLYWHEEL, "gyro": GYRO}
 TEXTS = {f"docs_{k}": text for k, text in enumerate([*ACCEPTED, *EXAMPLE.findall(MOTION)])}
 TEXTS |= {
     path.stem: path.read_text(encoding="utf-8")
@@ -101,7 +122,8 @@ def known_of(name: str) -> Mechanism:
 
 def functions(known: Mechanism) -> list[str]:
     """Return the functions of a scene that show equations."""
-    return [name for name in dict.fromkeys(map(base_of, known.scene.wanted)) if name in EQUATIONS]
+    bases = dict.fromkeys(map(base_of, known.scene.wanted))
+    return [name for name in bases if not moves(name) and name not in ATTITUDES]
 
 
 def unsaid(known: Mechanism, lines: list[PageEquation]) -> Iterator[str]:
@@ -115,6 +137,7 @@ def unsaid(known: Mechanism, lines: list[PageEquation]) -> Iterator[str]:
     sides = [_sides(line) for line in lines]
     shown = {_drawn(names[symbols[c]]) for q in known.vocabulary.given() for c in q.components}
     shown |= {found for left, _ in sides for found in name.findall(left)}
+    shown |= {_drawn(names[symbols[line.unknown]]) for line in lines}  # solved for together
     for _, right in sides:
         yield from (found for found in name.findall(right) if found not in shown)
         yield from LETTERS.findall(name.sub("", right))
@@ -139,6 +162,9 @@ def _drawn(name: str) -> str:
 def test_every_name_in_an_equation_is_given_or_stands_on_a_left_hand_side(name: str) -> None:
     known = known_of(name)
     for base in functions(known):
-        lines = [line for passage in passages(known, base) for line in passage.lines]
+        try:
+            lines = [line for passage in passages(known, base) for line in passage.lines]
+        except SceneError as refusal:
+            pytest.skip(f"no equations: {refusal}")
         assert (base, [*unsaid(known.posed(base), lines)]) == (base, [])
         assert (base, renamed(lines)) == (base, [])
