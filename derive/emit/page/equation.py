@@ -199,7 +199,9 @@ def _put_together(
 
     def shown(value: Expr) -> Expr:
         """Return a value as its line shows it; no line says only that it equals another."""
-        value = named.get(value, value)
+        terms = Add.make_args(value)
+        if len(terms) <= 2:
+            value = value.xreplace({s: n for s, n in named.items() if s in terms or -s in terms})
         full = _plainer(value.xreplace(short | whole))
         return full if full.count_ops() <= LONGEST else value.xreplace(short)
 
