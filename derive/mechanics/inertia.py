@@ -11,13 +11,15 @@ from derive.mechanics.sweep import LEAST, Weakest, probe_at, ranges
 from derive.mechanics.valued import Valued
 from derive.scene import Scene, SceneError
 
+NONE = "0, or nothing beside what else the balances hold"
+
 
 def require_held(balances: Balances, unknowns: Iterable[Symbol]) -> None:
     """Refuse an unknown that no balance holds; of an acceleration it is said why."""
     held = {balances.unknowns[k] for row in balances.alone for k in row.holds}
     for name in sorted(balances.frames.sheet.label(u) for u in unknowns if u not in held):
         motion = _motion(balances.frames.machine, name)
-        why = f": the inertia of all that moves with '{motion}' is 0" if motion else ""
+        why = f": the inertia of all that moves with '{motion}' is {NONE}" if motion else ""
         raise SceneError(f"no balance holds '{name}', so it cannot be found{why}")
 
 

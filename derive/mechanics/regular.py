@@ -48,7 +48,7 @@ class Regular:
                 break
         worst = self._weakest(*first)
         if rows and self._told(first[1], worst):
-            if says := self._vanishing(first, worst):
+            if says := vanishing(self.balances, first[1], self._entries(*first), worst):
                 raise SceneError(says)
             names = ", ".join(f"'{self.frames.sheet.label(u)}'" for u in first[1])
             rule = f"vanishes {worst.where}, where the machine itself is regular"
@@ -63,13 +63,9 @@ class Regular:
         below = self.frames.sheet.needed([e for row in entries for e in row])
         return weakest(ranges(self.frames.words), below, lambda at: regular(at, entries))
 
-    def _vanishing(
-        self, chosen_: tuple[tuple[Row, ...], tuple[Symbol, ...]], worst: Weakest
-    ) -> str:
-        """Return words on an unknown that no balance holds at a place, "" if each is held."""
-        return vanishing(self.balances, chosen_[1], self._entries(*chosen_), worst)
-
-    def _entries(self, rows: tuple[Row, ...], unknowns: tuple[Symbol, ...]) -> list[list[Expr]]:
+    def _entries(
+        self, rows: tuple[ValuedBalance, ...], unknowns: tuple[Symbol, ...]
+    ) -> list[list[Expr]]:
         """Return what balances multiply the unknowns by."""
         slopes = [self.frames.sheet.split(self.balances.written(row))[1] for row in rows]
         return [[own.get(u, Integer(0)) for u in unknowns] for own in slopes]

@@ -122,7 +122,8 @@ hub = { frame = "hub", kind = "axisymmetric", axis = "z", axial = "AXIAL", trans
 motor = { on = "hub", couple = ["?b", "?c", "u"] }
 """
 NOTHING = (
-    "no balance holds 'w_dot', so it cannot be found: the inertia of all that moves with 'w' is 0"
+    "no balance holds 'w_dot', so it cannot be found: the inertia of all that moves with 'w' is 0, "
+    "or nothing beside what else the balances hold"
 )
 
 
