@@ -1,9 +1,12 @@
 """One word, one thing: no name of the package is defined twice for different things."""
 
 import ast
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+
+from derive.scene.short_form.quantities import QUANTITIES
 
 ROOT = Path(__file__).parent.parent / "derive"
 PAGES = {
@@ -28,6 +31,47 @@ def test_a_second_type_of_a_name_is_found_whether_class_or_alias_or_plural() -> 
     }
     assert shared({**first, "b": ast.parse("class Bloc: pass")}) == {}
     assert shared({**first, "b": ast.parse("from x import Block\nclass Blocks: pass")}) == {}
+
+
+def test_no_name_of_a_scenes_quantity_decides_anything() -> None:
+    found = {page: read for page in PAGES if (read := named(PAGES[page])) and within(page)}
+    assert found == {page: {*names} for page, (names, _) in SPOKEN.items()}
+    assert named(ast.parse("x = q.name == 'omega_dot'")) == {"omega_dot"}
+    assert named(ast.parse("x = {'omega': 1}['omega']")) == set()
+
+
+ROOMS = ("program", "mechanics", "lower", "motion", "library", "verify")
+SPOKEN = {
+    "program/program": (["attitude"], "a role"),
+    "mechanics/words": (["attitude"], "a role"),
+    "mechanics/balances": (["force", "moment"], "kinds of balances"),
+    "mechanics/answers": (["angular_momentum", "rate_in_axes"], "answers and lecture steps"),
+    "mechanics/bodies": (["angular_momentum"], "a lecture step"),
+    "motion/attitude/functions": (["attitude"], "what the package itself calls an argument"),
+    "motion/exact/orbit": (["moment"], "a constant that set-up makes"),
+    "motion/moser_veselov/__init__": (["moment"], "a constant that set-up makes"),
+    "library/setting": (["moment"], "what the program of a moment returns, read by place"),
+    "verify/cloud/solution": (["angular_momentum", "rate_absolute"], "answers"),
+    "verify/draw": (["omega", "omega_dot"], "the range of times: mended where draws are"),
+}
+"""Where names of quantities stand in text, and what they are there, if not a scene's quantities."""
+
+
+def within(page: str) -> bool:
+    """Tell whether a module is of the rooms from a problem to its program and its proof."""
+    return page.partition("/")[0] in ROOMS
+
+
+def named(tree: ast.Module) -> set[str]:
+    """Return the vectors of scenes whose names stand in a module's text.
+
+    Keys are none: what a dictionary of the module's own calls its values decides nothing.
+    """
+    keys = {id(k) for node in ast.walk(tree) if isinstance(node, ast.Dict) for k in node.keys}
+    keys |= {id(node.slice) for node in ast.walk(tree) if isinstance(node, ast.Subscript)}
+    texts = (n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and id(n) not in keys)
+    plain = (re.sub("(_[wxyz]?)?$", "", text) for text in texts if isinstance(text, str))
+    return {*plain} & QUANTITIES.keys()
 
 
 def stem(name: str) -> str:

@@ -52,7 +52,7 @@ class _Trial:
 
     def free(self) -> tuple[Quantity, ...]:
         """Return the inputs that may be set."""
-        return tuple(q for q in self.program.inputs if q.role == "value")
+        return tuple(q for q in self.program.inputs if q.is_value)
 
     def results(self, columns: dict[str, NDArray[Any]]) -> NDArray[Any]:
         """Return the results, a row a component; ``columns`` hold what may be set."""

@@ -7,7 +7,7 @@ from sympy import Expr, Integer, Matrix, Symbol, cos, expand_trig, sin, tan
 
 from derive.mechanics.sheet import Sheet
 from derive.mechanics.vocabulary import Vocabulary
-from derive.program.program import Quantity
+from derive.program.program import Quantity, Role
 from derive.scene import Input, Scene
 from derive.scene.formula import Formula
 from derive.scene.machine import Group
@@ -78,7 +78,8 @@ def words(machine: Scene) -> Words:
 
 def _quantity(g: Group) -> Quantity:
     shape = () if g.components == (g.name,) else (len(g.components),)
-    return Quantity(g.name, g.components, shape, g.unit, g.frame, g.low, g.high, g.meaning)
+    role: Role = "attitude" if g.quaternion else "value"
+    return Quantity(g.name, g.components, shape, g.unit, g.frame, g.low, g.high, g.meaning, role)
 
 
 def _rates(machine: Scene, made: Words) -> dict[Symbol, Expr]:

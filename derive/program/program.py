@@ -17,8 +17,8 @@ from derive.program.indexed import Arrays, Even, Indexed, Integers, Loop, names_
 Operand = str | Fraction
 
 
-Role = Literal["value", "constants", "plan", "remainder"]
-"""What a quantity is for: a value of its own, or what one function makes for others to read."""
+Role = Literal["value", "attitude", "constants", "plan", "remainder"]
+"""What a quantity is for: a value of its own, be it an attitude, or made for others to read."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,13 @@ class Quantity:
 
     @property
     def is_quaternion(self) -> bool:
-        """Tell whether this is an attitude, of length 1; four wheels have four speeds too."""
-        return self.shape == (4,) and self.name.startswith("attitude")
+        """Tell whether this is an attitude, of length 1."""
+        return self.role == "attitude"
+
+    @property
+    def is_value(self) -> bool:
+        """Tell whether this has a value of its own, which a user may set."""
+        return self.role in ("value", "attitude")
 
     @property
     def ends(self) -> tuple[Fraction, Fraction]:

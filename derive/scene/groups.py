@@ -27,7 +27,7 @@ def _quaternions(scene: Scene) -> Iterator[Group]:
         if name := frame.attitude:
             parts = tuple(f"{name}_{p}" for p in ("w", *AXES))
             says = f"quaternion of {frame.name}, scalar first, to {frame.parent}, of norm 1"
-            yield Group(name, parts, "1", "", *ANY, says)
+            yield Group(name, parts, "1", "", *ANY, says, quaternion=True)
 
 
 def _with_rates(moving: Iterable[Moving]) -> Iterator[Group]:

@@ -162,7 +162,10 @@ class Steady:
 
 @dataclass(frozen=True)
 class Group:
-    """Components that enter and leave functions together, and the frame that they lie along."""
+    """Components that enter and leave functions together, and the frame that they lie along.
+
+    quaternion : whether they are an attitude, of length 1
+    """
 
     name: str
     components: tuple[str, ...]
@@ -171,6 +174,7 @@ class Group:
     low: Fraction | None
     high: Fraction | None
     meaning: str
+    quaternion: bool = False
 
 
 @dataclass(frozen=True)

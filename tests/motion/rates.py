@@ -1,6 +1,7 @@
 """Rates of turning bodies as programs, written by hand: quaternion and angular velocity."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from derive.program.operations import sqrt
@@ -20,7 +21,8 @@ def quantity(name: str, parts: str) -> Quantity:
     return Quantity(name, components, (len(parts),), "", "", None, None, name)
 
 
-ATTITUDE, OMEGA = quantity("attitude", "wxyz"), quantity("omega", "xyz")
+ATTITUDE = replace(quantity("attitude", "wxyz"), role="attitude")
+OMEGA = quantity("omega", "xyz")
 BODY = (ATTITUDE, OMEGA)
 
 

@@ -23,7 +23,7 @@ GAIN = Fraction(10)  # 1/s; ten times more is unstable at h = 0.1 s
 def unnormalised(gain: Fraction) -> System:
     """Return the motion with gain (1 - |q|^2) q added to the rate of q (Baumgarte).
 
-    Its attitude goes by another name and shape, by which no step takes it for one.
+    Its attitude has no role of one, so no step takes it for one.
     """
     tape = Tape("t")
     given = {c: tape.input(c) for q in (*FREE.states, *FREE.inputs) for c in q.components}
@@ -33,12 +33,12 @@ def unnormalised(gain: Fraction) -> System:
     pulled = [k + excess * gain * x for k, x in zip(rates[:4], q, strict=True)]
     results = tuple(n.operand for n in (*pulled, *rates[4:]))
 
-    def called_otherwise(q: Quantity) -> Quantity:
-        return replace(q, name="versor", shape=(4, 1)) if q.name == "attitude" else q
+    def of_no_role(q: Quantity) -> Quantity:
+        return replace(q, role="value")
 
-    inputs = tuple(map(called_otherwise, FREE.rate.inputs))
+    inputs = tuple(map(of_no_role, FREE.rate.inputs))
     rate = replace(FREE.rate, ops=needed(tape.ops, results), results=results, inputs=inputs)
-    return System(tuple(map(called_otherwise, FREE.states)), rate)
+    return System(tuple(map(of_no_role, FREE.states)), rate)
 
 
 def tumbling(h: float) -> Values:

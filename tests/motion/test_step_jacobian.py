@@ -144,7 +144,7 @@ def moved(given: System, values: Values, name: str, by: Any) -> dict[str, Any]:
 
 def errors(given: System, after: list[Any], reference: list[Any]) -> list[Any]:
     """Return how far ``after`` is from ``reference``, the attitude by three errors."""
-    place = given.place("attitude")
+    place = given.quaternion
     q, p = reference[place], after[place]
     turn = times([q[0], *(-x for x in q[1:])], p)
     apart = [a - b for a, b in zip(after, reference, strict=True)]

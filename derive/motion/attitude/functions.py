@@ -6,7 +6,7 @@ from fractions import Fraction
 from functools import partial
 
 from derive.motion.attitude import euler, matrix, quaternion, rodrigues
-from derive.program.program import Program, Quantity
+from derive.program.program import Program, Quantity, Role
 from derive.program.recorded import needed
 from derive.program.tape import Number, Tape
 from derive.scene.wanted import SEQUENCES
@@ -48,9 +48,9 @@ def attitude_program(name: str) -> Program:
     return Program(name, function.says, function.inputs, function.outputs, ops, results)
 
 
-def _quaternion(name: str, frame: str, meaning: str) -> Quantity:
+def _quaternion(name: str, frame: str, meaning: str, role: Role = "value") -> Quantity:
     parts = tuple(f"{name}_{part}" for part in PARTS)
-    return Quantity(name, parts, (4,), "1", frame, Fraction(-1), Fraction(1), meaning)
+    return Quantity(name, parts, (4,), "1", frame, Fraction(-1), Fraction(1), meaning, role)
 
 
 def _vector(name: str, unit: str, frame: str, bound: Fraction | int, meaning: str) -> Quantity:
@@ -65,7 +65,10 @@ def _angles(sequence: str) -> Quantity:
 
 
 ATTITUDE = _quaternion(
-    "attitude", "N from B", "attitude quaternion, scalar first, body to inertial, |q| = 1"
+    "attitude",
+    "N from B",
+    "attitude quaternion, scalar first, body to inertial, |q| = 1",
+    "attitude",
 )
 ANY_LENGTH = _quaternion("quaternion", "N from B", "quaternion of any length, scalar first")
 TURN = _vector(
@@ -88,7 +91,7 @@ MATRIX = Quantity(
 
 LEFT = _quaternion("left", "N from A", "quaternion of the rotation that comes last")
 RIGHT = _quaternion("right", "A from B", "quaternion of the rotation that comes first")
-PRODUCT = _quaternion("attitude", "N from B", "left times right")
+PRODUCT = _quaternion("attitude", "N from B", "left times right", "attitude")
 
 
 def _euler(sequence: str) -> tuple[AttitudeFunction, AttitudeFunction]:

@@ -94,7 +94,7 @@ def added(a: Sequence[Number], b: Sequence[Number]) -> Row:
 def gains_of(system: System, stages: Stages) -> Row:
     """Return what the step adds: (k1 + 2 k2 + 2 k3 + k4) h / 6, an attitude not yet normalised."""
     found = [(a + 2 * (b + c) + d) * THIRD for a, b, c, d in zip(*stages.rates, strict=True)]
-    attitude = system.place("attitude")
+    attitude = system.quaternion
     if attitude is not None and stages.turn is not None:
         found[attitude] = product(stages.start[attitude], stages.turn.increment)
     return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 from derive.motion.attitude.quaternion import product
 from derive.motion.runge_kutta.system import System
 from derive.program.arithmetic import EXACT
-from derive.program.program import Op, Operand, Program
+from derive.program.program import Op, Operand, Program, placed
 from derive.program.recorded import needed
 from derive.program.run import run
 
@@ -21,13 +22,12 @@ def free_omega(system: System) -> slice | None:
 
     None if it rests on the attitude, or if no quaternion of the state follows it.
     """
-    attitude, omega = system.place("attitude"), system.place("omega")
-    if attitude is None or omega is None:
+    places = attitude_and_omega(system)
+    if places is None:
         return None
+    attitude, omega = places
     names = system.names
-    below = closure(system, set(names[omega]))
-    free = below.isdisjoint(names[attitude]) and attitude_turns(system)
-    return omega if free else None
+    return omega if closure(system, set(names[omega])).isdisjoint(names[attitude]) else None
 
 
 def closure(system: System, wanted: set[str]) -> set[str]:
@@ -51,27 +51,35 @@ def _rests_on(rate: Program) -> list[set[str]]:
     return [below(result) for result in rate.results]
 
 
-def attitude_turns(system: System) -> bool:
-    """Tell whether the rate of the attitude q is q (0, omega) / 2, omega among the states."""
-    attitude = system.place("attitude")
+def attitude_and_omega(system: System) -> tuple[slice, slice] | None:
+    """Return where the attitude q stands and the omega by which its rate is q (0, omega) / 2.
+
+    None if the state has no single attitude, or no three components that turn it so.
+    """
+    attitude = system.quaternion
     if attitude is None:
-        return False
+        return None
     results = system.rate.results[attitude]
     program = replace(system.rate, ops=needed(system.rate.ops, results), results=results)
-    return all(_agrees(program, trial) for trial in range(1, TRIALS + 1))
+    vectors = (place for q, place in placed(system.states) if q.shape == (3,))
+    turns = (v for v in vectors if _turns(program, system.names[attitude], system.names[v]))
+    return next(((attitude, omega) for omega in turns), None)
 
 
-def _agrees(program: Program, trial: int) -> bool:
+def _turns(program: Program, attitude: Sequence[str], omega: Sequence[str]) -> bool:
+    return all(_agrees(program, attitude, omega, trial) for trial in range(1, TRIALS + 1))
+
+
+def _agrees(program: Program, attitude: Sequence[str], omega: Sequence[str], trial: int) -> bool:
     names = [c for q in program.inputs for c in q.components]
     values: dict[str, Any] = {
         n: Fraction(7 * k * k + 5 * trial, 3 * k + trial + 1) for k, n in enumerate(names)
     }
-    parts = {q.name: [values[c] for c in q.components] for q in program.inputs}
-    if not {"attitude", "omega"} <= parts.keys():
+    if not values.keys() >= {*attitude, *omega}:
         return False
     try:
         found = run(program, EXACT, list(values.values()))
     except KeyError:  # a sine or a root: no such kinematics
         return False
-    turns: list[Any] = [0, *parts["omega"]]
-    return found == product([q / 2 for q in parts["attitude"]], turns)
+    turns: list[Any] = [0, *(values[c] for c in omega)]
+    return found == product([values[c] / 2 for c in attitude], turns)

@@ -14,7 +14,7 @@ from fractions import Fraction
 from derive.motion.attitude.quaternion import conjugate
 from derive.motion.attitude.quaternion import product as hamilton
 from derive.motion.runge_kutta.classic import THIRD
-from derive.motion.runge_kutta.dependence import attitude_turns
+from derive.motion.runge_kutta.dependence import attitude_and_omega
 from derive.motion.runge_kutta.matrices import (
     Matrix,
     Row,
@@ -95,10 +95,10 @@ def increments(tape: Tape, system: System) -> tuple[Row, Row]:
 
 
 def _places(system: System) -> tuple[slice, slice]:
-    attitude, omega = system.place("attitude"), system.place("omega")
-    if attitude is None or omega is None or not attitude_turns(system):
+    places = attitude_and_omega(system)
+    if places is None:
         raise ValueError("a Lie-group step needs an attitude quaternion with its angular velocity")
-    return attitude, omega
+    return places
 
 
 def _gain(tape: Tape, system: System, start: Varying) -> Gain:

@@ -25,6 +25,7 @@ from derive.motion.runge_kutta.classic import (
     stages,
     turn_slopes,
 )
+from derive.motion.runge_kutta.dependence import free_omega
 from derive.motion.runge_kutta.matrices import (
     Matrix,
     Row,
@@ -162,7 +163,7 @@ def _on_the_sphere(q: Row, rows: Matrix) -> Matrix:
 
 def _turned(system: System, stages: Stages, turn: StageTurns) -> Back:
     """Return the derivatives (3, n) and (3, m) of v, if the attitude q changes by q (0, v)."""
-    n, omega = len(stages.start), system.place("omega") or slice(0)
+    n, omega = len(stages.start), free_omega(system) or slice(0)
     scale = stages.time_step * Fraction(1, 12) / norm_squared(one_and(turn.increment))
     on_states = [zeros(3, n) for _ in turn.quarters]
     for rows, part in zip(on_states, turn_slopes(turn, scale), strict=True):

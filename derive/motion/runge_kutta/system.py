@@ -58,17 +58,13 @@ class System:
     def inputs(self) -> tuple[Quantity, ...]:
         """Return what the rates use besides constants and states, held while the step lasts."""
         own = {q.name for q in self.states}
-        given = (q for q in self.rate.inputs if q.role == "value")
+        given = (q for q in self.rate.inputs if q.is_value)
         return tuple(q for q in given if q.name not in own)
 
     @property
     def columns(self) -> tuple[str, ...]:
         """Return by what the Jacobian is taken: the states, then inputs or parameters."""
         return pattern_of(self).columns
-
-    def place(self, quantity: str) -> slice | None:
-        """Return where a state's components stand among all, None if there is no such state."""
-        return next((place for q, place in placed(self.states) if q.name == quantity), None)
 
     @property
     def quaternions(self) -> tuple[slice, ...]:

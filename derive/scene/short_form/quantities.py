@@ -116,4 +116,4 @@ def _group(scene: ShortForm, name: str) -> Group:
     elif axes == NO_AXES:
         components, frame = [f"{c}_dot" for c in free], ""
     says = says.format(about=about, free=", ".join(free))
-    return Group(name, tuple(components), unit, frame, low, high, says)
+    return Group(name, tuple(components), unit, frame, low, high, says, name == "attitude")
