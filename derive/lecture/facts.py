@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from sympy import Expr, MatrixBase
+from sympy import Expr
 
 from derive.lecture.rate import rate, rate_of, seen_from_axes, seen_from_N
 from derive.lecture.relations import remainders
@@ -90,10 +90,7 @@ class Facts:
         return tuple(d for left, right in claims for d in self._difference(left, right))
 
     def _difference(self, left: Expression, right: Expression) -> list[Expr]:
-        sides = self.read(left), self.read(right)
-        if isinstance(sides[0], MatrixBase):
-            return entries(expanded(sides[0] - sides[1]))
-        return entries(expanded(sides[0] - sides[1]))
+        return entries(self.read(left) - self.read(right))
 
     def relations(self) -> tuple[Expr, ...]:
         """Return what the reasons say is zero."""

@@ -7,6 +7,7 @@ once in set-up; differences such as I_yy - I_zz then lose nothing to cancellatio
 from collections import Counter
 from collections.abc import Callable, Iterable
 from fractions import Fraction
+from functools import partial, reduce
 
 from derive.lower.graph import ONE, UNIT, Graph, Value
 
@@ -64,10 +65,8 @@ def _terms(graph: Graph, node: int, visit: Visit) -> Expanded:
         case "sum":
             return _added(graph, [_scaled(graph, visit(n), c) for c, n in rest[0]])
         case "product":
-            product: Expanded = {(): UNIT}
-            for base, power in rest[0]:
-                product = _multiplied(graph, product, _powered(graph, base, power, visit))
-            return product
+            each = (_powered(graph, base, power, visit) for base, power in rest[0])
+            return reduce(partial(_multiplied, graph), each)
     return {((node, 1),): UNIT}
 
 
@@ -76,10 +75,7 @@ def _powered(graph: Graph, base: int, power: int, visit: Visit) -> Expanded:
         if graph.fixed[base]:
             return {(): graph.power((UNIT[0], base), power)}
         return {((base, power),): UNIT}
-    result: Expanded = {(): UNIT}
-    for _ in range(power):
-        result = _multiplied(graph, result, visit(base))
-    return result
+    return reduce(partial(_multiplied, graph), [visit(base)] * power)
 
 
 def _scaled(graph: Graph, these: Expanded, factor: Fraction) -> Expanded:
@@ -99,9 +95,9 @@ def _multiplied(graph: Graph, left: Expanded, right: Expanded) -> Expanded:
     products: list[Expanded] = []
     for first, a in left.items():
         for second, b in right.items():
-            powers = Counter(dict(first))
+            powers = dict(first)
             for node, power in second:
-                powers[node] += power
+                powers[node] = powers.get(node, 0) + power
             monomial = tuple(sorted((n, p) for n, p in powers.items() if p))
             products.append({monomial: graph.mul([a, b])})
     return _added(graph, products)

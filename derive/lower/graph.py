@@ -121,6 +121,8 @@ class Graph:
 
     def power(self, value: Value, exponent: int) -> Value:
         """Return ``value`` to an integer power, negative for a division."""
+        if exponent == 1:
+            return value
         coefficient, node = value
         inner = self.nodes[node][1] if self.nodes[node][0] == "product" else ((node, 1),)
         raised = [

@@ -60,11 +60,12 @@ def chosen(balances: Balances, wanted: frozenset[int], hard: Sequence[Probe] = (
             if kept:
                 return tuple(within[k] for k in kept), unknowns
             continue
-        for points in ((0, -1), (0,)):
-            each = [[_coefficients(row, point) for row in within] for point in points]
-            kept = independent_at_all(each, len(unknowns))
-            if len(kept) == len(unknowns):
-                return tuple(within[k] for k in kept), unknowns
+        here, at_rest = ([_coefficients(row, point) for row in within] for point in (0, -1))
+        kept = independent(here, len(unknowns))
+        if len(kept) == len(unknowns):
+            both = independent_at_all([here, at_rest], len(unknowns))
+            kept = both if len(both) == len(kept) else kept
+            return tuple(within[k] for k in kept), unknowns
     raise SceneError(undetermined(balances, wanted))
 
 
@@ -284,7 +285,8 @@ def _contradicted(rows: Sequence[ValuedBalance], point: int) -> list[ValuedBalan
             left = [v / size for v in values]
             for pivot, other in kept:
                 factor = left[pivot]
-                left = [v - factor * w for v, w in zip(left, other, strict=True)]
+                if factor:
+                    left = [v - factor * w for v, w in zip(left, other, strict=True)]
             free = max(range(1, len(left)), key=lambda k: abs(left[k]), default=0)
             if free and abs(left[free]) > CLEAR:
                 kept.append((free, [v / left[free] for v in left]))

@@ -36,14 +36,14 @@ def lean(problem: Problem, words: Words) -> Lean:
     """
     here = [random_probe(words, n).values for n in range(POINTS)]
     there = [random_probe(words, n + OTHERS).values for n in range(POINTS)]
-    own = _everywhere(problem, here)
-    if own is None:
+    own = [_answers(problem, values) for values in here]
+    if None in own:
         raise SceneError(f"'{problem.name}' has no answer at a trial point: "
                          "its balances are singular there")  # fmt: skip
 
     def stay(changed: Sequence[dict[Symbol, Any]]) -> bool:
-        places = [values | more for values, more in zip(here, changed, strict=True)]
-        return _same(own, _everywhere(problem, places))
+        each = zip(own, here, changed, strict=True)
+        return all(_same(one, _answers(problem, values | more)) for one, values, more in each)
 
     arguments = sorted(problem.arguments(), key=str)
     idle = [s for s in arguments if stay([{s: values[s]} for values in there])]
@@ -59,12 +59,6 @@ def lean(problem: Problem, words: Words) -> Lean:
                 break
     current = substituted(problem, taken)
     return Lean(current, tuple(s for s in idle if s in taken and s not in words.hidden))
-
-
-def _everywhere(problem: Problem, places: Sequence[Mapping[Symbol, Any]]) -> list[Any] | None:
-    """Return the answers at all trial points in one list."""
-    found = [_answers(problem, values) for values in places]
-    return None if None in found else [x for each in found if each is not None for x in each]
 
 
 def _answers(problem: Problem, values: Mapping[Symbol, Any]) -> list[Any] | None:

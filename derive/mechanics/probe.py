@@ -67,6 +67,12 @@ class Probe:
 
 def random_probe(words: Words, number: int) -> Probe:
     """Return random values of all arguments and of the data left out."""
+    if number not in words.trials:
+        words.trials[number] = _drawn(words, number)
+    return Probe(dict(words.trials[number]))
+
+
+def _drawn(words: Words, number: int) -> dict[Symbol, Any]:
     dice = Random(f"{SEED} {number}")  # noqa: S311 - trial values, no secret
     book = words.vocabulary
     values: dict[Symbol, Any] = {}
@@ -77,7 +83,7 @@ def random_probe(words: Words, number: int) -> Probe:
             values |= {book.symbols[c]: x / size for c, x in zip(q.components, own, strict=True)}
         for symbol in words.hidden:
             values[symbol] = _between(dice, mpf(1), mpf(2))
-    return Probe(values)
+    return values
 
 
 def vanishes(words: Words, value: Expr) -> bool:
@@ -174,4 +180,5 @@ def _reduced(row: Mapping[int, Any], kept: list[tuple[int, dict[int, Any]]]) -> 
             for k, v in other.items():
                 left[k] = left.get(k, mpf(0)) - factor * v
             del left[pivot]
-    return {k: v for k, v in left.items() if not small(v, size)}
+    nothing = NOTHING * size
+    return {k: v for k, v in left.items() if abs(v) > nothing}

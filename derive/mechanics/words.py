@@ -1,7 +1,8 @@
 """What a machine's quantities are called: arguments, answers, and the data that nobody knows."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 from sympy import Expr, Integer, Matrix, Symbol, cos, expand_trig, sin, tan
 
@@ -18,12 +19,14 @@ class Words:
     """The vocabulary of a machine, its working sheet, and the data left out by the user.
 
     spoken : the vocabulary in which an input may be an answer of another function as well
+    trials : values that were drawn already, by the number of their trial point
     """
 
     vocabulary: Vocabulary
     spoken: Vocabulary
     sheet: Sheet
     hidden: Mapping[Symbol, str]
+    trials: dict[int, Mapping[Symbol, Any]] = field(default_factory=dict)
 
     def expression(self, formula: Formula) -> Expr:
         """Return a formula in the symbols of the scene, sines and cosines of sums written out.
