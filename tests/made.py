@@ -28,10 +28,15 @@ def short(text: str) -> ShortForm:
 @cache
 def short_of(name: str) -> ShortForm:
     """Return what a short scene of the catalogue declares."""
-    return short((CATALOGUE / f"{name}.toml").read_text(encoding="utf-8"))
+    return short(text_of(name))
 
 
-SHORT = tuple(name for name in catalogue() if "\n[bodies" not in scene_of(name).text)
+def text_of(name: str) -> str:
+    """Return the file of a scene of the catalogue."""
+    return (CATALOGUE / f"{name}.toml").read_text(encoding="utf-8")
+
+
+SHORT = tuple(name for name in catalogue() if "\n[bodies" not in text_of(name))
 """Scenes of the catalogue in short form."""
 
 

@@ -34,6 +34,7 @@ from derive.check.compiler import CompilerError, compiled, find_compiler
 
 DIGITS, SAMPLES = 60, 400
 Form = Callable[[Row, Any], Row]
+Functions = Mapping[str, CFunction]
 
 
 @dataclass(frozen=True)
@@ -41,10 +42,10 @@ class Formula:
     """A hard formula: what it is given, the naive form of it, ours, and what it should be."""
 
     name: str
-    measure: str
     naive_says: str
     naive: Form
-    ours: str
+    ours_says: str
+    ours: Callable[[Functions, Row, Any], Row]
     samples: Callable[[random.Random, str], Row]
     true: Callable[[Row], Sequence[Any]]
     bound: float  # in u
@@ -53,25 +54,22 @@ class Formula:
 
 def formulas(folder: Path) -> Iterator[Hard]:
     """Yield the rows of formulas. Raises ImportError without mpmath and numpy."""
-    called = callable_by_precision(emission("formulas"), folder)
-    for formula in FORMULAS:
-        yield _row(formula, called)
+    return rows(FORMULAS, callable_by_precision(emission("formulas"), folder))
 
 
-def _row(formula: Formula, called: Mapping[str, Mapping[str, CFunction]]) -> Hard:
-    """Return the row of a formula; the digits of references end with it."""
+def rows(of: Sequence[Formula], called: Mapping[str, Functions]) -> Iterator[Hard]:
+    """Yield the row of each formula; the digits of references end with it."""
     import mpmath
 
-    with mpmath.workdps(DIGITS):
-        naive = {p: (_largest(formula, partial(_plain, formula.naive, p), p),) for p in PRECISIONS}
-        ours = {
-            p: (_largest(formula, partial(_ours, own[formula.ours]), p),)
-            for p, own in called.items()
-            if formula.ours in own
-        }
-    bound = {p: formula.bound * ROUNDOFF[p] for p in PRECISIONS}
-    return Hard(formula.name, formula.measure, formula.naive_says, naive, formula.ours, ours,
-                bound, formula.why)  # fmt: skip
+    for formula in of:
+        with mpmath.workdps(DIGITS):
+            naive = {p: (worst_of(formula, formula.naive, p),) for p in PRECISIONS}
+            ours = {
+                p: (worst_of(formula, partial(formula.ours, own), p),) for p, own in called.items()
+            }
+        bound = {p: formula.bound * ROUNDOFF[p] for p in PRECISIONS}
+        yield Hard(formula.name, "relative", formula.naive_says, naive, formula.ours_says, ours,
+                   bound, formula.why)  # fmt: skip
 
 
 def callable_by_precision(made: Emission, folder: Path) -> Mapping[str, Mapping[str, CFunction]]:
@@ -88,17 +86,22 @@ def callable_by_precision(made: Emission, folder: Path) -> Mapping[str, Mapping[
     return found
 
 
-def _largest(formula: Formula, form: Callable[[Row], Row], precision: str) -> float:
-    """Return the largest error over the samples, relative to the norm of what it should be."""
+def worst_of(formula: Formula, form: Form, precision: str) -> float:
+    """Return the largest error over the samples, relative to the norm of what it should be.
+
+    A form is given numbers of a type, and every operation of it is rounded to that.
+    """
+    import numpy as np
+
+    real: Any = np.float32 if precision == "f32" else np.float64
     dice = random.Random(formula.name)
-    worst = 0.0
-    for _ in range(SAMPLES):
-        given = rounded(formula.samples(dice, precision), precision)
-        error = _error(form(given), formula.true(given))
-        worst = error if math.isnan(error) else max(worst, error)
-        if math.isnan(worst):
-            return worst
-    return worst
+    errors = []
+    with np.errstate(all="ignore"):
+        for _ in range(SAMPLES):
+            given = rounded(formula.samples(dice, precision), precision)
+            found = [float(x) for x in form([real(x) for x in given], real)]
+            errors.append(_error(found, formula.true(given)))
+    return math.nan if any(map(math.isnan, errors)) else max(errors)
 
 
 def _error(found: Row, true: Sequence[Any]) -> float:
@@ -117,29 +120,25 @@ def rounded(values: Row, precision: str) -> Row:
     return [float(np.float32(x)) for x in values] if precision == "f32" else values
 
 
-def _plain(naive: Form, precision: str, given: Row) -> Row:
-    """Return what a naive form makes of numbers of a type, every operation rounded to it."""
-    import numpy as np
-
-    real: Any = np.float32 if precision == "f32" else np.float64
-    with np.errstate(all="ignore"):
-        return [float(x) for x in naive([real(x) for x in given], real)]
-
-
-def _ours(function: CFunction, given: Row) -> Row:
-    (name,) = (a.name for a in function.arguments if not a.output)
-    (found,) = function({name: given}).values()
+def _called(named: str, own: Functions, given: Row, _: Any) -> Row:
+    (name,) = (a.name for a in own[named].arguments if not a.output)
+    (found,) = own[named]({name: [float(x) for x in given]}).values()
     return found
 
 
+def _formula(name: str, naive_says: str, naive: Form, ours: str, *more: Any) -> Formula:
+    """Return a formula of which ours is a function of its own."""
+    return Formula(name, naive_says, naive, ours, partial(_called, ours), *more)
+
+
 FORMULAS = (
-    Formula("norm of 1e-200 (double), 1e-25 (float)", "relative", "q / sqrt(q . q)", normalised,
-            "quaternion_normalise", tiny, true_unit, 4.0, "a few roundings"),
-    Formula("norm of 1e200 (double), 1e25 (float)", "relative", "q / sqrt(q . q)", normalised,
-            "quaternion_normalise", huge, true_unit, 4.0, "a few roundings"),
-    Formula("logarithm of a small turn", "relative", "2 acos(w) v / sqrt(1 - w^2)", logarithm,
-            "quaternion_log", small_turn, true_logarithm, 8.0, "a few roundings"),
-    Formula("matrix of nearly half a turn", "relative", "from the trace", from_matrix,
-            "quaternion_from_matrix", half_turn, true_from_matrix, 8.0,
-            "the rounding of the nine entries"),
+    _formula("norm of 1e-200 (double), 1e-25 (float)", "q / sqrt(q . q)", normalised,
+             "quaternion_normalise", tiny, true_unit, 4.0, "a few roundings"),
+    _formula("norm of 1e200 (double), 1e25 (float)", "q / sqrt(q . q)", normalised,
+             "quaternion_normalise", huge, true_unit, 4.0, "a few roundings"),
+    _formula("logarithm of a small turn", "2 acos(w) v / sqrt(1 - w^2)", logarithm,
+             "quaternion_log", small_turn, true_logarithm, 8.0, "a few roundings"),
+    _formula("matrix of nearly half a turn", "from the trace", from_matrix,
+             "quaternion_from_matrix", half_turn, true_from_matrix, 8.0,
+             "the rounding of the nine entries"),
 )  # fmt: skip

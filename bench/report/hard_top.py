@@ -5,99 +5,52 @@ function: the residual cancels nothing there, so the root is as good as the resi
 """
 
 import random
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from bench.motion.ours import emission
-from bench.motion.wrong import ROUNDOFF
-from bench.report.case_run import PRECISIONS
+from bench.report.formula_samples import Row
 from bench.report.hard import Hard
-from bench.report.hard_formulas import DIGITS, SAMPLES, callable_by_precision
-from derive.check.call import CFunction
-from derive.program.largest import largest
+from bench.report.hard_formulas import Formula, Functions, callable_by_precision, rows
 
 SECANTS = 8
 TILT = 1e-4  # rad
-Given = Mapping[str, float]
-Form = Callable[[Given, Any], float]
-
-
-@dataclass(frozen=True)
-class Answer:
-    """A number that the top answers with: a naive form, ours, and what it should be."""
-
-    name: str
-    naive_says: str
-    naive: Form
-    ours_says: str
-    ours: Callable[[Mapping[str, CFunction], Given, Any], float]
-    true: Callable[[Given], Any]
-    bound: float  # in u
-    why: str
+NAMES = ("r", "l", "n", "theta", "g")
 
 
 def tops(folder: Path) -> Iterator[Hard]:
     """Yield the rows of the top: largest relative errors over samples."""
-    called = callable_by_precision(emission("top"), folder)
-    for answer in ANSWERS:
-        yield _row(answer, called)
+    return rows(ANSWERS, callable_by_precision(emission("top"), folder))
 
 
-def _row(answer: Answer, called: Mapping[str, Mapping[str, CFunction]]) -> Hard:
-    """Return the row of an answer; the digits of references end with it."""
-    import mpmath
-
-    with mpmath.workdps(DIGITS):
-        naive = {p: (_largest(answer, answer.naive, p),) for p in PRECISIONS}
-        ours = {p: (_largest(answer, partial(answer.ours, own), p),) for p, own in called.items()}
-    bound = {p: answer.bound * ROUNDOFF[p] for p in PRECISIONS}
-    return Hard(answer.name, "relative", answer.naive_says, naive, answer.ours_says, ours,
-                bound, answer.why)  # fmt: skip
+def _sample(dice: random.Random, _: str) -> Row:
+    lengths = dice.uniform(0.04, 0.06), dice.uniform(0.05, 0.07)
+    turning = dice.uniform(3e3, 1e4), TILT * dice.uniform(1, 2)
+    return [*lengths, *turning, dice.uniform(9.7, 9.9)]
 
 
-def _largest(answer: Answer, form: Form, precision: str) -> float:
-    import numpy as np
-
-    real: Any = np.float32 if precision == "f32" else np.float64
-    dice = random.Random(answer.name)
-    errors = []
-    for _ in range(SAMPLES):
-        given = {name: float(real(x)) for name, x in _sample(dice).items()}
-        true = answer.true(given)
-        found = form({name: real(x) for name, x in given.items()}, real)
-        errors.append(abs((float(found) - true) / true))
-    return largest(errors)
-
-
-def _sample(dice: random.Random) -> dict[str, float]:
-    lengths = {"r": dice.uniform(0.04, 0.06), "l": dice.uniform(0.05, 0.07)}
-    turning = {"n": dice.uniform(3e3, 1e4), "theta": TILT * dice.uniform(1, 2)}
-    return lengths | turning | {"g": dice.uniform(9.7, 9.9)}
-
-
-def _moments(given: Given) -> tuple[Any, Any]:
+def _moments(r: Any, l: Any) -> tuple[Any, Any]:  # noqa: E741 - as in the scene
     """Return the moments of a disc on its stem across the axis and along it, over its mass."""
-    square = given["r"] * given["r"]
-    return square / 4 + given["l"] * given["l"], square / 2
+    square = r * r
+    return square / 4 + l * l, square / 2
 
 
-def _printed_root(given: Given, real: Any) -> float:
+def _printed_root(given: Row, real: Any) -> Row:
     import numpy as np
 
-    across, along = _moments(given)
-    twice, spin = 2 * across * np.cos(given["theta"]), along * given["n"]
-    inner = spin * spin - 2 * twice * given["l"] * given["g"]
-    return float((spin - np.sqrt(inner)) / real(twice))
+    r, l, n, theta, g = given  # noqa: E741
+    across, along = _moments(r, l)
+    twice, spin = 2 * across * np.cos(theta), along * n
+    inner = spin * spin - 2 * twice * l * g
+    return [(spin - np.sqrt(inner)) / real(twice)]
 
 
-def _by_secants(own: Mapping[str, CFunction], given: Given, real: Any) -> float:
+def _by_secants(own: Functions, given: Row, real: Any) -> Row:
     constants = _constants(own, given)
 
     def residual(rate: Any) -> Any:
-        asked = {"constants": constants, "theta": [given["theta"]], "W": [float(rate)]}
+        asked = {"constants": constants, "theta": [float(given[3])], "W": [float(rate)]}
         return real(own["steady"](asked)["steady"][0])
 
     last, rate = real(0), real(1e-2)
@@ -107,45 +60,45 @@ def _by_secants(own: Mapping[str, CFunction], given: Given, real: Any) -> float:
             break
         last, rate = rate, rate - here * (rate - last) / (here - before)
         before, here = here, residual(rate)
-    return float(rate)
+    return [rate]
 
 
-def _constants(own: Mapping[str, CFunction], given: Given) -> list[float]:
+def _constants(own: Functions, given: Row) -> list[float]:
+    named = dict(zip(NAMES, given, strict=True))
     names = [a.name for a in own["setup"].arguments if not a.output]
-    return own["setup"]({name: [float(given[name])] for name in names})["constants"]
+    return own["setup"]({name: [float(named[name])] for name in names})["constants"]
 
 
-def _slow_root(given: Given) -> Any:
+def _slow_root(given: Row) -> Sequence[Any]:
     import mpmath
 
-    exact = {name: mpmath.mpf(x) for name, x in given.items()}
-    across, along = _moments(exact)
-    weight, spin = exact["l"] * exact["g"], along * exact["n"]
-    inner = spin * spin - 4 * across * mpmath.cos(exact["theta"]) * weight
-    return 2 * weight / (spin + mpmath.sqrt(inner))
+    r, l, n, theta, g = map(mpmath.mpf, given)  # noqa: E741
+    across, along = _moments(r, l)
+    weight, spin = l * g, along * n
+    inner = spin * spin - 4 * across * mpmath.cos(theta) * weight
+    return [2 * weight / (spin + mpmath.sqrt(inner))]
 
 
-def _one_minus_cosine(given: Given, real: Any) -> float:
+def _one_minus_cosine(given: Row, real: Any) -> Row:
     import numpy as np
 
-    return float(given["l"] * (real(1) - np.cos(given["theta"])))
+    return [given[1] * (real(1) - np.cos(given[3]))]
 
 
-def _sunk(own: Mapping[str, CFunction], given: Given, real: Any) -> float:
-    asked = {"constants": _constants(own, given), "theta": [float(given["theta"])]}
-    return float(real(own["sunk"](asked)["sunk"][0]))
+def _sunk(own: Functions, given: Row, _: Any) -> Row:
+    return own["sunk"]({"constants": _constants(own, given), "theta": [float(given[3])]})["sunk"]
 
 
-def _sunk_truly(given: Given) -> Any:
+def _sunk_truly(given: Row) -> Sequence[Any]:
     import mpmath
 
-    return given["l"] * (1 - mpmath.cos(mpmath.mpf(given["theta"])))
+    return [given[1] * (1 - mpmath.cos(mpmath.mpf(given[3])))]
 
 
 ANSWERS = (
-    Answer("slow precession of a fast top", "(C n - sqrt(C^2 n^2 - 4 A m g l cos)) / (2 A cos)",
-           _printed_root, "steady, by secants", _by_secants, _slow_root, 8.0,
-           "the residual's rounding beside its largest term"),
-    Answer("1 - cos at a tilt of 1e-4 rad", "l (1 - cos)", _one_minus_cosine, "sunk, a result",
-           _sunk, _sunk_truly, 4.0, "a few roundings"),
+    Formula("slow precession of a fast top", "(C n - sqrt(C^2 n^2 - 4 A m g l cos)) / (2 A cos)",
+            _printed_root, "steady, by secants", _by_secants, _sample, _slow_root, 8.0,
+            "the residual's rounding beside its largest term"),
+    Formula("1 - cos at a tilt of 1e-4 rad", "l (1 - cos)", _one_minus_cosine, "sunk, a result",
+            _sunk, _sample, _sunk_truly, 4.0, "a few roundings"),
 )  # fmt: skip

@@ -16,9 +16,15 @@ from derive.program.run import run
 from derive.program.tape import Tape
 from tests.motion.systems import start, system
 
-JACOBIAN = step(system("principal"), "step_rk4_jacobian")
-# names of operations tell in which order they were recorded
-RECORDED = replace(JACOBIAN, ops=tuple(sorted(JACOBIAN.ops, key=lambda op: int(op.result[1:]))))
+
+@pytest.fixture(scope="module")
+def jacobian() -> Program:
+    return step(system("principal"), "step_rk4_jacobian")
+
+
+def recorded(program: Program) -> Program:
+    """Return operations as they were recorded: their names tell in which order."""
+    return replace(program, ops=tuple(sorted(program.ops, key=lambda op: int(op.result[1:]))))
 
 
 def soon(program: Program) -> float:
@@ -28,36 +34,37 @@ def soon(program: Program) -> float:
     return sum(gap <= 8 for gap in gaps) / len(gaps)
 
 
-def test_more_values_are_read_soon() -> None:
-    assert soon(JACOBIAN) > 1.25 * soon(RECORDED)  # 48 % against 36 %
+def test_more_values_are_read_soon(jacobian: Program) -> None:
+    assert soon(jacobian) > 1.25 * soon(recorded(jacobian))  # 48 % against 36 %
 
 
-def test_the_results_are_the_same_bits() -> None:
-    assert set(JACOBIAN.ops) == set(RECORDED.ops)
+def test_the_results_are_the_same_bits(jacobian: Program) -> None:
+    other = recorded(jacobian)
+    assert set(jacobian.ops) == set(other.ops)
     values = {c: np.float32(float(v)) for c, v in start("principal").items()}
-    given = [values[c] for q in JACOBIAN.inputs for c in q.components]
-    ends = [run(program, working(np.float32), given) for program in (JACOBIAN, RECORDED)]
+    given = [values[c] for q in jacobian.inputs for c in q.components]
+    ends = [run(program, working(np.float32), given) for program in (jacobian, other)]
     assert ends[0] == ends[1]
 
 
-def test_every_value_is_made_before_it_is_read() -> None:
-    made: set[str] = {c for q in JACOBIAN.inputs for c in q.components}
-    for op in JACOBIAN.ops:
+def test_every_value_is_made_before_it_is_read(jacobian: Program) -> None:
+    made: set[str] = {c for q in jacobian.inputs for c in q.components}
+    for op in jacobian.ops:
         assert {o for o in op.operands if isinstance(o, str)} <= made
         made.add(op.result)
 
 
-def test_the_order_of_an_order_is_the_same() -> None:
-    assert with_values_read_soon(JACOBIAN).ops == with_values_read_soon(JACOBIAN).ops
+def test_the_order_of_an_order_is_the_same(jacobian: Program) -> None:
+    assert with_values_read_soon(jacobian).ops == with_values_read_soon(jacobian).ops
 
 
 @pytest.mark.parametrize("change", [with_values_read_soon, lambda p: with_signs_moved(p, "t")])
-def test_a_program_with_a_loop_is_refused(change) -> None:
+def test_a_program_with_a_loop_is_refused(change, jacobian: Program) -> None:
     body = (Op("a", "add", ("x", "x")),)
     carried = {"carried": ("x",), "start": ("attitude_w",), "then": ("a",)}
     loop = Loop("", Index(), Index(plus=3), body, **carried)
     with pytest.raises(TypeError, match="'step_rk4_jacobian' has a loop"):
-        change(replace(JACOBIAN, ops=(loop,)))
+        change(replace(jacobian, ops=(loop,)))
 
 
 def test_what_differs_by_its_sign_only_is_computed_once() -> None:
