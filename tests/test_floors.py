@@ -5,7 +5,7 @@ SymPy stays with the symbols, and what only the checkout has stays out of the pa
 
 import ast
 import re
-from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -49,20 +49,29 @@ def floor(name: str) -> int:
     return ROOMS.index(name)
 
 
-def imported(text: str) -> Iterator[str]:
-    """Yield the dotted name of every module that a source text imports, wherever it does."""
-    for node in ast.walk(ast.parse(text)):
+@cache
+def nodes_of(text: str) -> tuple[ast.AST, ...]:
+    """Return all that a source text is made of."""
+    return tuple(ast.walk(ast.parse(text)))
+
+
+@cache
+def imported(text: str) -> frozenset[str]:
+    """Return the dotted name of every module that a source text imports, wherever it does."""
+    found = set()
+    for node in nodes_of(text):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module == "derive":
-            yield from (f"derive.{alias.name}" for alias in node.names)
+            found |= {f"derive.{alias.name}" for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
-            yield node.module
+            found.add(node.module)
+    return frozenset(found)
 
 
 def faults(name: str, text: str) -> list[str]:
     """Return a sentence for every import of room ``name`` that goes up, or out of the package."""
-    modules = set(imported(text))
+    modules = imported(text)
     rooms = {m.split(".")[1] for m in modules if m.startswith("derive.")} - {name, "__version__"}
     up = [
         f"derive/{name} (floor {floor(name)}) imports derive/{other} (floor {floor(other)})"
@@ -98,7 +107,7 @@ def test_a_module_that_imports_mechanics_is_counted_however_it_does() -> None:
 
 def forms_known(text: str) -> set[str]:
     """Return what a source text names of the two forms that a scene may be written in."""
-    nodes = list(ast.walk(ast.parse(text)))
+    nodes = nodes_of(text)
     names = {getattr(n, "id", getattr(n, "attr", "")) for n in nodes}
     names |= {alias.name for n in nodes if isinstance(n, ast.ImportFrom) for alias in n.names}
     return {*FORMS} & {*names, *(part for m in imported(text) for part in m.split("."))}
@@ -203,5 +212,5 @@ def _dotted(path: Path) -> str:
     return ".".join(parts).removesuffix(".__init__")
 
 
-def _modules(path: Path) -> set[str]:
-    return set(imported(path.read_text(encoding="utf-8"))) - {_dotted(path)}
+def _modules(path: Path) -> frozenset[str]:
+    return imported(path.read_text(encoding="utf-8")) - {_dotted(path)}

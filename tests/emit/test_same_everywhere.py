@@ -9,6 +9,7 @@ there is by .ci/run; this test reads the sources, and so sees what no scene happ
 import ast
 import math
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -81,6 +82,11 @@ WHOLE = {
 """Sums of whole numbers, fractions, balls or expressions, which are exact: file and function."""
 
 
+@cache
+def parsed(source: Path) -> ast.Module:
+    return ast.parse(source.read_text(encoding="utf-8"))
+
+
 def judged() -> list[Path]:
     return [s for s in SOURCES if name(s).split("/")[0] not in MEASURED]
 
@@ -130,12 +136,12 @@ def name(source: Path) -> str:
 
 
 def test_no_module_asks_for_what_is_rounded_differently_elsewhere() -> None:
-    found = {f"{name(s)}: {what}" for s in judged() for what in asked(ast.parse(s.read_text()))}
+    found = {f"{name(s)}: {what}" for s in judged() for what in asked(parsed(s))}
     assert found == set(ASKED)
 
 
 def test_floats_are_added_by_no_sum_of_the_interpreter() -> None:
-    found = {f"{name(s)}: {where}" for s in SOURCES for where in sums(ast.parse(s.read_text()))}
+    found = {f"{name(s)}: {where}" for s in SOURCES for where in sums(parsed(s))}
     assert found == set(WHOLE)
 
 

@@ -83,7 +83,7 @@ print(json.dumps({"drag": [float(drag)], "jacobian": [float(slope)]}))
 def spread(folder: Path, rooms: dict[str, str]) -> None:
     """Copy the package, with a row for the hyperbolic tangent in the tables of some rooms."""
     for name in ("derive", "templates"):
-        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(ROOT / name, folder / name)
     for file, row in rooms.items():
         path = folder / "derive" / file
         text = path.read_text(encoding="utf-8")

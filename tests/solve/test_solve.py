@@ -17,9 +17,17 @@ TOP = {"m": 0.5, "r": 0.05, "l": 0.06, "g": 9.81, "n": 120.0}
 START = {"alpha": 0.1, "beta": 0.0, "alpha_dot": 0.0, "beta_dot": 0.0}
 
 
-@cache
+opened_once = cache(opened)
+
+
+@pytest.fixture(autouse=True)
+def once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the command open a scene once, however often it is run on it."""
+    monkeypatch.setattr("derive.solve.command.opened", opened_once)
+
+
 def top() -> Instrument:
-    return opened("sleeping_top")
+    return opened_once("sleeping_top")
 
 
 def test_an_answer_is_printed_with_its_unit(capsys: pytest.CaptureFixture[str]) -> None:
