@@ -30,7 +30,7 @@ def lecture(given: argparse.Namespace) -> int:
 def _verified() -> int:
     with progress() as shown:
         shown.add_task("verifying the lecture")
-        rows = verify(LECTURE)
+        rows = tuple(verify(LECTURE))
     table = Table("step", "kind", "because of", "checked", box=None)
     for row in rows:
         verdict = "holds" if row.holds else f"FAILS: {row.fault}"

@@ -23,10 +23,6 @@ from derive.lecture.vectors import Expression, zero
 ScalarOrColumn = Expression | tuple[Expression, ...]
 
 
-class StepError(AssertionError):
-    """A step does not follow from its reasons, or breaks a rule of the lecture."""
-
-
 @dataclass(frozen=True)
 class Step:
     """One line of the lecture: ``left = right``, because of ``using``.
@@ -111,18 +107,6 @@ class Checked:
         return not self.fault
 
 
-def verify(derivation: Derivation) -> tuple[Checked, ...]:
-    """Check every step exactly and return one row a step, in reading order."""
-    return tuple(_rows(derivation))
-
-
-def require(derivation: Derivation) -> None:
-    """Raise StepError at the first step that does not stand."""
-    for row in _rows(derivation):
-        if not row.holds:
-            raise StepError(f"{row.name}: {row.fault}")
-
-
 def first_fall(derivation: Derivation, reason: str) -> tuple[Step, Expression] | None:
     """Return the first step that falls without ``reason`` and what is then left of left - right.
 
@@ -144,7 +128,8 @@ def leftover(derivation: Derivation, step: Step) -> Expression:
     return zero()
 
 
-def _rows(derivation: Derivation) -> Iterator[Checked]:
+def verify(derivation: Derivation) -> Iterator[Checked]:
+    """Check every step exactly and yield one row a step, in reading order."""
     spoken: set[str] = set()
     above: set[str] = set()
     for step in derivation.steps:

@@ -1,5 +1,6 @@
 """The checker itself: it sees only the reasons, notices what is wrong, lets no claim slip in."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -10,7 +11,7 @@ from derive.lecture.chapters.letters import F_i, I, M, Omega, P_ij, dm, l, omega
 from derive.lecture.facts import CircularError, Facts
 from derive.lecture.rate import rate, seen_from_axes, seen_from_N
 from derive.lecture.relations import ContradictionError, remainders
-from derive.lecture.step import Derivation, Step, StepError, first_fall, require, verify
+from derive.lecture.step import Derivation, Step, first_fall, verify
 from derive.lecture.sums import linear_map, others, reading, varies
 from derive.lecture.tree import collected
 from derive.lecture.vectors import cross, dot, number, scalar, tensor, total, vector, zero
@@ -28,16 +29,19 @@ def faults(*steps: Step) -> list[str]:
     return [row.fault for row in verify(Derivation("of the test", steps))]
 
 
+def first_fault(derivation: Derivation) -> str:
+    """Return the first step that does not stand, and why."""
+    return next(f"{row.name}: {row.fault}" for row in verify(derivation) if not row.holds)
+
+
 def test_a_wrong_step_is_named_with_what_is_left() -> None:
     wrong = replace(LECTURE["angular_momentum"], using=("inertia_tensor",))
-    with pytest.raises(StepError, match=r"angular_momentum: left - right = .*l_x"):
-        require(with_step(wrong))
+    assert re.search(r"angular_momentum: left - right = .*l_x", first_fault(with_step(wrong)))
 
 
 def test_a_step_may_use_only_steps_above_it() -> None:
     early = replace(LECTURE["mass_is_constant"], using=("mass", "constant_mass", "euler"))
-    with pytest.raises(StepError, match="uses euler, which is not a step above it"):
-        require(with_step(early))
+    assert "uses euler, which is not a step above it" in first_fault(with_step(early))
 
 
 def test_a_name_is_taken_once() -> None:
@@ -47,8 +51,8 @@ def test_a_name_is_taken_once() -> None:
 
 def test_a_definition_may_not_name_again_what_was_spoken_of() -> None:
     smuggled = replace(LECTURE["principal_axes"], kind="define", left=M, right=l)
-    with pytest.raises(StepError, match="principal_axes: defines M again"):
-        require(with_step(smuggled, "moment", "body_axes_form"))
+    changed = with_step(smuggled, "moment", "body_axes_form")
+    assert "principal_axes: defines M again" in first_fault(changed)
 
 
 def test_a_definition_may_not_speak_of_the_rate_of_something_known() -> None:
@@ -93,11 +97,9 @@ def test_a_theorem_may_not_be_carried_to_a_body_whose_sums_differ() -> None:
     step = LECTURE["wheel_obeys_the_same_law"]
     moment = LECTURE["moment_on_wheel"]
     other = replace(moment, right=(moment.claims[0][1], total(cross(rho, F_i), "wheel")))
-    with pytest.raises(StepError, match="M_w is not defined as M is"):
-        require(with_step(other, "wheel_obeys_the_same_law"))
+    assert "M_w is not defined as M is" in first_fault(with_step(other, step.name))
     partly = replace(step, instance=tuple(p for p in step.instance if p[0] != "M"))
-    with pytest.raises(StepError, match="does not say what M is"):
-        require(with_step(partly))
+    assert "does not say what M is" in first_fault(with_step(partly))
 
 
 def test_a_dropped_assumption_shows_the_first_step_that_falls_and_what_is_left() -> None:
@@ -165,6 +167,5 @@ def test_a_remainder_is_zero_only_for_what_follows() -> None:
 
 def test_the_tensor_of_a_step_is_the_one_that_was_defined() -> None:
     wrong = replace(LECTURE["inertia_tensor"], right=total(dm * dot(rho, rho)) * tensor("E"))
-    with pytest.raises(StepError, match="angular_momentum"):
-        require(with_step(wrong, "angular_momentum"))
+    assert "angular_momentum" in first_fault(with_step(wrong, "angular_momentum"))
     assert I.shape == (3, 3)
