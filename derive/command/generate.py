@@ -90,12 +90,13 @@ def made_of(
     """Return what scenes become, none meaning all, and what is made also; print the warnings."""
     sources = [str(source) for source in scenes or catalogue()]
     _distinct(sources)
+    tasks: list[Callable[[], Made]] = [*(partial(making, source) for source in sources), *also]
     found: dict[int, Made] = {}
     with progress() as shown:
         task = shown.add_task("deriving, proving and measuring")
-        for place, result in all_made(sources, also, making):
+        for place, result in all_made(tasks):
             found[place] = result
-            done = f"{len(found)} of {len(sources) + len(also)} done"
+            done = f"{len(found)} of {len(tasks)} done"
             shown.update(task, description=f"deriving, proving and measuring: {done}")
     results = [found[place] for place in sorted(found)]
     for warning in (w for result in results for w in result.warnings):

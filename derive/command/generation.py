@@ -124,17 +124,12 @@ def _errors(function: str, measured: Sequence[Measurement]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def all_made(
-    sources: Sequence[str], also: Sequence[Callable[[], Made]], making: Callable[[str], Made]
-) -> Iterator[tuple[int, Made]]:
-    """Yield place and result of every source, then of what is made ``also``, as they are done."""
-    if len(sources) + len(also) == 1:
-        yield 0, making(sources[0]) if sources else also[0]()
+def all_made(tasks: Sequence[Callable[[], Made]]) -> Iterator[tuple[int, Made]]:
+    """Yield place and result of every task, as they are done."""
+    if len(tasks) == 1:
+        yield 0, tasks[0]()
         return
     with ProcessPoolExecutor() as pool:
-        # What is made also takes longest, so it starts first.
-        last = {pool.submit(task): len(sources) + k for k, task in enumerate(also)}
-        scenes = {pool.submit(making, source): k for k, source in enumerate(sources)}
-        waiting = last | scenes
+        waiting = {pool.submit(task): place for place, task in enumerate(tasks)}
         for future in as_completed(waiting):
             yield waiting[future], future.result()

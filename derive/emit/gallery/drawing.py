@@ -7,6 +7,7 @@ angles and lengths: a machine at seven tenths of their ranges, a single body in 
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from math import fsum
 from typing import Any
 
 from mpmath import mp, mpf
@@ -109,19 +110,19 @@ def _reach(points: Iterable[Position]) -> Any:
     return max(spans) or mpf(1)
 
 
-def _seen(point: Position) -> tuple[Any, Any]:
-    right, up = (sum((s * x for s, x in zip(way, point, strict=True)), mpf(0)) for way in SIGHT)
+def _seen(point: Position) -> tuple[float, float]:
+    right, up = (fsum(s * float(x) for s, x in zip(way, point, strict=True)) for way in SIGHT)
     return right, -up
 
 
 def _svg(lines: Sequence[Polyline], says: str) -> str:
     flat = [[_seen(p) for p in line.points] for line in lines]
     xs, ys = zip(*(p for line in flat for p in line), strict=True)
-    wide, high = max(xs) - min(xs) or mpf(1), max(ys) - min(ys) or mpf(1)
+    wide, high = max(xs) - min(xs) or 1.0, max(ys) - min(ys) or 1.0
     scale = min((WIDTH - 2 * MARGIN) / wide, (HEIGHT - 2 * MARGIN) / high)
     left = (WIDTH - scale * wide) / 2 - scale * min(xs)
     top = (HEIGHT - scale * high) / 2 - scale * min(ys)
-    placed = [[(float(left + scale * x), float(top + scale * y)) for x, y in line] for line in flat]
+    placed = [[(left + scale * x, top + scale * y) for x, y in line] for line in flat]
     return TEMPLATES.get_template("drawing.svg.jinja").render(
         size=(WIDTH, HEIGHT), says=says, lines=list(zip(lines, placed, strict=True))
     )
