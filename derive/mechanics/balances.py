@@ -101,23 +101,30 @@ class Balances:
     @cached_property
     def rows(self) -> tuple[ValuedBalance, ...]:
         """Return every balance that holds anything, plainest first."""
-        with mp.workdps(DIGITS):
-            most = min(len(self.sides.efforts), MOST_TOGETHER)
-            return tuple(row for row in self._every(most) if not row.empty)
+        most = min(len(self.sides.efforts), MOST_TOGETHER)
+        return (*self.alone, *self._every(range(2, most + 1)))
 
     @cached_property
     def alone(self) -> tuple[ValuedBalance, ...]:
         """Return the balances of single bodies."""
-        with mp.workdps(DIGITS):
-            return tuple(row for row in self._every(1) if not row.empty)
+        return self._every(range(1, 2))
 
-    def _every(self, most: int) -> Iterator[ValuedBalance]:
+    @cached_property
+    def _valued(self) -> list[Valued]:
+        return [Valued(self.sides, probe) for probe in trial_points(self.frames)]
+
+    def _every(self, sizes: range) -> tuple[ValuedBalance, ...]:
+        """Return the balances of so many bodies together that hold anything."""
         own = {name: effort.frame for name, effort in self.sides.efforts.items()}
-        valued = [Valued(self.sides, probe) for probe in trial_points(self.frames)]
-        for size in range(1, most + 1):
-            for bodies in filter(self._joined, combinations(own, size)):
-                if all(self.frames.linked(own[bodies[0]], own[b]) for b in bodies):
-                    yield from self._on(bodies, valued)
+        with mp.workdps(DIGITS):
+            return tuple(
+                row
+                for size in sizes
+                for bodies in filter(self._joined, combinations(own, size))
+                if all(self.frames.linked(own[bodies[0]], own[b]) for b in bodies)
+                for row in self._on(bodies, self._valued)
+                if not row.empty
+            )
 
     def _joined(self, bodies: tuple[str, ...]) -> bool:
         """Tell whether bodies hang together by loads between them, or are few or all."""
@@ -268,8 +275,8 @@ class Balances:
     def body_by_body(self) -> "Balances":
         """Return the balances of single bodies, about their mass centres only."""
         fewer = Balances(self.frames, self.expressions)
-        fewer.rows = tuple(r for r in self.rows if len(r.balance.bodies) == 1
-                           and (r.balance.kind == "force" or r.balance.central))  # fmt: skip
+        fewer.alone = self.alone
+        fewer.rows = tuple(r for r in self.alone if r.balance.kind == "force" or r.balance.central)
         return fewer
 
     def at(self, row: ValuedBalance, valued: Valued) -> NDArray[Any]:

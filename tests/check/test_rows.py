@@ -27,7 +27,7 @@ def rows(scene: str, workshop: Path) -> tuple[Verdict, ...]:
     return tuple(check_library(made, texts, workshop, find_compiler(), FEW))
 
 
-@pytest.mark.parametrize("scene", thinned(["attitude", "eulers_disk", "heavy_top"], 2))
+@pytest.mark.parametrize("scene", thinned(["attitude", "eulers_disk", "heavy_top"], 3))
 def test_a_row_that_holds_has_compared_something(scene: str, workshop: Path) -> None:
     held = [v for v in rows(scene, workshop) if v.outcome == "holds"]
     assert [v for v in held if v.says.startswith("0 ")] == []
