@@ -7,6 +7,8 @@ one sentence says what, by which rule, and what was found.
 import argparse
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from derive import __version__
 from derive.check.compiler import CompilerError
 from derive.command import check, generate, lecture, report, scenes, solve
@@ -33,7 +35,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser().parse_args(arguments)
     command: Callable[[argparse.Namespace], int] = options.run
     try:
-        return command(options)
+        with np.errstate(all="ignore"):  # what overflows is refused or told by a sentence of ours
+            return command(options)
     except ProofError as error:
         complain(f"derive: {error}", "red")
         return 1

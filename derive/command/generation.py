@@ -72,7 +72,8 @@ def _made(programs: Library, measuring: Measuring) -> Made:
 
 def _ranges_of_floats(programs: Library) -> None:
     """Refuse a range whose ends are beyond the smaller of the float types."""
-    for q in programs.vocabulary.given():
+    given = (q for p in programs.printed() for q in p.inputs)
+    for q in (*programs.vocabulary.given(), *given):
         end = max(abs(float(q.low or 0)), abs(float(q.high or 0)))
         if end > LARGEST_FLOAT:
             raise SceneError(

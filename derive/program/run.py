@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
 from derive.program.indexed import Assign, Even, Integers, Loop, Row, value_at
 from derive.program.program import Line, Op, Operand, Program, component_names
 from derive.scene.formula import Arithmetic
@@ -18,9 +20,10 @@ def run(program: Program, arithmetic: Arithmetic, values: Sequence[Any]) -> list
     and "number" for constants, to a callable; loops need its "select" and "either".
     """
     names = [name for quantity in program.inputs for name in quantity.components]
-    known = dict(zip(names, values, strict=True)) | numbers_of(program, arithmetic)
-    run_lines(program.ops, arithmetic, known)
-    return values_of(program.results, arithmetic, known)
+    with np.errstate(all="ignore"):  # an overflow is seen in the results, as it is in C
+        known = dict(zip(names, values, strict=True)) | numbers_of(program, arithmetic)
+        run_lines(program.ops, arithmetic, known)
+        return values_of(program.results, arithmetic, known)
 
 
 def results_by_name(

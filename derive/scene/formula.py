@@ -14,6 +14,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
+from mpmath import mp, mpf
+
 from derive.scene.functions import FUNCTIONS, PLAIN
 
 LARGEST_EXPONENT = 16
@@ -189,6 +191,34 @@ FLOATS: Arithmetic = {
     "power": operator.pow,
     **{name: function.floats for name, function in FUNCTIONS.items()},
 }
+
+_WIDE: Arithmetic = {
+    **FLOATS,
+    "number": lambda exact: mpf(exact.numerator) / exact.denominator,
+    "sqrt": lambda x: math.sqrt(x) if x < 0 else mp.sqrt(x),
+}
+"""Numbers of 53 bits and of any size, for what is beyond floats on the way to its value."""
+
+
+def in_floats(formula: Formula, values: Mapping[str, float]) -> Any:
+    """Return a formula's value, nan where it has none; beyond floats it is a number of mpmath's.
+
+    >>> x, large = symbol("x"), number(10**300)
+    >>> print(in_floats(x * large * large, {"x": 2.0}))
+    2.0e+600
+    """
+    found = _tried(formula, values, FLOATS)
+    if formula.operator != "number" and (found == 0 or not math.isfinite(found)):
+        return _tried(formula, {name: mpf(x) for name, x in values.items()}, _WIDE)
+    return found
+
+
+def _tried(formula: Formula, values: Mapping[str, Any], arithmetic: Arithmetic) -> Any:
+    try:
+        return evaluate(formula, values, arithmetic)
+    except (ArithmeticError, ValueError):
+        return math.nan
+
 
 _LONG_TAIL = re.compile("(?<=[0-9])0{16,300}$")
 _SUM, _PRODUCT, _SIGNED, _POWER, _ATOM = range(5)

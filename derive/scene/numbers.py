@@ -12,7 +12,7 @@ from typing import cast
 
 from derive.scene.declaration import Moving, Parameter, SceneError, Sextuple, Triple
 from derive.scene.escape import at_place, brief
-from derive.scene.formula import FLOATS, ZERO, Formula, evaluate, symbols
+from derive.scene.formula import ZERO, Formula, in_floats, symbols
 from derive.scene.machine import Entries
 
 MOST_ENDS = 256
@@ -52,10 +52,7 @@ def points_of(parameters: Iterable[Parameter], formulas: Iterable[Formula]) -> l
 
 def value(formula: Formula, values: Valuation, label: str) -> float:
     """Return a formula's value, finite or refused."""
-    try:
-        found = float(evaluate(formula, values, FLOATS))
-    except (ArithmeticError, ValueError):
-        found = math.nan
+    found = float(in_floats(formula, values))
     if not math.isfinite(found):
         raise SceneError(f"{label} = '{brief(formula)}' has no value{where(values, (formula,))}")
     return found

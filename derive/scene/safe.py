@@ -18,7 +18,7 @@ from mpmath import iv
 
 from derive.scene.declaration import SceneError
 from derive.scene.escape import at_place, brief
-from derive.scene.formula import FLOATS, Formula, apply, evaluate, symbols
+from derive.scene.formula import Formula, apply, evaluate, in_floats, symbols
 from derive.scene.functions import INTERVALS
 from derive.scene.numbers import Ranges, Valuation, middle, points
 
@@ -146,18 +146,15 @@ def _nothing(part: Formula) -> bool:
     return all(math.isfinite(size) and abs(x) <= ROUNDING * size for x, size in sized)
 
 
-def _sized(part: Formula, values: Valuation) -> tuple[float, float]:
+def _sized(part: Formula, values: Valuation) -> tuple[Any, Any]:
     """Return a formula's value and the size of its terms, nan where it has none."""
-    try:
-        return float(evaluate(part, values, FLOATS)), _size(part, values)
-    except (ArithmeticError, ValueError):
-        return math.nan, math.nan
+    return in_floats(part, values), _size(part, values)
 
 
-def _size(part: Formula, values: Valuation) -> float:
+def _size(part: Formula, values: Valuation) -> Any:
     if part.operator in ("add", "sub"):
         return reduce(add, (_size(p, values) for p in part.operands), 0.0)
-    return max(abs(float(evaluate(part, values, FLOATS))), 0.0)
+    return abs(in_floats(part, values))
 
 
 def _points(box: Ranges) -> Iterator[Valuation]:
