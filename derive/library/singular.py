@@ -73,13 +73,15 @@ def _run(
     names = [c for q in program.inputs for c in q.components]
     count = len(next(iter(given.values())))
     values = [given.get(n, np.full(count, known.get(n, 0.0))) for n in names]
-    return run(program, arithmetic, values)
+    with np.errstate(all="ignore"):
+        return run(program, arithmetic, values)
 
 
 def _constants(setup: Program) -> dict[str, float]:
     """Return the constants at the middle of the parameters' ranges."""
     middle = np.array([[float(((q.low or 0) + (q.high or 0)) / 2)] for q in setup.inputs])
-    made = run(setup, extended(np.float64), paired(middle)) if setup.outputs else []
+    with np.errstate(all="ignore"):
+        made = run(setup, extended(np.float64), paired(middle)) if setup.outputs else []
     return {n: float(np.ravel(r[0])[0]) for n, r in zip(component_names(setup), made, strict=True)}
 
 

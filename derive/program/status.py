@@ -74,11 +74,12 @@ def statuses(program: Program, given: Sequence[NDArray[Any]], dtype: type) -> ND
     asked = tuple(dict.fromkeys(value for _, kept in every for _, value in kept))
     columns = np.array([np.asarray(column, dtype) for column in given])
     status = np.zeros(columns.shape[1] if len(columns) else 1, int)
-    found = run(replace(program, results=asked), extended(dtype), paired(columns))
-    values = {value: pair[0] for value, pair in zip(asked, found, strict=True)}
-    for number, kept in reversed(every):
-        for relation, value in kept:
-            status = np.where(_BROKEN[relation](values[value]), number, status)
+    with np.errstate(all="ignore"):
+        found = run(replace(program, results=asked), extended(dtype), paired(columns))
+        values = {value: pair[0] for value, pair in zip(asked, found, strict=True)}
+        for number, kept in reversed(every):
+            for relation, value in kept:
+                status = np.where(_BROKEN[relation](values[value]), number, status)
     return status
 
 

@@ -103,7 +103,7 @@ def parse_scene(text: str, name: str) -> Scene:
         file_name(name)
         document = _document(text)
         gate(document, THE_FILE)
-        scene = _read(document, name, text)
+        scene = read(document, name, text)
         times = table(document.get("motion", {}), "motion").entries
         idle = idle_times(times, scene.wanted)
         return replace(scene, warnings=(*scene.warnings, *idle))
@@ -115,9 +115,13 @@ def _quoted(name: str) -> str:
     return f"'{brief(visible(name))}'"
 
 
-def _read(document: dict[str, Any], name: str, text: str) -> Scene:
-    read = read_machine if "bodies" in document or "frames" in document else read_short
-    return read(document, name, text)
+def read(document: dict[str, Any], name: str, text: str) -> Scene:
+    """Return the scene of a parsed TOML document, in whichever form it is written.
+
+    Raises SceneError; its sentence does not name the scene.
+    """
+    reader = read_machine if "bodies" in document or "frames" in document else read_short
+    return reader(document, name, text)
 
 
 def _document(text: str) -> dict[str, Any]:

@@ -119,7 +119,7 @@ def _count(one: _One) -> int:
 def _bounds(one: _One) -> Given:
     """Return a range that stands in a table of its own, as { range = [low, high] }."""
     if isinstance(one.value, list):
-        raise SceneError(f"{one.label} must be {{ range = [low, high] }}, not formulas")
+        raise SceneError(f"{one.label} must be {{ range = [low, high] }}, not {shown(one.value)}")
     inner = table(one.value, one.label)
     keys(inner, ("range",), ())
     return Given(*interval(inner.entries["range"], f"{one.label}.range"), None)

@@ -161,11 +161,15 @@ def check_member(label: str, inertia: Entries, parameters: tuple[Parameter, ...]
         whole = cast("Sextuple", inertia)
         possible = _not_negative(tensor(whole, values, f"{label} inertia"))
     if not possible:
-        said = ["unknown" if x is None else f"{x:g}" for x in found]
-        raise SceneError(
-            f"{label} inertia must be positive definite, not moments {', '.join(said[:3])} with "
-            f"products {', '.join(said[3:])}{where(values, [f for f in inertia if f is not None])}"
-        )
+        raise SceneError(not_definite(f"{label} inertia", inertia, values))
+
+
+def not_definite(label: str, inertia: Entries, values: Valuation) -> str:
+    """Return the sentence on an inertia that no body has, with what was found at these values."""
+    known = [part for part in inertia if part is not None]
+    said = ["unknown" if p is None else f"{value(p, values, label):g}" for p in inertia]
+    found = f"moments {', '.join(said[:3])} with products {', '.join(said[3:])}"
+    return f"{label} must be positive definite, not {found}{where(values, known)}"
 
 
 def _not_negative(matrix: FractionMatrix) -> bool:

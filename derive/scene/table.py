@@ -136,14 +136,26 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 def shown(value: object) -> str:
-    """Return a TOML value as an error shows it: its kind, and itself if it is short."""
+    """Return a TOML value as an error shows it: itself, cut off if it is long, and its kind.
+
+    >>> shown([1, "a"]), shown({"a": True}), shown("a")
+    ("a list of 2, [1, 'a']", 'a table, { a = true }', "'a'")
+    """
+    kind = "a table, " if isinstance(value, dict) else ""
+    kind = f"a list of {len(value)}, " if isinstance(value, list) else kind
+    return kind + brief(_spelled(value))
+
+
+def _spelled(value: object) -> str:
+    """Return a TOML value in one line."""
     if isinstance(value, dict):
-        return "a table"
+        each = [f"{key} = {_spelled(own)}" for key, own in value.items()]
+        return f"{{ {', '.join(each)} }}" if each else "{}"
     if isinstance(value, list):
-        return f"a list of {len(value)}"
+        return f"[{', '.join(map(_spelled, value))}]"
     if isinstance(value, int) and value.bit_length() > LONGEST_INTEGER_BITS:
         return f"a number of {value.bit_length()} bits"
-    return brief(repr(value) if isinstance(value, str) else str(value).lower())
+    return repr(value) if isinstance(value, str) else str(value).lower()
 
 
 def word(value: object, label: str, known: Iterable[str]) -> str:

@@ -116,9 +116,9 @@ def test_an_unused_component_is_said_and_a_used_vector_is_not() -> None:
     ("old", "new", "says"),
     [
         ('components = ["x", "y", "z"] }\n[inputs]', 'components = ["x"] }\n[inputs]',
-         f"{LIST}1"),
+         f"{LIST}1, ['x']"),
         ('components = ["x", "y", "z"] }\n[inputs]', 'components = ["x", "x"] }\n[inputs]',
-         f"{LIST}2"),
+         f"{LIST}2, ['x', 'x']"),
         ('m = { unit = "kg"', 'W_dot = { unit = "kg", range = [1, 2] }\nm = { unit = "kg"',
          "'W_dot' is declared twice: parameter 'W_dot' and the rate of the vector 'W'"),
         ('components = ["x", "y", "z"] }\n[inputs]', 'components = ["x", "y", "*/"] }\n[inputs]',

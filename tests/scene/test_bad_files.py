@@ -76,9 +76,9 @@ def test_any_scene_with_lines_lost_or_moved_is_a_scene_or_a_scene_error(
         ("wanted = ['moment']", "the file needs 'body'"),
         ("wanted = []", "the file needs 'body'"),
         ("wanted = []\nbody = 3", "body must be a table, not 3"),
-        ("wanted = ['moment']\n[body]", "body needs either a kind or a shape"),
+        ("wanted = ['moment']\n[body]", "body needs either a kind or a shape, and has neither"),
         (f"wanted = 'moment'\n{SPHERE}", f"wanted {LIST}, not 'moment'"),
-        (f"wanted = []\n{SPHERE}", f"wanted {LIST}, not a list of 0"),
+        (f"wanted = []\n{SPHERE}", f"wanted {LIST}, not a list of 0, []"),
         (f"wanted = [3]\n{SPHERE}", f"wanted has 3, which is no function (known: {KNOWN})"),
     ],
 )

@@ -153,7 +153,7 @@ def test_an_axis_that_is_a_unit_vector_raises_no_doubt(axis: str) -> None:
 def test_a_thin_rod_may_lack_the_moment_about_its_axis_and_nothing_else_may() -> None:
     start = 'wanted = ["moment"]\n[body]\n'
     assert parse_scene(f'{start}kind = "rod"\naxis = "y"\nmoment = 2', "rod").warnings == ()
-    with pytest.raises(SceneError, match="not positive definite"):
+    with pytest.raises(SceneError, match="must be positive definite, not moments 2, 0, 2"):
         parse_scene(f'{start}kind = "principal"\nmoments = [2, 0, 2]', "rod")
     with pytest.raises(SceneError, match="a thin rod has none about its own"):
         parse_scene(

@@ -20,8 +20,10 @@ def read_body(given: Table, point: str, scalars: Scalars) -> Body:
 
     point : the kind of the scene's point; a shape is moved to it unless it is the mass centre
     """
-    if ("shape" in given.entries) == ("kind" in given.entries):
-        raise SceneError("body needs either a kind or a shape")
+    said = [key for key in ("kind", "shape") if key in given.entries]
+    if len(said) != 1:
+        found = "both" if said else "neither"
+        raise SceneError(f"body needs either a kind or a shape, and has {found}")
     by = Reading(scalars.scopes, {}, scalars.parameters)
     if "shape" in given.entries:
         made = of_shape(given, SHAPES, BODY, by)

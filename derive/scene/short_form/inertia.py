@@ -13,6 +13,7 @@ from derive.scene.numbers import (
     ends_of,
     first_wrong,
     middle,
+    not_definite,
     points_of,
     second_moments,
     semidefinite,
@@ -20,7 +21,6 @@ from derive.scene.numbers import (
     tensor_doubts,
     trace,
     triangle,
-    where,
 )
 from derive.scene.shape import moved
 from derive.scene.short_form.declared import Body, ShortForm
@@ -65,7 +65,7 @@ def check_inertia(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str
     """
     values = middle(ends_of(parameters))
     if not _possible(body, tensor(body.inertia, values, "body inertia")):
-        yield f"body inertia is not positive definite{where(values, body.inertia)}"
+        yield not_definite("body inertia", body.inertia, values)
 
 
 def _possible(body: Body, matrix: FractionMatrix) -> bool:
