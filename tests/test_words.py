@@ -15,8 +15,8 @@ PAGES = {
 }
 
 
-WAITING = ("block", "column", "entry", "kind", "row", "term", "triple", "value", "wide")
-"""Still two things each: mended with the modules that measure: each edit measures anew."""
+WAITING = ("block", "entry", "kind", "row", "term")
+"""Still two things each."""
 
 
 def test_no_two_modules_define_types_of_one_name() -> None:
@@ -52,7 +52,6 @@ SPOKEN = {
     "motion/moser_veselov/__init__": (["moment"], "a constant that set-up makes"),
     "library/setting": (["moment"], "what the program of a moment returns, read by place"),
     "verify/cloud/solution": (["angular_momentum", "rate_absolute"], "answers"),
-    "verify/draw": (["omega", "omega_dot"], "the range of times: mended where draws are"),
 }
 """Where names of quantities stand in text, and what they are there, if not a scene's quantities."""
 

@@ -31,10 +31,11 @@ from derive.check.turned import turned_axes
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library, library
 from derive.scene import load
-from derive.verify.draw import with_motion
+from derive.verify.draw import Sampled, with_motion
 from derive.verify.kept import stated_figures
 from derive.verify.prove import ProofError, prove
 from derive.verify.sample import Sample, samples
+from derive.verify.scale import with_values
 
 ORDINARY, CORNERS, FEW, TWO = 300, 6, 8, 2
 
@@ -123,6 +124,7 @@ def interface(made: Library, found: Files) -> Verdict:
 
 def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterator[Verdict]:
     drawn = samples(one.library.mechanism, one.precision, ordinary, CORNERS)
+    drawn = with_values(Sampled(one.library, one.precision), drawn)
     each = with_motion(one.library, drawn.each, one.precision)
     few = spread(each)
     printed = {f["name"]: f.get("error", {}) for f in found.manifest["functions"]}

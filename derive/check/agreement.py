@@ -20,7 +20,7 @@ from derive.program.arithmetic import LIBM, working
 from derive.program.largest import largest
 from derive.program.program import Program
 from derive.scene.formula import Arithmetic
-from derive.verify.draw import Field
+from derive.verify.draw import Sampled
 from derive.verify.measure import Errors, replayed, should, should_move
 from derive.verify.sample import Sample
 
@@ -97,7 +97,7 @@ def accuracy(
     few : those at which the functions of motion are tried
     """
     library = emitted.library
-    of = Field(library, emitted.precision)
+    of = Sampled(library, emitted.precision)
     lectured = ((program, each, true) for program, true in should(of, library.functions, each))
     moving = ((program, few, should_move(of, program, few)) for program in library.motions)
     for program, own, true in chain(lectured, moving):

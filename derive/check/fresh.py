@@ -12,7 +12,7 @@ from derive.library.library import Library
 from derive.program.largest import largest
 from derive.program.precision import PRECISIONS
 from derive.program.program import Measurement, Program
-from derive.verify.draw import Field
+from derive.verify.draw import Sampled
 from derive.verify.scale import measured_outputs
 from derive.verify.search import Worst, sampled
 from derive.verify.stated import at_rows, at_samples
@@ -33,7 +33,7 @@ def fresh(
     """
     said = {(m.function, m.precision, m.output): m.worst for m in stated}
     for precision in PRECISIONS:
-        of = Field(library, precision)
+        of = Sampled(library, precision)
         found: list[Worst] = []
         for done, found in sampled(of, SEED, samples, KEPT):  # noqa: B007 - the last is kept
             told(f"{library.scene.name}: {precision.name}, {done} of {samples} samples")
@@ -45,7 +45,7 @@ def fresh(
 
 
 def _verdict(
-    of: Field, program: Program, place: int, found: Worst, stated: float | None, samples: int
+    of: Sampled, program: Program, place: int, found: Worst, stated: float | None, samples: int
 ) -> Verdict:
     seen = largest(found.errors)
     if stated is not None and seen > MORE * stated:

@@ -13,7 +13,7 @@ from derive.check.agreement import LARGEST_BOUND
 from derive.check.emitted import Emitted, errors_of, verdict
 from derive.check.verdict import JUDGED, Verdict
 from derive.program.largest import largest
-from derive.verify.draw import Field
+from derive.verify.draw import Sampled
 from derive.verify.measure import should
 from derive.verify.reference import DIFFERENCES
 from derive.verify.sample import Sample
@@ -26,7 +26,7 @@ def near_a_sphere(one: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     own = [_left_alone(one, s) for s in each if s.kind.endswith(KIND)]
     if not own:
         return
-    of = Field(one.library, one.precision)
+    of = Sampled(one.library, one.precision)
     for program, true in should(of, one.library.functions, own, DIFFERENCES):
         for found in errors_of(one, program, own, true):
             each_worst = [largest([median(column)]) for column in zip(*found.rows, strict=True)]

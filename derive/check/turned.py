@@ -19,7 +19,7 @@ from derive.program.program import Program, component_names
 from derive.scene import Scene
 from derive.scene.formula import symbols
 from derive.scene.results import MATRICES, written_out
-from derive.verify.draw import Field
+from derive.verify.draw import Sampled
 from derive.verify.equations import Equations, retold
 from derive.verify.measure import Expected, should
 from derive.verify.reference import BITS, reference
@@ -32,7 +32,7 @@ Stated = Mapping[str, Mapping[str, Mapping[str, Mapping[str, Any]]]]
 def turned_axes(one: Emitted, each: Sequence[Sample], stated: Stated) -> Iterator[Verdict]:
     """Yield whether every function is what the machine told along other axes gives."""
     scene = one.library.scene
-    of = Field(one.library, one.precision)
+    of = Sampled(one.library, one.precision)
     told = {"cyclic relabelling": relabelled(scene), "rotation of axes": turned(scene)}
     for check, description in told.items():
         if description is None or not one.library.functions:

@@ -27,7 +27,7 @@ NEXT: Mapping[str, Axis] = {"x": "y", "y": "z", "z": "x"}
 class Substance:
     """What a kind or a shape says: mass, inertia, the axis of symmetry, lengths, an offset centre.
 
-    said : all entries of the body's table by key
+    said : all entries of the body's table by key       given : its inertia about another point
     """
 
     kind: str
@@ -38,6 +38,7 @@ class Substance:
     look: str = ""
     offset: Triple = (ZERO, ZERO, ZERO)
     lengths: Mapping[str, Formula] | None = None
+    given: Entries = ()
 
     def apex(self) -> Triple:
         """Return the mass centre of a cone, from its apex along its axis."""
@@ -59,6 +60,7 @@ def read_member(name: str, given: Table, frames: tuple[Frame, ...], scalars: Sca
     return Member(
         name, said["frame"], made.mass, made.inertia, centre, made.axis, said["turned"] or (),
         said["spin"], said["axial_speed"], said["angular_velocity"], made.look, made.lengths or {},
+        given=made.given,
     )  # fmt: skip
 
 
@@ -90,7 +92,7 @@ def _about(label: str, made: Substance) -> tuple[Triple, Substance]:
             rule = "about = 'origin' needs mass and whole inertia, along the frame's axes"
             raise SceneError(f"{label}: {rule}")
         inertia = moved(cast("Sextuple", made.inertia), -made.mass, centre)
-        return centre, replace(made, inertia=inertia)
+        return centre, replace(made, inertia=inertia, given=made.inertia)
     x, y, z = (a + b if b != ZERO else a for a, b in zip(centre, made.offset, strict=True))
     return (x, y, z), made
 

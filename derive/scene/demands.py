@@ -25,7 +25,8 @@ def of_bodies(bodies: Iterable[Member]) -> tuple[Demand, ...]:
         if {"inner", "outer"} <= set(body.lengths):
             gap = body.lengths["outer"] - body.lengths["inner"]
             found.append(Above(f"{label}.outer less inner", "length", gap))
-        found.append(Tensor(f"{label} inertia", body.inertia, "not negative"))
+        found.append(Tensor(f"{label} inertia", body.inertia, "not negative", body.inertia,
+                            body.given))  # fmt: skip
     return in_order(found)
 
 

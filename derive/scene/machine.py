@@ -48,7 +48,8 @@ class Member:
     """A rigid body in a frame: inertia (xx, yy, zz, xy, xz, yz) about its mass centre, own axes.
 
     None stands for data that the user does not know. ``look`` is the shape, for people;
-    ``spin_axis`` a unit vector along the frame, of a body that spins about none of its axes.
+    ``spin_axis`` a unit vector along the frame, of a body that spins about none of its axes;
+    ``given`` the inertia as the user gave it, if that is about the frame's origin.
     """
 
     name: str
@@ -64,6 +65,7 @@ class Member:
     look: str = ""
     lengths: Mapping[str, Formula] = field(default_factory=dict)
     spin_axis: Triple | None = None
+    given: Entries = ()
 
 
 @dataclass(frozen=True)
@@ -210,13 +212,15 @@ class Tensor:
     """An inertia (xx, yy, zz, xy, xz, yz) that must be positive definite, or not negative.
 
     None stands for an entry that is not known or not asked about. ``whole`` is what masses must be
-    able to make up, where that is more than the entries.
+    able to make up, wheels included; ``given`` the tensor as the scene gives it, if that is about
+    another point.
     """
 
     label: str
     entries: Entries
     relation: Literal["positive", "not negative"]
-    whole: Entries = ()
+    whole: Entries
+    given: Entries = ()
 
 
 Demand = Above | Tensor

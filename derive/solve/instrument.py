@@ -76,7 +76,7 @@ class Instrument:
             for p in scene.parameters
         )
         tensors = [d for d in scene.demands if isinstance(d, Tensor)]
-        each = ((d.label.split(" inertia")[0], d.whole or d.entries) for d in tensors)
+        each = ((d.label.split(" inertia")[0], d.whole) for d in tensors)
         found = tuple(says for label, own in each for says in member_doubts(label, own, pinned))
         told = [p.name for p in scene.parameters if p.value is None]
         linear = "linearised" in self.library.problems

@@ -21,9 +21,8 @@ from derive.program.pairs import Pair
 from derive.program.program import Line, Op, Program, component_names, operands_of
 from derive.program.run import numbers_of, run_lines, values_of
 from derive.scene.formula import Arithmetic
-from derive.verify.operators import IN_BALLS, IN_DOUBLES, UNROUNDED, pair_sines
+from derive.verify.operators import IN_BALLS, IN_DOUBLES, UNROUNDED, Column, pair_sines
 
-Column = NDArray[Any]
 SMALL, LARGE = 2.0**-27, 2.0**20
 """Sines are taken in pairs between these; below, x is the float next to sin x, and 1 to cos x."""
 FAR = 2.0**200

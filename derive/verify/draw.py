@@ -17,20 +17,22 @@ from derive.library.library import Library
 from derive.motion.compensated import REMAINDER
 from derive.program.precision import Precision
 from derive.program.program import Quantity, component_names, placed
-from derive.scene import SceneError
-from derive.verify.columns import Column, Plan, Supplied, arithmetics, in_columns, planned, supplied
+from derive.scene import Input, SceneError
+from derive.scene.formula import Formula, symbols
+from derive.verify.columns import Plan, Supplied, arithmetics, in_columns, planned, supplied
 from derive.verify.equations import Equations, stated
 from derive.verify.hard_bodies import admissible, solvable
+from derive.verify.operators import Column
 from derive.verify.sample import Sample, source, uniform
 
 FEWEST = 1 / 64
 """Where fewer bodies than this obey the triangle inequality, any definite tensor will do."""
 TRIES = 400
 REACH = 0.3
-"""Turn in rad, by omega and by its rate, that a sampled step covers at most."""
+"""Turn in rad, by what turns and by its rate, that a sampled step covers at most."""
+FAST = "rad/s"
 LONG = 1000.0
 """So many such steps make the longest time that a flow is sampled at."""
-OMEGA_DOT = ("omega_dot_x", "omega_dot_y", "omega_dot_z")
 
 
 @dataclass
@@ -50,7 +52,7 @@ class Dice:
 
 
 @dataclass(frozen=True)
-class Field:
+class Sampled:
     """The functions of a scene in one precision: where they are sampled, and what says what."""
 
     library: Library
@@ -97,11 +99,30 @@ class Field:
         return planned(self.library.setup)
 
     @cached_property
+    def turning(self) -> tuple[str, ...]:
+        """Return what the axes of the scene's frames turn by: speeds and rates of angles."""
+        scene = self.library.scene
+        angles = {n for f in scene.frames for turn in f.turned for n in symbols(turn.angle)}
+        given = [x for f in scene.frames for x in f.angular_velocity or ()]
+        rates = [c.rate for c in scene.coordinates if c.name in angles]
+        given += [r for r in rates if isinstance(r, Formula)]
+        by = {n for f in given for n in symbols(f)}
+        by |= {r.name for r in rates if isinstance(r, Input)}
+        fast = (q for q in self.quantities if q.unit == FAST)
+        return tuple(c for q in fast for c in q.components if c in by)
+
+    @cached_property
     def rate(self) -> Plan | None:
-        """Return a function that tells how fast omega changes, if there is one."""
+        """Return a function that tells how fast what turns changes, if there is one."""
         every = (*self.library.rates, *self.library.functions)
-        telling = (f for f in every if any(q.name == "omega_dot" for q in f.outputs))
+        telling = (f for f in every if {*self.rates_of_turning} & {*component_names(f)})
         return next(map(planned, telling), None)
+
+    @cached_property
+    def rates_of_turning(self) -> tuple[str, ...]:
+        """Return the names of the rates of what turns."""
+        each = self.library.scene.groups.rate_of_each()
+        return tuple(each[c] for c in self.turning if c in each)
 
     @cached_property
     def plan(self) -> Plan | None:
@@ -133,7 +154,7 @@ def _ends(q: Quantity) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def drawn(of: Field, dice: Dice, count: int) -> Column:
+def drawn(of: Sampled, dice: Dice, count: int) -> Column:
     """Return raw samples, a row a component, of admissible bodies.
 
     Raises SceneError where the ranges of the parameters hold no body.
@@ -152,12 +173,12 @@ def drawn(of: Field, dice: Dice, count: int) -> Column:
     )
 
 
-def _anywhere(of: Field, dice: Dice, count: int) -> Column:
+def _anywhere(of: Sampled, dice: Dice, count: int) -> Column:
     across = (of.highs - of.lows)[:, None]
     return on_the_sphere(of, of.lows[:, None] + across * dice.uniform(len(of.names), count))
 
 
-def on_the_sphere(of: Field, rows: Column) -> Column:
+def on_the_sphere(of: Sampled, rows: Column) -> Column:
     """Return rows with every quaternion of the states of unit length."""
     for q, span in placed(of.quantities):
         if q in of.library.vocabulary.states and q.is_quaternion:
@@ -167,18 +188,18 @@ def on_the_sphere(of: Field, rows: Column) -> Column:
     return rows
 
 
-def admitted(of: Field, rows: Column) -> Any:
+def admitted(of: Sampled, rows: Column) -> Any:
     """Return which samples are of bodies that can be, wheels included."""
     fits = of.bodies(of.library.scene, dict(zip(of.names, held(of, rows), strict=True)))
     return np.broadcast_to(fits, (rows.shape[1],))
 
 
-def held(of: Field, rows: Column) -> Column:
+def held(of: Sampled, rows: Column) -> Column:
     """Return numbers as floats of the precision, in double."""
     return rows.astype(of.precision.dtype).astype(np.float64)
 
 
-def complete(of: Field, rows: Column) -> Supplied:
+def complete(of: Sampled, rows: Column) -> Supplied:
     """Return samples with remainders of their states, times in reach, the plan, and constants."""
     dtype = of.precision.dtype
     own: dict[str, Column] = dict(zip(of.names, rows.astype(dtype), strict=True))
@@ -191,13 +212,13 @@ def complete(of: Field, rows: Column) -> Supplied:
     return completed(of, own)
 
 
-def completed(of: Field, own: dict[str, Column]) -> Supplied:
+def completed(of: Sampled, own: dict[str, Column]) -> Supplied:
     """Return samples, by component, with times in reach, the plan, and the constants."""
     dtype, each = of.precision.dtype, arithmetics(of.precision.dtype)
     with np.errstate(all="ignore"):
         made = supplied(of.setup, own, each)
-        if "omega_x" in own and {"time_step", "time"} & own.keys():
-            own = _in_reach(own, _omega_rate(of.rate, made, each))
+        if of.turning and {"time_step", "time"} & own.keys():
+            own = _in_reach(of, own, _fastest_rate(of, made, each))
             made = supplied(of.setup, own, each)
         if of.plan is not None:
             count = len(next(iter(own.values())))
@@ -208,23 +229,22 @@ def completed(of: Field, own: dict[str, Column]) -> Supplied:
     return made
 
 
-def _omega_rate(rate: Plan | None, made: Supplied, each: Any) -> Any:
-    if rate is None:
+def _fastest_rate(of: Sampled, made: Supplied, each: Any) -> Any:
+    if of.rate is None:
         return 0.0
-    columns = in_columns(rate, each.own, made.own)
-    named = zip(component_names(rate.program), columns, strict=True)
-    own = [np.abs(c).astype(np.float64) for name, c in named if name in OMEGA_DOT]
+    columns = in_columns(of.rate, each.own, made.own)
+    named = zip(component_names(of.rate.program), columns, strict=True)
+    own = [np.abs(c).astype(np.float64) for name, c in named if name in of.rates_of_turning]
     return np.max(np.nan_to_num(np.broadcast_arrays(*own)), axis=0)
 
 
-def _in_reach(own: dict[str, Column], fast: Any) -> dict[str, Column]:
-    """Return samples with times in which the body turns by no more than a step can take."""
-    wide = {n: own[n].astype(np.float64) for n in own if n.startswith("omega_") or "time" in n}
-    omega = np.max([np.abs(wide[f"omega_{axis}"]) for axis in "xyz"], axis=0)
-    step = REACH / np.maximum(np.maximum(omega, np.sqrt(fast)), 1e-300)
+def _in_reach(of: Sampled, own: dict[str, Column], fast: Any) -> dict[str, Column]:
+    """Return samples with times in which axes turn by no more than a step can take."""
+    speed = np.max([np.abs(own[c].astype(np.float64)) for c in of.turning], axis=0)
+    step = REACH / np.maximum(np.maximum(speed, np.sqrt(fast)), 1e-300)
     limits = {"time_step": step, "time": LONG * step}
     return own | {
-        c: np.clip(wide[c], -limit, limit).astype(own[c].dtype)
+        c: np.clip(own[c].astype(np.float64), -limit, limit).astype(own[c].dtype)
         for c, limit in limits.items()
         if c in own
     }
@@ -236,7 +256,7 @@ def with_motion(
     """Return the samples with values for all that only the functions of motion are given."""
     if not library.motions or not each:
         return tuple(each)
-    of, dice = Field(library, precision), source(library.mechanism, precision, "motion").dice
+    of, dice = Sampled(library, precision), source(library.mechanism, precision, "motion").dice
     fresh = [(c, q) for q in fresh_quantities(library) for c in q.components]
     rows = [s.values | {c: _drawn(of, dice, s, c, q) for c, q in fresh} for s in each]
     columns: dict[str, Column] = {
@@ -251,7 +271,7 @@ def with_motion(
     )
 
 
-def _drawn(of: Field, dice: Random, sample: Sample, component: str, q: Quantity) -> float:
+def _drawn(of: Sampled, dice: Random, sample: Sample, component: str, q: Quantity) -> float:
     """Return a number on a range; a remainder is what rounding may leave of its state."""
     if q.role != "remainder":
         return uniform(dice, q)

@@ -1,16 +1,15 @@
 """Bodies to check at: which inertias are bodies, and the ones that are hard to compute with.
 
 A tensor is a body's if its second moments are not negative, which is the triangle inequality of
-the principal moments. Hard bodies are entered through the scene's own parameters, where these are
-the moments and products themselves.
+the principal moments. A hard body is described by ratios of its second moments, and made of the
+scene's own parameters: moments, products, masses and lengths, whatever its tensor is made of.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import reduce
 from random import Random
-from typing import Any, TypeGuard
+from typing import Any
 
 import numpy as np
 
@@ -19,12 +18,15 @@ from derive.program.arithmetic import rounded
 from derive.program.precision import Precision
 from derive.scene import Scene
 from derive.scene.formula import ZERO, Arithmetic, Formula, evaluate
-from derive.scene.machine import Above, Demand, Entries, Tensor
+from derive.scene.machine import Above, Entries, Tensor
 from derive.verify.columns import arithmetics
+from derive.verify.ratios import in_ratios
 
-Triple = tuple[float, float, float]
+Principal = tuple[float, float, float]
 SLACK = 1e-12
 """Of the triangle inequality, relative to the trace: a disc obeys it with equality."""
+THIN = 4e-6
+"""A moment that a rod has about its own axis, beside 1 across: none will do as well."""
 OWN_AXES = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 TURN = (0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6)  # a rotation, exact in decimals
 
@@ -37,12 +39,12 @@ class Hard:
     """
 
     kind: str
-    second: Mapping[str, Triple]  # by precision: sum x^2 dm, sum y^2 dm, sum z^2 dm
+    second: Mapping[str, Principal]  # by precision: sum x^2 dm, sum y^2 dm, sum z^2 dm
     spread: float  # relative spread of the second moments
     axes: tuple[float, ...]  # the turn from them to the scene's axes, row by row
 
 
-def _same(second: Triple) -> dict[str, Triple]:
+def _same(second: Principal) -> dict[str, Principal]:
     return {"f32": second, "f64": second}
 
 
@@ -61,65 +63,47 @@ BODIES = (
 )
 
 
-def inverted(scene: Scene) -> list[Tensor]:
-    """Return the tensors that must be definite, since the equations divide by them."""
+def bodies(scene: Scene) -> list[Tensor]:
+    """Return the tensors of bodies of which a scene knows every entry."""
     tensors = [d for d in scene.demands if isinstance(d, Tensor)]
-    return [t for t in tensors if t.relation == "positive"]
+    return [t for t in tensors if None not in t.whole]
 
 
-def bodies_taken(scene: Scene) -> tuple[Hard, ...]:
-    """Return the kinds of hard bodies that a scene's parameters can describe."""
-    for tensor in inverted(scene):
-        entered = [_entered(scene, f) for f in tensor.whole]
-        moments, products = entered[:3], tensor.whole[3:]
-        if all(entered) and len(set(entered)) == 6:
-            return BODIES
-        straight = all(p == ZERO for p in products)
-        distinct = len({m for m in moments if m is not None})
-        if straight and (distinct == 3 or (distinct == 2 and None not in moments)):
-            return tuple(hard for hard in BODIES if hard.axes is OWN_AXES)
-    return ()
+def hard_body(
+    scene: Scene, place: int, hard: Hard, start: Mapping[str, float], of: tuple[Random, Precision]
+) -> dict[str, float] | None:
+    """Return parameters at which the body at a place is a hard one, None if there are none.
 
-
-def _entered(scene: Scene, formula: Formula | None) -> str | None:
-    free = {p.name for p in scene.parameters if p.value is None}
-    named = formula is not None and formula.operator == "symbol" and formula.name in free
-    return formula.name if named and formula is not None else None
-
-
-def hard_body(scene: Scene, hard: Hard, dice: Random, precision: Precision) -> dict[str, float]:
-    """Return the parameters of a hard body, and of wheels that are light enough for it."""
+    They are those next to ``start``, of a body of any size; wheels are light enough for it.
+    """
+    dice, precision = of
     a, b, c = (x * (1 + hard.spread * dice.random()) for x in hard.second[precision.name])
-    (tensor, *_), moments = inverted(scene), inverted(scene)[0].whole[:3]
-    alone = [axis for axis, m in zip("xyz", moments, strict=True) if moments.count(m) == 1]
+    tensor = bodies(scene)[place]
+    entries = tensor.given or tensor.whole
+    alone = [axis for axis, m in zip("xyz", entries, strict=False) if entries[:3].count(m) == 1]
     if len(alone) == 1:
         a, b, c = _symmetric((a, b, c), alone[0])
     principal = (b + c, c + a, a + b)
-    whole = _turned(principal, hard.axes)
-    entries = [float(rounded(Fraction(x), precision.dtype)) for x in whole]
-    values = {
-        f.name: x
-        for f, x in zip(tensor.whole, entries, strict=True)
-        if f is not None and f.operator == "symbol"
-    }
-    for axial in (d.formula for d in scene.demands if _of_wheel(d)):
-        if axial.operator == "symbol":
-            light = min(principal) * (0.1 + 0.1 * dice.random())
-            values[axial.name] = float(rounded(Fraction(light), precision.dtype))
-    return values
+    xx, yy, zz, *products = _turned(principal, hard.axes)
+    moments = [0.0 if f == ZERO and x < THIN else x
+               for f, x in zip(entries, (xx, yy, zz), strict=False)]  # fmt: skip
+    light = {wheel: min(principal) * (0.1 + 0.1 * dice.random()) for wheel in _wheels(scene)}
+    ratios = zip(entries, (*moments, *products), strict=True)
+    rows = [*((f, x) for f, x in ratios if f is not None), *light.items()]
+    found = in_ratios(scene.parameters, rows, start)
+    if found is None:
+        return None
+    values = {n: float(rounded(x, precision.dtype)) for n, x in found.items()}
+    return values if solvable(scene, {**start, **values}) else None
 
 
-def _of_wheel(demand: Demand) -> TypeGuard[Above]:
-    return isinstance(demand, Above) and demand.kind == "inertia"
-
-
-def _symmetric(second: Triple, axis: str) -> Triple:
+def _symmetric(second: Principal, axis: str) -> Principal:
     across = second[0] if axis == "z" else second[1]
     along = second[2]
     return tuple(along if name == axis else across for name in "xyz")  # type: ignore[return-value]
 
 
-def _turned(moments: Triple, turn: Sequence[float]) -> tuple[float, ...]:
+def _turned(moments: Principal, turn: Sequence[float]) -> tuple[float, ...]:
     """Return moments and products (+sum x y dm) of a turned body."""
     rows = [turn[0:3], turn[3:6], turn[6:9]]
     entry = [
@@ -130,13 +114,19 @@ def _turned(moments: Triple, turn: Sequence[float]) -> tuple[float, ...]:
     return tuple(own)
 
 
+def _wheels(scene: Scene) -> list[Formula]:
+    """Return the moments of wheels that a body holds beside its own tensor."""
+    above = [d for d in scene.demands if isinstance(d, Above)]
+    return list(dict.fromkeys(d.formula for d in above if d.kind == "inertia"))
+
+
 def admissible(scene: Scene, values: Mapping[str, Any]) -> Any:
     """Tell whether a scene's parameters describe bodies, wheels included; of columns, which do.
 
     A body keeps the triangle inequality: its second moments are not negative.
     """
     fits = solvable(scene, values)
-    for tensor in inverted(scene):
+    for tensor in bodies(scene):
         whole, size = _tensor(scene, values, tensor.whole), _size(scene, values, tensor)
         half = (whole[0][0] + whole[1][1] + whole[2][2]) / 2
         second = [[(half if i == k else 0.0) - whole[i][k] for k in range(3)] for i in range(3)]
@@ -145,14 +135,17 @@ def admissible(scene: Scene, values: Mapping[str, Any]) -> Any:
 
 
 def solvable(scene: Scene, values: Mapping[str, Any]) -> Any:
-    """Tell whether no tensor that equations divide by has a negative moment.
+    """Tell whether masses and lengths are positive, and no tensor has a negative moment.
 
     That is all that the equations need.
     """
     fits = np.True_
-    for tensor in inverted(scene):
-        rest = _tensor(scene, values, without_wheels(tensor))
-        fits = fits & _semidefinite(rest, _size(scene, values, tensor))
+    for demand in scene.demands:
+        if isinstance(demand, Above):
+            fits = fits & (_values(scene, values, (demand.formula,))[0] > 0)
+        else:
+            own = _tensor(scene, values, without_wheels(demand))
+            fits = fits & _semidefinite(own, _size(scene, values, demand))
     return fits
 
 
@@ -168,6 +161,12 @@ def _size(scene: Scene, values: Mapping[str, Any], tensor: Tensor) -> Any:
 
 
 def _tensor(scene: Scene, values: Mapping[str, Any], entries: Entries) -> list[list[Any]]:
+    xx, yy, zz, xy, xz, yz = _values(scene, values, entries)
+    return [[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]
+
+
+def _values(scene: Scene, values: Mapping[str, Any], formulas: Entries) -> list[Any]:
+    """Return what formulas of the parameters are, 0 where there is none."""
     fixed = {p.name: float(p.value) for p in scene.parameters if p.value is not None}
     numbers = {**values, **fixed}
     known = arithmetics(np.float64).own
@@ -178,10 +177,9 @@ def _tensor(scene: Scene, values: Mapping[str, Any], entries: Entries) -> list[l
         "tan": lambda x: known["sin"](x) / known["cos"](x),
     }
     with np.errstate(all="ignore"):
-        xx, yy, zz, xy, xz, yz = (
-            np.float64(0) if f is None else np.asarray(evaluate(f, numbers, own)) for f in entries
-        )
-    return [[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]
+        return [
+            np.float64(0) if f is None else np.asarray(evaluate(f, numbers, own)) for f in formulas
+        ]
 
 
 def _power(x: Any, n: int) -> Any:

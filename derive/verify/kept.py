@@ -21,7 +21,7 @@ from derive.verify.stated import figures
 METHOD = (
     *("program/added", "program/arithmetic", "program/pair_sine", "program/pairs"),
     *("verify/columns", "verify/draw", "verify/hard_bodies", "verify/measure"),
-    *("verify/operators", "verify/reference", "verify/sample", "verify/scale"),
+    *("verify/operators", "verify/ratios", "verify/reference", "verify/sample", "verify/scale"),
     *("verify/search", "verify/solution", "verify/stated"),
 )
 """The modules that figures are measured by."""

@@ -25,7 +25,7 @@ from derive.program.program import Program, component_names
 from derive.program.run import results_by_name, run
 from derive.scene.formula import Arithmetic
 from derive.verify.columns import arithmetics, planned, supplied
-from derive.verify.draw import Field
+from derive.verify.draw import Sampled
 from derive.verify.operators import LONG_FLOATS
 from derive.verify.reference import BALLS, BITS, reference
 from derive.verify.sample import Sample
@@ -81,7 +81,10 @@ def upwards(x: float) -> float:
 
 
 def should(
-    by: Field, functions: Sequence[Program], each: Sequence[Sample], arithmetic: Arithmetic = BALLS
+    by: Sampled,
+    functions: Sequence[Program],
+    each: Sequence[Sample],
+    arithmetic: Arithmetic = BALLS,
 ) -> Iterator[tuple[Program, list[list[Expected]]]]:
     """Yield each function of the lecture with what its components should be, sample by sample."""
     for base, equations in by.equations.items():
@@ -92,7 +95,7 @@ def should(
             yield program, [[Expected(*of) for of in entries(program, at)] for at in true]
 
 
-def should_move(by: Field, program: Program, each: Sequence[Sample]) -> list[list[Expected]]:
+def should_move(by: Sampled, program: Program, each: Sequence[Sample]) -> list[list[Expected]]:
     """Return what each component of a function of motion should be, sample by sample."""
     dtype = by.precision.dtype
     true = [[x.mid() for x in exact(by.library, program, s)] for s in each]

@@ -21,16 +21,16 @@ from derive.verify.hard_bodies import (
     BODIES,
     Hard,
     admissible,
-    bodies_taken,
+    bodies,
     hard_body,
-    inverted,
     solvable,
 )
 
-Values = dict[str, float]
+Drawn = dict[str, float]
 LARGE_SPIN = 1e4
 DENORMAL = {"f32": 2.0**-140, "f64": 2.0**-1060}
 TRIES = 200
+FITS = 3  # tries after which a body is taken not to be a hard one at any parameters
 PATIENCE = 20  # tries after which a tensor will do that breaks the triangle inequality
 HALF_TURNS = ((0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1), (0, 0.6, 0, 0.8), (0, 2 / 3, 2 / 3, 1 / 3))
 
@@ -41,7 +41,7 @@ class Sample:
 
     number: int
     kind: str
-    values: Values
+    values: Drawn
 
 
 @dataclass(frozen=True)
@@ -81,22 +81,36 @@ def samples(mechanism: Mechanism, precision: Precision, ordinary: int, corners: 
         made = [corner(own, n) for n in range(corners)]
         found += [(kind, values) for values in made if values is not None]
         skipped += [kind] if all(values is None for values in made) else []
-    taken = bodies_taken(mechanism.scene)
     for hard in BODIES:
         own = source(mechanism, precision, hard.kind)
-        if hard in taken:
-            found += [(hard.kind, _with_hard_body(own, hard)) for _ in range(corners)]
-        else:
-            skipped.append(hard.kind)
+        bodies_ = _with_hard_bodies(own, hard, corners)
+        found += [(hard.kind, values) for values in bodies_]
+        skipped += [] if bodies_ or not corners else [hard.kind]
     each = tuple(Sample(n, kind, values) for n, (kind, values) in enumerate(found))
     return Samples(each, tuple(skipped))
 
 
-def _with_hard_body(of: Source, hard: Hard) -> Values:
-    return _ordinary(of) | hard_body(of.mechanism.scene, hard, of.dice, of.precision)
+def _with_hard_bodies(of: Source, hard: Hard, corners: int) -> list[Drawn]:
+    """Return samples in which one body is a hard one, in turns, the others as they come."""
+    found: list[Drawn] = []
+    places = range(len(bodies(of.mechanism.scene)) if corners else 0)
+    able = [place for place in places if _with_hard_body(of, hard, place)]
+    for n in range(max(corners, len(able)) if able else 0):
+        values = _with_hard_body(of, hard, able[n % len(able)])
+        found += [] if values is None else [values]
+    return found
 
 
-def _ordinary(of: Source) -> Values:
+def _with_hard_body(of: Source, hard: Hard, place: int) -> Drawn | None:
+    for _ in range(FITS):
+        start = _ordinary(of)
+        own = hard_body(of.mechanism.scene, place, hard, start, (of.dice, of.precision))
+        if own is not None:
+            return start | own
+    return None
+
+
+def _ordinary(of: Source) -> Drawn:
     parameters = of.mechanism.vocabulary.parameters
     for tries in range(TRIES):
         values = {n: of.held(uniform(of.dice, q)) for q in parameters for n in q.components}
@@ -110,8 +124,8 @@ def _ordinary(of: Source) -> Values:
     )
 
 
-def _motion(of: Source) -> Values:
-    values: Values = {}
+def _motion(of: Source) -> Drawn:
+    values: Drawn = {}
     for q in varying(of.mechanism):
         own = [uniform(of.dice, q) for _ in q.components]
         own = _unit(own) if q.is_quaternion else own
@@ -136,7 +150,7 @@ def _unit(values: Sequence[float]) -> list[float]:
     return [x / size for x in values]
 
 
-def _changed(of: Source, change: Callable[[Quantity, float], float]) -> Values:
+def _changed(of: Source, change: Callable[[Quantity, float], float]) -> Drawn:
     """Return an ordinary sample with every varying value changed by a rule."""
     values = _ordinary(of)
     for q in varying(of.mechanism):
@@ -144,10 +158,7 @@ def _changed(of: Source, change: Callable[[Quantity, float], float]) -> Values:
     return values
 
 
-def _large_spin(of: Source, _: int) -> Values | None:
-    moves = any(wanted.startswith("step_") for wanted in of.mechanism.scene.wanted)
-    if not inverted(of.mechanism.scene) and moves:
-        return None  # a step would turn angles by many radians, and their sines magnify rounding
+def _large_spin(of: Source, _: int) -> Drawn | None:
     fast = [q for q in varying(of.mechanism) if q.unit == "rad/s"]
 
     def change(q: Quantity, x: float) -> float:
@@ -157,15 +168,21 @@ def _large_spin(of: Source, _: int) -> Values | None:
     return _changed(of, change) if fast else None
 
 
-def _at_rest(of: Source, _: int) -> Values | None:
+def _at_rest(of: Source, _: int) -> Drawn | None:
     return _changed(of, lambda q, x: 0.0 if _may_vanish(q) else x)
 
 
-def _denormal(of: Source, _: int) -> Values | None:
-    if not inverted(of.mechanism.scene):
-        return None  # chains of products fall below the smallest float one after another
+def _denormal(of: Source, _: int) -> Drawn | None:
+    if _steps_angles(of):
+        return None  # parts of a step fall below the smallest float one after another
     tiny = DENORMAL[of.precision.name]
     return _changed(of, lambda q, x: x * tiny if _may_vanish(q) else x)
+
+
+def _steps_angles(of: Source) -> bool:
+    """Tell whether steps in time are wanted of a state that has angles, whose rates are sums."""
+    moves = any(wanted.startswith("step_") for wanted in of.mechanism.scene.wanted)
+    return moves and any(q.unit == "rad" for q in of.mechanism.vocabulary.states)
 
 
 def _may_vanish(q: Quantity) -> bool:
@@ -174,14 +191,14 @@ def _may_vanish(q: Quantity) -> bool:
     return not q.is_quaternion and within
 
 
-def _half_turn(of: Source, number: int) -> Values | None:
+def _half_turn(of: Source, number: int) -> Drawn | None:
     attitudes = [q.components for q in varying(of.mechanism) if q.is_quaternion]
     turn = [of.held(x) for x in HALF_TURNS[number % len(HALF_TURNS)]]
     turned = {name: x for parts in attitudes for name, x in zip(parts, turn, strict=True)}
     return _ordinary(of) | turned if attitudes else None
 
 
-def _range_ends(of: Source, number: int) -> Values | None:
+def _range_ends(of: Source, number: int) -> Drawn | None:
     """Return a sample with every coordinate at an end of its range: closest to a gimbal lock."""
     scalars = {q.name for q in varying(of.mechanism)}
     names = [c.name for c in of.mechanism.scene.coordinates if c.name in scalars]
@@ -192,7 +209,7 @@ def _range_ends(of: Source, number: int) -> Values | None:
     return _changed(of, change) if names else None
 
 
-def _extremes(of: Source, _: int) -> Values | None:
+def _extremes(of: Source, _: int) -> Drawn | None:
     """Return a sample with every varying value at an end of its range."""
 
     def change(q: Quantity, x: float) -> float:
@@ -208,7 +225,7 @@ def _end(of: Source, q: Quantity, which: int) -> float:
     return of.held(x) if abs(of.held(x)) <= abs(x) else of.held(inside)
 
 
-CORNERS: dict[str, Callable[[Source, int], Values | None]] = {
+CORNERS: dict[str, Callable[[Source, int], Drawn | None]] = {
     "large spin": _large_spin,
     "at rest": _at_rest,
     "denormal": _denormal,

@@ -7,6 +7,7 @@ largest component. No scale knows how a program is arranged.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import reduce
 from typing import Any
 
@@ -16,9 +17,11 @@ from flint import arb
 from derive.motion.runge_kutta.system import FLOW, NEXT
 from derive.program.program import Program, Quantity, component_names, placed
 from derive.scene.wanted import JACOBIAN
-from derive.verify.columns import Column, Plan, doubles, in_columns
-from derive.verify.draw import Field
-from derive.verify.operators import IN_DOUBLES
+from derive.verify.columns import Plan, arithmetics, doubles, in_columns, supplied
+from derive.verify.draw import Sampled
+from derive.verify.hard_bodies import BODIES
+from derive.verify.operators import IN_DOUBLES, Column
+from derive.verify.sample import Sample, Samples
 from derive.verify.solution import Solved, solution
 
 ANGLES = "angles"
@@ -30,7 +33,7 @@ CHANGED = 2.0**-26
 NOTHING = 1e-60
 """A part this much smaller than the rest of a plan is what rounding left, and has no true value."""
 
-Wide = Mapping[str, Column]
+InDouble = Mapping[str, Column]
 
 
 def _inverse(rows: Sequence[Sequence[Any]]) -> list[list[Any]]:
@@ -104,13 +107,42 @@ def entries(program: Program, found: Mapping[str, Solved]) -> Iterator[tuple[Any
             yield (*row.slopes.get(pattern.columns[k], (arb(0), 0.0)), row.gain)
 
 
-def lecture_scales(by: Field, program: Program, wide: Wide) -> list[Column]:
+def lecture_scales(by: Sampled, program: Program, wide: InDouble) -> list[Column]:
     """Return the largest product in the equation of each component of a function of the lecture."""
     found = solution(by.equations[base_of(program)], wide, columns_of(program), DOUBLES)
     return [np.maximum(scale, by.smallest * gain) for _, scale, gain in entries(program, found)]
 
 
-def motion_scales(by: Field, plan: Plan, wide: Wide, true: Sequence[Column]) -> list[Column]:
+def with_values(of: Sampled, drawn: Samples) -> Samples:
+    """Return samples without the hard bodies at which a function of the lecture has no value.
+
+    The wobble of a sphere has no period.
+    """
+    hard = {body.kind for body in BODIES}
+    if not hard & {s.kind for s in drawn.each}:
+        return drawn
+    valued = zip(drawn.each, _have_values(of, drawn.each), strict=True)
+    each = [s for s, fits in valued if fits or s.kind not in hard]
+    lost = {s.kind for s in drawn.each} - {s.kind for s in each}
+    kept = tuple(replace(s, number=n) for n, s in enumerate(each))
+    return Samples(kept, (*drawn.skipped, *(b.kind for b in BODIES if b.kind in lost)))
+
+
+def _have_values(of: Sampled, each: Sequence[Sample]) -> Sequence[bool]:
+    """Tell of each sample whether all functions of the lecture have a value there."""
+    dtype = of.precision.dtype
+    own: dict[str, Column] = {
+        c: np.array([s.values[c] for s in each], dtype) for c in each[0].values
+    }
+    with np.errstate(all="ignore"):
+        wide = supplied(of.setup, own, arithmetics(dtype)).wide
+        sizes = [x for f in of.library.functions for x in lecture_scales(of, f, wide)]
+    fits = [np.broadcast_to(np.isfinite(x), len(each)) for x in sizes]
+    found: list[bool] = np.all([np.full(len(each), fill_value=True), *fits], axis=0).tolist()
+    return found
+
+
+def motion_scales(by: Sampled, plan: Plan, wide: InDouble, true: Sequence[Column]) -> list[Column]:
     """Return the scale of each component of a function of motion, from its true values."""
     program, sizes = plan.program, [np.abs(x) for x in true]
     if program.name == FLOW:
@@ -133,7 +165,7 @@ def _states_of(q: Quantity) -> list[str]:
     return [c.replace(NEXT, "") for c in q.components] if q.name.endswith(NEXT) else []
 
 
-def _added(by: Field, wide: Wide) -> dict[str, Column]:
+def _added(by: Sampled, wide: InDouble) -> dict[str, Column]:
     """Return the largest term of each state in a step: it, and what the step adds to it.
 
     What is added is sized twice: a rate may be made of states that themselves begin at zero.
@@ -151,7 +183,7 @@ def _added(by: Field, wide: Wide) -> dict[str, Column]:
     return largest
 
 
-def _magnified(by: Field, plan: Plan, wide: Wide, sizes: Sequence[Column]) -> list[Column]:
+def _magnified(by: Sampled, plan: Plan, wide: InDouble, sizes: Sequence[Column]) -> list[Column]:
     """Return kappa times the largest component of each output: what its inputs' changes make."""
     inputs = (*by.setup.program.inputs, *plan.program.inputs)
     names = {c: None for q in inputs for c in q.components if q.role != "constants"}
@@ -170,7 +202,7 @@ def _magnified(by: Field, plan: Plan, wide: Wide, sizes: Sequence[Column]) -> li
     ]
 
 
-def _values(by: Field, plan: Plan, wide: Wide) -> list[Any]:
+def _values(by: Sampled, plan: Plan, wide: InDouble) -> list[Any]:
     made = in_columns(by.setup, doubles(), wide)
     known = dict(wide) | dict(zip(component_names(by.setup.program), made, strict=True))
     return in_columns(plan, doubles(), known)

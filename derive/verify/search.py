@@ -12,8 +12,9 @@ from itertools import chain
 import numpy as np
 
 from derive.program.pair_sine import PI
-from derive.verify.columns import Column, Plan, Supplied, arithmetics, found_and_true
-from derive.verify.draw import Dice, Field, admitted, complete, drawn, on_the_sphere
+from derive.verify.columns import Plan, Supplied, arithmetics, found_and_true
+from derive.verify.draw import Dice, Sampled, admitted, complete, drawn, on_the_sphere
+from derive.verify.operators import Column
 from derive.verify.scale import around, lecture_scales, measured_outputs, motion_scales
 
 CHUNK = 8192
@@ -79,7 +80,7 @@ class Worst:
         self.errors, self.rows = worst[order], every[:, order]
 
 
-def errors_at(of: Field, plan: Plan, at: Supplied) -> list[Column]:
+def errors_at(of: Sampled, plan: Plan, at: Supplied) -> list[Column]:
     """Return the errors of each measured output: rows by component, columns by sample, in u."""
     by = arithmetics(of.precision.dtype)
     with np.errstate(all="ignore"):
@@ -103,7 +104,7 @@ def _apart(gaps: Column, whole: object) -> Column:
     return gaps - TURN * np.round(gaps / TURN) if whole else gaps
 
 
-def sampled(of: Field, seed: str, count: int, kept: int) -> Iterator[tuple[int, list[Worst]]]:
+def sampled(of: Sampled, seed: str, count: int, kept: int) -> Iterator[tuple[int, list[Worst]]]:
     """Yield how many samples are done, and the worst so far of each output of each function."""
     dice = Dice(f"derive: {of.library.scene.name} {of.precision.name} {seed}")
     height = len(of.names)
@@ -125,7 +126,7 @@ def sampled(of: Field, seed: str, count: int, kept: int) -> Iterator[tuple[int, 
         yield done, best
 
 
-def searched(of: Field, plan: Plan, best: Sequence[Worst], by: Sampling) -> None:
+def searched(of: Sampled, plan: Plan, best: Sequence[Worst], by: Sampling) -> None:
     """Look for worse samples of a function from the worst of its outputs on."""
     scene, name = of.library.scene.name, plan.program.name
     dice = Dice(f"derive: {scene} {of.precision.name} search {name}")
@@ -138,7 +139,7 @@ def searched(of: Field, plan: Plan, best: Sequence[Worst], by: Sampling) -> None
                 own.add(found, rows, by.kept)
 
 
-def _changed(of: Field, dice: Dice, parents: Column, count: int, share: float) -> Column:
+def _changed(of: Sampled, dice: Dice, parents: Column, count: int, share: float) -> Column:
     """Return samples beside some of the parents, the nearer the more of the search is done."""
     which = (dice.uniform(count) * parents.shape[1]).astype(int)
     start = parents[:, which]
@@ -152,7 +153,7 @@ def _changed(of: Field, dice: Dice, parents: Column, count: int, share: float) -
     return np.where(admitted(of, rows), rows, start)
 
 
-def worst(of: Field, by: Sampling) -> list[Worst]:
+def worst(of: Sampled, by: Sampling) -> list[Worst]:
     """Return the worst samples of every output of every function in one precision."""
     best: list[Worst] = []
     for _, best in sampled(of, "measured", by.samples, by.kept):  # noqa: B007 - the last is kept

@@ -26,7 +26,10 @@ NO_SCALES: Mapping[str, Any] = MappingProxyType({})
 
 @dataclass(frozen=True)
 class Solved:
-    """A value, its scale, what it magnifies, and its slopes by column, each with its scale."""
+    """A value, its scale, and its slopes by column, each with its scale.
+
+    gain : how far an error of what it is made of is magnified in it, at least 1
+    """
 
     value: Any
     scale: Any
@@ -116,7 +119,7 @@ def _summed(
 ) -> Solved:
     """Return a sum of terms with its largest product, and the same for every slope."""
     most, slopes = arithmetic["most"], Slopes()
-    total, largest = arithmetic["number"](Fraction(0)), 0.0
+    total, largest, gain = arithmetic["number"](Fraction(0)), 0.0, 1.0
     for part in parts:
         product, size = coefficients[part.coefficient]
         for atom, power in part.factors:
@@ -125,10 +128,12 @@ def _summed(
             size = size * _power_scale(factor, power, arithmetic)
         total, largest = total + product, most(largest, size)
         for place, (atom, _) in enumerate(part.factors):
+            gain = most(gain, known[atom].gain * _partial(part, place, known, coefficients)[1])
+        for place, (atom, _) in enumerate(part.factors):
             if known[atom].slopes:
                 partial = _partial(part, place, known, coefficients)
                 _add_slopes(slopes, known[atom].slopes, *partial, most)
-    return Solved(*_at_least(total, largest, arithmetic), _all_at_least(slopes, arithmetic))
+    return Solved(*_at_least(total, largest, arithmetic), _all_at_least(slopes, arithmetic), gain)
 
 
 def _at_least(value: Any, scale: Any, arithmetic: Arithmetic) -> tuple[Any, Any]:
@@ -202,9 +207,11 @@ def _solved(
         for c in columns
     }
     sizes = [[arithmetic["size"](entry) for entry in row] for row in inverse]
+    most = arithmetic["most"]
+    gains = [[size * r.gain for size, r in zip(row, right, strict=True)] for row in sizes]
     return [
-        Solved(*solved[k], {c: slopes[c][k] for c in columns}, reduce(arithmetic["most"], row, 1.0))
-        for k, row in enumerate(sizes)
+        Solved(*solved[k], {c: slopes[c][k] for c in columns}, reduce(most, row, 1.0))
+        for k, row in enumerate(gains)
     ]
 
 

@@ -14,9 +14,10 @@ from derive.program.arithmetic import working
 from derive.program.largest import largest
 from derive.program.precision import PRECISIONS, Precision
 from derive.program.program import Measurement, Program
-from derive.verify.draw import Field, complete, with_motion
+from derive.verify.draw import Sampled, complete, with_motion
 from derive.verify.measure import Errors, errors, replayed, should, should_move, upwards
 from derive.verify.sample import Sample, samples
+from derive.verify.scale import with_values
 from derive.verify.search import Sampling, Worst, worst
 
 
@@ -26,10 +27,12 @@ def figures(library: Library, by: Sampling) -> tuple[Measurement, ...]:
 
 
 def _of_precision(library: Library, precision: Precision, by: Sampling) -> Iterator[Measurement]:
-    of = Field(library, precision)
+    of = Sampled(library, precision)
     found = worst(of, by)
-    plain = samples(library.mechanism, precision, by.balls, by.corners).each
-    moving = samples(library.mechanism, precision, by.motion_balls, by.motion_corners).each
+    plain, moving = (
+        with_values(of, samples(library.mechanism, precision, *count)).each
+        for count in ((by.balls, by.corners), (by.motion_balls, by.motion_corners))
+    )
     moving = with_motion(library, moving, precision)
     for program in library.printed():
         own = [w for w in found if w.function == program.name]
@@ -63,7 +66,7 @@ def _measurement(
     )
 
 
-def at_rows(of: Field, rows: Sequence[np.ndarray], first: int) -> list[Sample]:
+def at_rows(of: Sampled, rows: Sequence[np.ndarray], first: int) -> list[Sample]:
     """Return raw columns as samples, complete, each once, numbered from ``first`` on."""
     every = np.concatenate([np.zeros((len(of.names), 0)), *rows], axis=1)
     once = list(dict.fromkeys(map(tuple, every.T.tolist())))
@@ -77,7 +80,7 @@ def at_rows(of: Field, rows: Sequence[np.ndarray], first: int) -> list[Sample]:
     ]
 
 
-def at_samples(by: Field, program: Program, each: Sequence[Sample]) -> list[Errors]:
+def at_samples(by: Sampled, program: Program, each: Sequence[Sample]) -> list[Errors]:
     """Return the errors of each measured output of a function, measured in balls."""
     only = replace(by.library, functions=(), motions=(program,))
     found = replayed(only, each, by.precision, working(by.precision.dtype))[program.name]

@@ -25,7 +25,7 @@ extern "C" {
  *            right[4]  1  A from B  -1 .. 1  quaternion of the rotation that comes first
  * Returned:  attitude[4]  1  N from B  left times right
  * Error: median 0.3, largest 3.4 u of the largest component, by rounding alone (of attitude;
- *            200000 samples of the ranges, 65536 searched from the worst, 48 hard ones).
+ *            200000 samples of the ranges, 65536 searched from the worst, 54 hard ones).
  * Cost: 7 add, 5 sub, 16 mul.
  */
 void attitude_quaternion_product_f32(const float left[4], const float right[4], float attitude[4]);
@@ -34,7 +34,7 @@ void attitude_quaternion_product_f32(const float left[4], const float right[4], 
  * Given:     quaternion[4]  1  N from B  -1 .. 1  quaternion of any length, scalar first
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Error: median 0.25, largest 3 u of the largest component, by rounding alone (of attitude; 200000
- *            samples of the ranges, 65536 searched from the worst, 48 hard ones).
+ *            samples of the ranges, 65536 searched from the worst, 54 hard ones).
  * Cost: 3 add, 5 mul, 8 div, 1 sqrt, 4 abs, 5 less, 1 power_of_two, 6 select.
  */
 void attitude_quaternion_normalise_f32(const float quaternion[4], float attitude[4]);
@@ -43,7 +43,7 @@ void attitude_quaternion_normalise_f32(const float quaternion[4], float attitude
  * Given:     rotation_vector[3]  rad  along B  -3.14159 .. 3.14159  axis times angle, the same along N's and B's axes
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Error: median 0.23, largest 3.5 u of the largest component, by rounding alone (of attitude;
- *            200000 samples of the ranges, 65536 searched from the worst, 48 hard ones).
+ *            200000 samples of the ranges, 65536 searched from the worst, 54 hard ones).
  * Cost: 20 add, 21 sub, 23 mul, 5 div, 1 sqrt, 1 sin, 1 cos, 4 abs, 5 less, 1 power_of_two, 7
  *            select, 1 splitter.
  */
@@ -53,7 +53,7 @@ void attitude_quaternion_exp_f32(const float rotation_vector[3], float attitude[
  * Given:     quaternion[4]  1  N from B  -1 .. 1  quaternion of any length, scalar first
  * Returned:  rotation_vector[3]  rad  along B  axis times angle, the same along N's and B's axes
  * Error: median 0.31, largest 3.8 u of the largest component, by rounding alone (of
- *            rotation_vector; 200000 samples of the ranges, 65536 searched from the worst, 48 hard
+ *            rotation_vector; 200000 samples of the ranges, 65536 searched from the worst, 54 hard
  *            ones).
  * Cost: 2 add, 14 mul, 4 div, 1 neg, 1 sqrt, 8 abs, 1 atan2, 9 less, 1 power_of_two, 11 select.
  */
@@ -64,7 +64,7 @@ void attitude_quaternion_log_f32(const float quaternion[4], float rotation_vecto
  *            vector_B[3]  1  along B  -1 .. 1  any vector along B's axes
  * Returned:  vector_N[3]  1  along N  any vector along N's axes
  * Error: median 0.44, largest 5.5 u of the largest component, by rounding alone (of vector_N;
- *            200000 samples of the ranges, 65536 searched from the worst, 48 hard ones).
+ *            200000 samples of the ranges, 65536 searched from the worst, 54 hard ones).
  * Cost: 11 add, 6 sub, 24 mul.
  */
 void attitude_quaternion_rotate_f32(const float attitude[4], const float vector_B[3],
@@ -75,7 +75,7 @@ void attitude_quaternion_rotate_f32(const float attitude[4], const float vector_
  *            vector_N[3]  1  along N  -1 .. 1  any vector along N's axes
  * Returned:  vector_B[3]  1  along B  any vector along B's axes
  * Error: median 0.44, largest 5.9 u of the largest component, by rounding alone (of vector_B;
- *            200000 samples of the ranges, 65536 searched from the worst, 48 hard ones).
+ *            200000 samples of the ranges, 65536 searched from the worst, 54 hard ones).
  * Cost: 11 add, 6 sub, 24 mul.
  */
 void attitude_quaternion_rotate_back_f32(const float attitude[4], const float vector_N[3],
@@ -85,7 +85,7 @@ void attitude_quaternion_rotate_back_f32(const float attitude[4], const float ve
  * Given:     attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Returned:  matrix[9]  1  N from B  rotation matrix R_NB, column by column: v_N = R_NB v_B
  * Error: median 0.27, largest 3.4 u of the largest component, by rounding alone (of matrix; 200000
- *            samples of the ranges, 65536 searched from the worst, 48 hard ones).
+ *            samples of the ranges, 65536 searched from the worst, 54 hard ones).
  * Cost: 9 add, 7 sub, 10 mul.
  */
 void attitude_quaternion_to_matrix_f32(const float attitude[4], float matrix[9]);
@@ -94,7 +94,7 @@ void attitude_quaternion_to_matrix_f32(const float attitude[4], float matrix[9])
  * Given:     matrix[9]  1  N from B  -1 .. 1  rotation matrix R_NB, column by column: v_N = R_NB v_B
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Error: median 0.19, largest 3.9 u of the largest component, by rounding alone (of attitude;
- *            200000 samples of the ranges, 65536 searched from the worst, 48 hard ones).
+ *            200000 samples of the ranges, 65536 searched from the worst, 54 hard ones).
  * Cost: 13 add, 9 sub, 4 mul, 4 div, 1 neg, 1 sqrt, 4 less, 13 select.
  */
 void attitude_quaternion_from_matrix_f32(const float matrix[9], float attitude[4]);
@@ -103,7 +103,7 @@ void attitude_quaternion_from_matrix_f32(const float matrix[9], float attitude[4
  * Given:     attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Returned:  mrp[3]  1  along B  modified Rodrigues parameters: axis times tan(angle / 4)
  * Error: median 0.24, largest 2 u of the largest component, by rounding alone (of mrp; 200000
- *            samples of the ranges, 65536 searched from the worst, 48 hard ones).
+ *            samples of the ranges, 65536 searched from the worst, 54 hard ones).
  * Cost: 1 add, 3 div, 1 neg, 1 abs, 1 less, 1 select.
  */
 void attitude_quaternion_to_mrp_f32(const float attitude[4], float mrp[3]);
@@ -112,7 +112,7 @@ void attitude_quaternion_to_mrp_f32(const float attitude[4], float mrp[3]);
  * Given:     mrp[3]  1  along B  -1 .. 1  modified Rodrigues parameters: axis times tan(angle / 4)
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Error: median 0.28, largest 3.1 u of the largest component, by rounding alone (of attitude;
- *            200000 samples of the ranges, 65536 searched from the worst, 48 hard ones).
+ *            200000 samples of the ranges, 65536 searched from the worst, 54 hard ones).
  * Cost: 4 add, 1 sub, 11 mul, 5 div, 3 abs, 3 less, 1 power_of_two, 3 select.
  */
 void attitude_quaternion_from_mrp_f32(const float mrp[3], float attitude[4]);
@@ -121,7 +121,7 @@ void attitude_quaternion_from_mrp_f32(const float mrp[3], float attitude[4]);
  * Given:     attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Returned:  angles[3]  rad  N from B  angles about z, y, x, each about the axis as the ones before left it
  * Error: median 0.24, largest 4.1 u of the largest component, by rounding alone (of angles; 200000
- *            samples of the ranges, 65536 searched from the worst, 48 hard ones).
+ *            samples of the ranges, 65536 searched from the worst, 54 hard ones).
  * Cost: 9 add, 5 sub, 11 mul, 1 sqrt, 4 abs, 2 at_most, 3 atan2, 4 select.
  */
 void attitude_quaternion_to_euler_zyx_f32(const float attitude[4], float angles[3]);
@@ -130,7 +130,7 @@ void attitude_quaternion_to_euler_zyx_f32(const float attitude[4], float angles[
  * Given:     angles[3]  rad  N from B  -3.14159 .. 3.14159  angles about z, y, x, each about the axis as the ones before left it
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Error: median 0.34, largest 4.2 u of the largest component, by rounding alone (of attitude;
- *            200000 samples of the ranges, 65536 searched from the worst, 48 hard ones).
+ *            200000 samples of the ranges, 65536 searched from the worst, 54 hard ones).
  * Cost: 3 add, 1 sub, 15 mul, 2 neg, 3 sin, 3 cos.
  */
 void attitude_quaternion_from_euler_zyx_f32(const float angles[3], float attitude[4]);
@@ -139,7 +139,7 @@ void attitude_quaternion_from_euler_zyx_f32(const float angles[3], float attitud
  * Given:     attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Returned:  angles[3]  rad  N from B  angles about z, x, z, each about the axis as the ones before left it
  * Error: median 0.25, largest 3.3 u of the largest component, by rounding alone (of angles; 200000
- *            samples of the ranges, 65536 searched from the worst, 48 hard ones).
+ *            samples of the ranges, 65536 searched from the worst, 54 hard ones).
  * Cost: 6 add, 2 sub, 13 mul, 2 div, 2 sqrt, 6 abs, 2 at_most, 3 atan2, 2 less, 1 power_of_two, 6
  *            select.
  */
@@ -149,7 +149,7 @@ void attitude_quaternion_to_euler_zxz_f32(const float attitude[4], float angles[
  * Given:     angles[3]  rad  N from B  -3.14159 .. 3.14159  angles about z, x, z, each about the axis as the ones before left it
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Error: median 0.28, largest 4.1 u of the largest component, by rounding alone (of attitude;
- *            200000 samples of the ranges, 65536 searched from the worst, 48 hard ones).
+ *            200000 samples of the ranges, 65536 searched from the worst, 54 hard ones).
  * Cost: 3 add, 1 sub, 15 mul, 1 neg, 3 sin, 3 cos.
  */
 void attitude_quaternion_from_euler_zxz_f32(const float angles[3], float attitude[4]);

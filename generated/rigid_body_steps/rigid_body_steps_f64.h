@@ -92,7 +92,7 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Error: median 0.37, largest 2.9e+02 u of the largest component, before or after, or of the
+ * Error: median 0.37, largest 2.5e+02 u of the largest component, before or after, or of the
  *            largest product of what the step adds, by rounding alone (of attitude_next at a hard
  *            sample, turned, ill-conditioned; 200000 samples of the ranges, 65536 searched from
  *            the worst, 90 hard ones).

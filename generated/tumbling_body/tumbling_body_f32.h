@@ -154,8 +154,8 @@ void tumbling_body_flow_exact_f32(const tumbling_body_constants_f32 *constants,
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  *            time_step  s  0 .. 0.02  length of the step
  * Returned:  plan[13]  what a motion without torque and a length of step keep, each in its own unit
- * Error: median 0.91, largest 4.5 u of the largest component, by rounding alone (of plan at a hard
- *            sample, extremes; 200000 samples of the ranges, 65536 searched from the worst, 78
+ * Error: median 0.91, largest 4.8 u of the largest component, by rounding alone (of plan at a hard
+ *            sample, thin rod; 200000 samples of the ranges, 65536 searched from the worst, 78
  *            hard ones).
  * Cost: 43 add, 21 sub, 101 mul, 6 div, 1 abs, 1 less, 1 select, 1 splitter.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,

@@ -78,7 +78,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in
  *            jacobian[11]  nonzeros of the Jacobian, in compressed-column order, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Error: median 0.54, largest 5.2e+02 u of the largest product or sum in the equation (of jacobian
+ * Error: median 0.54, largest 3.3e+02 u of the largest product or sum in the equation (of jacobian
  *            at a hard sample, thin rod; 200000 samples of the ranges, 65536 searched from the
  *            worst, 150 hard ones).
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
@@ -103,7 +103,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(const unsymme
  * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum about the centre of mass
  * Postcondition: l = I omega   [lecture step angular_momentum]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Error: median 0.49, largest 5.6e+02 u of the largest product or sum in the equation (of
+ * Error: median 0.49, largest 1.3e+03 u of the largest product or sum in the equation (of
  *            angular_momentum at a hard sample, thin rod; 200000 samples of the ranges, 65536
  *            searched from the worst, 150 hard ones).
  * Cost: 1 sub, 6 mul, 1 sin, 1 cos.

@@ -15,7 +15,7 @@ from derive.program.precision import F32, F64, Precision
 from derive.program.program import component_names
 from derive.scene import CATALOGUE, SceneError, parse_scene
 from derive.scene.wanted import OF_MACHINES
-from derive.verify.draw import Dice, Field, complete, with_motion
+from derive.verify.draw import Dice, Sampled, complete, with_motion
 from derive.verify.draw import drawn as drawn_in_columns
 from derive.verify.measure import replayed
 from derive.verify.sample import Sample, samples
@@ -75,7 +75,7 @@ def two_hubs(*wanted: str, emission: str = "fast") -> Library:
 
 def test_samples_have_every_quaternion_of_length_one_and_at_half_a_turn() -> None:
     made = two_hubs("step_rk4")
-    of = Field(made, F64)
+    of = Sampled(made, F64)
     at = complete(of, drawn_in_columns(of, Dice("two hubs"), 64)).wide
     (turned,) = (s.values for s in samples(made.mechanism, F64, 0, 1).each if s.kind == "half turn")
     for frame in ("hub", "pod"):

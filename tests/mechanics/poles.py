@@ -20,9 +20,9 @@ from derive.mechanics.probe import DIGITS, Probe, random_probe
 from derive.mechanics.valued import Valued
 from derive.program.precision import F64
 from derive.program.program import Quantity, placed
-from derive.verify.columns import Column
-from derive.verify.draw import Dice, Field, admitted, complete, drawn
+from derive.verify.draw import Dice, Sampled, admitted, complete, drawn
 from derive.verify.equations import equations_of
+from derive.verify.operators import Column
 from derive.verify.reference import NoValueError, reference
 from derive.verify.scale import STATE_RATE, base_of, measured_outputs
 from derive.verify.search import errors_at
@@ -47,7 +47,7 @@ class Pole:
 
 def poles(made: Library) -> list[Pole]:
     """Return the worst place of each function at which it should be right and is not."""
-    of = Field(made, F64)
+    of = Sampled(made, F64)
     at = complete(of, points(of))
     found = []
     for plan in of.plans:
@@ -64,7 +64,7 @@ def poles(made: Library) -> list[Pole]:
     return found
 
 
-def points(of: Field) -> Column:
+def points(of: Sampled) -> Column:
     """Return raw samples at and beside the places where sines, cosines and divisors vanish."""
     dice = Dice("derive: poles")
     base = drawn(of, dice, OTHERS)
@@ -85,11 +85,11 @@ def points(of: Field) -> Column:
     return rows[:, admitted(of, rows)]
 
 
-def _owners(of: Field) -> list[Quantity]:
+def _owners(of: Sampled) -> list[Quantity]:
     return [q for q in of.quantities for _ in q.components]
 
 
-def _special(of: Field, k: int, q: Quantity, base: Column) -> Iterator[Column]:
+def _special(of: Sampled, k: int, q: Quantity, base: Column) -> Iterator[Column]:
     """Yield values of a component: zero, quarters of a turn, and what others of its unit are."""
     if q.unit != "rad":
         yield from [np.zeros(OTHERS)] if of.lows[k] <= 0 <= of.highs[k] else []
@@ -102,7 +102,7 @@ def _special(of: Field, k: int, q: Quantity, base: Column) -> Iterator[Column]:
             yield from (base[n], -base[n])
 
 
-def _on_spheres(of: Field, rows: Column) -> Column:
+def _on_spheres(of: Sampled, rows: Column) -> Column:
     """Return rows with attitudes of norm 1; four zeros are none, and become the identity."""
     for q, span in placed(of.quantities):
         if q.is_quaternion:

@@ -10,7 +10,7 @@ from derive.program.arithmetic import working
 from derive.program.largest import largest
 from derive.program.precision import F32, F64, Precision
 from derive.verify.columns import arithmetics
-from derive.verify.draw import Dice, Field, complete, drawn
+from derive.verify.draw import Dice, Sampled, complete, drawn
 from derive.verify.kept import Measuring, figures_of, stated_figures
 from derive.verify.measure import replayed
 from derive.verify.sample import Sample
@@ -37,7 +37,7 @@ def test_fresh_samples_keep_the_stated_errors(measured):
 
 
 def test_a_figure_below_two_thirds_of_what_samples_find_is_noticed(measured):
-    seen = worst(Field(library_of(SCENE), F32), replace(FEW, samples=4096, rounds=0))
+    seen = worst(Sampled(library_of(SCENE), F32), replace(FEW, samples=4096, rounds=0))
     found = max(w.errors[0] for w in seen if w.function == "kinetic_energy")
     lowered = [replace(m, worst=0.65 * found) if m.function == "kinetic_energy" else m
                for m in measured]  # fmt: skip
@@ -65,7 +65,7 @@ def test_a_figure_that_is_missing_or_absurd_fails(measured):
     "scene", thinned(["free_body", "tumbling_disc", "attitude", "sleeping_top"], 2)
 )
 def test_pairs_of_doubles_find_the_errors_that_balls_do(scene: str, precision: Precision) -> None:
-    of = Field(library_of(scene), precision)
+    of = Sampled(library_of(scene), precision)
     rows = drawn(of, Dice("beside balls"), 6)
     at = complete(of, rows)
     each = at_rows(of, [rows], 0)
@@ -78,13 +78,13 @@ def test_pairs_of_doubles_find_the_errors_that_balls_do(scene: str, precision: P
 
 def test_the_search_finds_more_than_samples_do():
     by = replace(FEW, samples=512)
-    plain = worst(Field(library_of(SCENE), F64), replace(by, rounds=0))
-    far = worst(Field(library_of(SCENE), F64), by)
+    plain = worst(Sampled(library_of(SCENE), F64), replace(by, rounds=0))
+    far = worst(Sampled(library_of(SCENE), F64), by)
     assert sum(w.errors[0] for w in far) > 1.2 * sum(w.errors[0] for w in plain)
 
 
 def test_samples_are_of_bodies_within_the_ranges():
-    of = Field(library_of("free_body"), F32)
+    of = Sampled(library_of("free_body"), F32)
     rows = drawn(of, Dice("within"), 300)
     assert rows.shape == (len(of.names), 300)
     assert np.all(rows >= of.lows[:, None])
@@ -138,7 +138,7 @@ def test_an_angle_next_to_half_a_turn_may_come_out_at_either_end():
     for n, values in enumerate(zip(*turned, strict=True)):
         rows.append(Sample(n, "found", dict(zip(names, values, strict=True))))
     (program,) = (f for f in library.printed() if f.name == "quaternion_to_euler_zxz")
-    (found,) = at_samples(Field(library, F32), program, rows)
+    (found,) = at_samples(Sampled(library, F32), program, rows)
     assert largest(found.largest()) < 8
     only = replace(library, functions=(), motions=(program,))
     first = replayed(only, rows, F32, working(np.float32))[program.name][0]

@@ -6,7 +6,7 @@ import pytest
 from derive.program.precision import PRECISIONS, Precision
 from derive.scene import catalogue
 from derive.verify.columns import arithmetics, supplied
-from derive.verify.draw import Field
+from derive.verify.draw import Sampled
 from derive.verify.sample import samples
 from derive.verify.search import errors_at
 from derive.verify.stated import at_samples
@@ -24,7 +24,7 @@ def test_errors_in_columns_are_those_in_balls(case: tuple[str, Precision]) -> No
     if not made.functions:
         pytest.skip(f"{name} wants formulas of motion alone")
     each = samples(made.mechanism, precision, SAMPLES, 0).each[:SAMPLES]
-    of = Field(made, precision)
+    of = Sampled(made, precision)
     columns = {n: np.array([s.values[n] for s in each], precision.dtype) for n in each[0].values}
     at = supplied(of.setup, columns, arithmetics(precision.dtype))
     compared = 0
