@@ -5,10 +5,15 @@ SymPy stays with the symbols, and what only the checkout has stays out of the pa
 
 import ast
 import re
+from collections.abc import Mapping
+from dataclasses import fields, replace
 from functools import cache
 from pathlib import Path
 
 import pytest
+
+from derive.scene import Scene, catalogue
+from tests.made import SHORT, scene_of
 
 ROOMS = (
     *("lecture", "scene", "program", "mechanics", "lower", "motion"),
@@ -28,6 +33,10 @@ FORMS = ("ShortForm", "short_form", "long_form", "read_short", "read_scene", "re
 """Words by which a module would know one of the two forms that a scene may be written in."""
 PICKS = {"derive.scene": {"short_form", "read_short", "read_machine"}}
 """The one module that knows them outside the folder of the short form: it picks the reader."""
+OF_ONE_FORM = ("source", "asked", "inverse", "spoken", "marks")
+"""What one form alone lets a file say: where it is from and what a function answers; or what the
+other does without: the inverse problem, and words and letters for what has no name.
+"""
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "derive"
 TESTS = ROOT / "tests"
@@ -117,6 +126,25 @@ def test_nothing_but_the_reader_that_picks_it_knows_in_which_form_a_scene_was_wr
     outside = [p for p in FILES if PACKAGE / "scene" / "short_form" not in p.parents]
     known = {_dotted(p): forms_known(p.read_text("utf-8")) for p in outside}
     assert {name: words for name, words in known.items() if words} == PICKS
+
+
+def telling(scenes: Mapping[bool, list[Scene]]) -> set[str]:
+    """Return the fields of scenes that are set in one form and in the other not."""
+    names = [field.name for field in fields(Scene)]
+    told = {
+        form: {n: {bool(getattr(s, n)) for s in each} for n in names}
+        for form, each in scenes.items()
+    }
+    return {n for n in names if told[True][n].isdisjoint(told[False][n])}
+
+
+def test_no_field_of_a_scene_is_a_flag_for_its_form() -> None:
+    scenes = {
+        form: [scene_of(n) for n in catalogue() if (n in SHORT) == form] for form in (True, False)
+    }
+    assert telling(scenes) == {*OF_ONE_FORM}
+    flagged = {form: [replace(s, merging="x" * form) for s in own] for form, own in scenes.items()}
+    assert telling(flagged) == {*OF_ONE_FORM, "merging"}
 
 
 @pytest.mark.parametrize(

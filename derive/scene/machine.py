@@ -237,7 +237,7 @@ class Scene:
     merging : words on where two of three free angles merge in their ranges, "" if nowhere
     groups  : what its functions are given and answer
     inverse : the same bodies where their motion is given, and what moves them is sought
-    told    : what it declares, in sentences, where not by frames, bodies and loads
+    told    : what it declares, one sentence each
     spoken  : what places, axes and bodies are called that the user gave no names
     marks   : the index by which formulas tell quantities of such axes and bodies
     demands : what its parameters must fulfil, masses first, tensors last

@@ -29,6 +29,7 @@ from derive.scene.results import (
     written_out,
 )
 from derive.scene.safe import require_values
+from derive.scene.said import said
 from derive.scene.scalars import PER_SECOND, Scalars, read_scalars
 from derive.scene.table import THE_FILE, Scope, Table, formula, keys, several, table
 from derive.scene.unit import BESIDE_SI, dimension, misnamed, spelled
@@ -101,7 +102,7 @@ def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
     require_sizes(scene)
     check_form(scene.wanted, scene.form, scene.emission)
     require_values(scene)
-    return grouped(replace(scene, warnings=(*scene.warnings, *doubts(scene))))
+    return grouped(replace(scene, warnings=(*scene.warnings, *doubts(scene)), told=said(scene)))
 
 
 def _misnamed(scalars: Scalars, results: tuple[Result, ...]) -> list[str]:

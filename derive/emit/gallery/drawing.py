@@ -12,11 +12,11 @@ from typing import Any
 
 from mpmath import mp, mpf
 
-from derive.emit.page.words import told
 from derive.emit.templates import TEMPLATES
 from derive.scene import Input, Scene
 from derive.scene.formula import ZERO
 from derive.scene.machine import INERTIAL, Force
+from derive.scene.said import without_hidden
 from derive.scene.wanted import attitudes_only
 from derive.verify.cloud.balance import values
 from derive.verify.cloud.history import History
@@ -80,7 +80,7 @@ def _lines(machine: Scene) -> Iterator[Polyline]:
 
 def _forces(history: History, load: Force, size: Any) -> Iterator[Polyline]:
     place, R = values(history.place(load.frame, load.at)), values(history.rotations[load.along])
-    for k, f in enumerate(told(load.force)):
+    for k, f in enumerate(without_hidden(load.force)):
         if f != ZERO:
             start = place - R[:, k] * (size / 3)
             yield Polyline("force", (tuple(start), tuple(place)))

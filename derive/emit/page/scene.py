@@ -12,7 +12,6 @@ from derive.emit.page.code import listing
 from derive.emit.page.equation import letter, notes, passages, taken_names
 from derive.emit.page.pattern import pattern
 from derive.emit.page.prose import prose
-from derive.emit.page.words import given
 from derive.emit.templates import TEMPLATES
 from derive.lecture.chapters import LECTURE
 from derive.library.library import Library
@@ -30,7 +29,7 @@ def scene_page(library: Library, figures: Sequence[Measurement]) -> str:
         first_line=first_line(library).replace("--", "- -"),
         scene=scene,
         prose=prose,
-        given=scene.told or given(scene),
+        given=scene.told,
         assumptions=[step for step in LECTURE.steps if step.name in rests_on],
         constants=library.constants,
         parameters=library.vocabulary.parameters,

@@ -2,17 +2,17 @@
 
 from collections.abc import Iterable, Sequence
 
-from derive.scene import Scene, Turning
+from derive.scene.declaration import Turning
 from derive.scene.formula import ZERO, Formula, substitute, symbols
-from derive.scene.machine import INERTIAL, Force, Frame, Gradient, Load, Member, Spring
+from derive.scene.machine import INERTIAL, Force, Frame, Gradient, Load, Member, Scene, Spring
 
 
-def given(machine: Scene) -> list[str]:
+def said(machine: Scene) -> tuple[str, ...]:
     """Return what a scene is made of, one sentence each."""
     found = [_frame(f) for f in machine.frames if f.name != INERTIAL]
     found += [_body(b) for b in machine.bodies]
     found += [_load(load) for load in machine.loads]
-    return [*found, *([f"Source: {machine.source}."] if machine.source else [])]
+    return (*found, *([f"Source: {machine.source}."] if machine.source else []))
 
 
 def is_hidden(name: str) -> bool:
@@ -23,7 +23,7 @@ def is_hidden(name: str) -> bool:
     return not name.isidentifier()
 
 
-def told(formulas: Iterable[Formula]) -> tuple[Formula, ...]:
+def without_hidden(formulas: Iterable[Formula]) -> tuple[Formula, ...]:
     """Return the components of a load without what the scene does not speak of."""
     each = tuple(formulas)
     hidden = {name: ZERO for f in each for name in symbols(f) if is_hidden(name)}
@@ -109,11 +109,11 @@ def _load(load: Load) -> str:
 def _force(load: Force) -> str:
     """Return what a load is; what the scene does not speak of is only said to be there."""
     values = (("force", load.force), ("couple", load.couple))
-    parts = [f"the {kind} {_column(told(value))}" for kind, value in values
-             if any(f != ZERO for f in told(value))]  # fmt: skip
+    parts = [f"the {kind} {_column(without_hidden(value))}" for kind, value in values
+             if any(f != ZERO for f in without_hidden(value))]  # fmt: skip
     if parts:
         parts[-1] += f" along {load.along} at {_column(load.at)} of {load.frame}"
-    if any(told(value) != tuple(value) for _, value in values):
+    if any(without_hidden(value) != tuple(value) for _, value in values):
         parts.append("what else acts there and is not asked about")
     against = f", and the opposite on {load.against}" if load.against else ""
     return f"{' and '.join(parts)}, on {load.on}{against}"
