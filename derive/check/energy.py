@@ -30,35 +30,51 @@ from derive.verify.scale import base_of
 
 BITS = 600
 STEP_BITS = 150  # a central difference leaves out the square of the step: 90 digits agree
-RATES = "state_rate"
+RATES, KINETIC = "state_rate", "kinetic_energy"
+NOTHING = mpf(10) ** -20
+"""Of the energy: rates so small are what a difference leaves of an energy that does not change."""
 ROUNDED = 2.0**-40
 """Of the largest term: C's rates are right to a few roundings of theirs, which may be larger."""
 FindRates = Callable[[Sample, Mapping[str, Any]], Mapping[str, Any]]
 
 
 def energy_balance(made: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
-    """Yield whether every energy of a machine changes by the power of the loads that change it."""
-    for program, names in _energies(made):
+    """Yield whether every energy of a machine changes by the power of the loads that change it.
+
+    A scene that wants none has its kinetic energy derived for this.
+    """
+    try:
+        told = _with_energy(made)
+    except SceneError as error:
+        yield Verdict(made.scene.name, "all", "exact", "power balance", "skipped", str(error))
+        return
+    for program, names in _energies(told):
         row = (made.scene.name, program.name, "exact", "power balance")
         try:
-            rates = rates_of(made)
+            rates = rates_of(told)
         except SceneError as error:
             yield Verdict(*row, "skipped", f"no rates to move it by: {error}")
             continue
-        yield _verdict(row, names, _gaps(made, _exactly(rates), program, each), float(AGREE))
+        yield _verdict(row, names, _gaps(told, _exactly(rates), program, each), float(AGREE))
 
 
 def emitted_balance(one: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether every energy changes by these powers along the rates that C gives."""
     made = one.library
     forward = [f for f in made.functions if base_of(f) == RATES or _finds_accelerations(made, f)]
-    for program, names in _energies(made):
+    if not forward:
+        says = "no function that is wanted finds accelerations"
+        row = (made.scene.name, "all", one.precision.name, "power balance")
+        yield Verdict(*row, "skipped", says)
+        return
+    try:
+        told = _with_energy(made)
+    except SceneError:
+        return  # said of the exact balance
+    for program, names in _energies(told):
         row = (made.scene.name, program.name, one.precision.name, "power balance")
-        if not forward:
-            yield Verdict(*row, "skipped", "no function that is wanted finds accelerations")
-            continue
-        rates = _emitted(one, forward[0], _exactly(rates_of(made)))
-        yield _verdict(row, names, _gaps(made, rates, program, each), ROUNDED)
+        rates = _emitted(one, forward[0], _exactly(rates_of(told)))
+        yield _verdict(row, names, _gaps(told, rates, program, each), ROUNDED)
 
 
 def _finds_accelerations(made: Library, program: Program) -> bool:
@@ -72,6 +88,13 @@ def _highest(made: Library) -> dict[str, str]:
         m.unknown: m.rate.name if isinstance(m.rate, Input) else m.name
         for m in (*scene.coordinates, *scene.speeds)
     }
+
+
+def _with_energy(made: Library) -> Library:
+    """Return a library in which an energy is wanted: its own if one is, else another."""
+    if any(_energies(made)):
+        return made
+    return library(replace(made.scene, wanted=(KINETIC,), asked={KINETIC: (KINETIC,)}))
 
 
 def _energies(made: Library) -> Iterator[tuple[Program, list[str]]]:
@@ -142,12 +165,13 @@ def power_gaps(made: Library, rates: FindRates, program: Program, sample: Sample
         if not all(arb(v).is_finite() for v in velocity.values()):
             return [mpf("inf")]
         found = _slopes(made, program, at, velocity)
+        energies = results(made, program, at)
     acting = powers(cloud)
     with mp.workdps(DIGITS):
+        size = {n: abs(digits(x)) * NOTHING for n, x in energies.items() if n in ENERGIES}
         return [
-            abs(mp.fsum(terms)) / (max(map(abs, terms)) or 1)
-            for name in component_names(program)
-            if name in ENERGIES
+            abs(mp.fsum(terms)) / (max(*map(abs, terms), size[name]) or 1)
+            for name in size
             for terms in ([*_negative(acting, name), *map(digits, found[name])],)
         ]
 
