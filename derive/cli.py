@@ -12,7 +12,7 @@ import numpy as np
 from derive import __version__
 from derive.check.compiler import CompilerError
 from derive.command import check, generate, lecture, report, scenes, solve
-from derive.command.terminal import complain, errors
+from derive.command.terminal import complain, error_console
 from derive.emit.files import OutputError
 from derive.scene import SceneError
 from derive.verify.prove import ProofError
@@ -49,7 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         complain(f"derive: '{error.filename}': {error.strerror}", "red")
         return 2
     except KeyboardInterrupt:
-        errors.print("derive: stopped; every file is whole, some may be new")
+        error_console.print("derive: stopped; every file is whole, some may be new")
         return STOPPED
 
 

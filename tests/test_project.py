@@ -139,6 +139,8 @@ def test_what_a_test_replaces_is_there_also_where_only_the_longer_run_would_tell
     assert [(page.name, *path) for page, *path in found if not stands(*path)] == []
     gone = "from derive import mechanics\npatch.setattr(mechanics, 'gone', 1)\n"
     assert [stands(*path) for path in replaced(gone)] == [False]
+    gone = "import derive.mechanics\npatch.setattr(derive.mechanics, 'gone', 1)\n"
+    assert [stands(*path) for path in replaced(gone)] == [False]
 
 
 def replaced(text: str) -> list[tuple[str, str]]:
@@ -158,6 +160,10 @@ def replaced(text: str) -> list[tuple[str, str]]:
         match node:
             case ast.Call(ast.Attribute(attr="setattr"), [ast.Constant(str(path)), *_]):
                 found.append((*path.rpartition(".")[::2],))
+            case ast.Call(
+                ast.Attribute(attr="setattr"), [ast.Attribute() as own, ast.Constant(name), *_]
+            ) if ast.unparse(own).startswith("derive."):
+                found.append((ast.unparse(own), str(name)))
             case ast.Call(ast.Attribute(attr="setattr"), [ast.Name(own), ast.Constant(name), *_]):
                 found += [(known[own], str(name))] if own in known else []
     return found

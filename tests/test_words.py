@@ -3,8 +3,10 @@
 import ast
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
+
+import pytest
 
 from derive.scene.short_form.quantities import QUANTITIES
 
@@ -15,13 +17,13 @@ PAGES = {
 }
 
 
-WAITING = ("block", "entry", "kind", "row", "term")
-"""Still two things each."""
+BOTH = {"entry": "of a scene file, and of a matrix: both are terms of the field"}
+"""Names of two types, and why."""
 
 
 def test_no_two_modules_define_types_of_one_name() -> None:
     assert len(types(PAGES)) > 150
-    assert sorted(shared(PAGES)) == sorted(WAITING)
+    assert shared(PAGES).keys() == BOTH.keys()
 
 
 def test_a_second_type_of_a_name_is_found_whether_class_or_alias_or_plural() -> None:
@@ -31,6 +33,72 @@ def test_a_second_type_of_a_name_is_found_whether_class_or_alias_or_plural() -> 
     }
     assert shared({**first, "b": ast.parse("class Bloc: pass")}) == {}
     assert shared({**first, "b": ast.parse("from x import Block\nclass Blocks: pass")}) == {}
+
+
+WORDS = {
+    "motion": ("how bodies go in time", "check", "emit", "library", "mechanics", "motion",
+               "scene", "solve", "verify"),
+    "moved": ("nothing",),
+    "moving": ("a scalar that changes in time, axes that turn", "lecture", "scene"),
+    "rate": ("a derivative by time", "check", "lecture", "library", "lower", "mechanics", "motion",
+             "scene", "verify"),
+    "stage": ("of a Runge-Kutta method", "motion"),
+    "draft": ("nothing",),
+    "table": ("of a scene file", "scene"),
+    "point": ("a place in space", "mechanics", "scene"),
+    "frame": ("axes", "mechanics", "scene"),
+    "block": ("of a matrix", "library", "lower", "verify"),
+    "known": ("what the scene states of a body's motion and loads", "scene"),
+    "traced": ("nothing",),
+    "series": ("of powers of time", "motion", "verify"),
+}  # fmt: skip
+"""What each of these words names, and the rooms in which definitions are so called."""
+
+
+def test_no_two_modules_give_others_functions_or_constants_of_one_name() -> None:
+    assert len(given_to_others(PAGES)) > 400
+    functions, constants = apart(given_to_others(PAGES))
+    assert sorted(several(functions)) == sorted(ALIKE)
+    assert sorted(several(constants)) == sorted(SAME)
+
+
+def test_a_second_function_of_a_name_is_found_once_another_module_reads_it() -> None:
+    pages = {name: ast.parse("def drawn(): pass") for name in ("a", "b")}
+    both = {**pages, "c": ast.parse("from derive.a import drawn\nfrom derive import b\nb.drawn()")}
+    assert several(given_to_others(pages)) == {}
+    assert several(given_to_others(both)) == {"drawn": ["a.drawn", "b.drawn"]}
+
+
+ALIKE = {
+    **dict.fromkeys(
+        ("added", "number", "product", "symbol", "time", "trace", "turn", "zero"),
+        "the same operation on another kind of numbers",
+    ),
+    **dict.fromkeys(("from_quaternion", "to_quaternion"), "the way to other parameters"),
+    **dict.fromkeys(("after", "by_error", "increment", "step_slope"), "of a Runge-Kutta method"),
+    "option": "of a command",
+    "potential_energy": "by loads and, beside them, by particles",
+    "renamed": "in a formula and in a program",
+    "splitter": "as a number and as a recorded one",
+    "unit": "of a quantity, and the unit vector: both are terms of the field",
+}
+"""Functions that are called alike because they are alike, and what they are."""
+SAME = {
+    **dict.fromkeys(("any", "axe", "half", "identity", "one", "zero"), "one value, of many kinds"),
+    "bit": "of the arithmetic at hand",
+    "body": "its entries in a scene file, and those at which errors are looked for",
+    "sign": "how a language writes operators",
+    "step": "of a chapter",
+    "time_step": "the quantity, and its entry in a scene file",
+    "unit": "the number 1, and the units of scenes",
+}
+"""Constants that are called alike because they are alike, and what they are."""
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_a_word_that_named_several_things_is_met_where_it_names_one(word: str) -> None:
+    rooms = {page.partition("/")[0] for page in PAGES if word in words_of(page, PAGES[page])}
+    assert rooms == {*WORDS[word][1:]}
 
 
 def test_no_name_of_a_scenes_quantity_decides_anything() -> None:
@@ -116,6 +184,46 @@ def holds(name: str, tree: ast.Module) -> bool:
 def shared(pages: Mapping[str, ast.Module]) -> dict[str, list[str]]:
     """Return the names that types of several modules have, with where they stand."""
     return several(types(pages))
+
+
+def words_of(page: str, tree: ast.Module) -> set[str]:
+    """Return the words that the names of a module, and of what it defines, are made of."""
+    own = page.removesuffix("/__init__").rpartition("/")[2]
+    names = (own, *defined(tree))
+    parts = (part for name in names for part in re.findall("[A-Z]+(?![a-z])|[A-Z]?[a-z0-9]+", name))
+    return {w for part in parts for w in (part.lower(), part.lower().removesuffix("s"))}
+
+
+def given_to_others(pages: Mapping[str, ast.Module]) -> list[tuple[str, str]]:
+    """Return each function and constant that another module reads: its module, its name."""
+    read = {place for tree in pages.values() for place in reads(tree)}
+    return [
+        (page, name)
+        for page, tree in pages.items()
+        for name in defined(tree)
+        if (page.removesuffix("/__init__"), name) in read
+        if name.isupper() or name.islower()
+        if not holds(name, tree)
+    ]
+
+
+def apart(names: Iterable[tuple[str, str]]) -> tuple[list[tuple[str, str]], ...]:
+    """Return functions and constants, each (module, name), apart."""
+    each = list(names)
+    return [n for n in each if n[1].islower()], [n for n in each if n[1].isupper()]
+
+
+def reads(tree: ast.Module) -> Iterator[tuple[str, str]]:
+    """Yield what a module reads of others: their page, the name."""
+    modules: dict[str, str] = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom):
+            page = (node.module or "").removeprefix("derive").strip(".").replace(".", "/")
+            yield from ((page, each.name) for each in node.names)
+            modules |= {n.asname or n.name: f"{page}/{n.name}".strip("/") for n in node.names}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            yield modules.get(node.value.id, ""), node.attr
 
 
 def several(names: Iterable[tuple[str, str]]) -> dict[str, list[str]]:

@@ -29,7 +29,7 @@ from bench.report.formula_samples import (
 )
 from bench.report.hard import Hard
 from derive.check.call import CFunction
-from derive.check.call import functions as callable_functions
+from derive.check.call import c_functions as callable_functions
 from derive.check.compiler import CompilerError, compiled, find_compiler
 
 DIGITS, SAMPLES = 60, 400

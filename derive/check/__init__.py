@@ -13,19 +13,19 @@ from derive.check.agreement import (
     accuracy,
     aliasing,
     casadi_bits,
-    dense,
+    dense_agrees,
     replay,
 )
-from derive.check.attitudes import definitions
+from derive.check.attitudes import attitude_definitions
 from derive.check.compiler import Compiler, CompilerError, find_compiler
 from derive.check.derivatives import derivatives
 from derive.check.emitted import Emitted, Files, casadi_module, files, is_double, loaded, verdict
 from derive.check.energy import emitted_balance, energy_balance
 from derive.check.fresh import fresh
 from derive.check.inlined import inlined
-from derive.check.motion import orders, step_slopes
+from derive.check.motion import orders_hold, step_slopes_hold
 from derive.check.particles import clouds
-from derive.check.refusals import casadi_status, refusal
+from derive.check.refusals import casadi_status, refuses_alike
 from derive.check.sphere import near_a_sphere
 from derive.check.turned import turned_axes
 from derive.check.verdict import JUDGED, Verdict
@@ -131,14 +131,14 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
     stated = {n: e for n, e in printed.items() if isinstance(e, dict)}
     yield from accuracy(one, each, few, stated)
     yield from near_a_sphere(one, each)
-    yield from definitions(one)
+    yield from attitude_definitions(one)
     yield from replay(one, each)
-    yield from dense(one, few)
+    yield from dense_agrees(one, few)
     yield from aliasing(one, few)
-    yield refusal(one, few)
+    yield refuses_alike(one, few)
     if is_double(one):
-        yield from orders(one.library, each)
-        yield from step_slopes(one.library, each)
+        yield from orders_hold(one.library, each)
+        yield from step_slopes_hold(one.library, each)
         module = casadi_module(one.library, found, workshop)
         yield from casadi_bits(one, module, each)
         yield from inlined(one.library, module, each)

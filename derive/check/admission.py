@@ -172,7 +172,7 @@ def fault(
     return "" if status in may else f"{status}, not {' or '.join(map(str, sorted(may)))}"
 
 
-def ends_of(values: Mapping[str, float], precision: Precision, *, finite: bool) -> Extremes:
+def extremes_of(values: Mapping[str, float], precision: Precision, *, finite: bool) -> Extremes:
     """Return how far parameters lie from the ends of the floats' range."""
     info = np.finfo(precision.dtype)
     low, high = float(info.smallest_normal) ** (1 / 6), float(info.max) ** (1 / 6)
@@ -180,7 +180,7 @@ def ends_of(values: Mapping[str, float], precision: Precision, *, finite: bool) 
     return Extremes(finite, any(x > high for x in sizes), any(0 < x < low for x in sizes))
 
 
-def replayed(
+def replayed_statuses(
     setup: Program, each: Sequence[Mapping[str, float]], precision: Precision
 ) -> list[int]:
     """Return what the program says of each set of parameters."""

@@ -214,7 +214,7 @@ def _same_over(function: Any, values: Mapping[str, Any], output: str, over: str)
     return all(same_bits(apart[name], joint[name]) for name in apart)
 
 
-def dense(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
+def dense_agrees(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether the whole matrices hold the nonzeros in their places, and zeros elsewhere."""
     for program in emitted.library.printed():
         for name, pattern in (program.sparsity or {}).items():

@@ -25,7 +25,7 @@ ROUNDED = 1e-6
 UNIT: NDArray[Any] = np.eye(3)
 
 
-def definitions(emitted: Emitted) -> Iterator[Verdict]:
+def attitude_definitions(emitted: Emitted) -> Iterator[Verdict]:
     """Yield whether every formula for attitudes gives what its name means."""
     dice = Random("attitudes")  # noqa: S311 - samples, no secret
     dtype = emitted.precision.dtype

@@ -57,7 +57,7 @@ class CFunction:
         return array() if argument.output else array(*given[argument.name])
 
 
-def functions(manifest: Mapping[str, Any], library: Path, precision: str) -> dict[str, CFunction]:
+def c_functions(manifest: Mapping[str, Any], library: Path, precision: str) -> dict[str, CFunction]:
     """Return the functions that a manifest describes, from a compiled library."""
     loaded = ctypes.CDLL(str(library))
     return {f["name"]: _function(f, loaded, precision) for f in manifest["functions"]}

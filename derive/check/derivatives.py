@@ -28,7 +28,7 @@ from derive.verify.operators import LONG_FLOATS
 from derive.verify.sample import Sample
 
 SHIFT = arb(2) ** -20  # exact; what formulas take for zero is less
-POINTS = range(1, 7)
+NUMBERS = range(1, 7)
 NEAR = tuple(2.0**-k for k in (10, 20, 30, 40, 60))
 """How far from an axis, and from zero: formulas lose digits next to where they have other cases."""
 MOMENT, SAMPLES = "kg m^2", 3
@@ -144,11 +144,11 @@ def _apart(near: float) -> str:
 def differences(library: Library, program: Program, place: Directed) -> tuple[list[Any], list[Any]]:
     """Return first and second derivatives of each result, None where there is none."""
     with ctx.workprec(BITS):
-        at = {k: _results(library, program, place, k) for n in POINTS for k in (n, -n)}
+        at = {k: _results(library, program, place, k) for n in NUMBERS for k in (n, -n)}
         once, again = (
             [
                 [
-                    _slope(order, [at[s * n][i] for n in POINTS], s)
+                    _slope(order, [at[s * n][i] for n in NUMBERS], s)
                     for i in range(len(program.results))
                 ]
                 for s in (1, -1)
@@ -170,7 +170,7 @@ def _slope(order: int, values: Sequence[Any], side: int) -> Any:
 @cache
 def _weights(order: int) -> list[Any]:
     """Return by which values at 1, 2, ... count in a polynomial's derivative at 0."""
-    found: list[Any] = finite_diff_weights(order, [*POINTS], 0)[order][-1]
+    found: list[Any] = finite_diff_weights(order, [*NUMBERS], 0)[order][-1]
     return found
 
 

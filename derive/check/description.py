@@ -220,7 +220,7 @@ def relabelled(machine: Scene) -> Description:
     return Description(machine, CYCLE, frozenset(f.name for f in machine.frames))
 
 
-def turned(machine: Scene) -> Description | None:
+def turned_machine(machine: Scene) -> Description | None:
     """Return a machine with the frames turned whose angular velocity is given along them.
 
     None if there is no such frame whose bodies can be told along any axes.

@@ -9,7 +9,7 @@ from typing import Any
 
 import casadi
 
-from derive.check.call import CFunction, functions
+from derive.check.call import CFunction, c_functions
 from derive.check.compiler import Compiler, compiled
 from derive.check.verdict import Outcome, Verdict
 from derive.emit.casadi_module import imported
@@ -110,7 +110,7 @@ def loaded(library: Library, found: Files, workshop: Path, with_: Compiler) -> I
     for precision in PRECISIONS:
         own = {n: t for n, t in found.texts.items() if n.endswith((".c", ".h"))}
         shared = compiled(own, f"{name}_{precision.name}.c", workshop, with_)
-        callable_ = functions(found.manifest, shared, precision.name)
+        callable_ = c_functions(found.manifest, shared, precision.name)
         yield Emitted(library, precision, callable_, shared)
 
 

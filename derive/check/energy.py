@@ -30,7 +30,7 @@ from derive.verify.scale import base_of
 
 BITS = 600
 STEP_BITS = 150  # a central difference leaves out the square of the step: 90 digits agree
-RATES, KINETIC = "state_rate", "kinetic_energy"
+RATE_FUNCTION, KINETIC = "state_rate", "kinetic_energy"
 NOTHING = mpf(10) ** -20
 """Of the energy: rates so small are what a difference leaves of an energy that does not change."""
 ROUNDED = 2.0**-40
@@ -61,7 +61,9 @@ def energy_balance(made: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
 def emitted_balance(one: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether every energy changes by these powers along the rates that C gives."""
     made = one.library
-    forward = [f for f in made.functions if base_of(f) == RATES or _finds_accelerations(made, f)]
+    forward = [
+        f for f in made.functions if base_of(f) == RATE_FUNCTION or _finds_accelerations(made, f)
+    ]
     if not forward:
         says = "no function that is wanted finds accelerations"
         row = (made.scene.name, "all", one.precision.name, "power balance")
@@ -123,16 +125,16 @@ def rates_of(made: Library) -> Library | None:
     scene = made.scene
     if not made.vocabulary.states:
         return None
-    if any(p.name == RATES for p in (*made.functions, *made.rates)):
+    if any(p.name == RATE_FUNCTION for p in (*made.functions, *made.rates)):
         return made
-    return library(replace(scene, wanted=(RATES,), asked={RATES: (RATES,)}))
+    return library(replace(scene, wanted=(RATE_FUNCTION,), asked={RATE_FUNCTION: (RATE_FUNCTION,)}))
 
 
 def _exactly(rates: Library | None) -> FindRates:
     """Return the rates of the state as programs give them in long floats."""
     if rates is None:
         return lambda _, __: {}
-    program = next(p for p in (*rates.functions, *rates.rates) if base_of(p) == RATES)
+    program = next(p for p in (*rates.functions, *rates.rates) if base_of(p) == RATE_FUNCTION)
     states = [c for q in rates.vocabulary.states for c in q.components]
     return lambda _, at: dict(zip(states, results(rates, program, at).values(), strict=False))
 
@@ -144,7 +146,7 @@ def _emitted(one: Emitted, program: Program, others: FindRates) -> FindRates:
 
     def rates(sample: Sample, at: Mapping[str, Any]) -> Mapping[str, Any]:
         names, found = component_names(program), map(arb, one.results(program, sample))
-        if base_of(program) == RATES:
+        if base_of(program) == RATE_FUNCTION:
             return dict(zip(states, found, strict=False))
         own = dict(zip(names, found, strict=True))
         return {**others(sample, at), **{highest[n]: x for n, x in own.items() if n in highest}}

@@ -9,28 +9,28 @@ from collections.abc import Iterator, Sequence
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library
 from derive.program.largest import largest
-from derive.scene.wanted import COMPENSATED, STEPS
-from derive.verify.convergence import BITS, EXACT, LEVELS, course, exactness, order
+from derive.scene.wanted import COMPENSATED, STEP_FUNCTIONS
+from derive.verify.convergence import BITS, CLOSED_FORM, LEVELS, course, exactness, order
 from derive.verify.differences import GAP, slopes
 from derive.verify.sample import Sample
 
 FEW = 2
 
 
-def orders(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
+def orders_hold(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether every step converges as fast as it claims, and every flow is exact."""
     ordinary = [s for s in each if s.kind == "ordinary"][:FEW]
     for program in library.motions:
         if program.name == "flow_exact":
             yield _exact(library, ordinary)
-        elif program.name in (*STEPS, *COMPENSATED):
+        elif program.name in (*STEP_FUNCTIONS, *COMPENSATED):
             yield _order(library, program.name, ordinary)
 
 
 def _exact(library: Library, each: Sequence[Sample]) -> Verdict:
     worst = largest(exactness(library, s.values) for s in each)
     says = f"relative error {worst:.1g} without rounding, {BITS} bits, {LEVELS} levels"
-    outcome = JUDGED[worst <= EXACT]
+    outcome = JUDGED[worst <= CLOSED_FORM]
     return Verdict(library.scene.name, "flow_exact", "exact", "is the motion", outcome, says)
 
 
@@ -43,7 +43,7 @@ def _order(library: Library, name: str, each: Sequence[Sample]) -> Verdict:
     return Verdict(library.scene.name, name, "exact", "order", outcome, says)
 
 
-def step_slopes(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
+def step_slopes_hold(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether the derivatives of every step are the slopes of the step."""
     ordinary = [s for s in each if s.kind == "ordinary"][:1]
     for program in library.motions:

@@ -15,7 +15,7 @@ from derive.scene.machine import Result
 from derive.scene.results import MATRICES, written_out
 from derive.verify.cloud import CloudAnswers, answers
 from derive.verify.cloud.series import DIGITS
-from derive.verify.cloud.small import at_rest, slopes
+from derive.verify.cloud.small import is_at_rest, slopes_about_rest
 from derive.verify.convergence import unit_attitude
 from derive.verify.equations import Equations, equations_of, stated
 from derive.verify.reference import BITS, reference
@@ -153,7 +153,7 @@ def _of_slopes(machine: Scene, cloud: CloudAnswers, result: Result) -> Any:
     The cloud knows M^-1 D and M^-1 K only, so a result must be the same for any M: it is taken
     with M = 1 and with another, and both must say the same.
     """
-    by_velocity, by_place = slopes(machine, cloud.given)
+    by_velocity, by_place = slopes_about_rest(machine, cloud.given)
     size = by_velocity.rows
     with mp.workdps(DIGITS):
         values = []
@@ -185,9 +185,9 @@ def digits(ball: Any) -> Any:
 
 def _small(machine: Scene, given: Mapping[str, Any], true: Mapping[str, Solved]) -> list[Any]:
     """Return how far M, D and K are from the slopes of the cloud's accelerations."""
-    if not at_rest(machine, given):
+    if not is_at_rest(machine, given):
         return []  # the given motion is none, for these values
-    by_velocity, by_place = slopes(machine, given)
+    by_velocity, by_place = slopes_about_rest(machine, given)
     size = by_velocity.rows
     with mp.workdps(DIGITS):
         M, D, K = (mp.matrix([[digits(true[f"{name}_{i + 1}_{k + 1}"].value) for k in range(size)]

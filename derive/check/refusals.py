@@ -7,7 +7,7 @@ from typing import Any
 
 import casadi
 
-from derive.check.admission import ends_of, fault, hostile, replayed
+from derive.check.admission import extremes_of, fault, hostile, replayed_statuses
 from derive.check.emitted import Emitted, verdict
 from derive.check.verdict import JUDGED, Verdict
 from derive.program.status import RIGHT
@@ -16,7 +16,7 @@ from derive.verify.sample import Sample
 HOSTILE = 40  # draws of parameters that no body may have, beside one bad parameter at a time
 
 
-def refusal(emitted: Emitted, each: Sequence[Sample]) -> Verdict:
+def refuses_alike(emitted: Emitted, each: Sequence[Sample]) -> Verdict:
     """Return whether set-up refuses what the scene's declaration refuses, by the same rule."""
     setup, check_ = emitted.library.setup, "refuses what is no body"
     if not emitted.library.constants:
@@ -25,10 +25,10 @@ def refusal(emitted: Emitted, each: Sequence[Sample]) -> Verdict:
     drawn = _hostile(emitted)
     found = [_status(emitted, values) for values in drawn]
     for values, status, same in zip(
-        drawn, found, replayed(setup, drawn, emitted.precision), strict=True
+        drawn, found, replayed_statuses(setup, drawn, emitted.precision), strict=True
     ):
         finite = all(map(isfinite, _made(emitted, values)["constants"]))
-        ends = ends_of(values, emitted.precision, finite=finite)
+        ends = extremes_of(values, emitted.precision, finite=finite)
         says = fault(emitted.library.scene, values, emitted.precision, status, ends)
         says = says or ("" if same == status else f"{status}, by the program {same}")
         bad += [f"{says} at {values}"] if says else []

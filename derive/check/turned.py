@@ -11,7 +11,7 @@ from typing import Any
 from flint import arb, ctx
 
 from derive.check.agreement import ABSURD, LARGEST_BOUND, MORE
-from derive.check.description import Description, relabelled, turned
+from derive.check.description import Description, relabelled, turned_machine
 from derive.check.emitted import Emitted, errors_of, verdict
 from derive.check.verdict import JUDGED, Verdict
 from derive.program.largest import largest
@@ -33,7 +33,7 @@ def turned_axes(one: Emitted, each: Sequence[Sample], stated: Stated) -> Iterato
     """Yield whether every function is what the machine told along other axes gives."""
     scene = one.library.scene
     of = Sampled(one.library, one.precision)
-    told = {"cyclic relabelling": relabelled(scene), "rotation of axes": turned(scene)}
+    told = {"cyclic relabelling": relabelled(scene), "rotation of axes": turned_machine(scene)}
     for check, description in told.items():
         if description is None or not one.library.functions:
             says = "no frame with an angular velocity of its own holds bodies of any axes"

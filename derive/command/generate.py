@@ -17,7 +17,7 @@ from derive.command.generation import (
     made_with_savings,
 )
 from derive.command.scenes import samples_argument, scene_argument
-from derive.command.terminal import OUT, complain, console, errors, progress
+from derive.command.terminal import OUT, complain, console, error_console, progress
 from derive.emit.files import (
     Difference,
     differences,
@@ -128,9 +128,9 @@ def _compare(given: argparse.Namespace, texts: Mapping[str, str]) -> int:
     for difference in found:
         sys.stdout.write(difference.diff)
     count = "1 file differs" if len(found) == 1 else f"{len(found)} files differ"
-    errors.print(f"derive: {count} from what would be generated; mend:", style="red")
+    error_console.print(f"derive: {count} from what would be generated; mend:", style="red")
     for command in _mending(given, found):
-        errors.print(visible(command), style="red", highlight=False, soft_wrap=True)
+        error_console.print(visible(command), style="red", highlight=False, soft_wrap=True)
     return 1
 
 

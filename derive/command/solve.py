@@ -4,7 +4,7 @@ import argparse
 
 from rich.table import Table
 
-from derive.command.terminal import console, errors
+from derive.command.terminal import console, error_console
 from derive.scene import SceneError
 from derive.scene.unit import behind
 from derive.solve import command as answers
@@ -18,9 +18,11 @@ def options(command: argparse.ArgumentParser) -> None:
 
 def solve(given: argparse.Namespace) -> int:
     """Print the answers of a scene with their units; refuse at the end what has no values."""
-    found = answers.solved(given)
+    found = answers.printout(given)
     for doubt in found.doubts:
-        errors.print(f"derive: warning: {doubt}", style="yellow", highlight=False, markup=False)
+        error_console.print(
+            f"derive: warning: {doubt}", style="yellow", highlight=False, markup=False
+        )
     table = Table("function", "answer", "value", "unit", box=None)
     for row in found.rows:
         table.add_row(*row[:3], behind(row[3]).strip())

@@ -11,7 +11,7 @@ from derive.scene.escape import visible
 OUT = Path("generated")
 WIDE = 150  # columns of a table that goes to a file or a pipe
 console = Console(width=None if sys.stdout.isatty() else WIDE, markup=False, emoji=False)
-errors = Console(
+error_console = Console(
     stderr=True, width=None if sys.stderr.isatty() else WIDE, markup=False, emoji=False
 )
 
@@ -19,10 +19,12 @@ errors = Console(
 def complain(sentence: str, style: str) -> None:
     """Print a sentence on what is wrong; what a file or its name holds is shown, never obeyed."""
     shown = "\n".join(map(visible, sentence.split("\n")))
-    errors.print(shown, style=style, highlight=False, soft_wrap=not errors.is_terminal)
+    error_console.print(
+        shown, style=style, highlight=False, soft_wrap=not error_console.is_terminal
+    )
 
 
 def progress() -> Progress:
     """Return a progress line that vanishes when it is done."""
     columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
-    return Progress(*columns, console=errors, transient=True)
+    return Progress(*columns, console=error_console, transient=True)

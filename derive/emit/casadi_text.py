@@ -5,11 +5,11 @@ from fractions import Fraction
 
 import numpy as np
 
-from derive.emit.c.comment import told
+from derive.emit.c.comment import singular_clause
 from derive.emit.c.scope import declared_in_python, require_free
 from derive.emit.c.source import first_line
 from derive.emit.c.text import pair_functions
-from derive.emit.lines import SIGNS, Language, operation, written
+from derive.emit.lines import SIGNS, Language, operation_text, written
 from derive.emit.operators import WRITTEN, patterns
 from derive.emit.templates import TEMPLATES
 from derive.library.library import Library
@@ -104,9 +104,10 @@ def _carried(of: Language, loop: Loop) -> tuple[list[str], list[str]]:
     if loop.done is not None:
         begin.append(f"{done} = ca.SX(0)")
         then = [
-            operation(of, "select", (done, c, t)) for c, t in zip(loop.carried, then, strict=True)
+            operation_text(of, "select", (done, c, t))
+            for c, t in zip(loop.carried, then, strict=True)
         ]
-        end = [f"{done} = {operation(of, 'either', (done, text(loop.done)))}"]
+        end = [f"{done} = {operation_text(of, 'either', (done, text(loop.done)))}"]
     return begin, [f"{carried} = {', '.join(then)}", *end]
 
 
@@ -197,7 +198,7 @@ def _function(program: Program, scene: str) -> dict[str, object]:
         "builder": program.name,
         "name": f"{scene}_{program.name}",
         "says": program.says,
-        "singular": [told(s) for s in program.singular],
+        "singular": [singular_clause(s) for s in program.singular],
         "inputs": [{"name": q.name, "size": len(q.components)} for q in program.inputs],
         "needs_constants": any(q.role == "constants" for q in program.inputs),
         "lines": lines,

@@ -54,7 +54,7 @@ class Language:
     same: str
 
 
-def operation(of: Language, operator: str, operands: Sequence[str]) -> str:
+def operation_text(of: Language, operator: str, operands: Sequence[str]) -> str:
     """Return an operator on operands that are written already."""
     if operator in of.patterns:
         return of.patterns[operator].format(*operands)
@@ -69,7 +69,7 @@ def written(of: Language, lines: Sequence[Line]) -> list[str]:
 def _written(of: Language, line: Line) -> Iterator[str]:
     match line:
         case Op():
-            yield of.line(line, operation(of, line.operator, [*map(of.text, line.operands)]))
+            yield of.line(line, operation_text(of, line.operator, [*map(of.text, line.operands)]))
         case Assign():
             yield of.assign(line, _value(of, line.value))
         case Loop() | Even():
@@ -91,7 +91,7 @@ def _value(of: Language, value: IndexedOperand) -> str:
         case Same():
             return of.same.format(value.one, value.other)
         case Term():
-            return operation(of, value.operator, [*_bracketed(of, value)])
+            return operation_text(of, value.operator, [*_bracketed(of, value)])
     return str(value)
 
 

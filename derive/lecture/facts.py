@@ -9,8 +9,8 @@ from typing import Any
 from sympy import Expr
 
 from derive.lecture.rate import rate, rate_of, seen_from_axes, seen_from_N
-from derive.lecture.relations import remainders
-from derive.lecture.sums import entries, expanded, reading
+from derive.lecture.relations import left_by_relations
+from derive.lecture.sums import expanded, flattened, reading
 from derive.lecture.tree import collected, rebuilt, renamed, size, symbols
 from derive.lecture.vectors import Expression
 
@@ -90,7 +90,7 @@ class Facts:
         return tuple(d for left, right in claims for d in self._difference(left, right))
 
     def _difference(self, left: Expression, right: Expression) -> list[Expr]:
-        return entries(self.read(left) - self.read(right))
+        return flattened(self.read(left) - self.read(right))
 
     def relations(self) -> tuple[Expr, ...]:
         """Return what the reasons say is zero."""
@@ -106,7 +106,7 @@ class Facts:
         differences = self.differences(claims)
         if not any(differences) or not self.related:
             return differences
-        return remainders(differences, self.relations(), self.rates())
+        return left_by_relations(differences, self.relations(), self.rates())
 
     def leftover(self, left: Expression, right: Expression) -> Expression:
         """Return left - right for people, explained as long as that makes it shorter."""
@@ -143,6 +143,6 @@ def _composed(expression: Expression) -> Expression:
     return expression.operands[0] @ expression.operands[1].operands[0]
 
 
-def sides(side: Expression | tuple[Expression, ...]) -> tuple[Expression, ...]:
+def expressions_of(side: Expression | tuple[Expression, ...]) -> tuple[Expression, ...]:
     """Return the expressions of one side of a step, one or several."""
     return side if isinstance(side, tuple) else (side,)

@@ -64,14 +64,14 @@ def rate_of(name: str) -> tuple[str, Naming] | None:
     return None
 
 
-def root(name: str) -> str:
+def without_rates(name: str) -> str:
     """Return the symbol at the bottom of a chain of rates.
 
-    >>> root("a_i"), root("l_N_dot_dot")
+    >>> without_rates("a_i"), without_rates("l_N_dot_dot")
     ('r_i', 'l')
     """
     below = rate_of(name)
-    return name if below is None else root(below[0])
+    return name if below is None else without_rates(below[0])
 
 
 def rate(expression: Expression, naming: Naming = seen_from_axes) -> Expression:

@@ -24,13 +24,13 @@ class ContradictionError(ValueError):
     """The relations exclude one another, so that anything would follow from them."""
 
 
-def remainders(
+def left_by_relations(
     differences: Sequence[Expr], relations: Sequence[Expr], rates: Sequence[Expr] = ()
 ) -> tuple[Expr, ...]:
     """Return what is left of each difference when every relation, and every rate of one, is zero.
 
     >>> from sympy.abc import x, y
-    >>> remainders([x**2 - y**2, x], [x - y])
+    >>> left_by_relations([x**2 - y**2, x], [x - y])
     (0, y)
     """
     wanted = [polynomial(difference) for difference in differences]

@@ -7,7 +7,7 @@ from derive.lecture.chapters import LECTURE
 from derive.lecture.vectors import Expression, components
 
 
-def stated(step: str, bindings: Mapping[str, Any]) -> Any:
+def by_law(step: str, bindings: Mapping[str, Any]) -> Any:
     """Return the right side of a lecture step in the components that ``bindings`` give."""
     return components(law(step), bindings)
 

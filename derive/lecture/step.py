@@ -14,8 +14,8 @@ from typing import Literal
 
 from sympy import Expr
 
-from derive.lecture.facts import CircularError, Facts, sides
-from derive.lecture.rate import root
+from derive.lecture.facts import CircularError, Facts, expressions_of
+from derive.lecture.rate import without_rates
 from derive.lecture.relations import ContradictionError
 from derive.lecture.tree import renamed, symbols
 from derive.lecture.vectors import Expression, zero
@@ -42,7 +42,7 @@ class Step:
     @property
     def claims(self) -> tuple[tuple[Expression, Expression], ...]:
         """Return the pairs (left, right) that the step claims to be equal."""
-        return tuple(zip(sides(self.left), sides(self.right), strict=True))
+        return tuple(zip(expressions_of(self.left), expressions_of(self.right), strict=True))
 
 
 @dataclass(frozen=True)
@@ -137,7 +137,7 @@ def verify(derivation: Derivation) -> Iterator[Checked]:
         fault = _fault(derivation, step, spoken, above)
         yield Checked(step.name, step.kind, step.using, fault, perf_counter() - start)
         above.add(step.name)
-        spoken |= {root(name) for name in _names(step)}
+        spoken |= {without_rates(name) for name in _names(step)}
 
 
 def _fault(derivation: Derivation, step: Step, spoken: set[str], above: set[str]) -> str:
@@ -165,12 +165,12 @@ def _smuggled(step: Step, spoken: set[str]) -> str:
     for left, right in step.claims:
         if left.operator not in ("symbol", "inertia"):
             return "a definition must have a bare symbol on its left"
-        above = {root(name) for name in symbols(right)}
-        if root(left.name) in known:
+        above = {without_rates(name) for name in symbols(right)}
+        if without_rates(left.name) in known:
             return f"defines {left.name} again"
-        if root(left.name) in above:
+        if without_rates(left.name) in above:
             return f"defines {left.name} by itself"
-        known |= above | {root(left.name)}
+        known |= above | {without_rates(left.name)}
     return ""
 
 
@@ -180,8 +180,8 @@ def _false_instance(derivation: Derivation, step: Step) -> str:
     reasons = [derivation[reason] for reason in step.using]
     theorems = [each for each in reasons if each.kind != "define"]
     for old, new in step.instance:
-        if root(new) != names.get(root(old)):
-            return f"{new} is not to {root(new)} what {old} is to {root(old)}"
+        if without_rates(new) != names.get(without_rates(old)):
+            return f"{new} is not to {without_rates(new)} what {old} is to {without_rates(old)}"
     if kept := sorted({name for each in theorems for name in _names(each)} - set(names)):
         return f"does not say what {kept[0]} is for the other body"
     general = derivation.behind(*(each.name for each in theorems))

@@ -111,6 +111,6 @@ def expanded(value: Any) -> Any:
     return each(value, lambda entry: entry)
 
 
-def entries(value: Any) -> list[Expr]:
+def flattened(value: Any) -> list[Expr]:
     """Return the entries of a scalar, column or matrix, row by row."""
     return list(value) if isinstance(value, Matrix) else [value]

@@ -16,7 +16,7 @@ _MULTILINEAR = (
 
 
 @dataclass(frozen=True)
-class Term:
+class Summand:
     """``factor`` times ``ordered``, alike for equal terms, or times ``written``, as it was."""
 
     factor: Fraction
@@ -55,23 +55,23 @@ def renamed(expression: Expression, names: Mapping[str, str]) -> Expression:
     return Expression(inside.operator, inside.operands, inside.shape, name, inside.number)
 
 
-def terms(expression: Expression) -> list[Term]:
+def terms(expression: Expression) -> list[Summand]:
     """Return the terms that ``expression`` is the sum of, every product multiplied out."""
     if expression.operator == "zero":
         return []
     if expression.operator == "number":
-        return [Term(expression.number, number(1), number(1))]
+        return [Summand(expression.number, number(1), number(1))]
     if expression.operator == "add":
         return [term for operand in expression.operands for term in terms(operand)]
     if expression.operator == "negate":
         return [replace(term, factor=-term.factor) for term in terms(expression.operands[0])]
     if expression.operator not in _MULTILINEAR:
-        return [Term(Fraction(1), expression, expression)]
+        return [Summand(Fraction(1), expression, expression)]
     products = product(*map(terms, expression.operands))
     return [term for chosen in products if (term := _product(expression, chosen)).factor]
 
 
-def _product(expression: Expression, chosen: tuple[Term, ...]) -> Term:
+def _product(expression: Expression, chosen: tuple[Summand, ...]) -> Summand:
     """Return one term of a product, as it is written and with its factors in one order."""
     factor, sign = Fraction(1), 1
     for each in chosen:
@@ -85,7 +85,7 @@ def _product(expression: Expression, chosen: tuple[Term, ...]) -> Term:
     if expression.operator == "cross" and operands[0] == operands[1]:
         factor = Fraction(0)
     written = _without_one(expression, tuple(_positive(each.written) for each in chosen))
-    return Term(factor, _without_one(expression, operands), -written if sign < 0 else written)
+    return Summand(factor, _without_one(expression, operands), -written if sign < 0 else written)
 
 
 def _positive(written: Expression) -> Expression:

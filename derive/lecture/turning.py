@@ -2,7 +2,7 @@
 
 from sympy import Expr, Integer, Matrix, Pow, cos, eye, sin, zeros
 
-from derive.lecture.stated import stated
+from derive.lecture.stated import by_law
 
 ADDED = "angular_velocities_add"
 PLACE = {"x": 0, "y": 1, "z": 2}
@@ -47,8 +47,8 @@ def reduced(expression: Expr) -> Expr:
     return lowered.expand()
 
 
-def added(R: Matrix, first: Matrix, own: Matrix) -> Matrix:
+def angular_velocities_summed(R: Matrix, first: Matrix, own: Matrix) -> Matrix:
     """Return the angular velocity of axes by that of their parent and their own in it."""
     if first == zeros(3, 1):
         return own
-    return stated(ADDED, {"R_2": R, "Omega": first, "Omega_2": own})
+    return by_law(ADDED, {"R_2": R, "Omega": first, "Omega_2": own})

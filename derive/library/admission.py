@@ -31,7 +31,7 @@ PLACES = {(0, 0): 0, (1, 1): 1, (2, 2): 2, (0, 1): 3, (0, 2): 4, (1, 2): 5}
 SparseMatrix = dict[tuple[int, int], Number]
 
 
-def tried(terms: Graphed, parameters: AbstractSet[str]) -> SetupPart:
+def tried_rules(terms: Graphed, parameters: AbstractSet[str]) -> SetupPart:
     """Return the rules of ``terms`` that rest on nothing but these parameters."""
     tape = Tape(free_prefix("r", terms.graph.leaf_names()))
     setting = Setting(terms, {}, None, tape)

@@ -23,7 +23,7 @@ from derive.mechanics.vocabulary import Vocabulary
 from derive.program.pattern import compressed
 from derive.program.program import Program, Quantity, Sparsity
 from derive.scene import Scene, SceneError
-from derive.scene.wanted import JACOBIAN, SENSITIVITY, base_of
+from derive.scene.wanted import JACOBIAN, SENSITIVITY, without_ending
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ def arranged(terms: Graphed, base: str) -> Arranged:
 
 def function(terms: Graphed, wanted: Arranged, name: str) -> Program:
     """Return the program of a wanted function by its name, which says if a Jacobian is with it."""
-    if name == base_of(name):
+    if name == without_ending(name):
         return _program(terms, wanted.problem, _best(terms, wanted))
     return _with_jacobian(terms, wanted, name)
 

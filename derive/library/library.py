@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from derive.library.admission import tried
+from derive.library.admission import tried_rules
 from derive.library.function import Graphed, arranged, function, graphed
 from derive.library.setting import Setting, applied_moment, held
 from derive.library.singular import with_singular
@@ -16,7 +16,7 @@ from derive.mechanics.vocabulary import Vocabulary
 from derive.program.program import Program, Quantity, component_names, read_by
 from derive.program.tape import Tape, free_prefix
 from derive.scene import Scene, SceneError
-from derive.scene.wanted import ATTITUDES, IN_PAIRS, base_of, moves
+from derive.scene.wanted import ATTITUDES, IN_PAIRS, moves, without_ending
 
 
 @dataclass(frozen=True)
@@ -73,10 +73,10 @@ def library(scene: Scene) -> Library:
 def _library(scene: Scene) -> Library:
     terms = graphed(mechanism(scene))
     asked, hidden = _asked(scene)
-    bases = dict.fromkeys(map(base_of, (*asked, *hidden)))
+    bases = dict.fromkeys(map(without_ending, (*asked, *hidden)))
     wanted = {base: arranged(terms, base) for base in bases}
-    every = {n: function(terms, wanted[base_of(n)], n) for n in (*asked, *hidden)}
-    motions_, part, meanings = _moved(terms, every)
+    every = {n: function(terms, wanted[without_ending(n)], n) for n in (*asked, *hidden)}
+    motions_, part, meanings = _of_motion(terms, every)
     made = _set_up(terms, part)
     if scene.form == "accurate" and made.outputs:
         made = with_low_parts(made)
@@ -105,7 +105,7 @@ def _asked(scene: Scene) -> tuple[list[str], list[str]]:
     return asked, [name for name in needs(scene) if name not in asked]
 
 
-def _moved(
+def _of_motion(
     terms: Graphed, rates: Mapping[str, Program]
 ) -> tuple[tuple[Program, ...], SetupPart, dict[str, str]]:
     """Return what moves the state, its part of set-up, and what is said of its own constants."""
@@ -126,7 +126,7 @@ def _set_up(terms: Graphed, part: SetupPart) -> Program:
     parameters = terms.vocabulary.parameters
     bare = setup(terms.graph, terms.constants, parameters, [part])
     used = {c for q in bare.inputs for c in q.components}
-    return setup(terms.graph, terms.constants, parameters, [part, tried(terms, used)])
+    return setup(terms.graph, terms.constants, parameters, [part, tried_rules(terms, used)])
 
 
 def _constants(made: Program, meanings: Mapping[str, str]) -> dict[str, str]:

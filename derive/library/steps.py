@@ -14,7 +14,7 @@ from derive.lower.setup import used_inputs
 from derive.motion import runge_kutta
 from derive.motion.attitude.functions import attitude_program
 from derive.motion.compensated import remainder
-from derive.motion.exact import flow_exact, principal, turned
+from derive.motion.exact import flow_exact, principal_ratios, turn_and_rates
 from derive.motion.moser_veselov import plan_dmv, plan_slopes, step_dmv
 from derive.motion.runge_kutta.compact import compact
 from derive.motion.runge_kutta.system import System, next_of
@@ -41,7 +41,7 @@ FREE_ROTATION = tuple(
     )
 )
 """What the closed forms and splittings of a free rotation rest on."""
-RATES = (*(f"step_{method}" for method in runge_kutta.METHODS), *TAYLOR)
+BY_RATES = (*(f"step_{method}" for method in runge_kutta.METHODS), *TAYLOR)
 """Steps that are made from the rate of the state."""
 SLOPES = {
     "jacobian": "state_rate_jacobian",
@@ -54,7 +54,7 @@ Signature = tuple[Sequence[Quantity], Sequence[Quantity]]  # what may go in, and
 
 def needs(scene: Scene) -> tuple[str, ...]:
     """Return the equations that the wanted steps rest on, whether they are wanted themselves."""
-    steps = [name for name in scene.wanted if step_of(name) in RATES]
+    steps = [name for name in scene.wanted if step_of(name) in BY_RATES]
     slopes = [SLOPES[name.rpartition("_")[2]] for name in steps if name in STEP_DERIVATIVES]
     return tuple(dict.fromkeys(["state_rate"] * bool(steps) + slopes))
 
@@ -157,8 +157,8 @@ def _flow_exact(setting: Setting) -> Program:
     q, w = flow_exact(body, _inputs(tape, attitude), rates, t)
     ends = (attitude, omega, time), (next_of(attitude), next_of(omega))
     says = "Attitude and angular velocity after any time without torque (exact solution)."
-    moments, axes = principal(body)
-    free = (*moments, *(x for axis in axes for x in axis), *turned(body, rates, t)[0])
+    moments, axes = principal_ratios(body)
+    free = (*moments, *(x for axis in axes for x in axis), *turn_and_rates(body, rates, t)[0])
     program = _program("flow_exact", says, tape, ends, (*q, *w))
     return replace(program, free=tuple(seen_from(tape, n) for n in free))
 

@@ -17,7 +17,9 @@ Visit = Callable[[int], Expanded]
 Family = str | int
 
 
-def terms(graph: Graph, values: Iterable[Value], kept: frozenset[Family]) -> list[Expanded]:
+def multiplied_out(
+    graph: Graph, values: Iterable[Value], kept: frozenset[Family]
+) -> list[Expanded]:
     """Return for each value the coefficient, made of parameters, of every monomial in variables.
 
     Calls, cuts and denominators that vary count as variables of their own, and so do the lets
@@ -103,7 +105,7 @@ def _multiplied(graph: Graph, left: Expanded, right: Expanded) -> Expanded:
     return _added(graph, products)
 
 
-def collected(graph: Graph, these: Expanded) -> Value:
+def collected_by_factors(graph: Graph, these: Expanded) -> Value:
     """Return the sum of ``these`` as it stands."""
     return graph.add([_term(graph, monomial, c) for monomial, c in these.items()])
 

@@ -14,9 +14,17 @@ from itertools import accumulate, product
 from math import prod
 
 from derive.lower.derivative import slopes_by
-from derive.lower.expand import Expanded, Family, collected, degree, factored, families, terms
+from derive.lower.expand import (
+    Expanded,
+    Family,
+    collected_by_factors,
+    degree,
+    factored,
+    families,
+    multiplied_out,
+)
 from derive.lower.graph import Graph, Value
-from derive.lower.homogeneous import powers
+from derive.lower.homogeneous import degrees_that_sum
 from derive.lower.schedule import unoriented
 from derive.program.arithmetic import FLOPS
 from derive.program.program import Op
@@ -24,7 +32,7 @@ from derive.program.program import Op
 MANY_TERMS = 60  # beyond this, multiplying out has never been the cheaper form
 MANY_CHOICES = 30
 FINALISTS = 4  # of values and of Jacobians, each judged alone, that are then judged together
-WAYS: tuple[Callable[[Graph, Expanded], Value], ...] = (factored, collected)
+WAYS: tuple[Callable[[Graph, Expanded], Value], ...] = (factored, collected_by_factors)
 
 
 @dataclass(frozen=True)
@@ -68,7 +76,7 @@ def value_forms(graph: Graph, group: Dependents) -> list[tuple[Value, ...]]:
 
 
 def _expanded(graph: Graph, group: Dependents, kept: frozenset[Family]) -> list[Expanded] | None:
-    expanded = terms(graph, group.values, kept)
+    expanded = multiplied_out(graph, group.values, kept)
     return None if any(len(t) > MANY_TERMS for t in expanded) else expanded
 
 
@@ -146,7 +154,9 @@ def by_euler(
     if expanded is None:
         return None
     own = [frozenset(leaf[1] for leaf in quantity) for quantity in group.inputs]
-    degrees = powers([degree(m, nodes) for nodes in own] for terms in expanded for m in terms)
+    degrees = degrees_that_sum(
+        [degree(m, nodes) for nodes in own] for terms in expanded for m in terms
+    )
     if degrees is None:
         return None
     starts = list(accumulate(map(len, group.inputs), initial=0))

@@ -14,13 +14,13 @@ Choice = tuple[tuple[int, int], ...]  # quantities, each with its power
 MOST_STEPS = 10_000  # a bound; the scenes of the tests take fewer than 50
 
 
-def powers(rows: Iterable[Degrees], most: int = MOST_STEPS) -> dict[int, int] | None:
+def degrees_that_sum(rows: Iterable[Degrees], most: int = MOST_STEPS) -> dict[int, int] | None:
     """Return quantities with powers k such that sum(degree / k) = 1 in every row.
 
     The fewest quantities, of these the first, then the lowest powers; None if there are none, or
     if looking for them takes more than ``most`` steps. A degree None bars its quantity.
 
-    >>> powers([(1, 1, 0), (0, 0, 2)])
+    >>> degrees_that_sum([(1, 1, 0), (0, 0, 2)])
     {0: 1, 2: 2}
     """
     distinct = list(dict.fromkeys(tuple(row) for row in rows))

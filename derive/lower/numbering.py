@@ -63,7 +63,7 @@ def _entered(numbering: Numbering, value: Value) -> SignedKey:
             base_sign, key = _node(numbering, base)
             sign *= base_sign if power % 2 else 1
             factors += [key if power > 0 else _inverse(numbering, key)] * abs(power)
-    return sign, product(numbering, factors)
+    return sign, product_key(numbering, factors)
 
 
 def _absorbs(numbering: Numbering, node: int) -> bool:
@@ -99,7 +99,7 @@ def _inverse(numbering: Numbering, key: int) -> int:
     return inverse
 
 
-def product(numbering: Numbering, factors: list[int]) -> int:
+def product_key(numbering: Numbering, factors: list[int]) -> int:
     if len(factors) == 1 and factors[0] not in numbering.inverse:
         return factors[0]
     key, _ = numbering.key("product", *sorted(factors))

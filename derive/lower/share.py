@@ -11,7 +11,7 @@ from itertools import combinations
 from typing import Any
 
 from derive.lower.graph import UNIT
-from derive.lower.numbering import Numbering, SignedKey, product
+from derive.lower.numbering import Numbering, SignedKey, product_key
 
 
 def halve(numbering: Numbering) -> None:
@@ -31,7 +31,7 @@ def _halves(numbering: Numbering, sign: int, addend: int) -> list[SignedKey]:
     rest = [f for f in factors if f not in numbering.constants]
     half = (coefficient / 2, node)
     if half == UNIT:
-        return [(sign, product(numbering, rest))] * 2
+        return [(sign, product_key(numbering, rest))] * 2
     halved = ("constant", half) in numbering.keys
     wanted = ("product", *sorted([*rest, numbering.keys[("constant", half)]])) if halved else None
     if wanted is None or wanted not in numbering.keys:

@@ -31,7 +31,7 @@ def signed(value: Number) -> Signed:
     return Signed(1, value)
 
 
-def with_signs_moved(program: Program, prefix: str) -> Program:
+def with_signs_outside(program: Program, prefix: str) -> Program:
     """Return ``program`` with fewer operations of sign, and without what no result rests on.
 
     prefix : what operations are called, before a number
@@ -47,13 +47,13 @@ def with_signs_moved(program: Program, prefix: str) -> Program:
     for line in program.ops:
         if not isinstance(line, Op):
             raise TypeError(f"'{program.name}' has a loop, whose signs cannot be moved")
-        known[line.result] = _moved(tape, line, [value(o) for o in line.operands])
+        known[line.result] = _signed_result(tape, line, [value(o) for o in line.operands])
     ends = [_plain(value(result)) for result in program.results]
     results = tuple(end.operand for end in ends)
     return replace(program, ops=needed(tape.ops, results), results=results)
 
 
-def _moved(tape: Tape, op: Op, given: Sequence[Signed]) -> Signed:
+def _signed_result(tape: Tape, op: Op, given: Sequence[Signed]) -> Signed:
     if op.operator not in PLAIN:
         operands = tuple(_plain(each).operand for each in given)
         return Signed(1, Number(tape, tape.record(op.operator, operands)))

@@ -7,7 +7,7 @@ from functools import cached_property
 
 from sympy import Expr, Integer, Matrix, Symbol
 
-from derive.lecture.stated import stated
+from derive.lecture.stated import by_law
 from derive.mechanics.balances import Balances, ValuedBalance
 from derive.mechanics.bodies import (
     centre,
@@ -19,10 +19,10 @@ from derive.mechanics.bodies import (
 )
 from derive.mechanics.choice import unbalanced
 from derive.mechanics.frames import ZERO, Frames
-from derive.mechanics.linearised import Linearised, linearised, require_free
+from derive.mechanics.linearised import Linearised, linearised, require_nothing_prescribed
 from derive.mechanics.loads import potential_energy
 from derive.mechanics.matter import without_factors
-from derive.mechanics.probe import NOTHING, POINTS, independent
+from derive.mechanics.probe import NOTHING, PROBES, independent
 from derive.mechanics.problem import Problem, substituted
 from derive.mechanics.regular import Regular
 from derive.program.program import Quantity
@@ -162,7 +162,7 @@ class Answers:
         spin, frame = self.angular_momentum, self.machine.momentum.frame
         own = self.frames.sheet.rate_of_column(spin)
         known = {"l": spin, "l_dot": own, "Omega": self.frames.Omega[frame]}
-        each = {"rate_in_axes": own, "rate_absolute": stated("transport_theorem", known)}
+        each = {"rate_in_axes": own, "rate_absolute": by_law("transport_theorem", known)}
         return {self._quantity(name): list(value) for name, value in each.items()}
 
     @property
@@ -179,7 +179,7 @@ class Answers:
         w, *v = self._symbols(q)
         omega = self.frames.words.column(frame.angular_velocity)
         known = {"q_w": w, "q_v": Matrix(v), "omega": omega}
-        return [stated("quaternion_rate_scalar", known), *stated("quaternion_rate_vector", known)]
+        return [by_law("quaternion_rate_scalar", known), *by_law("quaternion_rate_vector", known)]
 
     def expression(self, formula: Formula) -> Expr:
         """Return a formula of answers, with every result in it written out."""
@@ -227,7 +227,7 @@ class Answers:
             if v != ZERO:
                 arm = frames.apart(at, centre(frames, body), place.frame)
                 known = {"M_G": ZERO, "rho_G": arm, "F": mass(frames, body) * v}
-                spin = spin + stated("moment_about_any_point", known)
+                spin = spin + by_law("moment_about_any_point", known)
             total = total + spin
         return total
 
@@ -239,7 +239,9 @@ class Answers:
         if steady.vanishes is not None:
             values: list[Expr] = [self.expression(steady.vanishes)]
             return self._asked(base, (q,), dict(zip(self._symbols(q), values, strict=True)), ())
-        require_free(self.machine, "steady", ", or say what vanishes by steady.vanishes")
+        require_nothing_prescribed(
+            self.machine, "steady", ", or say what vanishes by steady.vanishes"
+        )
         rows = self._at_rest(len(steady.unknown))
         split = self.frames.sheet.split
         written = [split(self.balances.written(row))[0] for row in rows]
@@ -264,7 +266,7 @@ class Answers:
         still = frozenset(every.index(symbols[n]) for n in free if symbols[n] in every)
         found = unbalanced(self.balances, still)
         rows = [row for row in found if _lasts(row)] or list(found)
-        kept = independent(({p: row.values[p][0] for p in range(POINTS)} for row in rows), count)
+        kept = independent(({p: row.values[p][0] for p in range(PROBES)} for row in rows), count)
         if len(kept) < count:
             raise SceneError(
                 f"'steady' needs {count} balances that no reaction enters and that do not vanish "

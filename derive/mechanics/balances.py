@@ -14,14 +14,14 @@ from mpmath import mp
 from numpy.typing import NDArray
 from sympy import Expr, Integer, Matrix, Symbol
 
-from derive.lecture.stated import stated
+from derive.lecture.stated import by_law
 from derive.mechanics.bodies import carries, form_about, moment_about
 from derive.mechanics.frames import ZERO, Frames, Located
 from derive.mechanics.loads import Wrench
-from derive.mechanics.own_axes import called
-from derive.mechanics.probe import DIGITS, NOTHING, POINTS
+from derive.mechanics.own_axes import frame_called
+from derive.mechanics.probe import DIGITS, NOTHING, PROBES
 from derive.mechanics.sheet import AXES
-from derive.mechanics.valued import Sides, Valued, sides, trial_points
+from derive.mechanics.valued import Sides, Valued, sides, trial_probes
 from derive.scene.machine import Force, Spring
 
 MOST_TOGETHER = 6
@@ -46,7 +46,7 @@ class Balance:
     def told(self, spoken: Mapping[str, str]) -> str:
         """Return the balance in words; ``spoken`` has those for what the user gave no names."""
         about = f" about {spoken.get(self.spot, self.spot)}" if self.kind == "moment" else ""
-        frame = spoken.get(self.frame, f"of {called(self.frame)}")
+        frame = spoken.get(self.frame, f"of {frame_called(self.frame)}")
         along = f"{self.axis} {frame}".rstrip()
         along = along if self.axis in AXES else f"the axis of {self.axis}"
         bodies = " + ".join(spoken.get(body, body) for body in self.bodies)
@@ -67,7 +67,7 @@ class ValuedBalance:
     def holds(self) -> frozenset[int]:
         """Return which unknowns enter."""
         found = set()
-        for row in self.values[:POINTS]:
+        for row in self.values[:PROBES]:
             size = max(abs(x) for x in row)
             found |= {k - 1 for k, x in enumerate(row) if k and abs(x) > NOTHING * size}
         return frozenset(found)
@@ -75,7 +75,7 @@ class ValuedBalance:
     @cached_property
     def empty(self) -> bool:
         """Tell whether nothing is left: the balance holds by itself."""
-        return all(max(abs(x) for x in row) <= NOTHING for row in self.values[:POINTS])
+        return all(max(abs(x) for x in row) <= NOTHING for row in self.values[:PROBES])
 
 
 @dataclass
@@ -111,7 +111,7 @@ class Balances:
 
     @cached_property
     def _valued(self) -> list[Valued]:
-        return [Valued(self.sides, probe) for probe in trial_points(self.frames)]
+        return [Valued(self.sides, probe) for probe in trial_probes(self.frames)]
 
     def _every(self, sizes: range) -> tuple[ValuedBalance, ...]:
         """Return the balances of so many bodies together that hold anything."""
@@ -201,7 +201,7 @@ class Balances:
         alone = bodies if len(bodies) == 1 else ()
         near: list[tuple[str, Located]] = [
             *(
-                (f"the origin of {called(frame)}", (frame, ZERO))
+                (f"the origin of {frame_called(frame)}", (frame, ZERO))
                 for frame in self._frames_of(bodies)
             ),
             *((f"the mass centre of {b}", self.sides.efforts[b].centre) for b in alone),
@@ -300,7 +300,7 @@ class Balances:
             return ZERO
         arm = self.frames.apart(balance.point, place, balance.frame)
         known = {"M_G": ZERO, "rho_G": self.frames.sheet.column("arm", arm), "F": force}
-        return stated("moment_about_any_point", known)
+        return by_law("moment_about_any_point", known)
 
     def _load(self, balance: Balance, w: Wrench) -> Matrix:
         force = self.frames.carried(w.force, w.along, balance.frame)

@@ -6,7 +6,7 @@ from typing import Any
 
 from sympy import Expr, Matrix, zeros
 
-from derive.lecture.stated import stated
+from derive.lecture.stated import by_law
 from derive.lecture.turning import reduced
 from derive.mechanics.frames import ZERO, ByFrame, Frames, Located
 from derive.mechanics.probe import vanishes
@@ -33,7 +33,7 @@ def mass(frames: Frames, body: str) -> Expr:
     return frames.words.data(frames.machine.body(body).mass, mass_name(body))
 
 
-def tensor(frames: Frames, body: str) -> Matrix:
+def inertia_tensor(frames: Frames, body: str) -> Matrix:
     """Return the inertia tensor of a body about its mass centre, along its own axes."""
     member = frames.machine.body(body)
     xx, yy, zz, xy, xz, yz = (
@@ -60,7 +60,7 @@ def effort(frames: Frames, body: str) -> Effort:
         if not frames.linked(part, frames.own(body)):
             frames.carried(a_G, part, frames.own(body))
         known = {"m": mass(frames, body), "a_G": sheet.column(f"{body}.a_G", a_G)}
-        force[part] = sheet.column(f"{body}.F", stated("mass_centre_motion", known))
+        force[part] = sheet.column(f"{body}.F", by_law("mass_centre_motion", known))
     return Effort(body, frames.own(body), (name, at), force, moment(frames, body))
 
 
@@ -76,7 +76,7 @@ def attached(frames: Frames, place: Located) -> Located:
 
 def moment(frames: Frames, body: str) -> Matrix:
     """Return the rate of the angular momentum of a body about its mass centre."""
-    return _moment(frames, body, body, tensor(frames, body), {})
+    return _moment(frames, body, body, inertia_tensor(frames, body), {})
 
 
 def moment_about(frames: Frames, body: str, at: Matrix) -> Matrix:
@@ -85,7 +85,7 @@ def moment_about(frames: Frames, body: str, at: Matrix) -> Matrix:
     at : the point, along the body's own axes from their origin
     """
     known = {"m": mass(frames, body), "rho_G": centre(frames, body)[1] - at}
-    I_P = stated("parallel_axes", known | {"I_G": tensor(frames, body)})
+    I_P = by_law("parallel_axes", known | {"I_G": inertia_tensor(frames, body)})
     known["a_A"] = _accelerated(frames, body, at)
     return _moment(frames, body, f"{body}.about", I_P, known)
 
@@ -121,11 +121,11 @@ def _moment(
     sheet, Omega = frames.sheet, frames.Omega[frames.own(body)]
     omega = sheet.column(f"{body}.omega", frames.turning_of_body(body))
     known = {"I": I, "omega": omega, "Omega": Omega}
-    I_dot = stated("inertia_rate_in_axes", known)
+    I_dot = by_law("inertia_rate_in_axes", known)
     known["I_dot"] = zeros(3, 3) if I_dot.applyfunc(reduced) == zeros(3, 3) else I_dot
     known["omega_dot"] = sheet.column(f"{body}.omega_dot", sheet.rate_of_column(omega))
     step = "moving_point_form" if about else "general_form"
-    return sheet.column(f"{label}.M", stated(step, known | dict(about)))
+    return sheet.column(f"{label}.M", by_law(step, known | dict(about)))
 
 
 def carries(frames: Frames, body: str, place: Located) -> bool:
@@ -148,14 +148,14 @@ def carries(frames: Frames, body: str, place: Located) -> bool:
 def momentum(frames: Frames, body: str) -> Matrix:
     """Return the angular momentum of a body about its mass centre."""
     omega = frames.sheet.column(f"{body}.omega", frames.turning_of_body(body))
-    return stated("angular_momentum", {"I": tensor(frames, body), "omega": omega})
+    return by_law("angular_momentum", {"I": inertia_tensor(frames, body), "omega": omega})
 
 
 def centre_velocity(frames: Frames, body: str) -> Matrix:
     """Return the velocity of a body's mass centre in the inertial frame."""
     own, at = centre(frames, body)
     known = {"rho_i": at, "rho_i_dot": frames.sheet.rate_of_column(at), "Omega": frames.Omega[own]}
-    v = frames.velocity(own) + stated("velocity_seen_from_axes", known)
+    v = frames.velocity(own) + by_law("velocity_seen_from_axes", known)
     return frames.sheet.column(f"{body}.v_G", v, "" if at == ZERO else "velocity_seen_from_axes")
 
 
@@ -171,16 +171,16 @@ def kinetic_energy(frames: Frames, body: str) -> Expr:
     own, at = centre(frames, body)
     known = {
         "m": mass(frames, body),
-        "I": tensor(frames, body),
+        "I": inertia_tensor(frames, body),
         "omega": frames.sheet.column(f"{body}.omega", frames.turning_of_body(body)),
     }
     if turns_about_fixed_point(frames, body):
         about = {"I_G": known["I"], "rho_G": at, "m": known["m"]}
-        known["I"] = stated("parallel_axes", about)
+        known["I"] = by_law("parallel_axes", about)
     else:
         v_G = frames.origin_velocity(own)[1] if at == ZERO else centre_velocity(frames, body)
         known["v_G"] = frames.sheet.column(f"{body}.v_G", v_G)
-    energy: Expr = stated(energy_form(frames, body), known)
+    energy: Expr = by_law(energy_form(frames, body), known)
     return energy
 
 

@@ -13,7 +13,7 @@ from derive.mechanics.balances import Balances, ValuedBalance
 from derive.mechanics.probe import (
     DIGITS,
     NOTHING,
-    POINTS,
+    PROBES,
     Probe,
     independent,
     independent_at_all,
@@ -243,7 +243,7 @@ def unbalanced(
 
 
 def _leaves_something(row: ValuedBalance) -> bool:
-    return all(abs(values[0]) > NOTHING * max(map(abs, values)) for values in row.values[:POINTS])
+    return all(abs(values[0]) > NOTHING * max(map(abs, values)) for values in row.values[:PROBES])
 
 
 def contradiction(balances: Balances) -> str:
@@ -252,7 +252,7 @@ def contradiction(balances: Balances) -> str:
     if rows:
         return (f"the {rows[0].balance} does not vanish and holds no unknown: "
                 "declare a load with an unknown there, or leave a motion free")  # fmt: skip
-    against = [_contradicted(balances.rows, point) for point in range(POINTS)]
+    against = [_contradicted(balances.rows, point) for point in range(PROBES)]
     if not all(against):
         return ""
     together = _least(against[0], 0)

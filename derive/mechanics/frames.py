@@ -6,8 +6,8 @@ from functools import cached_property
 
 from sympy import Expr, Matrix, expand_trig, eye, zeros
 
-from derive.lecture.stated import stated
-from derive.lecture.turning import ADDED, added, turn_matrix, unit_vector
+from derive.lecture.stated import by_law
+from derive.lecture.turning import ADDED, angular_velocities_summed, turn_matrix, unit_vector
 from derive.mechanics.own_axes import frames_of_bodies, own_axes
 from derive.mechanics.sheet import AXES, Sheet
 from derive.mechanics.words import Words
@@ -46,7 +46,7 @@ class Frames:
         if frame.attitude:
             parts = self.words.vocabulary.column(frame.attitude)
             known = {"q_w": parts[0], "q_v": Matrix(parts[1:])}
-            images = [stated("rotation_of_vector", known | {"v": eye(3)[:, k]}) for k in range(3)]
+            images = [by_law("rotation_of_vector", known | {"v": eye(3)[:, k]}) for k in range(3)]
             return Matrix.hstack(*images)
         if frame.angular_velocity is not None:
             return None
@@ -78,12 +78,12 @@ class Frames:
                     "give turned or attitude"
                 )
             adds = "" if total == ZERO else ADDED
-            return added(R if R is not None else eye(3), total, own), adds
+            return angular_velocities_summed(R if R is not None else eye(3), total, own), adds
         for turn in frame.turned:
             R, rate = self._one_turn(turn)
-            own = stated("rate_of_simple_turn", {"angle_dot": rate, "e": unit_vector(turn.axis)})
+            own = by_law("rate_of_simple_turn", {"angle_dot": rate, "e": unit_vector(turn.axis)})
             adds = adds if total == ZERO else ADDED
-            total = added(R, total, own)
+            total = angular_velocities_summed(R, total, own)
         return total, adds
 
     def _one_turn(self, turn: Turning) -> tuple[Matrix, Expr]:
@@ -124,7 +124,7 @@ class Frames:
 
     def _velocity_seen(self, name: str, offset: Matrix) -> Matrix:
         known = {"rho_i": offset, "rho_i_dot": self.sheet.rate_of_column(offset)}
-        return stated("velocity_seen_from_axes", known | {"Omega": self.Omega[name]})
+        return by_law("velocity_seen_from_axes", known | {"Omega": self.Omega[name]})
 
     def _rolling(self, frame: Frame) -> Matrix:
         """Return the velocity of the origin that leaves the particle in contact at rest."""
@@ -132,7 +132,7 @@ class Frames:
         assert rolls is not None  # noqa: S101
         turns = self.carried(self.turning_of_body(rolls.body), self.own(rolls.body), frame.name)
         known = {"rho_i": self.words.column(rolls.at), "omega": turns}
-        return -stated("velocity_of_particle", known)
+        return -by_law("velocity_of_particle", known)
 
     @cached_property
     def acceleration(self) -> Mapping[str, ByFrame]:
@@ -172,7 +172,7 @@ class Frames:
             "Omega": self.Omega[name],
             "Omega_dot": self.Omega_dot[name],
         }
-        return stated("acceleration_seen_from_axes", known)
+        return by_law("acceleration_seen_from_axes", known)
 
     def fixed_in_parent(self, name: str) -> bool:
         """Tell whether a frame keeps its place and its axes in its parent."""
@@ -200,10 +200,10 @@ class Frames:
         e = unit_vector(member.axis)
         if member.spin is not None:
             s = self.words.expression(member.spin)
-            return stated("spins_in_axes", {"Omega": Omega, "s": s, "e": e})
+            return by_law("spins_in_axes", {"Omega": Omega, "s": s, "e": e})
         if member.axial_speed is not None:
             s = self.words.expression(member.axial_speed) - (e.T * Omega)[0]
-            return stated("spins_in_axes", {"Omega": Omega, "s": s, "e": e})
+            return by_law("spins_in_axes", {"Omega": Omega, "s": s, "e": e})
         return Omega
 
     def direction(self, axis: str) -> Matrix:
@@ -232,14 +232,14 @@ class Frames:
             return vector
         top = self.common(start, end)
         for name in self.chain(start)[: self.chain(start).index(top)]:
-            vector = self._known(name, start, end) * vector
+            vector = self._rotation_given(name, start, end) * vector
         for name in reversed(self.chain(end)[: self.chain(end).index(top)]):
-            vector = self._known(name, start, end).T * vector
+            vector = self._rotation_given(name, start, end).T * vector
             if len(self.chain(end)) > 1:
                 vector = self.sheet.column(f"along.{name}", vector)
         return vector
 
-    def _known(self, name: str, start: str, end: str) -> Matrix:
+    def _rotation_given(self, name: str, start: str, end: str) -> Matrix:
         R = self.rotations[name]
         if R is None:
             raise SceneError(
@@ -297,4 +297,4 @@ def _has_place(frame: Frame) -> bool:
 def transported(known: Mapping[str, Matrix]) -> Matrix:
     """Return the rate of any vector seen from the inertial frame."""
     v, v_dot, Omega = known["any"], known["any_dot"], known["Omega"]
-    return stated("transport_theorem", {"l": v, "l_dot": v_dot, "Omega": Omega})
+    return by_law("transport_theorem", {"l": v, "l_dot": v_dot, "Omega": Omega})

@@ -52,7 +52,7 @@ def linearised(machine: Scene, balances: Balances) -> Linearised:
     """
     free = [m for m in (*machine.coordinates, *machine.speeds) if m.free]
     sheet = balances.frames.sheet
-    require_free(machine, "linearised")
+    require_nothing_prescribed(machine, "linearised")
     if not free:
         raise SceneError("'linearised' needs a free coordinate or speed")
     accelerations = [sheet.symbols[m.unknown] for m in free]
@@ -79,7 +79,7 @@ def linearised(machine: Scene, balances: Balances) -> Linearised:
     return Linearised(matrices, tuple(rows), tuple(written))
 
 
-def require_free(machine: Scene, answer: str, way_out: str = "") -> None:
+def require_nothing_prescribed(machine: Scene, answer: str, way_out: str = "") -> None:
     """Refuse coordinates that formulas move: by them it cannot be told what is small, or rests."""
     for c in machine.coordinates:
         if c.state and not c.free:

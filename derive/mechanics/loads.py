@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from sympy import Expr, Integer, Matrix, Rational, sqrt
 
-from derive.lecture.stated import stated
-from derive.mechanics.bodies import centre, mass, tensor
+from derive.lecture.stated import by_law
+from derive.mechanics.bodies import centre, inertia_tensor, mass
 from derive.mechanics.frames import ZERO, Frames, Located
 from derive.mechanics.probe import NOTHING, at_rest, random_probe, vanishes
 from derive.scene import SceneError
@@ -63,8 +63,8 @@ def _gradient(frames: Frames, load: Gradient) -> Iterator[Wrench]:
         own = frames.own(body)
         c = frames.carried(frames.words.column(load.towards), load.along, own)
         c = frames.sheet.column(f"{body}.towards", c)
-        known = {"k": strength * Rational(1, 3), "c": c, "I_G": tensor(frames, body)}
-        couple = stated("gravity_gradient", known)
+        known = {"k": strength * Rational(1, 3), "c": c, "I_G": inertia_tensor(frames, body)}
+        couple = by_law("gravity_gradient", known)
         yield Wrench(load.name, body, centre(frames, body), own, ZERO, couple)
 
 

@@ -12,7 +12,7 @@ from typing import Any
 from mpmath import mp, mpf
 from sympy import Expr, Integer, Symbol
 
-from derive.mechanics.probe import DIGITS, NOTHING, POINTS, Probe, random_probe
+from derive.mechanics.probe import DIGITS, NOTHING, PROBES, Probe, random_probe
 from derive.mechanics.problem import Problem, answered, substituted
 from derive.mechanics.words import Words
 from derive.scene import SceneError
@@ -34,8 +34,8 @@ def lean(problem: Problem, words: Words) -> Lean:
 
     Raises SceneError if an answer depends on data that the user left out.
     """
-    here = [random_probe(words, n).values for n in range(POINTS)]
-    there = [random_probe(words, n + OTHERS).values for n in range(POINTS)]
+    here = [random_probe(words, n).values for n in range(PROBES)]
+    there = [random_probe(words, n + OTHERS).values for n in range(PROBES)]
     own = [_answers(problem, values) for values in here]
     if None in own:
         raise SceneError(f"'{problem.name}' has no answer at a trial point: "
@@ -54,7 +54,7 @@ def lean(problem: Problem, words: Words) -> Lean:
     for symbol in idle:
         for number in STAND_INS:
             held = {s: mpf(int(x)) for s, x in (taken | {symbol: Integer(number)}).items()}
-            if stay([held] * POINTS):
+            if stay([held] * PROBES):
                 taken[symbol] = Integer(number)
                 break
     current = substituted(problem, taken)
@@ -95,7 +95,7 @@ def without_factors(problem: Problem, words: Words, sought: AbstractSet[Symbol])
 
 
 def _is_factor(problem: Problem, words: Words, symbol: Symbol) -> bool:
-    first, second = (random_probe(words, n).values for n in range(POINTS))
+    first, second = (random_probe(words, n).values for n in range(PROBES))
     here, there, once, twice = (
         _answers(problem, values | {symbol: mpf(x)}) for x in (2, 3) for values in (first, second)
     )

@@ -9,10 +9,10 @@ def own_axes(body: str) -> str:
     return f"{body}.axes"
 
 
-def called(frame: str) -> str:
+def frame_called(frame: str) -> str:
     """Return what a frame is called in sentences.
 
-    >>> called(own_axes("disc")), called("stem")
+    >>> frame_called(own_axes("disc")), frame_called("stem")
     ('the axes of disc', 'stem')
     """
     body = frame.removesuffix(".axes")

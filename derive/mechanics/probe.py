@@ -17,7 +17,7 @@ from derive.program.program import Quantity
 
 DIGITS = 60
 NOTHING = mpf(10) ** -40
-POINTS = 2
+PROBES = 2
 SEED = "derive: trial values"
 
 
@@ -89,7 +89,7 @@ def _drawn(words: Words, number: int) -> dict[Symbol, Any]:
 def vanishes(words: Words, value: Expr) -> bool:
     """Tell whether a value is zero whatever a machine does, and its unknowns are."""
     rest, slopes = words.sheet.split(value)
-    for number in range(POINTS):
+    for number in range(PROBES):
         probe = random_probe(words, number)
         probe.define(words.sheet.needed([value]))
         if any(abs(probe.value(part)) > NOTHING for part in (rest, *slopes.values())):

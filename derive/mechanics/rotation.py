@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from sympy import Expr, Matrix, zeros
 
-from derive.lecture.stated import stated
+from derive.lecture.stated import by_law
 from derive.lecture.turning import reduced
-from derive.mechanics.bodies import centre, mass, tensor
+from derive.mechanics.bodies import centre, inertia_tensor, mass
 from derive.mechanics.frames import ZERO, Frames
 from derive.mechanics.loads import Wrench, wrenches
 from derive.program.program import Quantity
@@ -102,15 +102,15 @@ def _arm(frames: Frames, body: str, name: str) -> Matrix:
 
 def _tensor(frames: Frames, body: str, name: str) -> Matrix:
     """Return the tensor of a body about the origin of a frame that carries it, along the frame."""
-    about_G, arm, at = tensor(frames, body), _arm(frames, body, name), frames.own(body)
+    about_G, arm, at = inertia_tensor(frames, body), _arm(frames, body, name), frames.own(body)
     while at != name:
         R = frames.rotations[at]
-        about_G = stated("change_of_axes", {"R": R, "I": about_G}).applyfunc(reduced)
+        about_G = by_law("change_of_axes", {"R": R, "I": about_G}).applyfunc(reduced)
         at = frames.each[at].parent
     if arm == ZERO:
         return about_G
     known = {"m": mass(frames, body), "rho_G": arm, "I_G": about_G}
-    return stated("parallel_axes", known).applyfunc(lambda value: value.expand())
+    return by_law("parallel_axes", known).applyfunc(lambda value: value.expand())
 
 
 def _moment(frames: Frames, name: str, acts: Wrench) -> Matrix:
@@ -122,7 +122,7 @@ def _moment(frames: Frames, name: str, acts: Wrench) -> Matrix:
     if arm == ZERO:
         return couple
     force = frames.carried(acts.force, acts.along, name)
-    return stated("moment_about_any_point", {"M_G": couple, "rho_G": arm, "F": force})
+    return by_law("moment_about_any_point", {"M_G": couple, "rho_G": arm, "F": force})
 
 
 def written_out(frames: Frames, value: Expr) -> Expr:

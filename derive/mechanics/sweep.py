@@ -42,7 +42,7 @@ class Box:
     fixed: frozenset[Symbol]
     quaternions: tuple[slice, ...]
 
-    def points(self) -> NDArray[Any]:
+    def trials(self) -> NDArray[Any]:
         """Return points of the ranges, (points, components)."""
         dice, size = Random(SEED), len(self.symbols)  # noqa: S311 - trial points, no secret
         rows = [[dice.random() for _ in range(size)] for _ in range(RANDOM)]
@@ -193,7 +193,7 @@ def weakest(
         sizes: NDArray[Any] = np.nan_to_num(found, nan=0.0)
         return sizes
 
-    points = of.points()
+    points = of.trials()
     sizes = at(points)
     order = np.argsort(sizes, kind="stable")[:STARTS]
     best = (float(sizes[order[0]]), points[order[0]])

@@ -12,7 +12,7 @@ from sympy import Matrix, Symbol
 from derive.mechanics.bodies import Effort, effort
 from derive.mechanics.frames import ZERO, ByFrame, Frames, Located
 from derive.mechanics.loads import Wrench, wrenches
-from derive.mechanics.probe import POINTS, Probe, at_rest, random_probe
+from derive.mechanics.probe import PROBES, Probe, at_rest, random_probe
 from derive.scene.machine import INERTIAL
 
 
@@ -39,9 +39,9 @@ def sides(frames: Frames) -> Sides:
     return Sides(frames, efforts, acting, tuple(sorted(used & frames.sheet.unknowns, key=str)))
 
 
-def trial_points(frames: Frames) -> tuple[Probe, ...]:
+def trial_probes(frames: Frames) -> tuple[Probe, ...]:
     """Return the trial points, all that is named so far valued."""
-    found = (*(random_probe(frames.words, n) for n in range(POINTS)), at_rest(frames.words))
+    found = (*(random_probe(frames.words, n) for n in range(PROBES)), at_rest(frames.words))
     for probe in found:
         probe.define(frames.sheet.definitions)
     return found

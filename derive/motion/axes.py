@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from derive.motion.exact.diagonal import principal_axes
+from derive.motion.exact.diagonal import diagonalised
 from derive.motion.exact.inertia import Inertia
 from derive.program.operations import at_most, both, either, select, splitter
 from derive.program.pairs import two_product, two_sum
@@ -32,7 +32,7 @@ def axes_of(tape: Tape, body: Inertia) -> BodyAxes:
     """Return the axes of a body; ``tape`` is that of the function in which vectors change."""
     match body.kind:
         case "general":
-            return principal(body)
+            return principal_body_axes(body)
         case "spherical":
             return counted_from(0, body)
         case "axisymmetric":
@@ -86,9 +86,9 @@ def _between(p: Number, q: Number, r: Number) -> Number:
     return either(both(at_most(p, q), at_most(q, r)), both(at_most(r, q), at_most(q, p)))
 
 
-def principal(body: Inertia) -> BodyAxes:
+def principal_body_axes(body: Inertia) -> BodyAxes:
     """Return the principal axes of any tensor, the smallest moment first."""
-    found = principal_axes(body)
+    found = diagonalised(body)
     rows = [
         [
             named(f"axis_{a}_{x}", entry, f"component along {x} of the principal axis {a}")

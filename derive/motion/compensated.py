@@ -60,7 +60,7 @@ def compensated_sums(state: Vector, increments: Vector, remainder: Vector) -> li
     return [part for parts in zip(*sums, strict=True) for part in parts]
 
 
-def on_the_sphere(q: Vector, increment: Vector) -> list[Number]:
+def normalising_increment(q: Vector, increment: Vector) -> list[Number]:
     """Return an increment of a quaternion (4) after which it is of length one.
 
     d + (q + d) (s - 1),  s = 1 / |q + d|: s - 1 from e = |q + d|^2 - 1 without cancellation. What

@@ -15,11 +15,19 @@ from derive.scene.formula import ZERO, Formula, number
 from derive.scene.machine import Entries, Frame, Member
 from derive.scene.numbers import check_member, positive
 from derive.scene.scalars import Scalars
-from derive.scene.shape import CONE_CENTRE, ROUND, about_axis, box, diagonal, moment, moved
-from derive.scene.table import Table, formulas, word
+from derive.scene.shape import (
+    CONE_CENTRE,
+    ROUND,
+    about_axis,
+    box,
+    by_parallel_axes,
+    diagonal,
+    moment,
+)
+from derive.scene.table import Table, formulas, one_of
 from derive.scene.unit import LENGTH
 
-Kind = Literal["general", "principal", "axisymmetric", "spherical", "rod"]
+InertiaKind = Literal["general", "principal", "axisymmetric", "spherical", "rod"]
 NEXT: Mapping[str, Axis] = {"x": "y", "y": "z", "z": "x"}
 
 
@@ -51,7 +59,7 @@ def read_member(name: str, given: Table, frames: tuple[Frame, ...], scalars: Sca
     """Return a body of the machine, its inertia about its mass centre."""
     if "frame" not in given.entries:
         raise SceneError(f"{given.label} needs 'frame'")
-    word(given.entries["frame"], given.of("frame"), [f.name for f in frames])
+    one_of(given.entries["frame"], given.of("frame"), [f.name for f in frames])
     names = {"frame": tuple(f.name for f in frames)}
     made = _substance(given, Reading(scalars.scopes, names, scalars.parameters))
     said, (centre, made) = made.said, _about(given.label, made)
@@ -91,7 +99,7 @@ def _about(label: str, made: Substance) -> tuple[Triple, Substance]:
         if made.mass is None or None in made.inertia or made.said["turned"]:
             rule = "about = 'origin' needs mass and whole inertia, along the frame's axes"
             raise SceneError(f"{label}: {rule}")
-        inertia = moved(cast("Sextuple", made.inertia), -made.mass, centre)
+        inertia = by_parallel_axes(cast("Sextuple", made.inertia), -made.mass, centre)
         return centre, replace(made, inertia=inertia, given=made.inertia)
     x, y, z = (a + b if b != ZERO else a for a, b in zip(centre, made.offset, strict=True))
     return (x, y, z), made
@@ -112,7 +120,7 @@ def _substance(given: Table, by: Reading) -> Substance:
 
 def of_kind(given: Table, more: tuple[Entry, ...], by: Reading) -> Substance:
     """Return a body whose moments are given, and what else its table says."""
-    kind = word(given.entries["kind"], given.of("kind"), KINDS)
+    kind = one_of(given.entries["kind"], given.of("kind"), KINDS)
     own = (Entry("kind", "text", ""), *KINDS[kind], MASS)
     said = entries_of(given, (*own, *more), by)
     if kind in ("general", "principal"):
@@ -137,7 +145,7 @@ def of_shape(
     given: Table, shapes: tuple[str, ...], more: tuple[Entry, ...], by: Reading
 ) -> Substance:
     """Return a body of a named shape and of uniform density, and what else its table says."""
-    shape = word(given.entries["shape"], given.of("shape"), shapes)
+    shape = one_of(given.entries["shape"], given.of("shape"), shapes)
     row = ROUND.get(shape)
     own = SAID[shape] if row is None else round_entries(shape)
     taken = {entry.key for entry in own}

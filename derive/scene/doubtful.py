@@ -7,7 +7,7 @@ from derive.scene.declaration import Moving, Parameter, SceneError
 from derive.scene.escape import at_place, brief
 from derive.scene.formula import Formula
 from derive.scene.machine import INERTIAL, Force, Member, Scene, Spring
-from derive.scene.safe import negative, ranges_of, values_of
+from derive.scene.safe import negative_somewhere, ranges_of, values_within
 
 MANY_RADIANS = 20
 """More than three turns: an angle in degrees that was not converted looks so."""
@@ -17,12 +17,12 @@ def require_sizes(machine: Scene) -> None:
     """Refuse sizes that no body and no spring can have, anywhere on the declared ranges."""
     ranges = ranges_of(machine)
     for label, size in _sizes(machine):
-        place = negative(size, ranges)
+        place = negative_somewhere(size, ranges)
         if place is not None:
             found = f"'{brief(size)}' is{at_place(place)}"
             raise SceneError(f"{label} must not be negative, but {found}")
     for body in machine.bodies:
-        walls = values_of(_wall(body), ranges) if body.look == "tube" else []
+        walls = values_within(_wall(body), ranges) if body.look == "tube" else []
         if walls and not any(walls):
             raise SceneError(f"body '{body.name}': outer must be more than inner, but is the same")
 
@@ -42,7 +42,7 @@ def _beyond(machine: Scene) -> Iterator[str]:
     ranges = ranges_of(machine)
     for m in (*machine.coordinates, *machine.speeds):
         if m.name in machine.about:
-            found = values_of(machine.about[m.name], ranges)
+            found = values_within(machine.about[m.name], ranges)
             if found and not any(float(m.low) <= x <= float(m.high) for x in found):
                 declared = f"[{float(m.low):g}, {float(m.high):g}]"
                 yield (

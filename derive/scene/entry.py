@@ -15,13 +15,13 @@ from derive.scene.table import (
     formulas,
     interval,
     keys,
+    one_of,
     rational,
     several,
     shown,
     table,
     text,
     triple,
-    word,
 )
 from derive.scene.unit import NONE, dimension
 
@@ -158,9 +158,9 @@ READERS: Mapping[str, Callable[[_One], Any]] = {
     "count": _count,
     "names": _names,
     "text": lambda one: text(one.value, one.label),
-    "word": lambda one: word(one.value, one.label, one.row.words),
-    "frame": lambda one: word(one.value, one.label, one.by.names["frame"]),
-    "body": lambda one: word(one.value, one.label, one.by.names["body"]),
+    "word": lambda one: one_of(one.value, one.label, one.row.words),
+    "frame": lambda one: one_of(one.value, one.label, one.by.names["frame"]),
+    "body": lambda one: one_of(one.value, one.label, one.by.names["body"]),
     "bodies": lambda one: several(one.value, one.label, one.by.names["body"]),
     "bounds": _bounds,
     "vector": _vector,

@@ -89,7 +89,7 @@ def file_name(name: str) -> str:
     return identifier(name, "the file")
 
 
-def functions(names: Iterable[str]) -> None:
+def refuse_taken_functions(names: Iterable[str]) -> None:
     """Refuse wanted functions whose symbols are taken, by helpers or by variants of others."""
     names = tuple(names)
     variants = {f"{name}{ending}": name for name in names for ending in VARIANTS}

@@ -37,17 +37,17 @@ def middle(ranges: Ranges) -> Valuation:
     return {name: (low + high) / 2 for name, (low, high) in ranges.items()}
 
 
-def points(ranges: Ranges) -> Iterator[Valuation]:
+def valuations(ranges: Ranges) -> Iterator[Valuation]:
     """Yield the middle of the ranges and combinations of their ends, at most MOST_ENDS."""
     yield middle(ranges)
     for values in islice(product(*map(dict.fromkeys, ranges.values())), MOST_ENDS):
         yield dict(zip(ranges, values, strict=True))
 
 
-def points_of(parameters: Iterable[Parameter], formulas: Iterable[Formula]) -> list[Valuation]:
+def valuations_of(parameters: Iterable[Parameter], formulas: Iterable[Formula]) -> list[Valuation]:
     """Return the points to try of the parameters that formulas are made of."""
     used = {name for formula in formulas for name in symbols(formula)}
-    return [*points(ends_of(p for p in parameters if p.name in used))]
+    return [*valuations(ends_of(p for p in parameters if p.name in used))]
 
 
 def value(formula: Formula, values: Valuation, label: str) -> float:
@@ -60,7 +60,7 @@ def value(formula: Formula, values: Valuation, label: str) -> float:
 
 def positive(formula: Formula, label: str, parameters: tuple[Parameter, ...]) -> Formula:
     """Return a formula that is positive in the middle and at the ends of the ranges."""
-    for values in points_of(parameters, [formula]):
+    for values in valuations_of(parameters, [formula]):
         found = value(formula, values, label)
         if found <= 0:
             raise SceneError(f"{label} must be positive, not {found:g}{where(values, (formula,))}")
@@ -73,7 +73,7 @@ def where(values: Valuation, formulas: Iterable[Formula]) -> str:
     return at_place({name: values[name] for name in used if name in values})
 
 
-def tensor(inertia: Sextuple, values: Valuation, label: str) -> FractionMatrix:
+def inertia_matrix(inertia: Sextuple, values: Valuation, label: str) -> FractionMatrix:
     """Return the inertia tensor at given parameters; its products enter with a minus sign."""
     xx, yy, zz, xy, xz, yz = (Fraction(value(part, values, label)) for part in inertia)
     return (xx, -xy, -xz), (-xy, yy, -yz), (-xz, -yz, zz)
@@ -140,7 +140,7 @@ def tensor_doubts(
     possible: Callable[[FractionMatrix], bool],
 ) -> Iterator[str]:
     """Yield a sentence on the first inertia that is not definite, and one on the first triangle."""
-    every = [(v, tensor(inertia, v, label)) for v in points_of(parameters, inertia)]
+    every = [(v, inertia_matrix(inertia, v, label)) for v in valuations_of(parameters, inertia)]
     indefinite = [v for v, matrix in every if not possible(matrix)]
     broken = [v for v, matrix in every if possible(matrix) and not triangle(matrix)]
     for values in indefinite[:1]:
@@ -159,7 +159,7 @@ def check_member(label: str, inertia: Entries, parameters: tuple[Parameter, ...]
     possible = all(x is None or x >= 0 for x in found[:3])
     if possible and None not in inertia:
         whole = cast("Sextuple", inertia)
-        possible = _not_negative(tensor(whole, values, f"{label} inertia"))
+        possible = _not_negative(inertia_matrix(whole, values, f"{label} inertia"))
     if not possible:
         raise SceneError(not_definite(f"{label} inertia", inertia, values))
 

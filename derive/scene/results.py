@@ -9,7 +9,7 @@ from derive.scene.escape import brief
 from derive.scene.formula import Formula, substitute
 from derive.scene.loads import MARK, unknown_units
 from derive.scene.machine import Result, Unknown
-from derive.scene.names import functions, identifier
+from derive.scene.names import identifier, refuse_taken_functions
 from derive.scene.scalars import Scalars, unknown_rates
 from derive.scene.table import Scope, Table, measured, shown, text
 from derive.scene.unit import BESIDE_SI, NONE, Dimension, UnitError, dimension, spelled
@@ -98,7 +98,7 @@ def read_asked(
             part, whole = twice[0]
             raise SceneError(f"wanted '{name}' gives '{part}' twice: by '{whole}' and alone")
         asked[identifier(name, "a wanted function")] = answers
-    functions(asked)
+    refuse_taken_functions(asked)
     return asked
 
 

@@ -20,7 +20,7 @@ from derive.scene.declaration import SceneError
 from derive.scene.escape import at_place, brief
 from derive.scene.formula import Formula, apply, evaluate, in_floats, symbols
 from derive.scene.functions import INTERVALS
-from derive.scene.numbers import Ranges, Valuation, middle, points
+from derive.scene.numbers import Ranges, Valuation, middle, valuations
 
 BETWEEN, BOXES = 64, 2000
 """Points tried between; boxes that a proof may take."""
@@ -51,7 +51,7 @@ def ranges_of(scene: object) -> Ranges:
     return {"pi": (math.pi, math.pi), **dict(_ranges(scene))}
 
 
-def negative(part: Formula, ranges: Ranges) -> Valuation | None:
+def negative_somewhere(part: Formula, ranges: Ranges) -> Valuation | None:
     """Return a place on the ranges where a formula is negative, None if none was found."""
     used = symbols(part)
     if any(name not in ranges for name in used):
@@ -59,13 +59,13 @@ def negative(part: Formula, ranges: Ranges) -> Valuation | None:
     return _place("radicand", part, {name: ranges[name] for name in used})
 
 
-def values_of(formula: Formula, ranges: Ranges) -> list[float]:
+def values_within(formula: Formula, ranges: Ranges) -> list[float]:
     """Return a formula's values at the middle, the corners and between; none without ranges."""
     used = symbols(formula)
     if any(name not in ranges for name in used):
         return []
     box = {name: ranges[name] for name in used}
-    return [_sized(formula, point)[0] for point in _points(box)]
+    return [_sized(formula, values)[0] for values in _valuations(box)]
 
 
 def _ranges(value: object) -> Iterator[tuple[str, tuple[float, float]]]:
@@ -157,9 +157,9 @@ def _size(part: Formula, values: Valuation) -> Any:
     return abs(in_floats(part, values))
 
 
-def _points(box: Ranges) -> Iterator[Valuation]:
+def _valuations(box: Ranges) -> Iterator[Valuation]:
     """Yield the middle, corners, and points between."""
-    yield from points(box)
+    yield from valuations(box)
     random = Random(1)  # noqa: S311 (points to try, no secret)
     for _ in range(BETWEEN):
         yield {n: random.uniform(*ends) for n, ends in box.items()}
@@ -168,12 +168,12 @@ def _points(box: Ranges) -> Iterator[Valuation]:
 def _place(kind: str, part: Formula, box: Ranges) -> Valuation | None:
     """Return a place where a radicand is negative or a divisor vanishes, None if none is found."""
     signs: dict[bool, Valuation] = {}
-    for point in _points(box):
-        found, size = _sized(part, point)
+    for values in _valuations(box):
+        found, size = _sized(part, values)
         if found < -ROUNDING * size if kind == "radicand" else abs(found) <= ROUNDING * size:
-            return point
+            return values
         if not math.isnan(found):
-            signs.setdefault(found > 0, point)
+            signs.setdefault(found > 0, values)
     if kind != "radicand" and len(signs) == 2:
         return _between(part, signs[False], signs[True])
     return _searched(kind, part, box)

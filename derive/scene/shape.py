@@ -85,7 +85,7 @@ def about_axis(axis: Axis | None, axial: Formula, transverse: Formula) -> Sextup
     return diagonal(xx, yy, zz)
 
 
-def moved(inertia: Sextuple, mass: Formula, centre: Triple) -> Sextuple:
+def by_parallel_axes(inertia: Sextuple, mass: Formula, centre: Triple) -> Sextuple:
     """Return the inertia about a point, from that about the mass centre (parallel axes).
 
     inertia : kg m^2, about the mass centre        centre : m, from the point, along the same axes

@@ -158,7 +158,7 @@ def _spelled(value: object) -> str:
     return repr(value) if isinstance(value, str) else str(value).lower()
 
 
-def word(value: object, label: str, known: Iterable[str]) -> str:
+def one_of(value: object, label: str, known: Iterable[str]) -> str:
     """Return a value that must be one of a few words."""
     known = tuple(known)
     if not isinstance(value, str) or value not in known:
@@ -178,7 +178,7 @@ def several(value: object, label: str, known: Iterable[str]) -> tuple[str, ...]:
     known, each = tuple(known), value if isinstance(value, list) else [value]
     if not each:
         raise SceneError(f"{label} is an empty list; leave it out to mean all")
-    found = tuple(word(one, label, known) for one in each)
+    found = tuple(one_of(one, label, known) for one in each)
     for name in found:
         if found.count(name) > 1:
             raise SceneError(f"{label} has '{name}' twice")

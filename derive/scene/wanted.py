@@ -18,7 +18,7 @@ EQUATIONS = (
 
 SPLITTINGS = {"step_split2": 2, "step_split": 4, "step_split6": 6}
 TAYLOR = {"step_taylor": 20} | {f"step_taylor{order}": order for order in range(12, 20)}
-STEPS = ("step_rk4", "step_lie", *SPLITTINGS, "step_dmv", *TAYLOR, "flow_exact")
+STEP_FUNCTIONS = ("step_rk4", "step_lie", *SPLITTINGS, "step_dmv", *TAYLOR, "flow_exact")
 """Motion in time: steps of the whole state, and the exact torque-free rotation."""
 
 COMPENSATED = tuple(f"{name}_compensated" for name in ("step_rk4", "step_lie", *SPLITTINGS))
@@ -62,7 +62,7 @@ JACOBIAN, SENSITIVITY = "_jacobian", "_sensitivity"
 """How the name of a function with derivatives ends: by what varies; by state and parameters."""
 
 JACOBIANS = tuple(f"{name}{JACOBIAN}" for name in EQUATIONS)
-MOTIONS = (*STEPS, *COMPENSATED, *STEP_DERIVATIVES)
+MOTIONS = (*STEP_FUNCTIONS, *COMPENSATED, *STEP_DERIVATIVES)
 WANTED = (*EQUATIONS, *JACOBIANS, *MOTIONS, *ATTITUDES)
 
 
@@ -85,7 +85,7 @@ def check_form(wanted: Iterable[str], form: str, emission: str) -> None:
         if name not in IN_PAIRS:
             raise SceneError(
                 f"form = 'accurate' is not for '{name}', which {_own_way(name)}; "
-                f"of the steps it is for {', '.join(s for s in STEPS if s in IN_PAIRS)} "
+                f"of the steps it is for {', '.join(s for s in STEP_FUNCTIONS if s in IN_PAIRS)} "
                 "and derivatives"
             )
 
@@ -116,11 +116,11 @@ def step_of(name: str) -> str:
     return "_".join(name.split("_")[:2])
 
 
-def base_of(name: str) -> str:
+def without_ending(name: str) -> str:
     """Return the function of the lecture that a function with derivatives belongs to.
 
-    >>> base_of("acceleration_jacobian"), base_of("state_rate_sensitivity"), base_of("moment")
-    ('acceleration', 'state_rate', 'moment')
+    >>> [without_ending(name) for name in ("state_rate_jacobian", "omega_sensitivity", "moment")]
+    ['state_rate', 'omega', 'moment']
     """
     return name.removesuffix(JACOBIAN).removesuffix(SENSITIVITY)
 

@@ -71,7 +71,7 @@ def options(command: argparse.ArgumentParser) -> None:
     )
 
 
-def _moved(
+def _simulated(
     given: argparse.Namespace, found: Instrument, values: dict[str, float]
 ) -> list[PrintedRow]:
     """Return the state at the end of a motion, its plot written if a file is named."""
@@ -93,7 +93,7 @@ def _require_another_file(file: Path, scene: str) -> None:
             raise SceneError(f"--plot {file}: the scene itself lies there; name another file")
 
 
-def solved(given: argparse.Namespace) -> Printout:
+def printout(given: argparse.Namespace) -> Printout:
     """Return what was asked for, and what stays unanswered because a value is not set.
 
     Raises SceneError for options that do not go together, and for values without an answer.
@@ -106,7 +106,7 @@ def solved(given: argparse.Namespace) -> Printout:
 
 def _solved(given: argparse.Namespace, found: Instrument, values: dict[str, float]) -> Printout:
     if given.until is not None:
-        return Printout(_moved(given, found, values), [])
+        return Printout(_simulated(given, found, values), [])
     try:
         if given.limit:
             return _limits(given, found, values)
@@ -140,7 +140,7 @@ def _limits(given: argparse.Namespace, found: Instrument, values: dict[str, floa
         raise SceneError(f"scene '{found.name}': --limit needs wanted = [..., \"linearised\"]")
     rows: list[PrintedRow] = []
     for name in given.limit:
-        each = [f"{v:.12g}" for v in limits(found, values, _known(found, name))]
+        each = [f"{v:.12g}" for v in limits(found, values, _settable(found, name))]
         rows += [("limit of stability", name, v, unit.get(name, "")) for v in each or [NOWHERE]]
     return Printout(rows, [])
 
@@ -166,14 +166,14 @@ def settings(found: Instrument, texts: Sequence[str]) -> dict[str, float]:
     units = {c: q.unit for q in found.quantities() for c in q.components}
     for text in texts:
         name, _, value = text.partition("=")
-        known = _known(found, name.strip())
+        known = _settable(found, name.strip())
         if known in values:
             raise SceneError(f"--set {text[:60]}: '{known}' is set twice")
         values[known] = _number(text, value.strip(), units[known])
     return values
 
 
-def _known(found: Instrument, name: str) -> str:
+def _settable(found: Instrument, name: str) -> str:
     names = [c for q in found.quantities() for c in q.components]
     if name not in names:
         few = f" (known: {', '.join(names[:MANY])} and {len(names) - MANY} more)"

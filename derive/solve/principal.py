@@ -36,7 +36,7 @@ def principal_axes(tensor: Sequence[Sequence[float]]) -> PrincipalAxes:
     _refuse_unfit(rows)
     xx, yy, zz = (number(Fraction(rows[i][i])) for i in range(3))
     xy, xz, yz = (number(Fraction(rows[i][k])) for i, k in ((0, 1), (0, 2), (1, 2)))
-    found = diagonal.principal_axes(Inertia((xx, yy, zz, xy, xz, yz), "general", None))
+    found = diagonal.diagonalised(Inertia((xx, yy, zz, xy, xz, yz), "general", None))
     x, y, z = (_floats(row) for row in found.axes)
     first, second = (-1.0 if max(row, key=abs) < 0 else 1.0 for row in (x, y))
     moments = _floats([m * found.size for m in found.moments])

@@ -35,7 +35,7 @@ BELOW, ABOVE = 0.3, 0.7
 """So far from the order may be what two errors give, as the error's next term has a part in them:
 less than a whole order either way, and more above, where that term may be the larger."""
 
-EXACT = 1e-40
+CLOSED_FORM = 1e-40
 """A relative error that only a motion in closed form has; the catalogue's largest is 4e-56."""
 
 ROUNDED = 1e-17
@@ -73,7 +73,7 @@ class Order:
         return f"{largest(self.errors):.1g}" if self.closed else f"{self.measured:.2f}"
 
 
-def rate_of(library: Library, values: Mapping[str, Any]) -> RightHandSide:
+def right_hand_side(library: Library, values: Mapping[str, Any]) -> RightHandSide:
     """Return the rate of the state as the lecture's equations give it, other inputs held."""
     mechanism = library.mechanism
     problem = library.problems.get("state_rate") or mechanism.problem("state_rate")
@@ -89,7 +89,7 @@ def rate_of(library: Library, values: Mapping[str, Any]) -> RightHandSide:
     return rate
 
 
-def moved(rate: RightHandSide, state: StateVector, time: Any, levels: int) -> StateVector:
+def extrapolated(rate: RightHandSide, state: StateVector, time: Any, levels: int) -> StateVector:
     """Return the state after ``time`` by extrapolation from 2, 4, ... 2 ``levels`` substeps."""
     rows: list[StateVector] = []
     for level in range(1, levels + 1):
@@ -127,10 +127,10 @@ def course(library: Library, name: str, values: Mapping[str, float]) -> Course:
     """Return the true motion over a step that suits ``name`` and over half of it."""
     with ctx.workprec(BITS):
         given = unit_attitude(library, {c: arb(x) for c, x in values.items()})
-        rate = rate_of(library, given)
+        rate = right_hand_side(library, given)
         start = [given[c] for c in _states(library)]
         h = arb(TURN.get(step_of(name), USUAL_TURN) / _turning(library, rate(start), start))
-        ends = moved(rate, start, h, LEVELS), moved(rate, start, h / 2, LEVELS)
+        ends = extrapolated(rate, start, h, LEVELS), extrapolated(rate, start, h / 2, LEVELS)
         return Course(given, (h, h / 2), ends)
 
 
@@ -170,12 +170,12 @@ def exactness(library: Library, values: Mapping[str, float]) -> float:
     with ctx.workprec(BITS):
         given = unit_attitude(library, {c: arb(x) for c, x in values.items()})
         states = _states(library)
-        rate = rate_of(library, given)
+        rate = right_hand_side(library, given)
         start = [given[c] for c in states]
         here, pieces = start, 8
         time = arb(3.0 / _turning(library, rate(start), start))
         for _ in range(pieces):
-            here = moved(rate, here, time / pieces, LEVELS)
+            here = extrapolated(rate, here, time / pieces, LEVELS)
         found = stepped(library, "flow_exact", given, time)
         return _distance([found[f"{c}_next"] for c in states], here)
 

@@ -16,7 +16,7 @@ from derive.lower.arrange.matching import blocks
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.mechanics.problem import Problem
 from derive.scene import Scene
-from derive.verify.valuation import Atom, AtomPowers, Atoms, Polynomial, terms
+from derive.verify.valuation import Atom, AtomPowers, Atoms, Polynomial, collected_terms
 
 Coefficient = tuple[tuple[AtomPowers, Fraction], ...]
 
@@ -71,7 +71,7 @@ class _Splitter:
 
     def sum(self, polynomial: Polynomial) -> Sum:
         found = []
-        for term in terms(polynomial, lambda atom: atom not in self.fixed):
+        for term in collected_terms(polynomial, lambda atom: atom not in self.fixed):
             place = self.places.setdefault(term.coefficient, len(self.places))
             found.append(Part(place, term.factors))
         return tuple(found)

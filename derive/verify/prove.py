@@ -24,7 +24,7 @@ from derive.verify.operators import IN_FRACTIONS, IrrationalError
 from derive.verify.reference import BALLS, NoValueError
 from derive.verify.solution import Solved, solution
 
-POINTS = 2
+EXACT_SAMPLES = 2
 TRIES = 50
 SEED = "derive: proof by exact values"
 BITS = 4000
@@ -69,7 +69,7 @@ def prove(library: Library) -> None:
     Raises NoValueError if no such point is found at which the scene's formulas have values.
     """
     every = stated(library)
-    for number in range(POINTS):
+    for number in range(EXACT_SAMPLES):
         try:
             if any(map(_halves_angles, (library.setup, *library.functions, *library.rates))):
                 raise IrrationalError
@@ -89,7 +89,7 @@ def _halves_angles(program: Program) -> bool:
 def _prove_in_balls(library: Library, every: Mapping[str, Equations], number: int) -> None:
     """Prove at the first point at which every root exists."""
     for tries in range(TRIES):
-        at = ball_point(library, number + POINTS * tries)
+        at = ball_sample(library, number + EXACT_SAMPLES * tries)
         if all(_exists(equations, at) for equations in every.values()):
             _prove_at(library, every, at)
             return
@@ -106,7 +106,7 @@ def exact_sample(library: Library, number: int) -> ExactSample:
     return ExactSample(FRACTIONS, dict(_dice(library, number)))
 
 
-def ball_point(library: Library, number: int) -> ExactSample:
+def ball_sample(library: Library, number: int) -> ExactSample:
     """Return the same fractions as narrow balls, all above zero."""
     values = {name: arb(abs(x)) for name, x in _dice(library, number)}
     return ExactSample(WIDE_BALLS, values)

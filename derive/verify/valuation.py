@@ -149,7 +149,9 @@ class CollectedTerm:
     factors: AtomPowers
 
 
-def terms(polynomial: Polynomial, varies: Callable[[int], bool]) -> tuple[CollectedTerm, ...]:
+def collected_terms(
+    polynomial: Polynomial, varies: Callable[[int], bool]
+) -> tuple[CollectedTerm, ...]:
     """Return a polynomial's terms, all that goes with the same varying factors in one."""
     grouped: dict[AtomPowers, Polynomial] = {}
     for monomial, number in polynomial.items():

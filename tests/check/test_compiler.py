@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.check.call import functions
+from derive.check.call import c_functions
 from derive.check.compiler import Compiler, CompilerError, compiled, find_compiler
 from derive.program.precision import F64
 
@@ -67,7 +67,7 @@ int sum_f64(double k, const double v[2], double w[2], double *s)
 
 def test_a_function_is_called_by_its_description(tmp_path: Path) -> None:
     library = compiled({"s.c": SUM}, "s.c", tmp_path, find_compiler())
-    called = functions(json.loads(MANIFEST), library, F64.name)["sum"]
+    called = c_functions(json.loads(MANIFEST), library, F64.name)["sum"]
     given = {"k": [2.0], "v": [3.0, 4.0]}
     assert called(given) == {"w": [6.0, 8.0], "s": [7.0], "status": [0.0]}
     assert called.over(given, "w", "v")["s"] == [14.0]  # this C does not allow it

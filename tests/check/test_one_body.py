@@ -12,7 +12,7 @@ from derive.check.particles import clouds
 from derive.library.library import Library, library
 from derive.program.precision import F64
 from derive.scene import parse_scene
-from derive.scene.short_form.long_form import written_out
+from derive.scene.short_form.long_form import in_long_form
 from derive.scene.wanted import EQUATIONS
 from derive.verify.sample import samples
 from tests.lower import test_unusual_scenes as unusual
@@ -85,7 +85,7 @@ WRONG: Mapping[str, Callable[[Any], Any]] = {
 )
 def test_the_programs_of_another_scene_are_noticed(name: str, wrong: str) -> None:
     made = library_of(name)
-    other = written_out(WRONG[wrong](short_of(name)))
+    other = in_long_form(WRONG[wrong](short_of(name)))
     assert other.inverse is not None
     assert made.mechanism.inverse is not None
     inverse = replace(made.mechanism.inverse, scene=other.inverse)

@@ -10,10 +10,10 @@ import casadi
 import numpy as np
 import pytest
 
-from derive.check.admission import ends_of, fault, hostile, replayed
+from derive.check.admission import extremes_of, fault, hostile, replayed_statuses
 from derive.check.compiler import find_compiler
 from derive.check.emitted import Files, loaded
-from derive.check.refusals import casadi_status, refusal
+from derive.check.refusals import casadi_status, refuses_alike
 from derive.cli import main
 from derive.emit.casadi_module import imported
 from derive.emit.casadi_text import casadi_file
@@ -67,7 +67,7 @@ def drawn(lib: Library, precision: Precision) -> list[dict[str, float]]:
 def faults(lib: Library, setup: Program, precision: Precision) -> list[str]:
     """Return what is wrong with the statuses of a set-up, and check that they are not all alike."""
     each = drawn(lib, precision)
-    found = replayed(setup, each, precision)
+    found = replayed_statuses(setup, each, precision)
     columns = np.array([[v[n] for v in each] for n in names(setup)], precision.dtype)
     with np.errstate(all="ignore"):
         results = run(setup, extended(precision.dtype), paired(columns))
@@ -76,7 +76,7 @@ def faults(lib: Library, setup: Program, precision: Precision) -> list[str]:
         f"{says} at {values}"
         for values, status, ok in zip(each, found, finite, strict=True)
         if (says := fault(lib.scene, values, precision, status,
-                          ends_of(values, precision, finite=bool(ok))))
+                          extremes_of(values, precision, finite=bool(ok))))
     ]  # fmt: skip
 
 
@@ -85,7 +85,7 @@ def test_a_set_up_refuses_what_the_declaration_refuses_and_nothing_else(name: st
     lib = made(name)
     for precision in PRECISIONS:
         assert faults(lib, lib.setup, precision) == []
-        found = set(replayed(lib.setup, drawn(lib, precision), precision))
+        found = set(replayed_statuses(lib.setup, drawn(lib, precision), precision))
         assert {RIGHT, PARAMETER} < found <= set(possible(lib.setup))
 
 
@@ -130,7 +130,7 @@ def test_a_rule_that_refuses_too_much_is_caught() -> None:
 def test_a_status_names_the_rule(values: Sequence[float], status: int) -> None:
     setup = made("rigid_body_steps").setup
     given = dict(zip(names(setup), map(float, values), strict=True))
-    assert replayed(setup, [given], F64) == [status]
+    assert replayed_statuses(setup, [given], F64) == [status]
 
 
 @pytest.mark.parametrize(("precision", "condition"), [(F64, 1e12), (F32, 1e6)])
@@ -149,9 +149,9 @@ def test_no_definite_tensor_is_refused_for_being_close_to_singular(
                 "I_xy": -own[0, 1], "I_xz": -own[0, 2], "I_yz": -own[1, 2]}  # fmt: skip
         each.append({k: float(precision.dtype(x)) for k, x in keys.items()})
     scene = made("free_body").scene
-    found = replayed(setup, each, precision)
+    found = replayed_statuses(setup, each, precision)
     assert found.count(RIGHT) > 190
-    wrong = [fault(scene, v, precision, s, ends_of(v, precision, finite=True))
+    wrong = [fault(scene, v, precision, s, extremes_of(v, precision, finite=True))
              for v, s in zip(each, found, strict=True)]  # fmt: skip
     assert [w for w in wrong if w] == []
 
@@ -162,7 +162,7 @@ def test_a_rod_in_axes_of_its_own_is_taken_and_what_is_less_than_a_rod_is_not() 
     for precision in PRECISIONS:
         rows = [given, {"J": 0.1, "I_xy": 0.1}, {"J": 0.0, "I_xy": 0.0}, {"J": 1.0, "I_xy": 1.01}]
         held = [{n: float(precision.dtype(r[n])) for n in names(lib.setup)} for r in rows]
-        assert replayed(lib.setup, held, precision) == [RIGHT, RIGHT, RIGHT, INERTIA]
+        assert replayed_statuses(lib.setup, held, precision) == [RIGHT, RIGHT, RIGHT, INERTIA]
 
 
 @pytest.mark.parametrize("name", thinned(["edge_runner_flat", "rigid_body_steps"], 2))
@@ -170,7 +170,7 @@ def test_c_and_casadi_give_the_status_of_the_program(name: str, tmp_path: Path) 
     lib = made(name)
     found = Files(printed(lib), "made in memory")
     for one in loaded(lib, found, tmp_path, find_compiler()):
-        row = refusal(one, ())
+        row = refuses_alike(one, ())
         assert (row.outcome, row.check) == ("holds", "refuses what is no body"), row.says
         if one.precision is F64:
             module = imported(f"{name}_casadi", casadi_file(lib), tmp_path)
@@ -187,7 +187,7 @@ def test_casadi_gives_the_status_of_the_program(name: str, tmp_path: Path) -> No
     each = drawn(lib, F64)
     given = casadi.DM([[v[n] for v in each] for n in names(lib.setup)])
     status = module.setup_status()(given).full().ravel()
-    assert status.tolist() == replayed(lib.setup, each, F64)
+    assert status.tolist() == replayed_statuses(lib.setup, each, F64)
     constants = module.setup()(given).full()
     assert np.all(np.isnan(constants[:, status != RIGHT]))
 

@@ -11,7 +11,7 @@ from derive.emit.notation import name_mathml
 from derive.emit.page.equation import PageEquation, passages, written_names
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.scene import SceneError, catalogue, parse_scene
-from derive.scene.wanted import ATTITUDES, base_of, moves
+from derive.scene.wanted import ATTITUDES, moves, without_ending
 from tests.made import scene_of, thinned
 from tests.scene.test_docs import ACCEPTED, EXAMPLE, MOTION
 
@@ -122,7 +122,7 @@ def known_of(name: str) -> Mechanism:
 
 def functions(known: Mechanism) -> list[str]:
     """Return the functions of a scene that show equations."""
-    bases = dict.fromkeys(map(base_of, known.scene.wanted))
+    bases = dict.fromkeys(map(without_ending, known.scene.wanted))
     return [name for name in bases if not moves(name) and name not in ATTITUDES]
 
 

@@ -12,7 +12,7 @@ from derive.emit.page.scene import scene_page
 from derive.library.library import Library, library
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.scene import parse_scene
-from derive.scene.wanted import EQUATIONS, base_of
+from derive.scene.wanted import EQUATIONS, without_ending
 from tests.lower import test_unusual_scenes as unusual
 from tests.made import SHORT, library_of, scene_of, thinned
 
@@ -42,7 +42,7 @@ turned = ["z phi"]
 
 def said(known: Mechanism) -> Iterator[tuple[str, str]]:
     """Yield sentences of a page, and the names in its formulas, each with what is wrong in it."""
-    asked = dict.fromkeys(map(base_of, known.scene.wanted))
+    asked = dict.fromkeys(map(without_ending, known.scene.wanted))
     for base in (name for name in asked if name in EQUATIONS):
         for note in notes(known, base):
             yield note, "".join(UNSAID.findall(note))

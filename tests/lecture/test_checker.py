@@ -10,7 +10,7 @@ from derive.lecture.chapters import LECTURE
 from derive.lecture.chapters.letters import F_i, I, M, Omega, P_ij, dm, l, omega, r, rho
 from derive.lecture.facts import CircularError, Facts
 from derive.lecture.rate import rate, seen_from_axes, seen_from_N
-from derive.lecture.relations import ContradictionError, remainders
+from derive.lecture.relations import ContradictionError, left_by_relations
 from derive.lecture.step import Derivation, Step, first_fall, verify
 from derive.lecture.sums import linear_map, others, reading, varies
 from derive.lecture.tree import collected
@@ -160,9 +160,9 @@ def test_rates_seen_from_n_and_from_the_axes_obey_the_same_product_rule() -> Non
 
 def test_a_remainder_is_zero_only_for_what_follows() -> None:
     c, s, t = symbols("c s t")
-    assert remainders([c**4 - s**4 - c**2 + s**2, s], [c**2 + s**2 - 1]) == (0, s)
+    assert left_by_relations([c**4 - s**4 - c**2 + s**2, s], [c**2 + s**2 - 1]) == (0, s)
     with pytest.raises(ContradictionError):
-        remainders([t], [s * t - 1, s])
+        left_by_relations([t], [s * t - 1, s])
 
 
 def test_the_tensor_of_a_step_is_the_one_that_was_defined() -> None:

@@ -10,7 +10,7 @@ from random import Random
 import numpy as np
 import pytest
 
-from derive.emit.c.comment import comment, told
+from derive.emit.c.comment import comment, singular_clause
 from derive.emit.casadi_text import casadi_file
 from derive.emit.manifest import manifest
 from derive.library.library import Library
@@ -76,7 +76,7 @@ def test_header_json_and_casadi_say_the_same() -> None:
     lib = library_of("heavy_top")
     bad = "psi_dot, phi_dot, omega_dot_x, omega_dot_y"  # theta_dot and omega_dot_z stay as they are
     says = f"at theta = k pi, {bad} infinite, no number or beyond all measure"
-    assert [told(s) for s in lib["state_rate"].singular] == [says]
+    assert [singular_clause(s) for s in lib["state_rate"].singular] == [says]
     block = comment(lib["state_rate"], (), 1).replace(" * ", "")
     assert f"Singular: {says}." in " ".join(block.split())
     described = {f["name"]: f for f in json.loads(manifest(lib, ()))["functions"]}

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from derive.check.motion import orders, step_slopes
+from derive.check.motion import orders_hold, step_slopes_hold
 from derive.cli import main
 from derive.library.library import Library, library
 from derive.program.arithmetic import working
@@ -102,7 +102,9 @@ def drawn(made: Library, precision: Precision, count: int) -> tuple[Sample, ...]
 def test_steps_of_machines_have_their_orders_and_their_slopes(of: str) -> None:
     hubs = ("step_rk4", "step_rk4_jacobian", "step_taylor12")
     made = top() if of == "top" else two_hubs(*hubs)
-    verdicts = [check for one in (orders, step_slopes) for check in one(made, drawn(made, F64, 1))]
+    verdicts = [
+        check for one in (orders_hold, step_slopes_hold) for check in one(made, drawn(made, F64, 1))
+    ]
     assert {v.function for v in verdicts} >= {"step_rk4", "step_rk4_jacobian", "step_taylor12"}
     assert [v for v in verdicts if v.outcome != "holds"] == []
 

@@ -5,7 +5,7 @@ from fractions import Fraction
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.lower.expand import collected, factored, grouped, terms
+from derive.lower.expand import collected_by_factors, factored, grouped, multiplied_out
 from derive.lower.graph import ONE, ZERO, Graph, Value
 from derive.lower.schedule import schedule
 from derive.program.arithmetic import EXACT
@@ -71,8 +71,8 @@ def test_scheduled_operations_compute_what_was_built(trees, point):
 @given(expressions, points)
 def test_multiplying_out_changes_no_value(tree, point):
     g, leaves = graph_with_leaves()
-    expanded = terms(g, [built(g, leaves, tree)], frozenset())[0]
-    forms = [way(g, expanded) for way in (collected, grouped, factored)]
+    expanded = multiplied_out(g, [built(g, leaves, tree)], frozenset())[0]
+    forms = [way(g, expanded) for way in (collected_by_factors, grouped, factored)]
     assert value_at(g, forms, point) == [plain(tree, point)] * 3
 
 
@@ -101,8 +101,8 @@ def test_a_let_is_looked_through_and_a_cut_is_not():
     g, leaves = graph_with_leaves()
     x, y = leaves["x"], leaves["y"]
     total = g.add([x, y])
-    through = terms(g, [g.mul([x, g.let("a", total)])], frozenset())[0]
-    stopped = terms(g, [g.mul([x, g.cut("b", total)])], frozenset())[0]
+    through = multiplied_out(g, [g.mul([x, g.let("a", total)])], frozenset())[0]
+    stopped = multiplied_out(g, [g.mul([x, g.cut("b", total)])], frozenset())[0]
     assert (len(through), len(stopped)) == (2, 1)
 
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.lower.homogeneous import powers
+from derive.lower.homogeneous import degrees_that_sum
 from tests.made import library_of
 
 
@@ -43,12 +43,12 @@ def homogeneous(draw):
 @given(st.integers(1, 5).flatmap(
     lambda n: st.lists(st.tuples(*[DEGREES] * n), min_size=1, max_size=5)))  # fmt: skip
 def test_any_degrees_give_the_choice_of_trying_all(rows):
-    assert powers(rows) == by_trying_all(rows)
+    assert degrees_that_sum(rows) == by_trying_all(rows)
 
 
 @given(homogeneous())
 def test_degrees_that_a_choice_holds_for_give_the_choice_of_trying_all(rows):
-    assert powers(rows) == by_trying_all(rows)
+    assert degrees_that_sum(rows) == by_trying_all(rows)
 
 
 def row(*places):
@@ -69,12 +69,12 @@ SIXTEEN = {
 
 @pytest.mark.parametrize("case", SIXTEEN)
 def test_sixteen_quantities_take_at_most_a_hundred_steps(case):
-    assert powers(SIXTEEN[case], 100) == powers(SIXTEEN[case])
+    assert degrees_that_sum(SIXTEEN[case], 100) == degrees_that_sum(SIXTEEN[case])
 
 
 def test_a_search_that_takes_too_many_steps_finds_nothing():
-    assert powers(SIXTEEN["in a chain"]) == dict.fromkeys(range(0, 16, 2), 1)
-    assert powers(SIXTEEN["in a chain"], 8) is None
+    assert degrees_that_sum(SIXTEEN["in a chain"]) == dict.fromkeys(range(0, 16, 2), 1)
+    assert degrees_that_sum(SIXTEEN["in a chain"], 8) is None
 
 
 @pytest.mark.long

@@ -12,7 +12,7 @@ import pytest
 from derive.library.function import arranged, function, graphed
 from derive.mechanics.mechanism import mechanism
 from derive.scene import Scene, load, parse_scene
-from derive.scene.wanted import base_of
+from derive.scene.wanted import without_ending
 
 LONG = Path(__file__).parent.parent / "data" / "long_form"
 CATALOGUE = Path(__file__).parent.parent.parent / "derive" / "scene" / "catalogue"
@@ -47,7 +47,7 @@ def in_short(name: str) -> Scene:
 def operations(scene: Scene, name: str) -> int:
     """Return how many + - * / a function of a scene takes."""
     terms = graphed(mechanism(scene))
-    return function(terms, arranged(terms, base_of(name)), name).flops()
+    return function(terms, arranged(terms, without_ending(name)), name).flops()
 
 
 BODY = {("unsymmetrical_rotor_in_carrier_axes", "moment"): 20}

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from derive.lower.order import with_values_read_soon
-from derive.lower.signs import with_signs_moved
+from derive.lower.signs import with_signs_outside
 from derive.motion.runge_kutta import step
 from derive.program.arithmetic import EXACT, working
 from derive.program.indexed import Index, Loop
@@ -58,7 +58,7 @@ def test_the_order_of_an_order_is_the_same(jacobian: Program) -> None:
     assert with_values_read_soon(jacobian).ops == with_values_read_soon(jacobian).ops
 
 
-@pytest.mark.parametrize("change", [with_values_read_soon, lambda p: with_signs_moved(p, "t")])
+@pytest.mark.parametrize("change", [with_values_read_soon, lambda p: with_signs_outside(p, "t")])
 def test_a_program_with_a_loop_is_refused(change, jacobian: Program) -> None:
     body = (Op("a", "add", ("x", "x")),)
     carried = {"carried": ("x",), "start": ("attitude_w",), "then": ("a",)}
@@ -72,7 +72,7 @@ def test_what_differs_by_its_sign_only_is_computed_once() -> None:
     x, y = tape.input("x"), tape.input("y")
     results = tuple(n.operand for n in (x * y, (-x) * y, x - y, y - x, -x - y, x + y))
     inputs = tuple(Quantity(n, (n,), (), "", "", None, None, "") for n in "xy")
-    turned = with_signs_moved(Program("f", "", inputs, (), tuple(tape.ops), results), "t")
+    turned = with_signs_outside(Program("f", "", inputs, (), tuple(tape.ops), results), "t")
     assert turned.count == {"add": 1, "mul": 1, "neg": 3, "sub": 1}
     values = [Fraction(3, 7), Fraction(-5, 2)]
     x_, y_ = values

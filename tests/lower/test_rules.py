@@ -9,7 +9,7 @@ from sympy import Matrix
 
 from derive.library.library import library
 from derive.lower.arrange import column, plan
-from derive.lower.arrange.block import Block, BlockRule, Solution, Solve
+from derive.lower.arrange.block import BlockRule, LinearSystem, Solution, Solve
 from derive.lower.arrange.constant_coefficients import constant_coefficients
 from derive.lower.arrange.constant_tensor import constant_tensor
 from derive.lower.arrange.quaternion import quaternion_rate, turned_by_quaternion
@@ -71,7 +71,7 @@ def of_wrong_index(column: Matrix) -> Matrix:
 def wrong(rule: Any, change: Callable[[Matrix], Matrix]) -> Any:
     """Return a rule that changes the right side of a block, or the column that it gives."""
 
-    def of_block(found: Solution, block: Block, rest: Solve) -> bool:
+    def of_block(found: Solution, block: LinearSystem, rest: Solve) -> bool:
         return rule(found, replace(block, right=change(block.right)), rest)
 
     def of_column(values: Matrix, known: column.NamedColumns) -> Matrix | None:

@@ -4,7 +4,7 @@ import pytest
 
 from derive.mechanics.matter import OTHERS
 from derive.mechanics.mechanism import Mechanism, mechanism
-from derive.mechanics.probe import POINTS, random_probe
+from derive.mechanics.probe import PROBES, random_probe
 from derive.scene import load
 
 # What the data file lists under answer_depends_on, in the names of the catalogue's parameters; a
@@ -54,10 +54,10 @@ def test_the_hinge_force_stays_outside_when_only_the_press_is_asked() -> None:
 
 def test_trial_values_lie_within_the_ranges_and_no_two_are_alike() -> None:
     words = known("sleeping_top").words
-    book, numbers = words.vocabulary, (*range(POINTS), OTHERS)
+    book, numbers = words.vocabulary, (*range(PROBES), OTHERS)
     points = [random_probe(words, n).values for n in numbers]
     for q in (*book.parameters, *book.states, *book.inputs):
         for symbol in (book.symbols[c] for c in q.components):
             values = [float(each[symbol]) for each in points]
-            assert len({*values}) == POINTS + 1
+            assert len({*values}) == PROBES + 1
             assert all(float(q.ends[0]) < x < float(q.ends[1]) for x in values)

@@ -12,7 +12,7 @@ from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.scene import SceneError, parse_scene
 from derive.scene.machine import LEFT_OVER
 from derive.solve import opened, roots
-from derive.solve.command import PrintedRow, solved
+from derive.solve.command import PrintedRow, printout
 
 HOOP = Path(__file__).parent / "scenes" / "hoop_steady.toml"
 PENDULUM = """
@@ -99,7 +99,7 @@ def test_what_vanishes_and_what_is_found_have_their_units(tmp_path: Path) -> Non
 
 def _solved(scene: str, values: dict[str, float]) -> list[PrintedRow]:
     texts = [f"{name}={value}" for name, value in values.items()]
-    return solved(parser().parse_args(["solve", scene, "--set", *texts])).rows
+    return printout(parser().parse_args(["solve", scene, "--set", *texts])).rows
 
 
 @pytest.mark.long

@@ -17,7 +17,7 @@ from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.program.precision import F64
 from derive.scene import Scene, SceneError, catalogue, parse_scene
 from derive.scene.machine import INERTIAL, Force
-from derive.scene.wanted import ATTITUDES, base_of, moves
+from derive.scene.wanted import ATTITUDES, moves, without_ending
 from derive.verify.cloud import answers
 from derive.verify.cloud.history import History
 from derive.verify.cloud.series import DIGITS, each
@@ -46,7 +46,7 @@ def known_of(name: str) -> Mechanism:
 def functions(known: Mechanism) -> list[str]:
     """Return the functions of a scene that the lecture states."""
     wanted = [w for w in known.scene.wanted if not moves(w) and w not in ATTITUDES]
-    return [*dict.fromkeys(map(base_of, wanted))]
+    return [*dict.fromkeys(map(without_ending, wanted))]
 
 
 def history(known: Mechanism, scene: Scene) -> History:

@@ -9,7 +9,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from derive.motion.exact.elliptic import RUNGS, angle, functions, ladder
+from derive.motion.exact.elliptic import RUNGS, angle, jacobi_functions, ladder
 from derive.program.arithmetic import working
 from derive.program.operations import cos, sin, sqrt
 from derive.program.program import Program
@@ -52,7 +52,7 @@ def jacobi(rungs: int = RUNGS) -> Program:
     def made(given: list[Number]) -> list[Number]:
         k, u, _ = given
         means = ladder(k, rungs)
-        at = functions(means, sin(means.mean * u), cos(means.mean * u))
+        at = jacobi_functions(means, sin(means.mean * u), cos(means.mean * u))
         return [at.sn, at.cn, at.dn]
 
     return recorded(made)
@@ -68,7 +68,7 @@ def third() -> Program:
         a, b = means.a[1], means.b[1]
         p = pole * a
         weight = sqrt((p * p - a * a) * (p * p - b * b)) / p
-        at = functions(means, sin(means.mean * u), cos(means.mean * u))
+        at = jacobi_functions(means, sin(means.mean * u), cos(means.mean * u))
         found = angle(means, at, weight, p)
         return [found.rate * u, *found.direction]
 

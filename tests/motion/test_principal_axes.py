@@ -7,7 +7,7 @@ import flint
 import numpy as np
 import pytest
 
-from derive.motion.exact.diagonal import principal_axes
+from derive.motion.exact.diagonal import diagonalised
 from derive.motion.exact.inertia import Inertia
 from derive.program.arithmetic import MANTISSA, extended, paired
 from derive.program.program import Program
@@ -34,7 +34,7 @@ def found(dtype: type, tensors: Rows) -> list[Any]:
     """Return the moments and the axes of tensors (n, 6), in pairs."""
     tape = Tape("p")
     xx, yy, zz, xy, xz, yz = (tape.input(name) for name in TENSOR)
-    axes = principal_axes(Inertia((xx, yy, zz, xy, xz, yz), "general", None))
+    axes = diagonalised(Inertia((xx, yy, zz, xy, xz, yz), "general", None))
     results = tuple(x.operand for x in (*axes.moments, *(x for row in axes.axes for x in row)))
     names = quantity("axes", [f"x{k}" for k in range(12)])
     ops = needed(tape.ops, results)
@@ -87,7 +87,7 @@ def test_axes_are_right_handed_and_turn_the_tensor_to_its_moments(dtype: type) -
 def test_exact_numbers_are_turned_without_an_operation() -> None:
     values = [number(Fraction(x)) for x in (2, 3, 4, "-1/4", "1/8", "-1/2")]
     tensor = (values[0], values[1], values[2], values[3], values[4], values[5])
-    axes = principal_axes(Inertia(tensor, "general", None))
+    axes = diagonalised(Inertia(tensor, "general", None))
     exact = [m.exact for m in axes.moments]
     assert all(m is not None for m in exact)
     assert abs(sum(m for m in exact if m is not None) * 8 - 9) < Fraction(1, 2**150)

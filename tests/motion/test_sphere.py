@@ -34,7 +34,7 @@ def unnormalised(gain: Fraction) -> System:
     results = tuple(n.operand for n in (*pulled, *rates[4:]))
 
     def of_no_role(q: Quantity) -> Quantity:
-        return replace(q, role="value")
+        return replace(q, role="value") if q.is_quaternion else q
 
     inputs = tuple(map(of_no_role, FREE.rate.inputs))
     rate = replace(FREE.rate, ops=needed(tape.ops, results), results=results, inputs=inputs)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from derive.lower.signs import with_signs_moved
+from derive.lower.signs import with_signs_outside
 from derive.motion.runge_kutta import step
 from derive.motion.runge_kutta.dependence import free_omega
 from derive.motion.runge_kutta.system import System
@@ -261,7 +261,7 @@ def test_moving_signs_changes_no_bit() -> None:
         c: Fraction(2 * k * k - 7, 3 * k + 1)
         for k, c in enumerate(c for q in rate.inputs for c in q.components)
     }
-    turned = with_signs_moved(rate, "t")
+    turned = with_signs_outside(rate, "t")
     floats = [np.float32(float(v)) for v in names.values()]
     assert run(turned, working(np.float32), floats) == run(rate, working(np.float32), floats)
     exactly = list(names.values())

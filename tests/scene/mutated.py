@@ -25,7 +25,7 @@ from derive.scene import Scene, SceneError, parse_scene
 from derive.scene.results import MATRICES
 from derive.verify.cloud import answers
 from derive.verify.cloud.series import DIGITS
-from derive.verify.cloud.small import slopes
+from derive.verify.cloud.small import slopes_about_rest
 from derive.verify.sample import samples
 
 Path = tuple[str | int, ...]
@@ -102,7 +102,7 @@ def _by_particles(made: Library, scene: Scene, values: Mapping[str, float]) -> l
         posed = scene.posed(base)
         cloud = answers(posed, values)
         if base == "linearised" or problem.outputs[0].name in MATRICES:
-            found += [x for table in slopes(scene, values) for x in table]
+            found += [x for table in slopes_about_rest(scene, values) for x in table]
             continue
         names = [c for q in problem.outputs for c in q.components]
         found += [*of_cloud(posed, cloud, base, names).values()]

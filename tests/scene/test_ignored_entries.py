@@ -114,7 +114,7 @@ def test_an_inertia_on_which_no_moment_acts_does_not_matter() -> None:
 
 
 def test_an_inertia_that_is_left_out_is_noticed(monkeypatch: Any) -> None:
-    monkeypatch.setattr(bodies, "tensor", lambda *_: eye(3))
+    monkeypatch.setattr(bodies, "inertia_tensor", lambda *_: eye(3))
     assert "body.moment" in ignored(TURNED)
 
 

@@ -23,7 +23,7 @@ RULES = [
     "_position",
     "_wheels",
     "_forward",
-    "_moved",
+    "_steps_admitted",
     "check_inertia",
     "check_unit",
     "carrier_doubts",

@@ -129,7 +129,7 @@ def test_a_result_called_as_a_helper_is_refused(name: str) -> None:
 def test_without_the_check_of_functions_such_a_result_does_not_compile(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(derive.scene.results, "functions", lambda *_: None)
+    monkeypatch.setattr(derive.scene.results, "refuse_taken_functions", lambda *_: None)
     texts = c_files(library(parse_scene(machine(result=name), "odd")), ())
     with pytest.raises(CompilerError):
         compiled(texts, "odd_f64.c", tmp_path, find_compiler())

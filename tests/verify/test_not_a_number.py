@@ -19,7 +19,7 @@ from bench.report.hard_top import ANSWERS
 from derive.check.compiler import find_compiler
 from derive.check.emitted import Emitted, Files, loaded
 from derive.check.energy import emitted_balance
-from derive.check.motion import orders, step_slopes
+from derive.check.motion import orders_hold, step_slopes_hold
 from derive.check.particles import clouds
 from derive.check.turned import turned_axes
 from derive.emit.files import scene_files
@@ -81,7 +81,9 @@ def test_an_error_that_is_no_number_is_measured_as_infinite() -> None:
 @pytest.mark.long
 def test_a_step_or_flow_without_a_value_is_no_motion() -> None:
     broken = ("step_rk4", "flow_exact")
-    verdicts = list(orders(spoilt(library_of("tumbling_disc"), *broken), drawn("tumbling_disc")))
+    verdicts = list(
+        orders_hold(spoilt(library_of("tumbling_disc"), *broken), drawn("tumbling_disc"))
+    )
     assert {v.function for v in verdicts if v.outcome == "FAILS"} == set(broken)
 
 
@@ -94,7 +96,7 @@ def test_a_slope_without_a_value_is_noticed() -> None:
     whole = library_of(scene)
     place = len(next(p for p in whole.motions if p.name == name).results) - 2
     motions = tuple(_without_slope(p, place) if p.name == name else p for p in whole.motions)
-    verdicts = list(step_slopes(replace(whole, motions=motions), drawn(scene)))
+    verdicts = list(step_slopes_hold(replace(whole, motions=motions), drawn(scene)))
     assert [v.outcome for v in verdicts if v.function == name] == ["FAILS"]
 
 

@@ -5,7 +5,7 @@ from functools import cache
 
 import pytest
 
-from derive.check.motion import orders
+from derive.check.motion import orders_hold
 from derive.library.library import Library, library
 from derive.program.indexed import Loop
 from derive.program.precision import F64
@@ -32,7 +32,7 @@ def one_sample(scene: str) -> Sample:
 @pytest.mark.parametrize("scene", thinned(MOVING, 8))
 def test_every_step_has_its_order_and_every_flow_is_the_motion(scene: str) -> None:
     drawn = samples(library_of(scene).mechanism, F64, 2, 0).each
-    verdicts = list(orders(library_of(scene), with_motion(library_of(scene), drawn, F64)))
+    verdicts = list(orders_hold(library_of(scene), with_motion(library_of(scene), drawn, F64)))
     assert [v for v in verdicts if v.outcome != "holds"] == []
     steps = {n for n in load(scene).wanted if moves(n) and n not in STEP_DERIVATIVES}
     assert {v.function for v in verdicts} == steps
@@ -87,10 +87,10 @@ def test_a_compensated_step_has_the_order_of_its_step() -> None:
     text = load("tumbling_body").text.replace('"step_taylor"', COMPENSATED)
     whole = library(parse_scene(text, "tumbling_body"))
     each = with_motion(whole, (one_sample("tumbling_body"),), F64)
-    found = {v.function: v.outcome for v in orders(whole, each)}
+    found = {v.function: v.outcome for v in orders_hold(whole, each)}
     assert {found[name] for name in COMPENSATED.replace('"', "").split(", ")} == {"holds"}
     spoilt = replace(whole, motions=tuple(map(_late, whole.motions)))
-    found = {v.function: v.outcome for v in orders(spoilt, each)}
+    found = {v.function: v.outcome for v in orders_hold(spoilt, each)}
     assert {name for name, outcome in found.items() if outcome == "FAILS"} >= {
         "step_rk4_compensated",
         "step_lie_compensated",
@@ -141,7 +141,7 @@ def test_only_what_is_in_closed_form_may_be_without_an_order() -> None:
     assert not any(closed(library_of("tumbling_body"), name) for name in steps)
     assert not closed(library_of("heavy_body"), "step_split")
     each = with_motion(sphere, samples(sphere.mechanism, F64, 1, 0).each, F64)
-    assert {v.outcome for v in orders(sphere, each)} == {"holds"}
+    assert {v.outcome for v in orders_hold(sphere, each)} == {"holds"}
 
 
 @pytest.mark.parametrize("step", MUTATED)

@@ -38,8 +38,12 @@ def comment(program: Program, figures: Sequence[Measurement], bodies: int) -> st
     else:
         lines += _labelled("Error:", _error(program, figures))
         pairs = " (on pairs of floats)" if program.arithmetic == "pairs" else ""
-        lines += [line for s in program.singular for line in _labelled("Singular:", f"{told(s)}.")]
-        lines += _labelled("Cost:", cost(program) + pairs + ".")
+        lines += [
+            line
+            for s in program.singular
+            for line in _labelled("Singular:", f"{singular_clause(s)}.")
+        ]
+        lines += _labelled("Cost:", cost_line(program) + pairs + ".")
         if program.assumptions:
             lines += _labelled("Rests on:", ", ".join(program.assumptions) + ".")
     text = "\n".join(f" * {in_comment(line)}".rstrip() for line in lines)
@@ -97,7 +101,7 @@ def holds(program: Program, step: str, bodies: int) -> str:
     return ", ".join(words)
 
 
-def told(singular: Singular) -> str:
+def singular_clause(singular: Singular) -> str:
     """Return where a function has no value and what comes back, as a clause."""
     at = singular.where if singular.where.startswith("where ") else f"at {singular.where}"
     return f"{at}, {', '.join(singular.outputs)} infinite, no number or beyond all measure"
@@ -137,7 +141,7 @@ def of_what(program: Program) -> str:
     return "of the largest component, by rounding alone"
 
 
-def cost(program: Program) -> str:
+def cost_line(program: Program) -> str:
     """Return the operations of a program in words."""
     counts = program.count
     order = ("add", "sub", "mul", "div", "neg", "sqrt", "sin", "cos")

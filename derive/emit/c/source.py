@@ -9,7 +9,7 @@ from derive.emit.c.comment import comment
 from derive.emit.c.example import example
 from derive.emit.c.scope import declared_in_c, require_free, require_no_symbol
 from derive.emit.c.signature import CNames, dense, dense_size, prototype
-from derive.emit.c.text import definition, pair_body, pair_functions, table
+from derive.emit.c.text import constant_array, function_body, pair_body, pair_functions
 from derive.emit.operators import literal
 from derive.emit.templates import TEMPLATES
 from derive.library.library import Library
@@ -112,7 +112,7 @@ def _source(library: Library, names: CNames, precision: Precision) -> str:
 def _definitions(library: Library, names: CNames, precision: Precision) -> list[dict[str, str]]:
     found = []
     for program in library.printed():
-        written = definition(program, names.scene, precision)
+        written = function_body(program, names.scene, precision)
         arguments = [q.name for q in (*program.inputs, *program.outputs)]
         require_free(names.scene, program.name, arguments, declared_in_c(written))
         lines = "\n".join(f"    {line}" for line in written)
@@ -187,7 +187,7 @@ def _dense_definition(program: Program, names: CNames, precision: Precision) -> 
     spots = [c * len(pattern.rows) + r for r, c in pattern.places()]
     passed = [q.name for q in (*program.inputs, *program.outputs[:-1])] + ["nonzeros"]
     lines = [
-        *table("places", spots),
+        *constant_array("places", spots),
         f"{precision.scalar} nonzeros[{len(spots)}];",
         "int entry;",
         f"{names.symbol(program.name, precision)}({', '.join(passed)});",

@@ -16,7 +16,7 @@ UNSIGNED_CHAR = 255
 OWN = {name: row.c for name, row in WRITTEN.items() if row.c}
 
 
-def definition(program: Program, scene: str, precision: Precision) -> list[str]:
+def function_body(program: Program, scene: str, precision: Precision) -> list[str]:
     """Return the lines between the braces of any function but set-up."""
     if program.arithmetic == "pairs":
         return pair_body(program, scene, precision)
@@ -123,13 +123,13 @@ def _declared(scalar: str, of: Language, line: Arrays | Integers | Row) -> list[
         every = (f"{name}{''.join(f'[{n}]' for n in sizes)}" for name, sizes in line.sizes)
         return [f"{scalar} {', '.join(every)};"]
     if isinstance(line, Integers):
-        return table(line.name, line.values)
+        return constant_array(line.name, line.values)
     fixed = "" if any(isinstance(v, str) for v in line.values) else "static "
     values = ", ".join(map(of.text, line.values))
     return [f"{fixed}const {scalar} {line.name}[{len(line.values)}] = {{{values}}};"]
 
 
-def table(name: str, values: Sequence[int]) -> list[str]:
+def constant_array(name: str, values: Sequence[int]) -> list[str]:
     """Return the lines of a constant table, in the smallest type that holds its numbers."""
     kind = "unsigned char" if max(values) <= UNSIGNED_CHAR else "unsigned short"
     lines, line = [f"static const {kind} {name}[{len(values)}] = {{"], ""

@@ -18,7 +18,7 @@ from derive.scene.formula import ZERO
 from derive.scene.machine import INERTIAL, Force
 from derive.scene.said import without_hidden
 from derive.scene.wanted import attitudes_only
-from derive.verify.cloud.balance import values
+from derive.verify.cloud.balance import at_instant
 from derive.verify.cloud.history import History
 from derive.verify.cloud.series import DIGITS
 
@@ -68,7 +68,10 @@ def _lines(machine: Scene) -> Iterator[Polyline]:
     size = _reach([p for line in bodies for p in line.points])
     yield from bodies
     for frame in machine.frames:
-        origin, R = values(history.origins[frame.name]), values(history.rotations[frame.name])
+        origin, R = (
+            at_instant(history.origins[frame.name]),
+            at_instant(history.rotations[frame.name]),
+        )
         kind = "ground" if frame.name == INERTIAL and shown else "frame"
         for k in range(3):
             end = origin + R[:, k] * (size / 2)
@@ -79,7 +82,10 @@ def _lines(machine: Scene) -> Iterator[Polyline]:
 
 
 def _forces(history: History, load: Force, size: Any) -> Iterator[Polyline]:
-    place, R = values(history.place(load.frame, load.at)), values(history.rotations[load.along])
+    place, R = (
+        at_instant(history.place(load.frame, load.at)),
+        at_instant(history.rotations[load.along]),
+    )
     for k, f in enumerate(without_hidden(load.force)):
         if f != ZERO:
             start = place - R[:, k] * (size / 3)
@@ -88,8 +94,8 @@ def _forces(history: History, load: Force, size: Any) -> Iterator[Polyline]:
 
 def _ellipses(history: History, name: str) -> Iterator[Polyline]:
     """Return the three principal ellipses of a body."""
-    centre = values(history.centre(name))
-    reached = [values(place) - centre for _, place in history.particles(name)[:-1:2]]
+    centre = at_instant(history.centre(name))
+    reached = [at_instant(place) - centre for _, place in history.particles(name)[:-1:2]]
     semi = [arm * mp.sqrt(mpf(5) / 3) for arm in reached]
     yield from _around(centre, semi, name)
 

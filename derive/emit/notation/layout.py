@@ -88,7 +88,7 @@ def _squared(factors: list[Layout]) -> list[Layout]:
 def applied(tensor: Layout, to: Layout) -> Layout:
     """Return a tensor before what it acts on; a multiple of the identity is grouped."""
     multiple = tensor.kind == "product" and tensor.parts[-1] == IDENTITY
-    return multiplied([group(tensor) if multiple else tensor, to])
+    return multiplied([in_parentheses(tensor) if multiple else tensor, to])
 
 
 def _closed(factors: list[Layout]) -> list[Layout]:
@@ -98,13 +98,13 @@ def _closed(factors: list[Layout]) -> list[Layout]:
 
 def _factor(factor: Layout, before: list[Layout], after: list[Layout]) -> Layout:
     if factor.kind in ("sum", "negative"):
-        return group(factor)
+        return in_parentheses(factor)
     if factor.kind == "total":
-        return group(factor) if after else factor
+        return in_parentheses(factor) if after else factor
     if factor.kind != "infix":
         return factor
     if after or not all(_scales(each, factor.text) for each in before):
-        return group(factor)
+        return in_parentheses(factor)
     return factor
 
 
@@ -128,14 +128,14 @@ def infix(sign: str, left: Layout, right: Layout) -> Layout:
 
 def operand(part: Layout) -> Layout:
     """Return ``part`` so that an index, a power or a product sign can stand beside it."""
-    return group(part) if _LEVELS.get(part.kind, _ATOM) < _ATOM else part
+    return in_parentheses(part) if _LEVELS.get(part.kind, _ATOM) < _ATOM else part
 
 
-def opened(part: Layout) -> Layout:
+def grouped_sum(part: Layout) -> Layout:
     """Return what a minus or the sign of a sum may stand before: a sum is grouped."""
-    return group(part) if part.kind == "sum" else part
+    return in_parentheses(part) if part.kind == "sum" else part
 
 
-def group(part: Layout) -> Layout:
+def in_parentheses(part: Layout) -> Layout:
     """Return ``part`` in parentheses."""
     return Layout("group", (part,))

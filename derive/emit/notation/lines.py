@@ -9,8 +9,8 @@ from collections.abc import Callable
 from itertools import pairwise
 
 from derive.emit.notation.glyph import GREEK, glyph
-from derive.emit.notation.layout import Layout, group, is_number, opened, operand
-from derive.emit.notation.mathml import SIGNS, TOUCHING, TRANSPOSED, between, row, total_sign
+from derive.emit.notation.layout import Layout, grouped_sum, in_parentheses, is_number, operand
+from derive.emit.notation.mathml import SIGNS, TOUCHING, TRANSPOSED, row, space_between, total_sign
 from derive.program.added import added
 
 WIDEST = 14.0
@@ -45,7 +45,7 @@ def width(layout: Layout) -> float:
         case "sum" | "infix" | "equal" | "negative":
             return added(parts) + _SIGN * max(len(parts) - 1, 1)
         case "product":
-            signs = sum(1 for pair in pairwise(layout.parts) if between(*pair) != TOUCHING)
+            signs = sum(1 for pair in pairwise(layout.parts) if space_between(*pair) != TOUCHING)
             return added(parts) + _SMALL * signs
     return added(parts) + _OF_WORD * len(layout.text) + _FENCES
 
@@ -73,13 +73,13 @@ def _sum(layout: Layout) -> list[str]:
     found = pieces(first)
     for term in rest:
         minus = term.kind == "negative"
-        bare = opened(term.parts[0]) if minus else term
+        bare = grouped_sum(term.parts[0]) if minus else term
         found += _led(_sign("−" if minus else "+"), bare)
     return found
 
 
 def _negative(layout: Layout) -> list[str]:
-    return _led('<mo form="prefix">−</mo>', opened(layout.parts[0]))
+    return _led('<mo form="prefix">−</mo>', grouped_sum(layout.parts[0]))
 
 
 def _infix(layout: Layout) -> list[str]:
@@ -91,7 +91,7 @@ def _product(layout: Layout) -> list[str]:
     """Return factors, as many in a piece as it holds."""
     found, room = pieces(layout.parts[0]), WIDEST - width(layout.parts[0])
     for before, factor in pairwise(layout.parts):
-        first, *rest = _led(between(before, factor), factor)
+        first, *rest = _led(space_between(before, factor), factor)
         room -= width(factor) + _SMALL
         if room < 0 or rest:
             found.append(first)
@@ -130,7 +130,7 @@ def _raised(layout: Layout) -> list[str]:
 def _fraction(layout: Layout) -> list[str]:
     """Return a fraction that is too wide on one line: above / below."""
     above, below = (operand(part) for part in layout.parts)
-    one = below if is_number(below) or below.kind != "product" else group(below)
+    one = below if is_number(below) or below.kind != "product" else in_parentheses(below)
     return [*pieces(above), *_led(_sign("/"), one)]
 
 
@@ -143,7 +143,7 @@ def _call(layout: Layout) -> list[str]:
 
 
 def _total(layout: Layout) -> list[str]:
-    return _led(total_sign(layout), opened(layout.parts[0]))
+    return _led(total_sign(layout), grouped_sum(layout.parts[0]))
 
 
 _CUT: dict[str, Callable[[Layout], list[str]]] = {

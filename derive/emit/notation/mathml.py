@@ -8,7 +8,7 @@ from html import escape
 from itertools import pairwise
 
 from derive.emit.notation.glyph import GREEK, Glyph, glyph
-from derive.emit.notation.layout import Layout, opened
+from derive.emit.notation.layout import Layout, grouped_sum
 from derive.scene.functions import FUNCTIONS
 
 _XML = "http://www.w3.org/1998/Math/MathML"
@@ -100,7 +100,7 @@ def _power(layout: Layout) -> str:
 
 
 def _total(layout: Layout) -> str:
-    return f"<mrow>{total_sign(layout)}{row(opened(layout.parts[0]))}</mrow>"
+    return f"<mrow>{total_sign(layout)}{row(grouped_sum(layout.parts[0]))}</mrow>"
 
 
 def total_sign(layout: Layout) -> str:
@@ -113,11 +113,11 @@ def _product(layout: Layout) -> str:
     """Return factors side by side, apart where they would read as one."""
     text = row(layout.parts[0])
     for before, factor in pairwise(layout.parts):
-        text += between(before, factor) + row(factor)
+        text += space_between(before, factor) + row(factor)
     return f"<mrow>{text}</mrow>"
 
 
-def between(before: Layout, after: Layout) -> str:
+def space_between(before: Layout, after: Layout) -> str:
     """Return what stands between two factors: a dot beside a word, a thin space beside sin."""
     if _base(after).kind == "call" and _base(after).text != "sqrt":
         return TOUCHING + THIN
@@ -159,7 +159,7 @@ def _sum(layout: Layout) -> str:
     text = row(first)
     for term in rest:
         minus = term.kind == "negative"
-        bare = opened(term.parts[0]) if minus else term
+        bare = grouped_sum(term.parts[0]) if minus else term
         text += f"<mo>{'−' if minus else '+'}</mo>{row(bare)}"
     return f"<mrow>{text}</mrow>"
 
@@ -209,7 +209,7 @@ def _index(index: str) -> str:
 _FORMS: dict[str, Callable[[Layout], str]] = {
     "name": lambda x: _name(glyph(x.text), x.style),
     "number": lambda x: f"<mn>{x.number}</mn>",
-    "negative": lambda x: f"<mrow><mo>−</mo>{row(opened(x.parts[0]))}</mrow>",
+    "negative": lambda x: f"<mrow><mo>−</mo>{row(grouped_sum(x.parts[0]))}</mrow>",
     "sum": _sum,
     "product": _product,
     "infix": _joined,

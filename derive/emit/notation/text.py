@@ -1,6 +1,6 @@
 """A layout as plain ASCII text, for comments and terminals."""
 
-from derive.emit.notation.layout import Layout, group, is_number, opened, operand
+from derive.emit.notation.layout import Layout, grouped_sum, in_parentheses, is_number, operand
 
 _TOTALS = {"body": "sum"}  # every other sum says what it runs over
 
@@ -14,7 +14,7 @@ def plain(layout: Layout) -> str:
         case "sum":
             return _sum(parts)
         case "negative":
-            return f"-{plain(opened(parts[0]))}"
+            return f"-{plain(grouped_sum(parts[0]))}"
         case "product":
             return _product(parts)
         case "infix":
@@ -49,7 +49,7 @@ def _marked(layout: Layout) -> str:
 
 def _atom(part: Layout) -> Layout:
     """In one line a fraction needs parentheses beside other signs."""
-    return group(part) if part.kind == "fraction" else part
+    return in_parentheses(part) if part.kind == "fraction" else part
 
 
 def _sum(terms: tuple[Layout, ...]) -> str:

@@ -7,7 +7,7 @@ from html import escape
 from markupsafe import Markup
 
 from derive.emit.c.signature import CNames, prototype
-from derive.emit.c.text import definition
+from derive.emit.c.text import function_body
 from derive.program.precision import F64
 from derive.program.program import Program
 
@@ -19,7 +19,7 @@ def listing(program: Program, scene: str, links: Mapping[str, str]) -> Markup:
 
     links : from an output's component to the place of its equation on the page
     """
-    lines = definition(program, scene, F64)
+    lines = function_body(program, scene, F64)
     components = [c for q in program.outputs for c in q.components] if links else []
     first_store = len(lines) - len(components)
     shown = [escape(prototype(program, CNames(scene), F64)), "{"]

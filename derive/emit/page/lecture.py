@@ -10,7 +10,7 @@ from derive.emit.notation import equation_mathml, mathml, sympy_equation_mathml
 from derive.emit.page.prose import prose
 from derive.emit.templates import TEMPLATES
 from derive.lecture.chapters import CHAPTERS, LECTURE, Chapter
-from derive.lecture.chapters.letters import TABLE, Letter
+from derive.lecture.chapters.letters import LETTERS, Letter
 from derive.lecture.step import Step
 from derive.lecture.vectors import components
 
@@ -65,7 +65,7 @@ def lecture_page() -> str:
         assumed=[s for s in LECTURE.steps if s.kind == "assume"],
         ends=[(LECTURE[name], LECTURE.assumptions(name)) for name in ENDS],
         numbers={s.name: n for n, s in enumerate(LECTURE.steps, 1)},
-        letters=[_letter_row(letter) for letter in TABLE],
+        letters=[_letter_row(letter) for letter in LETTERS],
         prose=prose,
         introduction=_introduction,
         equation=equation_mathml,

@@ -8,7 +8,7 @@ from derive.program.program import Sparsity
 _CELL, _LETTER, _GAP = 16, 6.2, 6
 
 
-def pattern(sparsity: Sparsity, says: str) -> Markup:
+def pattern_drawing(sparsity: Sparsity, says: str) -> Markup:
     """Return an SVG of the places that are not zero, rows and columns named."""
     rows, columns = sparsity.rows, sparsity.columns
     left, top = (_LETTER * max(map(len, names)) + _GAP for names in (rows, columns))

@@ -5,12 +5,12 @@ from functools import partial
 
 from markupsafe import Markup
 
-from derive.emit.c.comment import SETUP_ERROR, cost, of_what
+from derive.emit.c.comment import SETUP_ERROR, cost_line, of_what
 from derive.emit.c.source import first_line
 from derive.emit.notation import name_mathml
 from derive.emit.page.code import listing
 from derive.emit.page.equation import letter, notes, passages, taken_names
-from derive.emit.page.pattern import pattern
+from derive.emit.page.pattern import pattern_drawing
 from derive.emit.page.prose import prose
 from derive.emit.templates import TEMPLATES
 from derive.lecture.chapters import LECTURE
@@ -37,7 +37,7 @@ def scene_page(library: Library, figures: Sequence[Measurement]) -> str:
         setup_error=SETUP_ERROR,
         symbol=partial(_symbol, library),
         range_of=_range,
-        cost=cost,
+        cost=cost_line,
         of_what=of_what,
         sections=_sections(library, figures),
         files=_files(scene.name),
@@ -74,7 +74,7 @@ def _section(library: Library, program: Program, owner: str) -> dict[str, object
         "equations_of": owner,
         "passages": equations if owner == program.name else (),
         "code": listing(program, library.scene.name, links),
-        "pattern": pattern(sparsity, says) if sparsity else "",
+        "pattern": pattern_drawing(sparsity, says) if sparsity else "",
         "notes": notes(library.mechanism, _base(program)) if posed else [],
     }
 

@@ -50,7 +50,7 @@ n, w = vector("n"), vector("w")
 # The wheels of a gyrostat.
 h, h_dot, a, u, d = vector("h"), vector("h_dot"), vector("a"), scalar("u"), vector("d")
 
-TABLE = (
+LETTERS = (
     Letter(dm, "mass of particle i", "kg"),
     Letter(r, "position of particle i from a point fixed in N", "m"),
     Letter(v, "velocity of particle i seen from N", "m/s"),

@@ -10,7 +10,7 @@ from derive.lower.arrange.pivots import MatrixEntry, Pivots
 
 
 @dataclass(frozen=True)
-class Block:
+class LinearSystem:
     """``matrix`` times the unknowns is ``right``, one row a balance."""
 
     matrix: Matrix
@@ -34,7 +34,7 @@ class Solution:
         """Return a symbol for a value, unless it is plain."""
         if value.is_Symbol or value.is_Number or (-value).is_Symbol:
             return value
-        symbol = fresh(name, {definition.symbol for definition in self.definitions})
+        symbol = unused_symbol(name, {definition.symbol for definition in self.definitions})
         self.definitions.append(Definition(kind, symbol, value, family))
         self.pivots.define(symbol, value)
         if value.free_symbols <= self.fixed:
@@ -54,7 +54,7 @@ class Solution:
         return all(e.free_symbols <= self.fixed for e in entries)
 
 
-def fresh(name: str, taken: Container[Symbol]) -> Symbol:
+def unused_symbol(name: str, taken: Container[Symbol]) -> Symbol:
     """Return a symbol that is not taken; ``name`` is no scene's."""
     symbol = Symbol(name, real=True)
     while symbol in taken:
@@ -62,12 +62,12 @@ def fresh(name: str, taken: Container[Symbol]) -> Symbol:
     return symbol
 
 
-Solve = Callable[[Solution, Block], None]
-BlockRule = Callable[[Solution, Block, Solve], bool]
+Solve = Callable[[Solution, LinearSystem], None]
+BlockRule = Callable[[Solution, LinearSystem, Solve], bool]
 """A way to solve some blocks, which tells whether this was one; what is left it hands on."""
 
 
-def by_determinants(found: Solution, block: Block) -> None:
+def by_determinants(found: Solution, block: LinearSystem) -> None:
     """Solve a small block by Cramer's rule."""
     right = [found.named("let", "b", b) for b in block.right]
     determinant = found.named("let", "det", block.matrix.det(method="berkowitz"))
@@ -78,7 +78,9 @@ def by_determinants(found: Solution, block: Block) -> None:
         found.solved(u, inverse * top)
 
 
-def by_pivots(found: Solution, block: Block, taken: Sequence[MatrixEntry], rest: Solve) -> None:
+def by_pivots(
+    found: Solution, block: LinearSystem, taken: Sequence[MatrixEntry], rest: Solve
+) -> None:
     """Eliminate by pivots at (row, column), solve what is left, and go back."""
     A, b = block.matrix.as_mutable(), list(block.right)
     rows, columns = [r for r, _ in taken], list(range(A.rows))
@@ -96,7 +98,7 @@ def by_pivots(found: Solution, block: Block, taken: Sequence[MatrixEntry], rest:
             b[n] = found.named("let", "b", b[n] - factor * b[r])
     left = A.extract(rows, columns), Matrix([b[n] for n in rows])
     if columns:
-        rest(found, Block(*left, [block.unknowns[c] for c in columns]))
+        rest(found, LinearSystem(*left, [block.unknowns[c] for c in columns]))
     known = list(columns)
     for r, c in reversed(taken):
         other = sum((A[r, k] * block.unknowns[k] for k in known), Integer(0))

@@ -6,7 +6,7 @@ from itertools import combinations
 
 from sympy import Expr, Integer, Matrix, Symbol
 
-from derive.lower.arrange.block import fresh
+from derive.lower.arrange.block import unused_symbol
 from derive.lower.arrange.like_terms import like_terms
 from derive.lower.arrange.tidy import in_what_is_given
 from derive.mechanics.problem import Problem, substituted
@@ -43,7 +43,7 @@ class NamedColumns:
     def _name(self, name: str, value: Expr, family: str) -> Expr:
         if value.is_Symbol or value.is_Number or (-value).is_Symbol:
             return value
-        symbol = fresh(name, self.families)
+        symbol = unused_symbol(name, self.families)
         self.families[symbol] = family
         self.named[symbol] = value
         return symbol

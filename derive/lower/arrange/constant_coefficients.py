@@ -6,11 +6,11 @@ that rests on parameters only; so what is left holds fewer unknowns and no other
 
 from sympy import Matrix
 
-from derive.lower.arrange.block import Block, Solution, Solve, by_pivots
+from derive.lower.arrange.block import LinearSystem, Solution, Solve, by_pivots
 from derive.lower.arrange.pivots import MatrixEntry
 
 
-def constant_coefficients(found: Solution, block: Block, rest: Solve) -> bool:
+def constant_coefficients(found: Solution, block: LinearSystem, rest: Solve) -> bool:
     """Eliminate by coefficients that rest on parameters only, wherever one stands in a balance."""
     taken = _pivots(found, block.matrix)
     if not taken or found.pivots.vanish(block.matrix, taken):

@@ -12,7 +12,7 @@ from itertools import permutations
 from sympy import Add, Expr, Function, Integer, Matrix, zeros
 
 from derive.lower.apart import apart
-from derive.lower.arrange.block import Block, Solution, Solve
+from derive.lower.arrange.block import LinearSystem, Solution, Solve
 
 COMPONENT = re.compile("(.*)_([xyz])(_[a-z]+)?")
 SMALL = 3  # rows that cofactors are worth it for
@@ -21,7 +21,7 @@ power_of_two = Function("power_of_two")
 Namer = Callable[[str, str, Expr], Expr]
 
 
-def constant_tensor(found: Solution, block: Block, rest: Solve) -> bool:  # noqa: ARG001
+def constant_tensor(found: Solution, block: LinearSystem, rest: Solve) -> bool:  # noqa: ARG001
     """Solve a block of few balances whose coefficients rest on parameters only."""
     matrix = block.matrix
     if matrix.rows > SMALL or not found.is_fixed(matrix):

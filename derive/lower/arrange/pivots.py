@@ -57,7 +57,7 @@ class Pivots:
 
         Raises SceneError where none is found, naming the divisor and where it vanishes.
         """
-        found = sweep_at(self.ranges, self.ranges.points(), self._below(matrix))
+        found = sweep_at(self.ranges, self.ranges.trials(), self._below(matrix))
         A, taken = matrices(found, matrix.tolist()), list[MatrixEntry]()
         rows, columns = list(range(matrix.rows)), list(range(matrix.rows))
         while len(rows) > left:

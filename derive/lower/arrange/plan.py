@@ -27,13 +27,13 @@ from derive.lower.arrange.solve import solve
 from derive.lower.arrange.spherical_part import spherical_part
 from derive.lower.arrange.tidy import (
     MANY_TERMS,
+    shortened,
     sums_in_common,
-    terms,
+    term_count,
     tidied,
     with_like_terms,
     without_constants,
     without_squares,
-    written_out,
 )
 from derive.lower.arrange.turns import turns_one_by_one
 from derive.mechanics.mechanism import Mechanism
@@ -98,7 +98,7 @@ def _ruled(mechanism: Mechanism, problem: Problem) -> Way:
 def _written_out(mechanism: Mechanism, problem: Problem) -> Way:
     """Return a problem without named quantities wherever its rows stay short."""
     constant = constants(problem, mechanism.vocabulary)
-    return Way(written_out(problem, constant), OF_BLOCKS)
+    return Way(shortened(problem, constant), OF_BLOCKS)
 
 
 def _arranged(mechanism: Mechanism, way: Way) -> Arrangement:
@@ -141,7 +141,7 @@ def with_cuts(
     """
     sizes: dict[Symbol, int] = {}
     for definition in definitions:
-        size = terms(definition.value, sizes)
+        size = term_count(definition.value, sizes)
         kind = "cut" if size > most or definition.symbol in done else definition.kind
         sizes[definition.symbol] = 1 if kind == "cut" else size
         yield replace(definition, kind=kind)

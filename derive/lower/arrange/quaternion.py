@@ -7,7 +7,7 @@ shows what is turned, and its rate shows omega / 2. Lecture steps "rotation_of_v
 
 from sympy import Integer, Matrix, zeros
 
-from derive.lecture.stated import stated
+from derive.lecture.stated import by_law
 from derive.lower.arrange.column import NamedColumns
 
 LONGEST = 150  # operations of a column that is multiplied out
@@ -21,7 +21,7 @@ def turned_by_quaternion(column: Matrix, columns: NamedColumns) -> Matrix | None
             continue
         v = _with_none_turned(column, q)
         for turned in (w, -w):
-            made = stated("rotation_of_vector", {"q_w": turned, "q_v": axis, "v": v})
+            made = by_law("rotation_of_vector", {"q_w": turned, "q_v": axis, "v": v})
             if (made - column).expand() == zeros(3, 1):
                 v = columns.column("v", v)
                 t = columns.column("t", columns.column("d", 2 * axis).cross(v))
@@ -41,7 +41,7 @@ def quaternion_rate(parts: Matrix, columns: NamedColumns) -> Matrix | None:
         w, axis = q[0], Matrix(q[1:])
         half = Matrix(_with_none_turned(parts, q)[1:])
         law = {"q_w": w, "q_v": axis, "omega": 2 * half}
-        scalar, vector = (stated(f"quaternion_rate_{part}", law) for part in ("scalar", "vector"))
+        scalar, vector = (by_law(f"quaternion_rate_{part}", law) for part in ("scalar", "vector"))
         if (Matrix([scalar, *vector]) - parts).expand() == zeros(4, 1):
             half = columns.column("half", half)
             return Matrix([-axis.dot(half), *(w * half + axis.cross(half))])

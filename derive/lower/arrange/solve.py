@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from sympy import Expr, Integer, Matrix, Symbol
 
-from derive.lower.arrange.block import Block, BlockRule, Solution, by_determinants, by_pivots
+from derive.lower.arrange.block import BlockRule, LinearSystem, Solution, by_determinants, by_pivots
 from derive.lower.arrange.matching import blocks
 from derive.mechanics.sheet import Split
 
@@ -20,7 +20,7 @@ def solve(
     rules : tried on each block before what serves every block
     """
 
-    def one(found: Solution, block: Block) -> None:
+    def one(found: Solution, block: LinearSystem) -> None:
         if not any(rule(found, block, one) for rule in rules):
             _solve_block(found, block)
 
@@ -29,7 +29,7 @@ def solve(
         block = [unknowns[k] for k in own]
         matrix = Matrix([[rows[n][1].get(u, Integer(0)) for u in block] for n in equations])
         right = Matrix([_right(rows[n], block) for n in equations])
-        one(found, Block(matrix, right, block))
+        one(found, LinearSystem(matrix, right, block))
 
 
 def _right(part: Split, block: Sequence[Symbol]) -> Expr:
@@ -37,7 +37,7 @@ def _right(part: Split, block: Sequence[Symbol]) -> Expr:
     return -rest - sum((c * u for u, c in slopes.items() if u not in block), Integer(0))
 
 
-def _solve_block(found: Solution, block: Block) -> None:
+def _solve_block(found: Solution, block: LinearSystem) -> None:
     matrix = block.matrix
     if matrix.rows == 1:
         found.solved(block.unknowns[0], block.right[0] / matrix[0, 0])

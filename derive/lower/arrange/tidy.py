@@ -9,7 +9,7 @@ from math import prod
 from sympy import Add, Expr, Integer, Mul, Pow, Symbol, factor_terms, sin
 
 from derive.lecture.turning import reduced
-from derive.lower.arrange.block import fresh
+from derive.lower.arrange.block import unused_symbol
 from derive.lower.arrange.like_terms import gathered
 from derive.mechanics.problem import Problem, substituted
 
@@ -22,7 +22,7 @@ def without_constants(problem: Problem, parameters: AbstractSet[Symbol]) -> Prob
     known: dict[Symbol, Expr] = {}
     for symbol, value in problem.definitions.items():
         made = value.xreplace(known)
-        if made.free_symbols <= parameters and terms(made, {}) <= MANY_TERMS:
+        if made.free_symbols <= parameters and term_count(made, {}) <= MANY_TERMS:
             known[symbol] = min(made, factor_terms(made), key=lambda form: form.count_ops())
     return substituted(problem, known)
 
@@ -55,7 +55,7 @@ def with_like_terms(e: Expr, constant: AbstractSet[Symbol]) -> Expr:
     return min(e, gathered(e, constant), key=lambda form: _operations(form, constant))
 
 
-def written_out(problem: Problem, constant: AbstractSet[Symbol]) -> Problem:
+def shortened(problem: Problem, constant: AbstractSet[Symbol]) -> Problem:
     """Return the problem with rows in what is given, sin^2 = 1 - cos^2, like terms gathered."""
 
     def short(e: Expr) -> Expr:
@@ -101,16 +101,16 @@ def sums_in_common(answers: Iterable[Expr], constant: AbstractSet[Symbol]) -> di
     uses = Counter(f for own in each for f in own if not f.free_symbols <= constant)
     named: dict[Symbol, Expr] = {}
     for e in sorted((e for e, n in uses.items() if n > 1), key=lambda e: (e.count_ops(), str(e))):
-        named[fresh("sum", named)] = e.xreplace({value: s for s, value in named.items()})
+        named[unused_symbol("sum", named)] = e.xreplace({value: s for s, value in named.items()})
     return named
 
 
-def terms(e: Expr, sizes: Mapping[Symbol, int]) -> int:
+def term_count(e: Expr, sizes: Mapping[Symbol, int]) -> int:
     """Return how many terms an expression has when it is multiplied out."""
     if isinstance(e, Add):
-        return sum(terms(part, sizes) for part in e.args)
+        return sum(term_count(part, sizes) for part in e.args)
     if isinstance(e, Mul):
-        return int(prod(terms(part, sizes) for part in e.args))
+        return int(prod(term_count(part, sizes) for part in e.args))
     if isinstance(e, Pow) and e.exp.is_Integer and e.exp > 0:
-        return int(terms(e.base, sizes) ** min(int(e.exp), 4))
+        return int(term_count(e.base, sizes) ** min(int(e.exp), 4))
     return sizes.get(e, 1)

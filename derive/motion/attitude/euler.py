@@ -10,7 +10,7 @@ paper, no angles are added and no quarter turn is taken away afterwards, for tha
 from collections.abc import Sequence
 from fractions import Fraction
 
-from derive.motion.attitude.lengths import FAR, either_way, largest, squares
+from derive.motion.attitude.lengths import FAR, either_way, largest_size, squares
 from derive.motion.attitude.quaternion import product
 from derive.program.operations import (
     absolute,
@@ -72,7 +72,7 @@ def _proper(i: int, j: int, q: Sequence[Number]) -> list[Number]:
     last = q[1 + 3 - i - j]
     near = [FAR * q[0], FAR * q[1 + i]]
     far = [q[1 + j], last if sign_of(i, j) > 0 else -last]
-    size = largest(far)
+    size = largest_size(far)
     scale = power_of_two(select(less(0, size), size, 1))
     far = [c / scale for c in far]
     first, third = _first_and_third(near, far)

@@ -17,7 +17,7 @@ FAR = Fraction(2**60)
 power of two multiplies by up to 2^52, and both float and double must bear it."""
 
 
-def largest(values: Sequence[Number]) -> Number:
+def largest_size(values: Sequence[Number]) -> Number:
     """Return the largest magnitude among ``values``."""
     first, *rest = map(absolute, values)
     for size in rest:
@@ -35,7 +35,7 @@ def size_of(values: Sequence[Number]) -> Number:
 
     1 if all are zero, so that it can be divided by.
     """
-    m = largest(values)
+    m = largest_size(values)
     return power_of_two(select(less(1, m), m * (1 / FAR), select(less(0, m), m, 1)))
 
 
@@ -58,7 +58,7 @@ def hypotenuse(x: Number, y: Number) -> Number:
 
 def length_of(values: Sequence[Number]) -> Number:
     """Return the length of a vector of any scale that is not zero, differentiable on its axes."""
-    size = largest(values)
+    size = largest_size(values)
     return size * sqrt(squares([v / size for v in values]))
 
 

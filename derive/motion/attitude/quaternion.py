@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from derive.motion.attitude.lengths import FAR, largest, length_and_rest, size_of, squares
+from derive.motion.attitude.lengths import FAR, largest_size, length_and_rest, size_of, squares
 from derive.program.operations import absolute, atan2, cos, less, power_of_two, select, sin, sqrt
 from derive.program.tape import Number
 
@@ -47,7 +47,7 @@ def exponential(v: Sequence[Number]) -> list[Number]:
     the vector part within 6 u of itself: |v| is carried with what its rounding left. Beyond,
     |v| is rounded once and the quaternion is still of unit length. 69 flops, a sine, a cosine.
     """
-    m = largest(v)
+    m = largest_size(v)
     tiny = less(m, TINY)
     scale = power_of_two(select(less(FAR, m), m * (1 / FAR), 1))
     y = [c / scale for c in v]
@@ -69,10 +69,10 @@ def logarithm(q: Sequence[Number]) -> list[Number]:
     largest float. Zero for the zero quaternion, and for (w, 0, 0, 0) of either sign.
     The angle is 2 atan2(|(x, y, z)|, |w|): an arc cosine loses half of the digits near identity.
     """
-    far = less(FAR, largest(q))
+    far = less(FAR, largest_size(q))
     factor = select(far, 1 / FAR, FAR)
     w, *u = (c * factor for c in q)
-    m = largest(u)
+    m = largest_size(u)
     scale = size_of(u) * select(less(1, m), FAR, 1)
     y = [c / scale for c in u]
     length = select(less(0, m), sqrt(squares(y)), 1)
@@ -90,7 +90,7 @@ def normalise(q: Sequence[Number]) -> list[Number]:
     """
     scale = size_of(q)
     w, *u = q
-    w = select(less(0, largest(q)), w, 1)
+    w = select(less(0, largest_size(q)), w, 1)
     y = [c / scale for c in (w, *u)]
     length = sqrt(squares(y))
     return [c / length for c in y]

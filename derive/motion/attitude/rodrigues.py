@@ -6,7 +6,7 @@ there is no singular attitude. Source: Schaub and Junkins, J. Astronaut. Sci. 44
 
 from collections.abc import Sequence
 
-from derive.motion.attitude.lengths import FAR, largest, squares
+from derive.motion.attitude.lengths import FAR, largest_size, squares
 from derive.program.operations import absolute, less, power_of_two, select
 from derive.program.tape import Number
 
@@ -25,7 +25,7 @@ def to_quaternion(mrp: Sequence[Number]) -> list[Number]:
     With p a power of two near the largest parameter if that is large, else 1, and s = mrp / p:
     w = (1/p^2 - s.s) / (1/p^2 + s.s), the vector part is 2 s / p over the same.
     """
-    m = largest(mrp)
+    m = largest_size(mrp)
     inverse = 1 / power_of_two(select(less(FAR, m), m * (1 / FAR), 1))
     s = [c * inverse for c in mrp]
     one, ss = inverse * inverse, squares(s)

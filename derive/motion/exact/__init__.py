@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from derive.motion.attitude.lengths import largest, length_of, squares
+from derive.motion.attitude.lengths import largest_size, length_of, squares
 from derive.motion.attitude.quaternion import product
-from derive.motion.exact.diagonal import Three, principal_axes
+from derive.motion.exact.diagonal import Three, diagonalised
 from derive.motion.exact.inertia import Inertia
 from derive.motion.exact.tumbling import tumble
 from derive.program.operations import cos, less, power_of_two, select, sin, sqrt
@@ -26,15 +26,15 @@ def flow_exact(
     Rates are worked out over a power of two near the largest, and a body at rest as one that spins
     for no time: nothing overflows, and nothing is divided by zero.
     """
-    turn, after, size = turned(body, omega, time)
+    turn, after, size = turn_and_rates(body, omega, time)
     return product(attitude, turn), [w * size for w in after]
 
 
-def turned(
+def turn_and_rates(
     body: Inertia, omega: Sequence[Number], time: Number
 ) -> tuple[list[Number], list[Number], Number]:
     """Return the turn (4,) from body axes to those after ``time``; rates (3,) then; their unit."""
-    size = power_of_two(largest(omega))
+    size = power_of_two(largest_size(omega))
     moves = less(0, size)
     scaled = [w / select(moves, size, 1) for w in omega]
     scaled[0] = select(moves, scaled[0], 1)
@@ -42,7 +42,9 @@ def turned(
     return turn, after, size
 
 
-def principal(body: Inertia) -> tuple[Three, tuple[list[Number], list[Number], list[Number]]]:
+def principal_ratios(
+    body: Inertia,
+) -> tuple[Three, tuple[list[Number], list[Number], list[Number]]]:
     """Return three moments over the second, which lies between the others, and their axes.
 
     The axes are right-handed unit vectors along body axes, as rows. Slopes of the motion rest on
@@ -55,7 +57,7 @@ def principal(body: Inertia) -> tuple[Three, tuple[list[Number], list[Number], l
         i, j, k = body.places
         ratio = body.tensor[k] / body.tensor[i]
         return (number(1), number(1), ratio), (axes[i], axes[j], axes[k])
-    found = principal_axes(body)
+    found = diagonalised(body)
     one, two, three = found.moments
     return (one / two, number(1), three / two), found.axes
 
@@ -67,7 +69,7 @@ def _along_body(body: Inertia, omega: Three, time: Number) -> TurnAndMomentum:
     if body.kind == "axisymmetric":
         i, _, k = body.places
         return precess((body.tensor[i], body.tensor[k]), k, omega, time)
-    found = principal_axes(body)
+    found = diagonalised(body)
     rows = [_named(k, row) for k, row in enumerate(found.axes, start=1)]
     a, b, c = (_dot(row, omega) for row in rows)
     (scalar, *vector), after = _along_principal(found.moments, (a, b, c), time)

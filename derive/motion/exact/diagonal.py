@@ -37,7 +37,7 @@ class Diagonal:
     size: Number
 
 
-def principal_axes(body: Inertia) -> Diagonal:
+def diagonalised(body: Inertia) -> Diagonal:
     """Return the principal axes of a body, in set-up.
 
     Source: cyclic rotations of Jacobi, Crelle 30 (1846) 51, in the form of Golub and Van Loan 8.5.
@@ -53,7 +53,7 @@ def principal_axes(body: Inertia) -> Diagonal:
     return Diagonal((moments[0], moments[1], moments[2]), (rows[0], rows[1], rows[2]), size)
 
 
-def root(x: Number) -> Number:
+def square_root(x: Number) -> Number:
     """Return the square root, to ``BITS`` bits if ``x`` is an exact number."""
     if x.exact is None:
         return sqrt(x)
@@ -113,11 +113,11 @@ def _turn(p: int, q: int, r: int, values: Sequence[Number]) -> list[Number]:
     new = list(values)
     pq, rp, rq = (_place(p, q), _place(r, p), _place(r, q))
     across = values[q] - values[p]
-    size = root(across * across + 4 * values[pq] * values[pq])
+    size = square_root(across * across + 4 * values[pq] * values[pq])
     divisor = select(less(across, 0), across - size, across + size)
     vanishes = quotient(number(1), absolute(divisor), 0)
     tangent = select(less(0, divisor), vanishes, -vanishes) * (2 * values[pq])
-    cosine = 1 / root(1 + tangent * tangent)
+    cosine = 1 / square_root(1 + tangent * tangent)
     sine = tangent * cosine
     new[p] = values[p] - tangent * values[pq]
     new[q] = values[q] + tangent * values[pq]

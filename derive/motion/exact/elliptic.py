@@ -55,7 +55,7 @@ class JacobiFunctions:
     first: tuple[Number, Number, Number, Number]
 
 
-def functions(means: Ladder, sine: Number, cosine: Number) -> JacobiFunctions:
+def jacobi_functions(means: Ladder, sine: Number, cosine: Number) -> JacobiFunctions:
     """Return the elliptic functions of u from sine and cosine of M u.
 
     cs = y / sine climbs from cot by factors dn: only y changes, and nothing divides by zero.

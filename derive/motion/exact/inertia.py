@@ -46,11 +46,11 @@ def as_symmetric(tensor: SixEntries) -> Inertia:
     return Inertia(tensor, "principal", None)
 
 
-def in_order(moments: Sequence[Number]) -> tuple[Number, Number, Number]:
+def ascending(moments: Sequence[Number]) -> tuple[Number, Number, Number]:
     """Return three moments, the smallest first.
 
     >>> from derive.program.tape import number
-    >>> [int(m.exact) for m in in_order([number(3), number(1), number(2)])]
+    >>> [int(m.exact) for m in ascending([number(3), number(1), number(2)])]
     [1, 2, 3]
     """
     x, y, z = moments

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from derive.motion.attitude.lengths import hypotenuse, length_of
-from derive.motion.exact.diagonal import Three, quotient, root
+from derive.motion.exact.diagonal import Three, quotient, square_root
 from derive.program.operations import absolute, at_most, both, less, select, sqrt
 from derive.program.tape import Number, named, number
 
@@ -47,9 +47,13 @@ def role_of_a(moments: Three) -> tuple[EndAxis, EndAxis]:
             named(f"moment_{k}", i / i2, f"principal moment {k} over moment 2"),
             named(f"inverse_moment_{k}", i2 / i, f"1 / moment_{k}"),
             named(f"part_{k}", part, f"share of m_2^2 that is added to m_{4 - k}^2"),
-            named(f"root_{k}", root(part), f"root of part_{k}"),
-            named(f"inverse_root_{k}", quotient(number(1), root(part), 0), f"1 / root_{k}"),
-            named(f"speed_{k}", root(part) * speed, f"rate of the phase if m goes round axis {k}"),
+            named(f"root_{k}", square_root(part), f"root of part_{k}"),
+            named(f"inverse_root_{k}", quotient(number(1), square_root(part), 0), f"1 / root_{k}"),
+            named(
+                f"speed_{k}",
+                square_root(part) * speed,
+                f"rate of the phase if m goes round axis {k}",
+            ),
         )
         for k, i, part in ((1, i1, parts[0]), (3, i3, parts[1]))
     )

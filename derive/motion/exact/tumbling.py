@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from derive.motion.attitude.lengths import largest
+from derive.motion.attitude.lengths import largest_size
 from derive.motion.exact.diagonal import Three
 from derive.motion.exact.elliptic import (
     HALF,
@@ -18,7 +18,7 @@ from derive.motion.exact.elliptic import (
     JacobiFunctions,
     Ladder,
     angle,
-    functions,
+    jacobi_functions,
     ladder,
 )
 from derive.motion.exact.orbit import Orbit, orbit, role_of_a
@@ -39,7 +39,7 @@ def tumble(moments: Three, omega: Three, time: Number) -> tuple[list[Number], li
     moving, resting = _until_over(path, time)
     means = ladder(path.complement)
     phase = means.mean * path.rate * moving
-    at = functions(means, sin(phase), cos(phase))
+    at = jacobi_functions(means, sin(phase), cos(phase))
     after = _added(path, at)
     third = _third_kind(path, means, at)
     direction = _product(third.direction, _added_angle(path, at, after))
@@ -66,7 +66,7 @@ def _added(path: Orbit, at: JacobiFunctions) -> Three:
     """
     s, n, d = at.sn, at.cn, at.dn
     t = s * (path.m[0] / path.divisor)
-    size = power_of_two(largest((n, t)))
+    size = power_of_two(largest_size((n, t)))
     (a, c, n, t, d), b = (x / size for x in (path.m[0], path.m[2], n, t, d)), path.m[1]
     scale = 1 / (n * n + t * t)
     tilt = path.c.root * path.a.inverse_root * (path.c.root * b / path.divisor)

@@ -9,9 +9,9 @@ out once, by ``plan_dmv``; the sums carry their rounding remainder from call to 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from derive.motion.axes import BodyAxes, counted_from, lacking, principal, times
+from derive.motion.axes import BodyAxes, counted_from, lacking, principal_body_axes, times
 from derive.motion.compensated import closely_added, compensated_add, compensated_sums
-from derive.motion.exact.inertia import Inertia, in_order
+from derive.motion.exact.inertia import Inertia, ascending
 from derive.motion.moser_veselov.closed_steps import (
     about_any,
     about_momentum,
@@ -20,8 +20,8 @@ from derive.motion.moser_veselov.closed_steps import (
     plan_revolution,
     plan_sphere,
 )
-from derive.motion.moser_veselov.implicit import AXES, scaled, solved, turn_of
-from derive.motion.moser_veselov.preprocessing import D, S, coefficients, summed
+from derive.motion.moser_veselov.implicit import AXES, scaled, solved_step, turn_of
+from derive.motion.moser_veselov.preprocessing import D, S, pi_coefficients, summed
 from derive.motion.splitting.turns import quaternion_change
 from derive.program.operations import absolute, less, select, splitter
 from derive.program.pairs import two_product
@@ -110,12 +110,12 @@ def _back(tape: Tape, axes: BodyAxes) -> list[tuple[str, Number, str]]:
 
 
 def _axes(body: Inertia) -> BodyAxes:
-    return principal(body) if body.kind == "general" else counted_from(0, body)
+    return principal_body_axes(body) if body.kind == "general" else counted_from(0, body)
 
 
 def _modified(given: Sequence[Number], turned: Vector) -> tuple[Number, Number, list[Number]]:
     """Return s, d and the moments, in units of the largest; ``turned`` is omega times the step."""
-    c, b, a = in_order(given)
+    c, b, a = ascending(given)
     moments = [
         named(f"moment_{axis}", moment / a, "moment over the largest one")
         for axis, moment in zip(AXES, given, strict=True)
@@ -128,7 +128,7 @@ def _modified(given: Sequence[Number], turned: Vector) -> tuple[Number, Number, 
         half = named(f"energy_{axis}", moment * Fraction(1, 2), "half the moment over the largest")
         H = H + half * (w * w)
         delta = delta + spread * (w * w)
-    s_rows, d_rows = coefficients(S, tau, pi), coefficients(D, tau, pi)
+    s_rows, d_rows = pi_coefficients(S, tau, pi), pi_coefficients(D, tau, pi)
     for letter, rows in (("s", s_rows), ("d", d_rows)):
         for k, row in enumerate(rows):
             for i, value in enumerate(row):
@@ -160,7 +160,7 @@ def step_dmv(
         change = quaternion_change(attitude, less_than_one(plan["forward"], turn), turn)
         return compensated_sums(state, [*change, *faster], remainder)
     axes = _axes(body)
-    c, al = solved(tape, plan, axes.along(omega), axes.along(remainder[4:]))
+    c, al = solved_step(tape, plan, axes.along(omega), axes.along(remainder[4:]))
     missing, turn = turn_of(c)
     change = quaternion_change(attitude, missing, axes.back(turn))
     faster = scaled(plan, "gain", [c[j] * c[k] / al for _, j, k in CYCLIC])

@@ -28,7 +28,7 @@ def turn_of(c: Vector) -> tuple[Number, list[Number]]:
     return size * inverse / (1 + root), [x * inverse for x in c]
 
 
-def solved(
+def solved_step(
     tape: Tape, plan: Mapping[str, Number], omega: Vector, remainder: Vector
 ) -> tuple[list[Number], Number]:
     """Return c and al: for a known third component the rest is explicit, so one is sought.

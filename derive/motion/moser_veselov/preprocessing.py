@@ -60,7 +60,7 @@ D: tuple[PiRow, ...] = (
 )
 
 
-def coefficients(series: Sequence[PiRow], tau: Number, pi: Number) -> list[list[Number]]:
+def pi_coefficients(series: Sequence[PiRow], tau: Number, pi: Number) -> list[list[Number]]:
     """Return a series' coefficients for one body: row k, i = 0..k, of delta^(k-i) H^i."""
     return [
         [

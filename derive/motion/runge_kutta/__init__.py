@@ -9,10 +9,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 from derive.lower.order import with_values_read_soon
-from derive.lower.signs import with_signs_moved
-from derive.motion.compensated import compensated_sums, on_the_sphere, remainder
+from derive.lower.signs import with_signs_outside
+from derive.motion.compensated import compensated_sums, normalising_increment, remainder
 from derive.motion.runge_kutta import classic, lie, sensitivity
-from derive.motion.runge_kutta.matrices import Matrix, Row
+from derive.motion.runge_kutta.matrices import Matrix, NumberRow
 from derive.motion.runge_kutta.system import System, next_of, slopes_of, tape_for
 from derive.program.pattern import compressed
 from derive.program.program import Operand, Program, Quantity, Sparsity
@@ -31,9 +31,11 @@ class Method:
     """
 
     says: str
-    after: Callable[[Tape, System], Row]
-    increments: Callable[[Tape, System], tuple[Row, Row]]
-    slopes: Mapping[str, Callable[[Tape, System], tuple[Row, Matrix]]] = field(default_factory=dict)
+    after: Callable[[Tape, System], NumberRow]
+    increments: Callable[[Tape, System], tuple[NumberRow, NumberRow]]
+    slopes: Mapping[str, Callable[[Tape, System], tuple[NumberRow, Matrix]]] = field(
+        default_factory=dict
+    )
 
 
 METHODS: Mapping[str, Method] = {
@@ -73,7 +75,7 @@ class Recorded:
     """A step on its tape: what it is given and returns beside the state, and its numbers."""
 
     tape: Tape
-    numbers: Row
+    numbers: NumberRow
     given: tuple[Quantity, ...] = ()
     returned: tuple[Quantity, ...] = ()
     sparsity: Mapping[str, Sparsity] | None = None
@@ -107,7 +109,7 @@ def step(system: System, name: str) -> Program:
         assumptions=system.rate.assumptions,
         sparsity=made.sparsity,
     )
-    return with_values_read_soon(with_signs_moved(program, made.tape.prefix))
+    return with_values_read_soon(with_signs_outside(program, made.tape.prefix))
 
 
 def _without_slopes(how: Method, system: System, kind: str) -> Recorded:
@@ -117,7 +119,7 @@ def _without_slopes(how: Method, system: System, kind: str) -> Recorded:
     rest = remainder(system.states)
     start, gains = how.increments(tape, system)
     for place in system.quaternions:
-        gains[place] = on_the_sphere(start[place], gains[place])
+        gains[place] = normalising_increment(start[place], gains[place])
     after = compensated_sums(start, gains, [tape.input(c) for c in rest.components])
     return Recorded(tape, after, (rest,), (next_of(rest),))
 

@@ -22,7 +22,7 @@ from fractions import Fraction
 
 from derive.motion.attitude.quaternion import conjugate, norm_squared, product
 from derive.motion.runge_kutta.dependence import free_omega
-from derive.motion.runge_kutta.matrices import Matrix, Row, between
+from derive.motion.runge_kutta.matrices import Matrix, NumberRow, sandwich_matrix
 from derive.motion.runge_kutta.system import System, rates_at, slopes_at
 from derive.program.operations import sqrt
 from derive.program.tape import Number, Tape, number
@@ -41,9 +41,9 @@ class Stages:
     """
 
     time_step: Number
-    start: Row
-    states: list[Row]
-    rates: list[Row]
+    start: NumberRow
+    states: list[NumberRow]
+    rates: list[NumberRow]
     slopes: list[Matrix]
     by: list[Matrix]
     turn: StageTurns | None
@@ -53,9 +53,9 @@ class Stages:
 class StageTurns:
     """Quarter-step vectors of the stages, what multiplies each from the right, and P - 1."""
 
-    quarters: list[Row]
-    rights: list[Row]
-    increment: Row
+    quarters: list[NumberRow]
+    rights: list[NumberRow]
+    increment: NumberRow
 
 
 def stages(tape: Tape, system: System) -> Stages:
@@ -73,7 +73,7 @@ def stages(tape: Tape, system: System) -> Stages:
     return replace(found, turn=turning([state[omega] for state in found.states], h))
 
 
-def _add(tape: Tape, system: System, found: Stages, state: Row, half: Number) -> None:
+def _add(tape: Tape, system: System, found: Stages, state: NumberRow, half: Number) -> None:
     """Add a stage at ``state``; the program of the slopes gives the rates as well."""
     n = len(state)
     found.states.append(state)
@@ -86,12 +86,12 @@ def _add(tape: Tape, system: System, found: Stages, state: Row, half: Number) ->
     found.by.append([row[n:] for row in slopes])
 
 
-def added(a: Sequence[Number], b: Sequence[Number]) -> Row:
+def added(a: Sequence[Number], b: Sequence[Number]) -> NumberRow:
     """Return the sum of two rows of numbers, as of two quaternions."""
     return [x + y for x, y in zip(a, b, strict=True)]
 
 
-def gains_of(system: System, stages: Stages) -> Row:
+def gains_of(system: System, stages: Stages) -> NumberRow:
     """Return what the step adds: (k1 + 2 k2 + 2 k3 + k4) h / 6, an attitude not yet normalised."""
     found = [(a + 2 * (b + c) + d) * THIRD for a, b, c, d in zip(*stages.rates, strict=True)]
     attitude = system.quaternion
@@ -100,18 +100,18 @@ def gains_of(system: System, stages: Stages) -> Row:
     return found
 
 
-def increments(tape: Tape, system: System) -> tuple[Row, Row]:
+def increments(tape: Tape, system: System) -> tuple[NumberRow, NumberRow]:
     """Return the state at the start of a step, and what it adds, an attitude not yet normalised."""
     at = stages(tape, system)
     return at.start, gains_of(system, at)
 
 
-def after(tape: Tape, system: System) -> Row:
+def after(tape: Tape, system: System) -> NumberRow:
     """Return the state after the step, its quaternions of length one."""
     return normalised(system, stages(tape, system))[0]
 
 
-def normalised(system: System, stages: Stages) -> tuple[Row, Row]:
+def normalised(system: System, stages: Stages) -> tuple[NumberRow, NumberRow]:
     """Return the state after the step, and its quaternions' squared lengths before normalising."""
     found, squares = added(stages.start, gains_of(system, stages)), list[Number]()
     for place in system.quaternions:
@@ -121,7 +121,7 @@ def normalised(system: System, stages: Stages) -> tuple[Row, Row]:
     return found, squares
 
 
-def one_and(q: Sequence[Number]) -> Row:
+def one_and(q: Sequence[Number]) -> NumberRow:
     """Return 1 + q."""
     return [1 + q[0], *q[1:]]
 
@@ -149,4 +149,4 @@ def turn_slopes(turn: StageTurns, scale: Number) -> list[Matrix]:
     left3 = [x + x for x in added(whole, product(left2, b2))]
     left4 = added(whole, product(left3, b3))
     lefts = (whole, left2, left3, left4)
-    return [between(left, right) for left, right in zip(lefts, turn.rights, strict=True)]
+    return [sandwich_matrix(left, right) for left, right in zip(lefts, turn.rights, strict=True)]

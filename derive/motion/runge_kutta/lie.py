@@ -17,13 +17,13 @@ from derive.motion.runge_kutta.classic import THIRD
 from derive.motion.runge_kutta.dependence import attitude_and_omega
 from derive.motion.runge_kutta.matrices import (
     Matrix,
-    Row,
+    NumberRow,
     beside,
-    between,
     identity,
     lifted,
     plus,
     product,
+    sandwich_matrix,
     zeros,
 )
 from derive.motion.runge_kutta.system import System, rates_at, slopes_at
@@ -49,7 +49,7 @@ class Gain:
     vectors: list[Varying]
 
 
-def step_slopes(tape: Tape, system: System) -> tuple[Row, Matrix]:
+def step_slopes(tape: Tape, system: System) -> tuple[NumberRow, Matrix]:
     """Return the state after a step of order four, and its slopes if the system has them.
 
     Raises ValueError if the state has no quaternion that follows an angular velocity in it.
@@ -62,12 +62,12 @@ def step_slopes(tape: Tape, system: System) -> tuple[Row, Matrix]:
     return found.values, found.slopes
 
 
-def after(tape: Tape, system: System) -> Row:
+def after(tape: Tape, system: System) -> NumberRow:
     """Return the state after a step."""
     return step_slopes(tape, system)[0]
 
 
-def by_errors(tape: Tape, system: System) -> tuple[Row, Matrix]:
+def by_errors(tape: Tape, system: System) -> tuple[NumberRow, Matrix]:
     """Return the state after a step and its slopes with three errors of attitude for its parts."""
     attitude, _ = _places(system)
     begin = _start(tape, system)
@@ -76,14 +76,16 @@ def by_errors(tape: Tape, system: System) -> tuple[Row, Matrix]:
     turn = whole_turn(gain.vectors)
     found = added(start, gain.state).replaced(attitude, finished(start[attitude], turn))
     errors = [list(row) for row in turn.slopes]
-    for row, entries in zip(errors, between(conjugate(turn.values), turn.values), strict=True):
+    for row, entries in zip(
+        errors, sandwich_matrix(conjugate(turn.values), turn.values), strict=True
+    ):
         for k, entry in enumerate(entries, attitude.start):
             row[k] = row[k] + entry
     rows = [*found.slopes[: attitude.start], *errors, *found.slopes[attitude.stop :]]
     return found.values, rows
 
 
-def increments(tape: Tape, system: System) -> tuple[Row, Row]:
+def increments(tape: Tape, system: System) -> tuple[NumberRow, NumberRow]:
     """Return the state at the start of a step, and what it adds, an attitude not yet normalised."""
     attitude, _ = _places(system)
     start = _start(tape, system)

@@ -10,8 +10,8 @@ from fractions import Fraction
 
 from derive.program.tape import Number, number
 
-Row = list[Number]
-Matrix = list[Row]
+NumberRow = list[Number]
+Matrix = list[NumberRow]
 
 
 def zeros(rows: int, columns: int) -> Matrix:
@@ -64,7 +64,7 @@ def beside(*parts: Matrix) -> Matrix:
     return [[x for row in rows for x in row] for rows in zip(*parts, strict=True)]
 
 
-def between(c: Sequence[Number], r: Sequence[Number]) -> Matrix:
+def sandwich_matrix(c: Sequence[Number], r: Sequence[Number]) -> Matrix:
     """Return the matrix (3, 3) of v -> Im(c v r)."""
     c0, (cx, cy, cz) = c[0], c[1:]
     r0, (rx, ry, rz) = r[0], r[1:]

@@ -28,15 +28,15 @@ from derive.motion.runge_kutta.classic import (
 from derive.motion.runge_kutta.dependence import free_omega
 from derive.motion.runge_kutta.matrices import (
     Matrix,
-    Row,
+    NumberRow,
     beside,
-    between,
     identity,
     lifted,
     minus,
     plus,
     product,
     right_matrix,
+    sandwich_matrix,
     tangent_matrix,
     times,
     transposed,
@@ -80,7 +80,7 @@ def _collected(weights: Sequence[Matrix], by: Sequence[Matrix]) -> Matrix:
     ]
 
 
-def _sum_of_products(rows: Sequence[Row], columns: Sequence[Row]) -> Number:
+def _sum_of_products(rows: Sequence[NumberRow], columns: Sequence[NumberRow]) -> Number:
     pairs = [
         pair
         for row, column in zip(rows, columns, strict=True)
@@ -104,7 +104,7 @@ def _grouped(pairs: Sequence[tuple[Number, Number]]) -> list[tuple[Number, Numbe
     return list(found.values())
 
 
-def step_slopes(tape: Tape, system: System) -> tuple[Row, Matrix]:
+def step_slopes(tape: Tape, system: System) -> tuple[NumberRow, Matrix]:
     """Return the state after a step and its derivatives (n, n + m) by the state and the rest."""
     at = stages(tape, system)
     after, squares = normalised(system, at)
@@ -123,7 +123,7 @@ def step_slopes(tape: Tape, system: System) -> tuple[Row, Matrix]:
     return after, beside(made.state, made.rest)
 
 
-def by_errors(tape: Tape, system: System) -> tuple[Row, Matrix]:
+def by_errors(tape: Tape, system: System) -> tuple[NumberRow, Matrix]:
     """Return the same with three errors of attitude, before and after, for its four parts."""
     attitude = system.quaternion
     if attitude is None:
@@ -144,7 +144,7 @@ def by_errors(tape: Tape, system: System) -> tuple[Row, Matrix]:
         whole = one_and(at.turn.increment)
         inverse = [x / norm_squared(whole) for x in conjugate(whole)]
         errors = slice(attitude.start, attitude.start + 3)
-        _put(state[errors], errors, between(inverse, whole))
+        _put(state[errors], errors, sandwich_matrix(inverse, whole))
     return after, beside(state, made.rest)
 
 
@@ -156,7 +156,7 @@ def _unconstrained(stages: Stages) -> Back:
     return Back(plus(unit, back.state), back.rest)
 
 
-def _on_the_sphere(q: Row, rows: Matrix) -> Matrix:
+def _on_the_sphere(q: NumberRow, rows: Matrix) -> Matrix:
     """Return derivatives of four components without the part that changes their length."""
     return minus(rows, product([[x] for x in q], product([q], rows)))
 
@@ -171,7 +171,9 @@ def _turned(system: System, stages: Stages, turn: StageTurns) -> Back:
     return carried_back(stages, on_states, [zeros(3, n)] * 4)
 
 
-def _attitude_by_itself(whole: Row, scale: Number, start: Row, after: Row) -> Matrix:
+def _attitude_by_itself(
+    whole: NumberRow, scale: Number, start: NumberRow, after: NumberRow
+) -> Matrix:
     """Return the derivative (4, 4) of q0 P / |q0 P| by q0."""
     turned = right_matrix([x * scale for x in whole])
     inverse = scale * scale * norm_squared(whole)  # 1 / |q0|^2

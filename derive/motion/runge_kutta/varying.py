@@ -10,12 +10,12 @@ from derive.motion.attitude.quaternion import conjugate, exponential, norm_squar
 from derive.motion.attitude.quaternion import product as hamilton
 from derive.motion.runge_kutta.matrices import (
     Matrix,
-    Row,
-    between,
+    NumberRow,
     minus,
     plus,
     product,
     right_matrix,
+    sandwich_matrix,
     tangent_matrix,
     times,
     zeros,
@@ -31,7 +31,7 @@ TINY = Fraction(1, 2**40)
 class Varying:
     """Values (n) and their derivatives (n, m)."""
 
-    values: Row
+    values: NumberRow
     slopes: Matrix
 
     def __getitem__(self, place: slice) -> Varying:
@@ -82,7 +82,7 @@ def turned(q: Varying, vector: Varying) -> Varying:
     return Varying(after, slopes)
 
 
-def right_jacobian(v: Row, turn: Row) -> Matrix:
+def right_jacobian(v: NumberRow, turn: NumberRow) -> Matrix:
     """Return J (3, 3): exp((v + dv) / 2) = exp(v / 2) exp(J dv / 2) to first order.
 
     1 - 2 r^2 [v]x + k (v v' - |v|^2), r = sin(|v|/2) / |v|, k = (1 - sin|v| / |v|) / |v|^2.
@@ -114,7 +114,7 @@ def whole_turn(vectors: Sequence[Varying]) -> Varying:
     for vector in vectors:
         turn = exponential(vector.values)
         own = product(right_jacobian(vector.values, turn), vector.slopes)
-        bent = plus(product(between(conjugate(turn), turn), bent), own)
+        bent = plus(product(sandwich_matrix(conjugate(turn), turn), bent), own)
         whole = hamilton(whole, turn)
     return Varying(whole, bent)
 

@@ -15,11 +15,11 @@ from derive.motion.exact.inertia import Inertia
 from derive.motion.splitting.schemes import NYSTROEM6, S6, S10, STRANG, Scheme
 from derive.motion.splitting.turns import (
     State,
-    at_rest,
     kicked,
     quaternion_change,
     turn_about,
     turn_with,
+    unturned,
 )
 from derive.program.tape import Number, Tape, Vector, named, number
 
@@ -79,7 +79,7 @@ def step_split(tape: Tape, body: Inertia, order: int, start: Start) -> list[Numb
 def _end(axes: BodyAxes, body: Inertia, order: int, start: Start) -> State:
     """Return the state in which a step ends."""
     ratios = _ratios(axes)
-    begin = at_rest([r * w for r, w in zip(ratios, axes.along(start.omega), strict=True)])
+    begin = unturned([r * w for r, w in zip(ratios, axes.along(start.omega), strict=True)])
     pieces = _pieces(body, axes, start)
     closed = body.kind in ("axisymmetric", "spherical")
     if start.moment is not None:

@@ -34,7 +34,7 @@ class State:
     gain: list[Number]
 
 
-def at_rest(mu: Vector) -> State:
+def unturned(mu: Vector) -> State:
     """Return the state in which a step begins."""
     zero = number(0)
     return State(zero, [zero] * 3, list(mu), [zero] * 3)

@@ -26,11 +26,11 @@ def taylor_step(
     names = [c for q in states for c in q.components]
     rates = {x: r for x, r in zip(names, rate.results, strict=True) if r != 0}
     recurrences = _recurrences(rate, set(rates))
-    moving = {
-        x: (r, recurrences.term(r) if recurrences.moves(r) else Fraction(0))
+    varying = {
+        x: (r, recurrences.term(r) if recurrences.varies(r) else Fraction(0))
         for x, r in rates.items()
     }
-    close, proposed = _close(order, states, tuple(moving))
+    close, proposed = _close(order, states, tuple(varying))
     step = TaylorStep(
         name="step_taylor" if order == 20 else f"step_taylor{order}",
         says=f"One step by a Taylor series of order {order}.",
@@ -42,17 +42,17 @@ def taylor_step(
         squares=tuple(recurrences.squares),
         each=tuple(recurrences.each),
         kept=tuple(recurrences.kept),
-        rates=moving,
+        rates=varying,
         close=close,
-        results=(*(_after(x) if x in moving else x for x in names), proposed),
+        results=(*(_after(x) if x in varying else x for x in names), proposed),
     )
     _refuse_clashes(step)
     return step
 
 
-def _recurrences(rate: Program, moving: set[str]) -> Recurrences:
+def _recurrences(rate: Program, varying: set[str]) -> Recurrences:
     """Return the terms of every operation of a rate, of which these components move."""
-    recurrences = Recurrences(moving, _joining(rate))
+    recurrences = Recurrences(varying, _joining(rate))
     for op in rate.ops:
         if not isinstance(op, Op):
             raise ValueError(f"'{rate.name}' has a loop, of which there is no Taylor series")
@@ -69,11 +69,11 @@ def _read(
 
 
 def _close(
-    order: int, states: tuple[Quantity, ...], moving: Sequence[str]
+    order: int, states: tuple[Quantity, ...], varying: Sequence[str]
 ) -> tuple[tuple[Op, ...], str]:
     """Return the operations that add the terms and propose a step, and the proposal's name."""
-    sums = [Op(_after(x), "add", (x, f"{x}_sum")) for x in moving]
-    ops, proposed = next_length(order, [[c for c in q.components if c in moving] for q in states])
+    sums = [Op(_after(x), "add", (x, f"{x}_sum")) for x in varying]
+    ops, proposed = next_length(order, [[c for c in q.components if c in varying] for q in states])
     return (*sums, *ops), proposed
 
 

@@ -32,7 +32,7 @@ BITS = 9  # of 1/order, of which the root is made
 def next_length(order: int, groups: Sequence[Sequence[str]]) -> tuple[list[Op], str]:
     """Return the operations, and the name, of the step proposed.
 
-    groups : the components of each state that moves; each state is judged by its own size
+    groups : the components of each state that varies; each state is judged by its own size
     """
     ops: list[Op] = []
 

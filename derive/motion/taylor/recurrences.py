@@ -32,12 +32,12 @@ class OrderTerm:
 class Recurrences:
     """A series in the making.
 
-    moving : values that change along the step      joins : values that one addition alone reads
+    varying : values that change along the step      joins : values that one addition alone reads
     sums   : values whose term of order k is not yet written
     same   : values that differ from another at order 0 only
     """
 
-    moving: set[str]
+    varying: set[str]
     joins: frozenset[str]
     start: list[Op] = field(default_factory=list)
     each: list[Op] = field(default_factory=list)
@@ -59,24 +59,24 @@ class Recurrences:
         self.each.append(Op(result, operator, operands))
         return result
 
-    def moves(self, operand: Operand) -> bool:
+    def varies(self, operand: Operand) -> bool:
         """Tell whether an operand changes along the step."""
-        return operand in self.moving
+        return operand in self.varying
 
     def term(self, value: Operand) -> str:
-        """Return the name of a moving value's term of order k."""
+        """Return the name of a varying value's term of order k."""
         if value in self.sums:
             self.write(str(value), self.sums.pop(str(value)))
         return f"{self.same.get(str(value), value)}_k"
 
     def kept_terms(self, value: Operand) -> str:
-        """Return the name under which the terms of a moving value are kept."""
+        """Return the name under which the terms of a varying value are kept."""
         name = self.term(value).removesuffix("_k")
         self.kept[name] = None
         return name
 
     def summed(self, value: Operand) -> OrderTerm:
-        """Return a moving value's term as a sum; what nothing else reads is not written itself."""
+        """Return a varying value's term as a sum; what nothing else reads is not written itself."""
         if value in self.sums and value in self.joins:
             return self.sums.pop(str(value))
         return OrderTerm(lone=((1, self.term(value)),))
@@ -109,9 +109,9 @@ def record(recurrences: Recurrences, op: Op, ops: Sequence[object]) -> None:
     """Record an operation at order 0 and, if it changes along the step, at order k."""
     if op not in recurrences.start:
         recurrences.start.append(op)
-    if not any(map(recurrences.moves, op.operands)):
+    if not any(map(recurrences.varies, op.operands)):
         return
-    recurrences.moving.add(op.result)
+    recurrences.varying.add(op.result)
     if op.operator in ("add", "sub", "neg"):
         _linear(recurrences, op)
     elif op.operator == "mul":
@@ -128,7 +128,7 @@ def record(recurrences: Recurrences, op: Op, ops: Sequence[object]) -> None:
 
 def _linear(recurrences: Recurrences, op: Op) -> None:
     signs = (-1,) if op.operator == "neg" else (1, -1 if op.operator == "sub" else 1)
-    parts = [(s, o) for s, o in zip(signs, op.operands, strict=True) if recurrences.moves(o)]
+    parts = [(s, o) for s, o in zip(signs, op.operands, strict=True) if recurrences.varies(o)]
     if any(o in recurrences.sums and o in recurrences.joins for _, o in parts):
         total = OrderTerm()
         for sign, operand in parts:
@@ -144,8 +144,8 @@ def _linear(recurrences: Recurrences, op: Op) -> None:
 
 def _product(recurrences: Recurrences, op: Op) -> None:
     a, b = op.operands
-    if not (recurrences.moves(a) and recurrences.moves(b)):
-        terms = (recurrences.term(o) if recurrences.moves(o) else o for o in op.operands)
+    if not (recurrences.varies(a) and recurrences.varies(b)):
+        terms = (recurrences.term(o) if recurrences.varies(o) else o for o in op.operands)
         recurrences.at_k(f"{op.result}_k", "mul", *terms)
         return
     ends: tuple[tuple[int, Operand, str], ...] = (
@@ -164,15 +164,15 @@ def _quotient(recurrences: Recurrences, op: Op) -> None:
     a, b = op.operands
     name = f"{b}_inverse" if isinstance(b, str) else f"{op.result}_divisor_inverse"
     inverse = recurrences.once(name, "div", Fraction(1), b)
-    if not recurrences.moves(b):
+    if not recurrences.varies(b):
         recurrences.at_k(f"{op.result}_k", "mul", recurrences.term(a), inverse)
         return
-    total = recurrences.summed(a) if recurrences.moves(a) else OrderTerm()
+    total = recurrences.summed(a) if recurrences.varies(a) else OrderTerm()
     recurrences.kept[op.result] = None
     unknown = OrderTerm(
         ((1, recurrences.kept_terms(b), op.result),), ((1, op.result, recurrences.term(b)),)
     )
-    if not recurrences.moves(a):
+    if not recurrences.varies(a):
         taken = recurrences.write(f"{op.result}_taken", unknown)
         numerator = recurrences.at_k(f"{op.result}_numerator", "neg", taken)
     else:
@@ -201,7 +201,7 @@ def _sine_and_cosine(recurrences: Recurrences, op: Op, ops: Sequence[object]) ->
     ]
     twin = recurrences.once(twins[0] if twins else f"{op.result}_twin", TWIN[op.operator], u)
     sine, cosine = (op.result, twin) if op.operator == "sin" else (twin, op.result)
-    recurrences.moving |= {sine, cosine}
+    recurrences.varying |= {sine, cosine}
     slope = f"{u}_slope"
     recurrences.at_k(f"{slope}_k", "mul", ORDER, recurrences.term(u))
     recurrences.kept |= dict.fromkeys((slope, sine, cosine))

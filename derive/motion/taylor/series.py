@@ -55,7 +55,7 @@ class TaylorStep:
 
     start : operations at order 0          products, squares : the sums over j at order k
     each : operations at order k           kept : values whose terms are kept
-    rates : for each state that moves, its rate at order 0 and at order k
+    rates : for each state that varies, its rate at order 0 and at order k
     close : operations after the sum; they read ``x_sum`` (all terms but 0), ``x_last``,
             ``x_before`` (the last two) and ``x_first`` of the states
     """

@@ -8,8 +8,8 @@ from typing import Any
 
 from derive.scene.machine import Scene
 from derive.scene.safe import require_values
-from derive.scene.short_form.long_form import written_out
-from derive.scene.short_form.rules import check, warnings
+from derive.scene.short_form.long_form import in_long_form
+from derive.scene.short_form.rules import check_rules, warnings
 from derive.scene.short_form.tables import read_scene
 from derive.scene.table import table
 from derive.scene.wanted import check_form
@@ -22,7 +22,7 @@ def read_short(document: dict[str, Any], name: str, text: str) -> Scene:
     """
     scene = read_scene(document, name, text)
     said = tuple(table(document.get("known", {}), "known").entries)
-    check(scene, said)
+    check_rules(scene, said)
     check_form(scene.wanted, scene.head["form"], scene.head["emission"])
     require_values(scene)
-    return written_out(replace(scene, warnings=warnings(scene, said)))
+    return in_long_form(replace(scene, warnings=warnings(scene, said)))

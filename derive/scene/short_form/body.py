@@ -3,14 +3,14 @@
 from dataclasses import replace
 from typing import cast
 
-from derive.scene.bodies import Kind, Substance, of_kind, of_shape
+from derive.scene.bodies import InertiaKind, Substance, of_kind, of_shape
 from derive.scene.declaration import AXES, SceneError, Sextuple, Triple, Turning
 from derive.scene.entries import BODY
 from derive.scene.entry import Reading
 from derive.scene.escape import brief
 from derive.scene.formula import ZERO
 from derive.scene.scalars import Scalars
-from derive.scene.shape import SHAPES, moved
+from derive.scene.shape import SHAPES, by_parallel_axes
 from derive.scene.short_form.declared import Body
 from derive.scene.table import Table, nearest
 
@@ -40,8 +40,8 @@ def read_body(given: Table, point: str, scalars: Scalars) -> Body:
     turned, spin = made.said["turned"] or (), made.said["spin"]
     through_coordinates(turned, "body.turned", scalars)
     return Body(
-        cast("Kind", made.kind), made.mass, cast("Sextuple", made.inertia), centre, made.axis,
-        turned, spin, made.lengths or {}, made.look,
+        cast("InertiaKind", made.kind), made.mass, cast("Sextuple", made.inertia), centre,
+        made.axis, turned, spin, made.lengths or {}, made.look,
     )  # fmt: skip
 
 
@@ -61,7 +61,7 @@ def _at_point(made: Substance, centre: Triple | None, point: str) -> Substance:
     if centre is None:
         raise SceneError(f"a shape about a {point} point needs body.centre, from that point")
     assert made.mass is not None  # noqa: S101 - every shape says its mass
-    inertia = moved(cast("Sextuple", made.inertia), made.mass, centre)
+    inertia = by_parallel_axes(cast("Sextuple", made.inertia), made.mass, centre)
     off = [name for name, length in zip(AXES, centre, strict=True) if length != ZERO]
     if not off or off == [made.axis]:
         return replace(made, inertia=inertia)

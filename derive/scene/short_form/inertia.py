@@ -12,17 +12,17 @@ from derive.scene.numbers import (
     definite,
     ends_of,
     first_wrong,
+    inertia_matrix,
     middle,
     not_definite,
-    points_of,
     second_moments,
     semidefinite,
-    tensor,
     tensor_doubts,
     trace,
     triangle,
+    valuations_of,
 )
-from derive.scene.shape import moved
+from derive.scene.shape import by_parallel_axes
 from derive.scene.short_form.declared import Body, ShortForm
 
 
@@ -64,7 +64,7 @@ def check_inertia(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str
     Of a thin rod only the transverse moment must be positive.
     """
     values = middle(ends_of(parameters))
-    if not _possible(body, tensor(body.inertia, values, "body inertia")):
+    if not _possible(body, inertia_matrix(body.inertia, values, "body inertia")):
         yield not_definite("body inertia", body.inertia, values)
 
 
@@ -74,22 +74,22 @@ def _possible(body: Body, matrix: FractionMatrix) -> bool:
     return all(matrix[i][i] > 0 for i in range(3) if "xyz"[i] != body.axis)
 
 
-def doubts(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str]:
+def inertia_doubts(body: Body, parameters: tuple[Parameter, ...]) -> Iterator[str]:
     """Yield what is doubtful about an inertia, and about what it leaves about the mass centre."""
     yield from tensor_doubts("body inertia", body.inertia, parameters, lambda m: _possible(body, m))
     if body.mass is None or body.centre is None:
         return
-    own = moved(body.inertia, -body.mass, body.centre)
+    own = by_parallel_axes(body.inertia, -body.mass, body.centre)
 
     def no_masses(values: Valuation) -> bool:
-        about, left = (tensor(part, values, "body inertia") for part in (body.inertia, own))
+        about, left = (inertia_matrix(part, values, "body inertia") for part in (body.inertia, own))
         size = abs(trace(about))
         masses = semidefinite(left, size) and semidefinite(second_moments(left), size)
         return semidefinite(about, size) and triangle(about) and not masses
 
     formulas = (*body.inertia, body.mass, *body.centre)
     says = "body inertia less that of its mass at body.centre is no masses'"
-    yield from first_wrong(says, points_of(parameters, formulas), formulas, no_masses)
+    yield from first_wrong(says, valuations_of(parameters, formulas), formulas, no_masses)
 
 
 def carrier_doubts(
@@ -101,4 +101,6 @@ def carrier_doubts(
     """
     says = "body inertia is that of the whole, but the wheels alone exceed it"
     label = "body inertia"
-    yield from first_wrong(says, each, formulas, lambda v: not definite(tensor(carrier, v, label)))
+    yield from first_wrong(
+        says, each, formulas, lambda v: not definite(inertia_matrix(carrier, v, label))
+    )

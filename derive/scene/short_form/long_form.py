@@ -21,7 +21,7 @@ from derive.scene.machine import (
     Scene,
     Unknown,
 )
-from derive.scene.shape import moved
+from derive.scene.shape import by_parallel_axes
 from derive.scene.short_form.declared import ShortForm
 from derive.scene.short_form.inertia import carrier, of_one_body
 from derive.scene.short_form.quantities import groups, turns_freely
@@ -33,7 +33,7 @@ NOWHERE: Triple = (ZERO, ZERO, ZERO)
 Motion = Literal["sought", "given"]
 
 
-def written_out(scene: ShortForm) -> Scene:
+def in_long_form(scene: ShortForm) -> Scene:
     """Return the machine that a scene of a single body is; names of scalars stay what they are."""
     given = replace(long_form(scene, "given"), wanted=())
     return replace(long_form(scene, "sought"), inverse=given, told=told(scene))
@@ -169,7 +169,7 @@ def _body(scene: ShortForm) -> Member:
     inertia: Entries = carrier(scene)
     centre = NOWHERE
     if body.mass is not None and body.centre is not None:
-        centre, inertia = body.centre, moved(carrier(scene), -body.mass, body.centre)
+        centre, inertia = body.centre, by_parallel_axes(carrier(scene), -body.mass, body.centre)
         for turn in reversed(body.turned):
             x, y, z = _turned(centre, turn)
             centre = (x, y, z)

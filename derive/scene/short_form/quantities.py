@@ -9,7 +9,7 @@ from derive.scene.declaration import ANY, AXES, Given, Input, Moving
 from derive.scene.groups import of_scalar
 from derive.scene.machine import Group, Groups
 from derive.scene.short_form.declared import ShortForm
-from derive.scene.short_form.told import POINTS
+from derive.scene.short_form.told import POINT_PHRASES
 
 ATTITUDE, WHEELS, OWN, NO_AXES = "N from B", "wheel axes", "", "none"
 """Along which axes components lie that are three along N or, ``OWN``, along those of the scene."""
@@ -105,7 +105,7 @@ def _missing(scene: ShortForm) -> set[str]:
 def _group(scene: ShortForm, name: str) -> Group:
     unit, axes, says = QUANTITIES[name]
     free = [c.name for c in scene.coordinates if c.free]
-    about = POINTS[scene.point.kind]
+    about = POINT_PHRASES[scene.point.kind]
     given, frame = _given(scene).get(name), axes or ("B" if scene.axes.fixed_in_body else "xyz")
     low, high = (given.low, given.high) if given else ANY
     components = [f"{name}_{part}" for part in (("w", *AXES) if axes == ATTITUDE else AXES)]

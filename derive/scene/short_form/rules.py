@@ -13,16 +13,16 @@ from derive.scene.declaration import AXES, SceneError, Turning
 from derive.scene.doubtful import in_degrees
 from derive.scene.escape import brief
 from derive.scene.formula import ONE, ZERO, symbols
-from derive.scene.numbers import check_unit, ends_of, middle, points_of
+from derive.scene.numbers import check_unit, ends_of, middle, valuations_of
 from derive.scene.safe import formulas_of
 from derive.scene.short_form.declared import ShortForm
-from derive.scene.short_form.inertia import carrier, carrier_doubts, check_inertia, doubts
+from derive.scene.short_form.inertia import carrier, carrier_doubts, check_inertia, inertia_doubts
 from derive.scene.wanted import ROTATIONAL, SPLITTINGS, TORQUE_FREE, moves, step_of
 
 FORWARD = ("acceleration", "state_rate")
 
 
-def check(scene: ShortForm, said: tuple[str, ...]) -> None:
+def check_rules(scene: ShortForm, said: tuple[str, ...]) -> None:
     """Raise SceneError for the first rule that the scene breaks.
 
     said : the known vectors that the file gives, as opposed to default ranges
@@ -31,7 +31,7 @@ def check(scene: ShortForm, said: tuple[str, ...]) -> None:
         _relative_motion(scene), _symmetry(scene), _turns(scene), _attitude(scene),
         _known(scene, said), _point(scene), _position(scene),
         check_inertia(scene.body, scene.parameters), _wheels(scene), _forward(scene),
-        _moved(scene),
+        _steps_admitted(scene),
     )  # fmt: skip
     for sentence in broken:
         raise SceneError(sentence)
@@ -194,7 +194,7 @@ def _rod(scene: ShortForm, name: str) -> Iterator[str]:
         yield f"'{name}' {rule}"
 
 
-def _moved(scene: ShortForm) -> Iterator[str]:
+def _steps_admitted(scene: ShortForm) -> Iterator[str]:
     """What moves a scene in time is admitted by its motion."""
     for name in filter(moves, scene.wanted):
         if reason := _prescribed(scene):
@@ -226,7 +226,7 @@ def warnings(scene: ShortForm, said: tuple[str, ...]) -> tuple[str, ...]:
     """Return sentences on what is allowed and yet unlikely to be meant."""
     merging = singular_attitude(scene)
     return (
-        *doubts(scene.body, scene.parameters),
+        *inertia_doubts(scene.body, scene.parameters),
         *_doubtful_wheels(scene),
         *_unused(scene, said),
         *_doubtful_axes(scene),
@@ -238,7 +238,7 @@ def warnings(scene: ShortForm, said: tuple[str, ...]) -> tuple[str, ...]:
 def _doubtful_wheels(scene: ShortForm) -> Iterator[str]:
     if scene.wheels:
         shown = (*scene.body.inertia, *(f for w in scene.wheels for f in (*w.axis, w.axial)))
-        yield from carrier_doubts(carrier(scene), shown, points_of(scene.parameters, shown))
+        yield from carrier_doubts(carrier(scene), shown, valuations_of(scene.parameters, shown))
 
 
 def _doubtful_axes(scene: ShortForm) -> Iterator[str]:

@@ -10,7 +10,7 @@ from derive.scene.formula import ZERO, Formula
 from derive.scene.short_form.declared import Axes, Body, ShortForm, Wheel
 from derive.scene.wanted import attitudes_only
 
-POINTS = {
+POINT_PHRASES = {
     "centre_of_mass": "the centre of mass",
     "fixed": "the fixed point",
     "moving": "the moving point",
@@ -28,7 +28,7 @@ def told(scene: ShortForm) -> tuple[str, ...]:
     """Return what a scene declares, one sentence each."""
     if attitudes_only(list(scene.wanted)):
         return ("Formulas for attitudes, which need no body.",)
-    body = _body(scene.body, POINTS[scene.point.kind])
+    body = _body(scene.body, POINT_PHRASES[scene.point.kind])
     return (_axes(scene), body, _point(scene), *_wheels(scene.wheels), *_known(scene))
 
 
@@ -37,7 +37,7 @@ def spoken(scene: ShortForm, axes: str, body: str, own: str) -> Mapping[str, str
 
     axes, body, own : what the scene written out calls the axes xyz, the body and its own axes
     """
-    point, centre = POINTS[scene.point.kind], "the centre of mass"
+    point, centre = POINT_PHRASES[scene.point.kind], "the centre of mass"
     at_centre = scene.body.centre is not None and scene.body.mass is not None
     return {
         body: "the body",
@@ -91,7 +91,7 @@ def _body(body: Body, point: str) -> str:
 
 def _point(scene: ShortForm) -> str:
     point, centre = scene.point, scene.body.centre
-    says = f"Moments are about {POINTS[point.kind]}"
+    says = f"Moments are about {POINT_PHRASES[point.kind]}"
     if point.acceleration is not None and point.acceleration.formulas:
         says += f", whose acceleration is {_column(point.acceleration.formulas)} along xyz"
     if centre is not None and any(f != ZERO for f in centre):

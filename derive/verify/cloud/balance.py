@@ -22,12 +22,12 @@ def left_over(history: History) -> list[Any]:
     rows: list[Any] = []
     loads = [one for load in history.machine.loads for one in acting(history, load)]
     for body in history.machine.bodies:
-        centre = values(history.centre(body.name))
+        centre = at_instant(history.centre(body.name))
         force = np.array([mpf(0)] * 3, dtype=object)
         moment = np.array([mpf(0)] * 3, dtype=object)
         for m, place in history.particles(body.name):
             f = m * each(lambda x: x.acceleration, place)
-            force, moment = force + f, moment + crossed(values(place) - centre, f)
+            force, moment = force + f, moment + crossed(at_instant(place) - centre, f)
         for on, place, f, couple in loads:
             if on == body.name:
                 force, moment = force - f, moment - couple - crossed(place - centre, f)
@@ -35,7 +35,7 @@ def left_over(history: History) -> list[Any]:
     return rows
 
 
-def values(array: NDArray[Any]) -> NDArray[Any]:
+def at_instant(array: NDArray[Any]) -> NDArray[Any]:
     """Return what is there at time zero."""
     return each(lambda x: x.value, array)
 
@@ -48,7 +48,7 @@ def acting(history: History, load: Load) -> Iterator[Acting]:
         case Weight():
             g = along(history, load.along, load.gravity)
             for body in load.on:
-                yield body, values(history.centre(body)), history.mass(body) * g, 0 * g
+                yield body, at_instant(history.centre(body)), history.mass(body) * g, 0 * g
         case Gradient():
             for body in load.on:
                 yield _gradient(history, load, body)
@@ -60,11 +60,11 @@ def along(history: History, frame: str, formulas: tuple[Any, ...]) -> NDArray[An
     """Return a vector given along the axes of a frame, along N."""
     if all(f == ZERO for f in formulas):
         return np.array([mpf(0)] * 3, dtype=object)
-    return values(history.rotations[frame] @ history.column(formulas))
+    return at_instant(history.rotations[frame] @ history.column(formulas))
 
 
 def _force(history: History, load: Force) -> Iterator[Acting]:
-    place = values(history.place(load.frame, load.at))
+    place = at_instant(history.place(load.frame, load.at))
     force, couple = (along(history, load.along, f) for f in (load.force, load.couple))
     yield load.on, place, force, couple
     if load.against:
@@ -74,10 +74,10 @@ def _force(history: History, load: Force) -> Iterator[Acting]:
 def _gradient(history: History, load: Gradient, body: str) -> Acting:
     """Return the moment of the field on the particles themselves."""
     c, third = along(history, load.along, load.towards), history.value(load.strength).value / 3
-    centre = values(history.centre(body))
+    centre = at_instant(history.centre(body))
     couple = 0 * c
     for m, place in history.particles(body):
-        arm = values(place) - centre
+        arm = at_instant(place) - centre
         couple = couple + crossed(arm, m * third * (3 * (c @ arm) * c - arm))
     return body, centre, 0 * c, couple
 
@@ -85,14 +85,14 @@ def _gradient(history: History, load: Gradient, body: str) -> Acting:
 def _spring(history: History, load: Spring) -> Iterator[Acting]:
     start, end = (history.place(f, at) for f, at in
                   ((load.frame, load.at), (load.to_frame, load.to)))  # fmt: skip
-    d, v = values(end - start), each(lambda x: x.velocity, end - start)
+    d, v = at_instant(end - start), each(lambda x: x.velocity, end - start)
     k, c, rest = (history.value(f).value for f in (load.stiffness, load.damping, load.length))
     size = mp.sqrt(d @ d)
     force = k * d if rest == 0 else k * (1 - rest / size) * d
     force = force + c * (d @ v) / size**2 * d if c != 0 else force
-    yield load.on, values(start), force, 0 * d
+    yield load.on, at_instant(start), force, 0 * d
     if load.against:
-        yield load.against, values(end), -force, 0 * d
+        yield load.against, at_instant(end), -force, 0 * d
 
 
 def potential_energy(history: History) -> Any:
@@ -103,10 +103,10 @@ def potential_energy(history: History) -> Any:
             g = along(history, load.along, load.gravity)
             for body in load.on:
                 particles = history.particles(body)
-                total -= mp.fsum(m * (g @ values(place)) for m, place in particles)
+                total -= mp.fsum(m * (g @ at_instant(place)) for m, place in particles)
         elif isinstance(load, Spring):
             ends = ((load.frame, load.at), (load.to_frame, load.to))
-            start, end = (values(history.place(f, at)) for f, at in ends)
+            start, end = (at_instant(history.place(f, at)) for f, at in ends)
             k, rest = (history.value(f).value for f in (load.stiffness, load.length))
             total += k * (mp.sqrt((end - start) @ (end - start)) - rest) ** 2 / 2
     return total

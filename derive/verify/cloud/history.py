@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from derive.scene import Input, Scene, SceneError
 from derive.scene.formula import Formula, evaluate
 from derive.scene.machine import INERTIAL, Frame
-from derive.verify.cloud.series import ARITHMETIC, Series, each, moving, series, turn
+from derive.verify.cloud.series import ARITHMETIC, Series, each, motion_series, series, turn
 
 UNKNOWN = mpf(1)  # a mass or moment that the user left out, and that must not matter
 
@@ -37,7 +37,7 @@ class History:
         for m in (*self.machine.inputs, *self.machine.speeds):
             rate = self._rate(m.rate, found) if m.kind == "speed" and not m.free else mpf(0)
             rate = self.values[m.unknown] if m.free and m.kind == "speed" else rate
-            found[m.name] = moving(self.values[m.name], rate)
+            found[m.name] = motion_series(self.values[m.name], rate)
             if isinstance(m.rate, Input):
                 found[m.rate.name] = series(self.values[m.rate.name])
         for c in self.machine.coordinates:
@@ -53,7 +53,7 @@ class History:
         for _ in range(2):
             rates = {c.name: evaluate(c.rate, found, ARITHMETIC) for c in self.machine.coordinates
                      if isinstance(c.rate, Formula)}  # fmt: skip
-            found |= {n: moving(self.values[n], rate.value, rate.velocity / 2)
+            found |= {n: motion_series(self.values[n], rate.value, rate.velocity / 2)
                       for n, rate in rates.items()}  # fmt: skip
 
     def _rate(self, rate: Any, found: Mapping[str, Series]) -> Any:
@@ -64,10 +64,10 @@ class History:
     def _add_coordinate(self, c: Any, found: dict[str, Series]) -> None:
         first = self.values[c.rate.name]
         second = self.values[c.unknown] if c.free else self._rate(c.acceleration, found)
-        found[c.rate.name] = moving(first, second)
+        found[c.rate.name] = motion_series(first, second)
         if isinstance(c.acceleration, Input):
             found[c.acceleration.name] = series(second)
-        found[c.name] = moving(self.values[c.name], first, second / 2)
+        found[c.name] = motion_series(self.values[c.name], first, second / 2)
 
     def value(self, formula: Formula) -> Series:
         """Return a formula as a series."""
@@ -124,7 +124,7 @@ class History:
                 found[frame.name] = still
             elif frame.acceleration is not None:  # from rest, or as seen moving along with it
                 a = self.rotations[frame.name] @ self.column(frame.acceleration)
-                found[frame.name] = each(lambda v: moving(0, 0, v.value / 2), a)
+                found[frame.name] = each(lambda v: motion_series(0, 0, v.value / 2), a)
             elif frame.rolls is not None or frame.velocity is not None:
                 found[frame.name] = each(lambda v: v.integral(mpf(0)), self._velocity(frame))
             else:

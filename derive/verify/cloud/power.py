@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from derive.scene.formula import ZERO
 from derive.scene.machine import Spring, Weight
-from derive.verify.cloud.balance import acting, along, values
+from derive.verify.cloud.balance import acting, along, at_instant
 from derive.verify.cloud.history import History
 from derive.verify.cloud.series import DIGITS, crossed, each
 from derive.verify.cloud.solution import CloudAnswers
@@ -47,9 +47,9 @@ def _power(
 ) -> list[Any]:
     """Return the powers of a force on the body's particle at a place, and of a couple."""
     centre, Q = history.centre(body), history.body(body)
-    spin = each(lambda x: x.velocity, Q) @ values(Q).T
+    spin = each(lambda x: x.velocity, Q) @ at_instant(Q).T
     omega = np.array([spin[2, 1], spin[0, 2], spin[1, 0]], dtype=object)
-    arm = place - values(centre)
+    arm = place - at_instant(centre)
     v = each(lambda x: x.velocity, centre) + crossed(omega, arm)
     return [force @ v, couple @ omega]
 

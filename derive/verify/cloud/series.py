@@ -68,7 +68,7 @@ class Series:
         return _by(operator.add, _by(arb_series.integral, self), start)
 
 
-def moving(*parts: Any) -> Series:
+def motion_series(*parts: Any) -> Series:
     """Return the series with these coefficients, zeros behind them."""
     with ctx.workprec(BITS):
         return Series(arb_series([_ball(x) for x in parts], prec=ORDER))
@@ -76,7 +76,7 @@ def moving(*parts: Any) -> Series:
 
 def series(value: Series | Any) -> Series:
     """Return a constant as a series."""
-    return value if isinstance(value, Series) else moving(value)
+    return value if isinstance(value, Series) else motion_series(value)
 
 
 def _by(operation: Callable[..., Any], *given: Series | Any) -> Series:
@@ -104,7 +104,7 @@ def _on_series(operation: Callable[..., Any]) -> Callable[..., Any]:
 
 ARITHMETIC: Arithmetic = {
     **{name: _on_series(operation) for name, operation in IN_BALLS.items()},
-    "number": lambda q: moving(mpf(q.numerator) / q.denominator),
+    "number": lambda q: motion_series(mpf(q.numerator) / q.denominator),
     "power": lambda x, n: _by(lambda terms: terms**n, x),
 }
 

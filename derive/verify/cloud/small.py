@@ -12,7 +12,7 @@ from derive.verify.cloud.solution import CloudAnswers, answers
 STEP = mpf(10) ** -15  # a central difference of 50 digits keeps twenty
 
 
-def slopes(machine: Scene, given: Mapping[str, float]) -> tuple[Any, Any]:
+def slopes_about_rest(machine: Scene, given: Mapping[str, float]) -> tuple[Any, Any]:
     """Return the derivatives of the accelerations by velocities and by places, (n, n) each.
 
     They are minus M^-1 D and minus M^-1 K of the linearised motion.
@@ -34,7 +34,7 @@ def slopes(machine: Scene, given: Mapping[str, float]) -> tuple[Any, Any]:
         return found[0], found[1]
 
 
-def at_rest(machine: Scene, given: Mapping[str, float]) -> bool:
+def is_at_rest(machine: Scene, given: Mapping[str, float]) -> bool:
     """Tell whether the motion of the scene goes on without any acceleration."""
     free = [m.unknown for m in (*machine.coordinates, *machine.speeds) if m.free]
     with mp.workdps(DIGITS):

@@ -11,7 +11,7 @@ from mpmath import mp, mpf
 from derive.scene import Scene
 from derive.scene.formula import Formula
 from derive.scene.results import written_out
-from derive.verify.cloud.balance import left_over, potential_energy, values
+from derive.verify.cloud.balance import at_instant, left_over, potential_energy
 from derive.verify.cloud.history import History
 from derive.verify.cloud.series import DIGITS, crossed, each, series
 
@@ -41,7 +41,7 @@ class CloudAnswers:
         return history
 
     @cached_property
-    def _table(self) -> tuple[list[list[Any]], list[Any]]:
+    def _matrix(self) -> tuple[list[list[Any]], list[Any]]:
         """Return the six equations a body, which are linear in the unknowns."""
         rest = left_over(self.history({}))
         columns = [left_over(self.history({n: mpf(1)})) for n in self.names]
@@ -51,7 +51,7 @@ class CloudAnswers:
     @cached_property
     def _reduced(self) -> tuple[dict[int, list[Any]], Any]:
         """Return a row for each unknown that has a pivot, and the largest contradiction."""
-        rows, right = self._table
+        rows, right = self._matrix
         table = [[*row, b] for row, b in zip(rows, right, strict=True)]
         table = [[x / (max(map(abs, row)) or 1) for x in row] for row in table]
         pivots: dict[int, list[Any]] = {}
@@ -97,15 +97,15 @@ class CloudAnswers:
         """Return energies and angular momentum, summed over the particles."""
         with mp.workdps(DIGITS):
             history, place = self.history({}), self.machine.momentum
-            about = values(history.place(place.frame, place.at))
+            about = at_instant(history.place(place.frame, place.at))
             energy, momentum = mpf(0), 0 * about
             for body in self.machine.bodies:
                 for m, at in history.particles(body.name):
                     v = each(lambda x: x.velocity, at)
                     energy += m * (v @ v) / 2
                     if body.name in place.of:
-                        momentum = momentum + m * crossed(values(at) - about, v)
-            along = values(history.rotations[place.frame]).T @ momentum
+                        momentum = momentum + m * crossed(at_instant(at) - about, v)
+            along = at_instant(history.rotations[place.frame]).T @ momentum
             names = (f"angular_momentum_{axis}" for axis in "xyz")
             height = potential_energy(history)
             energies = {"kinetic_energy": energy, "potential_energy": height}
@@ -121,8 +121,8 @@ class CloudAnswers:
             for body in place.of:
                 for m, at in history.particles(body):
                     a = each(lambda x: x.rate().velocity, at - point)
-                    total = total + m * crossed(values(at - point), a)
-            along = values(history.rotations[place.frame]).T @ total
+                    total = total + m * crossed(at_instant(at - point), a)
+            along = at_instant(history.rotations[place.frame]).T @ total
             return dict(zip((f"rate_absolute_{axis}" for axis in "xyz"), along, strict=True))
 
     def rate(self, name: str) -> Any:

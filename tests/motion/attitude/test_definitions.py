@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.check.attitudes import definitions
+from derive.check.attitudes import attitude_definitions
 from derive.check.compiler import find_compiler
 from derive.check.emitted import Emitted, Files, loaded
 from derive.emit.files import scene_files
@@ -32,7 +32,7 @@ def both(tmp_path_factory: pytest.TempPathFactory) -> list[Emitted]:
 
 @pytest.mark.parametrize("place", [0, 1], ids=["f32", "f64"])
 def test_every_formula_is_what_its_name_means(both: list[Emitted], place: int) -> None:
-    found = list(definitions(both[place]))
+    found = list(attitude_definitions(both[place]))
     assert {v.function for v in found} == set(ATTITUDES)
     assert [v for v in found if v.outcome != "holds"] == []
 
@@ -48,7 +48,7 @@ def test_a_component_with_the_other_sign_is_noticed(both: list[Emitted], compone
         return function
 
     spoilt = replace(both[1], functions={name: other(name) for name in ATTITUDES})
-    assert {v.function for v in definitions(spoilt) if v.outcome != "FAILS"} == set()
+    assert {v.function for v in attitude_definitions(spoilt) if v.outcome != "FAILS"} == set()
 
 
 def test_a_sum_with_the_other_sign_is_noticed(both: list[Emitted]) -> None:
@@ -57,7 +57,7 @@ def test_a_sum_with_the_other_sign_is_noticed(both: list[Emitted]) -> None:
         for place in _sums_that_are_results(program)[:1]:
             alone = replace(both[1].library, motions=(program,), functions=())
             functions = {program.name: _swapped(program, place)}
-            (verdict,) = definitions(replace(both[1], library=alone, functions=functions))
+            (verdict,) = attitude_definitions(replace(both[1], library=alone, functions=functions))
             missed += [program.name] if verdict.outcome != "FAILS" else []
             count += 1
     assert missed == []
