@@ -31,7 +31,7 @@ def fresh(
 
     told : is called with a sentence as samples are done
     """
-    said = {(m.function, m.precision, m.output): m.worst for m in stated}
+    said = {(m.function, m.precision, m.output): m.within for m in stated}
     for precision in PRECISIONS:
         of = Sampled(library, precision)
         found: list[Worst] = []

@@ -171,6 +171,7 @@ def _error(program: Program, figures: Sequence[Measurement]) -> dict[str, Any]:
         if m.function == program.name:
             found.setdefault(m.precision, {})[m.output] = {
                 "median_ulp": m.median,
+                "largest_within_ulp": m.within,
                 "largest_ulp": m.worst,
                 "worst_sample": m.sample,
                 "worst_kind": m.kind,

@@ -223,6 +223,8 @@ def read_by(program: Program) -> set[str]:
 class Measurement:
     """The error of one output of one function in one precision, in u of what it is counted in.
 
+    within                  : the largest at samples of the declared ranges
+    worst                   : the largest of all, at bodies and motions outside them too
     sample, kind            : number of the worst sample, and which kind of sample it is
     samples, searched, hard : how many were drawn on the ranges, searched from the worst, and hard
     """
@@ -231,6 +233,7 @@ class Measurement:
     precision: str
     output: str
     median: float
+    within: float
     worst: float
     sample: int
     kind: str

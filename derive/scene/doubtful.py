@@ -46,8 +46,8 @@ def _beyond(machine: Scene) -> Iterator[str]:
             if found and not any(float(m.low) <= x <= float(m.high) for x in found):
                 declared = f"[{float(m.low):g}, {float(m.high):g}]"
                 yield (
-                    f"linearised.{m.name} is {found[0]:.6g}, outside the range of '{m.name}', "
-                    f"{declared}"
+                    f"linearised.{m.name} is {float(found[0]):.6g}, outside the range of "
+                    f"'{m.name}', {declared}"
                 )
 
 

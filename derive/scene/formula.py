@@ -209,7 +209,9 @@ def in_floats(formula: Formula, values: Mapping[str, float]) -> Any:
     """
     found = _tried(formula, values, FLOATS)
     if formula.operator != "number" and (found == 0 or not math.isfinite(found)):
-        return _tried(formula, {name: mpf(x) for name, x in values.items()}, _WIDE)
+        wide = _tried(formula, {name: mpf(x) for name, x in values.items()}, _WIDE)
+        found = float(wide)
+        return found if math.isfinite(found) and (found != 0) == (wide != 0) else wide
     return found
 
 

@@ -128,6 +128,7 @@ def _measurement(function: str, precision: str, output: str, row: Any) -> Measur
         precision,
         output,
         float(row["median_ulp"]),
+        float(row["largest_within_ulp"]),
         float(row["largest_ulp"]),
         int(row["worst_sample"]),
         str(row["worst_kind"]),

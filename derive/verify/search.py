@@ -6,12 +6,13 @@ pairs of doubles see; what is stated is measured at these samples in balls (see 
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 
 import numpy as np
 
 from derive.program.pair_sine import PI
+from derive.program.program import Program
 from derive.verify.columns import Plan, Supplied, arithmetics, found_and_true
 from derive.verify.draw import Dice, Sampled, admitted, complete, drawn, on_the_sphere
 from derive.verify.operators import Column
@@ -42,6 +43,10 @@ class Sampling:
     def searched(self) -> int:
         """Return how many samples of each function the search takes."""
         return self.rounds * self.batch
+
+    def at_hard_bodies(self) -> "Sampling":
+        """Return how widely motions of hard bodies are searched."""
+        return replace(self, batch=max(1, self.batch // 8))
 
 
 SAMPLING = Sampling()
@@ -80,6 +85,11 @@ class Worst:
         self.errors, self.rows = worst[order], every[:, order]
 
 
+def worst_of(program: Program, output: str, height: int) -> Worst:
+    """Return what holds the worst samples of an output, none so far."""
+    return Worst(program.name, output, np.zeros(0), np.zeros((height, 0)), [])
+
+
 def errors_at(of: Sampled, plan: Plan, at: Supplied) -> list[Column]:
     """Return the errors of each measured output: rows by component, columns by sample, in u."""
     by = arithmetics(of.precision.dtype)
@@ -107,9 +117,8 @@ def _apart(gaps: Column, whole: object) -> Column:
 def sampled(of: Sampled, seed: str, count: int, kept: int) -> Iterator[tuple[int, list[Worst]]]:
     """Yield how many samples are done, and the worst so far of each output of each function."""
     dice = Dice(f"derive: {of.library.scene.name} {of.precision.name} {seed}")
-    height = len(of.names)
     best = [
-        Worst(plan.program.name, q.name, np.zeros(0), np.zeros((height, 0)), [])
+        worst_of(plan.program, q.name, len(of.names))
         for plan in of.plans
         for q, _ in measured_outputs(plan.program)
     ]
@@ -126,20 +135,25 @@ def sampled(of: Sampled, seed: str, count: int, kept: int) -> Iterator[tuple[int
         yield done, best
 
 
-def searched(of: Sampled, plan: Plan, best: Sequence[Worst], by: Sampling) -> None:
-    """Look for worse samples of a function from the worst of its outputs on."""
+def searched(of: Sampled, plan: Plan, best: Sequence[Worst], by: Sampling, free: Column) -> None:
+    """Look for worse samples of a function from the worst of its outputs on.
+
+    free : (names,) which components are changed; the others stay, be they in their ranges or not
+    """
     scene, name = of.library.scene.name, plan.program.name
     dice = Dice(f"derive: {scene} {of.precision.name} search {name}")
     for turn in range(by.rounds):
         parents = np.concatenate([own.rows for own in best], axis=1)
         for done in range(0, by.batch, CHUNK):
             count = min(CHUNK, by.batch - done)
-            rows = _changed(of, dice, parents, count, turn / by.rounds)
+            rows = _changed(of, dice, parents, count, turn / by.rounds, free)
             for own, found in zip(best, errors_at(of, plan, complete(of, rows)), strict=True):
                 own.add(found, rows, by.kept)
 
 
-def _changed(of: Sampled, dice: Dice, parents: Column, count: int, share: float) -> Column:
+def _changed(
+    of: Sampled, dice: Dice, parents: Column, count: int, share: float, free: Column
+) -> Column:
     """Return samples beside some of the parents, the nearer the more of the search is done."""
     which = (dice.uniform(count) * parents.shape[1]).astype(int)
     start = parents[:, which]
@@ -149,8 +163,25 @@ def _changed(of: Sampled, dice: Dice, parents: Column, count: int, share: float)
     across = (of.highs - of.lows)[:, None] * reach
     steps = np.where(moved, (2 * dice.uniform(*start.shape) - 1) * across, 0.0)
     rows = np.clip(start + steps, of.lows[:, None], of.highs[:, None])
-    rows = on_the_sphere(of, rows)
+    rows = on_the_sphere(of, np.where(free[:, None], rows, start))
     return np.where(admitted(of, rows), rows, start)
+
+
+def worst_motions(of: Sampled, plan: Plan, at: Column, by: Sampling) -> Column:
+    """Return the samples, of those given and beside them, at which a function is worst.
+
+    at : raw samples, a row a component; their parameters stay, so that hard bodies stay hard
+    """
+    found = errors_at(of, plan, complete(of, at))
+    outputs = measured_outputs(plan.program)
+    best = [worst_of(plan.program, q.name, len(of.names)) for q, _ in outputs]
+    for own, errors in zip(best, found, strict=True):
+        own.add(errors, at, by.kept)
+    fixed = {c for q in of.library.vocabulary.parameters for c in q.components}
+    free = np.array([name not in fixed for name in of.names])
+    if at.shape[1] and free.any():
+        searched(of, plan, best, by, free)
+    return np.concatenate([own.rows for own in best], axis=1)
 
 
 def worst(of: Sampled, by: Sampling) -> list[Worst]:
@@ -159,5 +190,6 @@ def worst(of: Sampled, by: Sampling) -> list[Worst]:
     for _, best in sampled(of, "measured", by.samples, by.kept):  # noqa: B007 - the last is kept
         pass
     for plan in of.plans:
-        searched(of, plan, [own for own in best if own.function == plan.program.name], by)
+        own = [each for each in best if each.function == plan.program.name]
+        searched(of, plan, own, by, np.full(len(of.names), fill_value=True))
     return best

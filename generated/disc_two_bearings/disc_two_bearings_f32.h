@@ -50,7 +50,7 @@ int disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, flo
  * Returned:  couple  N m  (R_up + R_down)*d/2
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of couple; 200000
- *            samples of the ranges, 65536 searched from the worst, 120 hard ones).
+ *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -62,7 +62,7 @@ void disc_two_bearings_couple_f32(const disc_two_bearings_constants_f32 *constan
  * Returned:  R_up  N  along axle  force of B on disc along z
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of R_up; 200000
- *            samples of the ranges, 65536 searched from the worst, 120 hard ones).
+ *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -74,7 +74,8 @@ void disc_two_bearings_R_up_f32(const disc_two_bearings_constants_f32 *constants
  * Returned:  R_down  N  along axle  unknown of the force (A_x, A_y, -R_down) of A on disc
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.22, largest 0.91 u of the largest product or sum in the equation (of R_down;
- *            200000 samples of the ranges, 65536 searched from the worst, 120 hard ones).
+ *            200000 samples of the ranges, 65536 searched from the worst); at 8312 hard samples no
+ *            more.
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.

@@ -56,7 +56,7 @@ int ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, f
  * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
  *            general_form]
  * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of A_roll; 200000
- *            samples of the ranges, 65536 searched from the worst, 114 hard ones).
+ *            samples of the ranges, 65536 searched from the worst); at 114 hard samples no more.
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -71,7 +71,7 @@ void ship_turbine_three_motions_roll_case_f32(const ship_turbine_three_motions_c
  * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
  *            general_form]
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of B_turn; 200000
- *            samples of the ranges, 65536 searched from the worst, 114 hard ones).
+ *            samples of the ranges, 65536 searched from the worst); at 114 hard samples no more.
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -86,7 +86,8 @@ void ship_turbine_three_motions_turn_case_f32(const ship_turbine_three_motions_c
  * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
  *            general_form]
  * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of A_pitch;
- *            200000 samples of the ranges, 65536 searched from the worst, 114 hard ones).
+ *            200000 samples of the ranges, 65536 searched from the worst); at 114 hard samples no
+ *            more.
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -100,8 +101,8 @@ void ship_turbine_three_motions_pitch_case_f32(const ship_turbine_three_motions_
  * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
  *            general_form]
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of
- *            pitch_horizontal_couple; 200000 samples of the ranges, 65536 searched from the worst,
- *            114 hard ones).
+ *            pitch_horizontal_couple; 200000 samples of the ranges, 65536 searched from the
+ *            worst); at 114 hard samples no more.
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.

@@ -53,7 +53,7 @@ int ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, dou
  *            R_B  N  along ship  force of B on rotor along z
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.33, largest 1 u of the largest product or sum in the equation (of R_A; 200000
- *            samples of the ranges, 65536 searched from the worst, 114 hard ones).
+ *            samples of the ranges, 65536 searched from the worst); at 114 hard samples no more.
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -66,8 +66,8 @@ void ship_turbine_turn_port_reactions_f64(const ship_turbine_turn_port_constants
  * Returned:  gyro_moment  N m  a*R_A - b*R_B
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Error: median 0.045, largest 0.65 u of the largest product or sum in the equation (of
- *            gyro_moment; 200000 samples of the ranges, 65536 searched from the worst, 114 hard
- *            ones).
+ *            gyro_moment; 200000 samples of the ranges, 65536 searched from the worst); at 114
+ *            hard samples no more.
  * Cost: no operations.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.

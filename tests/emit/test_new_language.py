@@ -129,7 +129,7 @@ def test_every_program_of_a_scene_gives_the_same_bits_in_it(name: str, tmp_path:
         }
         found = getattr(module, program.name)(given)
         assert found == pytest.approx(ends(program, given), rel=0, abs=0, nan_ok=True)
-        given |= {c: found[c] for q in program.outputs if q.role != "value" for c in q.components}
+        given |= {c: found[c] for q in program.outputs if not q.is_value for c in q.components}
 
 
 @pytest.mark.parametrize("x", [-0.75, 0.25, 1.0])

@@ -32,7 +32,7 @@ moments = ["l", "l", "T"]
 def figures(of: Library) -> tuple[Measurement, ...]:
     """Return figures for every output, as if they had been measured."""
     return tuple(
-        Measurement(p.name, precision, q.name, 0.5, 3.25, 7, "found", 48, 0, 0)
+        Measurement(p.name, precision, q.name, 0.5, 3.25, 3.25, 7, "found", 48, 0, 0)
         for p in of.printed()
         for precision in ("f32", "f64")
         for q in p.outputs

@@ -131,7 +131,7 @@ def constants_of(lib: Library) -> dict[str, float]:
 def special(program: Program) -> list[tuple[dict[str, float], list[str]]]:
     """Return states with one quantity, or two of one component, at 0: found by their own loop."""
     dice = Random(program.name[::-1])
-    free = [q for q in program.inputs if q.role in ("value", "plan")]
+    free = [q for q in program.inputs if q.is_value or q.role == "plan"]
     found = []
     single = [[q] for q in free]
     scalars = [q for q in free if not q.shape]

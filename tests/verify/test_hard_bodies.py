@@ -1,6 +1,8 @@
 """Hard bodies are found for every scene by its parameters, in whatever form it was written."""
 
+import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,14 +12,18 @@ from derive.library.library import Library, library
 from derive.mechanics.mechanism import mechanism
 from derive.program.largest import largest
 from derive.program.precision import F32, F64, PRECISIONS, Precision
-from derive.scene import Scene, load, parse_scene
+from derive.scene import Scene, catalogue, load, parse_scene
 from derive.verify.draw import Sampled
 from derive.verify.hard_bodies import BODIES, solvable
-from derive.verify.sample import Sample, samples
-from derive.verify.stated import at_samples
+from derive.verify.kept import stated_figures
+from derive.verify.sample import Sample, Samples, samples
+from derive.verify.scale import with_values
+from derive.verify.search import Sampling
+from derive.verify.stated import at_samples, figures
 from tests.made import library_of, scene_of
 
 LONG = Path(__file__).parents[1] / "data" / "long_form"
+GENERATED = Path(__file__).parents[2] / "generated"
 KINDS = {hard.kind for hard in BODIES}
 FORMS = sorted(path.stem for path in LONG.glob("*.toml"))
 ALIKE = 2.0
@@ -164,3 +170,36 @@ def test_what_parameters_can_make_of_a_machines_body_is_made(body: str) -> None:
     assert {s.kind for s in one} == expected
     assert all(is_of_kind(s.kind, tensor(body, s.values)) for s in one)
     assert all(solvable(scene, s.values) for s in hard(scene, F32, 2))
+
+
+ROTOR = "unsymmetrical_rotor_in_carrier_axes"
+FEW = Sampling(samples=64, rounds=8, batch=1024, balls=1, motion_balls=1)
+FRESH = 1.5
+"""Bodies of a kind differ: the worst motion of some others errs by so much more than was found."""
+
+
+def test_the_worst_motion_of_a_hard_body_is_searched_for() -> None:
+    made = library_of(ROTOR)
+    searched, not_searched = (
+        {m.output: m for m in figures(made, by) if m.precision == "f64"}
+        for by in (FEW, replace(FEW, rounds=0))
+    )
+    for output in ("moment", "angular_momentum"):
+        assert searched[output].worst > 100 * not_searched[output].worst, output
+        assert searched[output].kind == "thin rod"
+        assert searched[output].within < 100
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", catalogue())
+def test_other_hard_bodies_err_by_no_more_than_is_stated(name: str) -> None:
+    made = library_of(name)
+    text = (GENERATED / name / f"{name}.json").read_text(encoding="utf-8")
+    every = stated_figures(json.loads(text))
+    said = {(m.function, m.output): m for m in every if m.precision == "f64"}
+    of, each = Sampled(made, F64), hard(made.scene, F64, 24)
+    each = with_values(of, Samples(each, ())).each
+    for program in made.functions if each else ():
+        for found in at_samples(of, program, each):
+            limit = said[program.name, found.output].worst
+            assert largest(found.largest()) <= FRESH * max(STILL, limit), (program.name, limit)

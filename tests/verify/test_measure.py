@@ -26,16 +26,19 @@ from tests.made import library_of, thinned
 
 GENERATED = Path(__file__).parents[2] / "generated"
 LARGEST = 30.0
-"""In u: what a function keeps wherever the search has been."""
+"""In u: what a function keeps within the declared ranges, wherever the search has been, and at hard
+samples too."""
 RARE = {
-    ("rigid_body_steps", "step_rk4", "f64"): 400.0,
-    ("unsymmetrical_rotor_in_carrier_axes", "moment_jacobian", "f64"): 1000.0,
-    ("unsymmetrical_rotor_in_carrier_axes", "angular_momentum", "f64"): 2000.0,
-    ("unsymmetrical_rotor_in_carrier_axes", "angular_momentum", "f32"): 100.0,
+    ("rigid_body_steps", "step_rk4"): 1e4,
+    ("unsymmetrical_rotor_in_carrier_axes", "moment"): 3e6,
+    ("unsymmetrical_rotor_in_carrier_axes", "moment_jacobian"): 3e6,
+    ("unsymmetrical_rotor_in_carrier_axes", "angular_momentum"): 3e6,
+    ("unsymmetrical_rotor_in_carrier_axes", "angular_momentum_rate"): 3e6,
 }
-"""A rod of condition 1e12, of which a step magnifies what is rounded within it; a thin rod turned
-in its axes, whose moment is I_yy - (I_yy - I_zz) cos^2 in the fewest operations: beside an angle
-where it all but vanishes the largest product is small, and a rod's difference is not."""
+"""At hard samples. A rod of condition 1e9, of which a step magnifies what is rounded within it; a
+thin rod turned in its axes, whose moment is I_yy - (I_yy - I_zz) cos^2 in the fewest operations:
+where it all but vanishes, it is less than the rod's difference by the ratio of its moments, some
+1e6, and three products of it are rounded."""
 ALIKE = 2.5
 """Two searches for the worst of one sum, in two orders of its terms, end so near each other."""
 FEW = Sampling(samples=256, rounds=2, batch=64, balls=2, corners=1)
@@ -53,7 +56,8 @@ def test_stated_errors_are_small_and_looked_for_widely(name: str) -> None:
     for m in committed(name):
         assert (m.samples, m.searched) == (SAMPLING.samples, SAMPLING.searched())
         assert m.median <= MEDIAN_BOUND
-        assert m.worst <= RARE.get((name, m.function, m.precision), LARGEST)
+        assert m.within <= LARGEST
+        assert m.within <= m.worst <= RARE.get((name, m.function), LARGEST)
 
 
 @pytest.mark.parametrize("precision", ["f32", "f64"])

@@ -39,7 +39,7 @@ def test_fresh_samples_keep_the_stated_errors(measured):
 def test_a_figure_below_two_thirds_of_what_samples_find_is_noticed(measured):
     seen = worst(Sampled(library_of(SCENE), F32), replace(FEW, samples=4096, rounds=0))
     found = max(w.errors[0] for w in seen if w.function == "kinetic_energy")
-    lowered = [replace(m, worst=0.65 * found) if m.function == "kinetic_energy" else m
+    lowered = [replace(m, within=0.65 * found) if m.function == "kinetic_energy" else m
                for m in measured]  # fmt: skip
     failed = {
         (row.function, row.precision)
@@ -51,7 +51,7 @@ def test_a_figure_below_two_thirds_of_what_samples_find_is_noticed(measured):
 
 
 def test_a_figure_that_is_missing_or_absurd_fails(measured):
-    absurd = [replace(m, worst=9e15) if m.function == "kinetic_energy" else m for m in measured]
+    absurd = [replace(m, within=9e15) if m.function == "kinetic_energy" else m for m in measured]
     one = [row for row in fresh(library_of(SCENE), absurd, 64, told) if row.outcome == "FAILS"]
     assert {row.function for row in one} == {"kinetic_energy"}
     assert all("it must be below 1e+06 u" in row.says for row in one)

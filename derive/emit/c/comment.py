@@ -10,8 +10,6 @@ from derive.program.program import Measurement, Program, Quantity, Singular
 from derive.program.status import possible
 from derive.scene.escape import in_comment
 
-WITHIN = ("ordinary", "found")
-"""The kinds of samples that lie in the declared ranges; the others are hard ones."""
 SETUP_ERROR = (
     "each constant is worked out in twice the working precision and rounded once: at most 1 ulp, "
     "unless the sum that it is cancels to less than 16 u of its largest product"
@@ -111,14 +109,22 @@ def _error(program: Program, figures: Sequence[Measurement]) -> str:
     own = [m for m in figures if m.function == program.name]
     if not own:
         return "not measured."
-    worst = max(own, key=lambda m: m.worst)
-    median = max(m.median for m in own)
-    at = "" if worst.kind in WITHIN else f" at a hard sample, {worst.kind}"
-    return (
-        f"median {median:.2g}, largest {worst.worst:.2g} u {of_what(program)} (of {worst.output}"
-        f"{at}; {worst.samples} samples of the ranges, {worst.searched} searched from the worst, "
-        f"{worst.hard} hard ones)."
+    most = max(own, key=lambda m: m.within)
+    text = (
+        f"median {max(m.median for m in own):.2g}, largest {most.within:.2g} u {of_what(program)}"
+        f" (of {most.output}; {most.samples} samples of the ranges, {most.searched} searched from"
+        f" the worst)"
     )
+    return f"{text}{_at_hard_samples(most, max(own, key=lambda m: m.worst))}."
+
+
+def _at_hard_samples(within: Measurement, worst: Measurement) -> str:
+    """Return what is found beyond the ranges, at bodies and motions that are hard to compute."""
+    if not worst.hard:
+        return ""
+    more = worst.worst > within.within
+    found = f"{worst.worst:.2g} u (of {worst.output}, {worst.kind})" if more else "no more"
+    return f"; at {worst.hard} hard samples {found}"
 
 
 def of_what(program: Program) -> str:
