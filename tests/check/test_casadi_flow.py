@@ -22,6 +22,7 @@ from derive.scene import load, parse_scene
 from derive.verify.draw import with_motion
 from derive.verify.sample import samples
 from tests.check.test_casadi_inlined import called_with_sx, expanded
+from tests.made import thinned
 
 SAME = 1e-9
 """Relative: the same formulas, simplified or not; second derivatives are sums of large terms."""
@@ -56,7 +57,7 @@ def made(name: str) -> tuple[Library, ModuleType]:
 
 
 @pytest.mark.parametrize("function", ["flow_exact", "plan_dmv"])
-@pytest.mark.parametrize("name", [*BODIES, "tumbling_disc"])
+@pytest.mark.parametrize("name", thinned([*BODIES, "tumbling_disc"], 2))
 def test_no_slope_is_wrong_or_lost(name: str, function: str) -> None:
     """At rest, about and beside each axis, for no time, with equal moments, and elsewhere."""
     found, module = made(name)

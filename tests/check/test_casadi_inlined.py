@@ -26,6 +26,7 @@ from derive.program.precision import F64
 from derive.scene import load, parse_scene
 from derive.verify.draw import with_motion
 from derive.verify.sample import samples
+from tests.made import thinned
 
 U = 2.0**-53
 LAST = 2 * U  # of each constant: its own rounding, once here and once there
@@ -173,7 +174,7 @@ def inlined_rows(name: str, old: str, new: str) -> list[str]:
     return [v.outcome for v in inlined(found, module(text.replace(old, new), name), given)]
 
 
-@pytest.mark.parametrize("name", ["free_body", "steps", "attitude", "tumbling_disc"])
+@pytest.mark.parametrize("name", thinned(["free_body", "steps", "attitude", "tumbling_disc"], 2))
 def test_every_function_is_the_same_where_it_is_called_with_sx(name: str) -> None:
     assert set(inlined_rows(name, "", "")) == {"holds"}
 

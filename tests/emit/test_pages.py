@@ -62,7 +62,7 @@ def places(text: str) -> list[str]:
 NAMES = ("lecture", *catalogue())
 
 
-@pytest.mark.parametrize("name", thinned(NAMES, 4))
+@pytest.mark.parametrize("name", thinned(NAMES, 8))
 def test_a_page_is_complete_well_formed_and_without_scripts(name: str) -> None:
     root = parsed(page(name))
     tags = {element.tag.split("}")[1] for element in root.iter()}
@@ -72,7 +72,7 @@ def test_a_page_is_complete_well_formed_and_without_scripts(name: str) -> None:
     assert "http" not in re.sub(r'xmlns="[^"]*"', "", page(name))
 
 
-@pytest.mark.parametrize("name", thinned(NAMES, 4))
+@pytest.mark.parametrize("name", thinned(NAMES, 8))
 def test_every_link_leads_to_a_place_that_is_there(name: str) -> None:
     own, lecture = places(page(name)), places(page("lecture"))
     assert len(own) == len(set(own))

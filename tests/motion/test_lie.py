@@ -18,7 +18,7 @@ from tests.motion.test_step_jacobian import EXACTLY, case, rounding, worst
 QUATERNIONS = ("principal", "rigid_body", "hung")
 
 
-@pytest.mark.parametrize("name", QUATERNIONS)
+@pytest.mark.parametrize("name", thinned(QUATERNIONS, 3))
 def test_the_order_is_four(name: str) -> None:
     given, values = case(name)
     # an order is a limit: at h = T/16 the next power still has a few per cent

@@ -80,7 +80,7 @@ def sentence(document: Any, name: str, text: str) -> str:
     return ""
 
 
-@pytest.mark.parametrize("name", thinned(SCENES, 4))
+@pytest.mark.parametrize("name", thinned(SCENES, 12))
 def test_a_refusal_repeats_the_value_found(name: str) -> None:
     assert silent(name) == []
 

@@ -20,7 +20,7 @@ from derive.verify.sample import Sample, Samples, samples
 from derive.verify.scale import with_values
 from derive.verify.search import Sampling
 from derive.verify.stated import at_samples, figures
-from tests.made import library_of, scene_of
+from tests.made import library_of, scene_of, thinned
 
 LONG = Path(__file__).parents[1] / "data" / "long_form"
 GENERATED = Path(__file__).parents[2] / "generated"
@@ -76,7 +76,7 @@ def test_errors_at_hard_bodies_are_the_same_in_either_form(name: str) -> None:
         assert max(one, other) <= ALIKE * max(STILL, min(one, other)), (function, one, other)
 
 
-@pytest.mark.parametrize("name", FORMS)
+@pytest.mark.parametrize("name", thinned(FORMS, 3))
 @pytest.mark.parametrize("precision", PRECISIONS, ids=lambda p: p.name)
 def test_no_sample_has_masses_lengths_or_moments_that_set_up_refuses(
     name: str, precision: Precision

@@ -82,6 +82,7 @@ def test_every_output_of_every_function_is_stated_in_both_precisions(name: str) 
     assert {(m.function, m.output, m.precision) for m in committed(name)} == wanted
 
 
+@pytest.mark.long
 def test_figures_are_the_same_every_time() -> None:
     assert figures(library_of("heavy_top"), FEW) == figures(library_of("heavy_top"), FEW)
 

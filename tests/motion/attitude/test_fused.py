@@ -17,6 +17,7 @@ from derive.emit.c.text import body
 from derive.motion.attitude.functions import FUNCTIONS
 from derive.program.precision import F32, F64, Precision
 from derive.program.program import Op, Program, Quantity
+from tests.made import thinned
 from tests.motion.attitude import cases, truth
 from tests.motion.attitude.measured import PRECISIONS, error, program, promise
 from tests.motion.attitude.truth import plain
@@ -77,7 +78,7 @@ SAMPLES = {
 
 
 @pytest.mark.parametrize("dtype", PRECISIONS)
-@pytest.mark.parametrize("name", SAMPLES)
+@pytest.mark.parametrize("name", thinned(SAMPLES, 3))
 def test_a_fused_formula_keeps_its_promise(name, dtype, library):
     true, samples = SAMPLES[name]
     one = program(f"quaternion_{name}")
