@@ -191,6 +191,13 @@ def test_the_worst_motion_of_a_hard_body_is_searched_for() -> None:
 
 
 @pytest.mark.long
+def test_the_accurate_form_errs_by_two_roundings_at_most_at_hard_bodies_too() -> None:
+    head, tables = load(ROTOR).text.split("\n[", 1)
+    made = library(parse_scene(f'{head}\nform = "accurate"\n[{tables}', "rotor"))
+    assert all(m.worst <= 2.0 for m in figures(made, replace(FEW, batch=4096)))
+
+
+@pytest.mark.long
 @pytest.mark.parametrize("name", catalogue())
 def test_other_hard_bodies_err_by_no_more_than_is_stated(name: str) -> None:
     made = library_of(name)
