@@ -1,10 +1,11 @@
 """Emitted files in, rows of evidence out: everything that is checked of a scene.
 
 C is compiled with warnings as errors, loaded, and compared with its programs, with CasADi, with
-the reference, and with laws of mechanics. Nothing is left out silently: a check that a scene
-cannot take is a row that says why.
+the reference, and with laws of mechanics. Nothing is left out silently: a check that is not made
+is a row that says why.
 """
 
+import shlex
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -19,7 +20,16 @@ from derive.check.agreement import (
 from derive.check.attitudes import attitude_definitions
 from derive.check.compiler import Compiler, CompilerError, find_compiler
 from derive.check.derivatives import derivatives
-from derive.check.emitted import Emitted, Files, casadi_module, files, is_double, loaded, verdict
+from derive.check.emitted import (
+    Emitted,
+    Files,
+    casadi_module,
+    files,
+    is_double,
+    loaded,
+    sampling_of,
+    verdict,
+)
 from derive.check.energy import emitted_balance, energy_balance
 from derive.check.fresh import fresh
 from derive.check.inlined import inlined
@@ -31,13 +41,23 @@ from derive.check.turned import turned_axes
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library, library
 from derive.scene import load
+from derive.scene.escape import visible
 from derive.verify.draw import Sampled, with_motion
 from derive.verify.kept import stated_figures
 from derive.verify.prove import ProofError, prove
 from derive.verify.sample import Sample, samples
 from derive.verify.scale import with_values
+from derive.verify.search import SAMPLING
 
 ORDINARY, CORNERS, FEW, TWO = 300, 6, 8, 2
+REASONS = {
+    "large spin": "nothing that varies is in rad/s",
+    "denormal": "parts of steps fall below the smallest float",
+    "half turn": "no quaternion enters",
+    "gimbal": "no coordinate enters by itself",
+}
+"""Why a kind of samples is not drawn."""
+NO_PARAMETERS = "none with values was found"
 
 
 def check(
@@ -54,8 +74,8 @@ def check(
     for source in sources:
         made = library(load(source))
         with TemporaryDirectory(prefix="derive-") as workshop:
-            found = files(made, folder)
-            yield as_made(made, found)
+            found = files(made, folder, sampling_of(folder, made.scene.name))
+            yield as_made(made, found, source)
             yield from check_library(made, found, Path(workshop), with_, ORDINARY)
             yield from fresh(made, stated_figures(found.manifest), samples, told)
 
@@ -80,14 +100,19 @@ def check_library(
         yield Verdict(name, "all", "", "compiles without warnings", "FAILS", str(error))
 
 
-def as_made(made: Library, found: Files) -> Verdict:
-    """Return whether the files that lie there are what the scene makes."""
+def as_made(made: Library, found: Files, source: str) -> Verdict:
+    """Return whether the files that lie there are what the scene makes.
+
+    source : what the user named the scene by, for the command that makes them
+    """
     name, check_ = made.scene.name, "lies as it is made"
     if found.origin == "made in memory":
         return Verdict(name, "all", "", check_, "skipped", "no files of the scene lie there")
-    says = f"{found.origin}: as made"
+    few = ["--samples", str(found.samples)] if found.samples != SAMPLING.samples else []
+    says = " ".join([f"{found.origin}: as made", *(["by", *few] if few else [])])
     if found.differ:
-        says = f"not as made: {', '.join(found.differ)}; run `derive generate {name}`"
+        command = visible(shlex.join(["derive", "generate", source, *few]))
+        says = f"not as made: {', '.join(found.differ)}; run `{command}`"
     return Verdict(name, "all", "", check_, JUDGED[not found.differ], says)
 
 
@@ -116,7 +141,7 @@ def interface(made: Library, found: Files) -> Verdict:
         given = {a["name"]: a["components"] for a in described.get(program.name, ())}
         given.pop("constants", None)
         if meant != given:
-            says = f"{program.name}: not as in the JSON; run `{found.manifest['command']}`"
+            says = f"{program.name}: not as in the JSON"
     outcome = JUDGED[not says]
     says = says or f"{len(described)} functions"
     return Verdict(name, "all", "", "describes the scene's functions", outcome, says)
@@ -151,9 +176,14 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
         yield from emitted_balance(one, plain[:TWO])
         yield from turned_axes(one, few, stated)
     if drawn.skipped:
-        kinds = ", ".join(drawn.skipped)
-        says = f"{len(drawn.skipped)} kinds that the scene cannot take: {kinds}"
-        yield verdict(one, "all", "hard corners", "skipped", says)
+        yield verdict(one, "all", "hard corners", "skipped", not_drawn(drawn.skipped))
+
+
+def not_drawn(kinds: Sequence[str]) -> str:
+    """Return a sentence on kinds of samples that are not tried, with the reason of each."""
+    each = "; ".join(f"{kind} ({REASONS.get(kind, NO_PARAMETERS)})" for kind in kinds)
+    count = "1 kind is" if len(kinds) == 1 else f"{len(kinds)} kinds are"
+    return f"{count} not tried: {each}"
 
 
 def spread(each: Sequence[Sample]) -> tuple[Sample, ...]:

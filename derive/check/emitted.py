@@ -17,10 +17,13 @@ from derive.emit.files import differences, scene_files
 from derive.library.library import Library
 from derive.program.precision import F64, PRECISIONS, Precision
 from derive.program.program import Program
-from derive.verify.kept import Measuring, figures_of
+from derive.verify.kept import Measuring, figures_of, stated_figures
 from derive.verify.measure import Errors, Expected, errors
 from derive.verify.sample import Sample
-from derive.verify.search import SAMPLING, Sampling
+from derive.verify.search import SAMPLING, Sampling, sampled_at
+
+SAMPLES = range(1, 10**9 + 1)
+"""How many samples may be asked for: a billion takes days."""
 
 
 @dataclass(frozen=True)
@@ -28,11 +31,13 @@ class Files:
     """The texts of a scene's files by name, and where they are from.
 
     differ : files that lie there and are not what the scene makes
+    samples : of the ranges, that each stated error was looked for at
     """
 
     texts: Mapping[str, str]
     origin: str
     differ: tuple[str, ...] = ()
+    samples: int = SAMPLING.samples
 
     @property
     def manifest(self) -> Mapping[str, Any]:
@@ -88,7 +93,20 @@ def inputs(
     }
 
 
-def files(library: Library, folder: Path, sampling: Sampling = SAMPLING) -> Files:
+def sampling_of(folder: Path, name: str) -> Sampling:
+    """Return how widely the JSON of a scene says that its errors were looked for.
+
+    It is the usual one where no JSON lies there, or one that says no such thing.
+    """
+    try:
+        text = (folder / name / f"{name}.json").read_text(encoding="utf-8")
+        said = {m.samples for m in stated_figures(json.loads(text))}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return SAMPLING
+    return sampled_at(*said) if len(said) == 1 and min(said) in SAMPLES else SAMPLING
+
+
+def files(library: Library, folder: Path, sampling: Sampling) -> Files:
     """Return a scene's files, made in memory: what lies below ``folder`` is compared, never run.
 
     Only figures are taken over from there, by the digest of all that they depend on.
@@ -99,9 +117,9 @@ def files(library: Library, folder: Path, sampling: Sampling = SAMPLING) -> File
     texts = {path.partition("/")[2]: text for path, text in made.items()}
     own = {file: text for file, text in texts.items() if not file.endswith(".html")}
     if not (folder / name).is_dir():
-        return Files(own, "made in memory")
+        return Files(own, "made in memory", (), sampling.samples)
     found = tuple(difference.name for difference in differences(folder, made))
-    return Files(own, f"{folder / name}", found)
+    return Files(own, f"{folder / name}", found, sampling.samples)
 
 
 def loaded(library: Library, found: Files, workshop: Path, with_: Compiler) -> Iterator[Emitted]:

@@ -5,6 +5,7 @@ import argparse
 from rich.table import Table
 
 from derive.check import check as verdicts_on
+from derive.command.generation import require_posed
 from derive.command.scenes import samples_argument, scene_argument
 from derive.command.terminal import OUT, console, progress
 from derive.scene import catalogue
@@ -22,6 +23,7 @@ def options(command: argparse.ArgumentParser) -> None:
 
 def check(given: argparse.Namespace) -> int:
     """Compile the emitted files and compare them with ball arithmetic and with each other."""
+    require_posed(given.scenes)
     table = Table("scene", "function", "in", "check", "verdict", "found", box=None)
     found: list[str] = []
     with progress() as shown:

@@ -15,6 +15,7 @@ from derive.command.generation import (
     lecture_made,
     made,
     made_with_savings,
+    require_posed,
 )
 from derive.command.scenes import samples_argument, scene_argument
 from derive.command.terminal import OUT, complain, console, error_console, progress
@@ -79,8 +80,10 @@ def generate(given: argparse.Namespace) -> int:
 def _mended(folder: Path, stopped: Sequence[str]) -> str:
     """Return what is to be said of files that a run before this one was replacing."""
     says = f"derive: a run before this one was stopped while it replaced {len(stopped)} files"
-    left = len(unfinished(folder))
-    more = f"{left} are still to be made: run `derive generate`" if left else "all are new now"
+    left = unfinished(folder)
+    owners = ", ".join(dict.fromkeys(name.partition("/")[0] for name in left))
+    still = f"{len(left)} are still to be made: generate again {owners}"
+    more = still if left else "all are new now"
     return f"{says}; {more}"
 
 
@@ -90,6 +93,7 @@ def made_of(
     """Return what scenes become, none meaning all, and what is made also; print the warnings."""
     sources = [str(source) for source in scenes or catalogue()]
     _distinct(sources)
+    require_posed(scenes)
     tasks: list[Callable[[], Made]] = [*(partial(making, source) for source in sources), *also]
     found: dict[int, Made] = {}
     with progress() as shown:

@@ -3,7 +3,9 @@
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, replace
+from functools import partial
 from math import isfinite
+from typing import TypeVar
 
 from derive.emit.files import scene_files
 from derive.emit.gallery.card import Card, card, gallery
@@ -16,6 +18,7 @@ from derive.verify.kept import Measuring, figures_of
 from derive.verify.prove import prove
 from derive.verify.reference import NoValueError
 
+T = TypeVar("T")
 LECTURE_PAGE = "lecture.html"
 GALLERY_PAGE = "index.html"
 LARGEST_FLOAT = (2 - 2.0**-23) * 2.0**127
@@ -52,6 +55,17 @@ def made_with_savings(source: str, measuring: Measuring) -> Made:
     """Return everything that a scene becomes, and what its functions were spared."""
     programs = library(load(source))
     return replace(_made(programs, measuring), savings=tuple(savings(programs)))
+
+
+def require_posed(scenes: Sequence[str]) -> None:
+    """Refuse any of several scenes that can have no programs, before one of them is measured."""
+    if len(scenes) > 1:
+        for _ in all_made([partial(_posed, source) for source in scenes]):
+            pass
+
+
+def _posed(source: str) -> None:
+    _ranges_of_floats(library(load(source)))
 
 
 def _made(programs: Library, measuring: Measuring) -> Made:
@@ -125,12 +139,15 @@ def _errors(function: str, measured: Sequence[Measurement]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def all_made(tasks: Sequence[Callable[[], Made]]) -> Iterator[tuple[int, Made]]:
-    """Yield place and result of every task, as they are done."""
+def all_made(tasks: Sequence[Callable[[], T]]) -> Iterator[tuple[int, T]]:
+    """Yield place and result of every task, as they are done; after a refusal none is begun."""
     if len(tasks) == 1:
         yield 0, tasks[0]()
         return
     with ProcessPoolExecutor() as pool:
         waiting = {pool.submit(task): place for place, task in enumerate(tasks)}
-        for future in as_completed(waiting):
-            yield waiting[future], future.result()
+        try:
+            for future in as_completed(waiting):
+                yield waiting[future], future.result()
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)

@@ -4,8 +4,10 @@ import argparse
 
 from rich.table import Table
 
+from derive.check.emitted import SAMPLES
 from derive.command.terminal import console
 from derive.scene import catalogue, load
+from derive.scene.escape import brief, visible
 
 
 def options(command: argparse.ArgumentParser) -> None:
@@ -31,17 +33,19 @@ def list_scenes(_: argparse.Namespace) -> int:
 
 
 def samples_argument(command: argparse.ArgumentParser, default: int, says: str) -> None:
-    """Let a command be told how many samples to take, at least one."""
+    """Let a command be told how many samples to take."""
     command.add_argument(
         "--samples",
-        type=_positive,
+        type=_samples,
         default=default,
         metavar="N",
         help=f"{says} (default: {default})",
     )
 
 
-def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"must be a whole number above zero, not '{text}'")
+def _samples(text: str) -> int:
+    digits = len(str(SAMPLES[-1]))
+    if not text.isdecimal() or len(text) > digits or int(text) not in SAMPLES:
+        rule = f"must be a whole number above zero, up to {SAMPLES[-1]}"
+        raise argparse.ArgumentTypeError(f"{rule}, not '{brief(visible(text))}'")
     return int(text)

@@ -84,9 +84,13 @@ def _symbols(library: Library, function: str, casadi: str | None) -> dict[str, A
 
 
 def _argument(q: Quantity, direction: str, alone: str) -> dict[str, Any]:
-    """Return an argument; ``alone`` is the type of one that is a single number."""
+    """Return an argument; ``alone`` is the type of one that is a single number.
+
+    No range is declared of what a function gives: only of what it is sampled on.
+    """
     kind = "struct" if q.role == "constants" else "array" if q.shape else alone
-    return {"name": q.name, "direction": direction, "type": kind} | _quantity(q)
+    own = _quantity(q) | ({"range": None} if direction == "out" else {})
+    return {"name": q.name, "direction": direction, "type": kind} | own
 
 
 def _arguments(program: Program) -> list[dict[str, Any]]:

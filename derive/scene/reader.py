@@ -174,11 +174,12 @@ def _made(
 def _unused(scalars: Scalars, source: str) -> tuple[str, ...]:
     """Return a sentence for every scalar whose name, or rate, the file never mentions again."""
     words = Counter(re.findall(r"[A-Za-z][A-Za-z0-9_]*", source))
-    entries = [("parameter", p.name, 1) for p in scalars.parameters]
-    entries += [(m.kind, m.name, 0 if m.vector else 1) for m in scalars.moving]
+    entries = [(f"parameter '{p.name}' is not used", p.name, 1) for p in scalars.parameters]
+    entries += [(f"no formula uses {m.kind} '{m.name}'", m.name, 0 if m.vector else 1)
+                for m in scalars.moving]  # fmt: skip
     return tuple(
-        f"{kind} '{name}' is not used"
-        for kind, name, declared in entries
+        says
+        for says, name, declared in entries
         if words[name] == declared and not words[f"{name}_dot"] + words[f"{name}_ddot"]
     )
 

@@ -119,6 +119,8 @@ def _entry(entry: object, known_: Sequence[str]) -> tuple[str, tuple[str, ...]]:
     alone = name if name in OF_MACHINES else name.removesuffix(JACOBIAN)
     answers = tuple(p.strip() for p in parts.split(",")) if colon else (alone,)
     for answer in answers:
+        if answers.count(answer) > 1:
+            raise SceneError(f"wanted '{brief(name)}' gives '{brief(answer)}' twice")
         if colon and answer in OF_MACHINES:
             rule = f"within '{brief(name)}', but a step stands alone"
             raise SceneError(f"wanted has '{answer}' {rule}")
@@ -127,7 +129,9 @@ def _entry(entry: object, known_: Sequence[str]) -> tuple[str, tuple[str, ...]]:
             raise SceneError(f"wanted has 'steady' {rule}")
         if answer not in known_ or (answer != name and answer in OF_MACHINES):
             hint = resembling(answer, known_)
-            shown_ = answer if colon else name
+            shown_, base = answer if colon else name, answer.removesuffix(JACOBIAN)
+            if colon and base != answer and base in known_:
+                hint = f"; derivatives are asked for by the name, '{brief(name)}{JACOBIAN}: {base}'"
             raise SceneError(f"wanted has '{brief(shown_)}', which is no answer{hint}")
     return name, answers
 

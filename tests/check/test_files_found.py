@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from derive.check import as_made
-from derive.check.emitted import Files, files
+from derive.check.emitted import Files, files, sampling_of
 from derive.emit.files import scene_files, write
-from derive.verify.search import Sampling
+from derive.verify.search import SAMPLING, Sampling, sampled_at
 from tests.made import library_of
 
 NAME = "free_body_principal"
@@ -40,7 +40,7 @@ def test_what_lies_there_is_compared_and_never_run(folder: Path, found: Files, e
     again = files(library_of(NAME), folder, FEW)
     assert again.texts == found.texts
     assert f"{NAME}/{NAME}{ending}" in again.differ
-    verdict = as_made(library_of(NAME), again)
+    verdict = as_made(library_of(NAME), again, NAME)
     assert verdict.outcome == "FAILS"
     assert f"{NAME}{ending}" in verdict.says
 
@@ -51,4 +51,25 @@ def test_a_missing_file_is_named(folder: Path) -> None:
 
 
 def test_a_scene_of_which_nothing_lies_there_is_skipped(found: Files) -> None:
-    assert as_made(library_of(NAME), found).outcome == "skipped"
+    assert as_made(library_of(NAME), found, NAME).outcome == "skipped"
+
+
+def test_the_command_that_mends_names_the_scene_as_it_was_given(folder: Path) -> None:
+    (folder / NAME / f"{NAME}_f32.h").unlink()
+    again = files(library_of(NAME), folder, sampling_of(folder, NAME))
+    says = as_made(library_of(NAME), again, "my scenes/rotor.toml").says
+    assert says.endswith("run `derive generate 'my scenes/rotor.toml' --samples 64`")
+
+
+def test_files_are_made_again_by_the_samples_that_their_json_states(folder: Path) -> None:
+    by = sampling_of(folder, NAME)
+    assert by == sampled_at(64) != SAMPLING
+    (folder / NAME / f"{NAME}.json").write_text('{"functions": [{"error": 3}]}')
+    assert sampling_of(folder, NAME) == SAMPLING
+
+
+@pytest.mark.parametrize("said", [0, -1, 10**20])
+def test_no_json_asks_for_samples_that_nobody_may_ask_for(folder: Path, said: int) -> None:
+    file = folder / NAME / f"{NAME}.json"
+    file.write_text(file.read_text().replace('"samples": 64,', f'"samples": {said},'))
+    assert sampling_of(folder, NAME) == SAMPLING

@@ -5,10 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from derive.check import check_library
+from derive.check import NO_PARAMETERS, REASONS, check_library, not_drawn
 from derive.check.compiler import find_compiler
 from derive.check.emitted import Files
 from derive.check.verdict import Verdict
+from derive.verify.hard_bodies import BODIES
+from derive.verify.sample import CORNERS
 from tests.check.mutants import printed
 from tests.made import library_of, thinned
 
@@ -46,4 +48,14 @@ def test_a_row_with_nothing_to_compare_says_why(workshop: Path) -> None:
 def test_a_figure_that_no_header_states_is_not_said_to_be_stated(workshop: Path) -> None:
     says = [v.says for v in rows("attitude", workshop) if v.check == "rounding"]
     assert says
-    assert all(s.endswith("the header says nothing") for s in says)
+    assert all(s.endswith("the header as made says nothing") for s in says)
+
+
+def test_kinds_that_are_not_tried_can_be_told_apart_and_each_has_its_reason() -> None:
+    kinds = [*CORNERS, *(hard.kind for hard in BODIES)]
+    count, listed = not_drawn(kinds).split(" not tried: ")
+    each = [part.removesuffix(")").split(" (") for part in listed.split("; ")]
+    assert [kind for kind, _ in each] == kinds
+    assert {kind: why for kind, why in each if why != NO_PARAMETERS} == REASONS
+    assert count == f"{len(kinds)} kinds are"
+    assert not_drawn(kinds[:1]).startswith("1 kind is not tried: ")

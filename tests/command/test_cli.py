@@ -4,13 +4,17 @@ from pathlib import Path
 
 import pytest
 
+from derive.check import as_made
+from derive.check.emitted import files, sampling_of
 from derive.cli import main
 from derive.emit.files import OutputError, folders_left_over, write
 from derive.verify.prove import ProofError
 from derive.verify.reference import NoValueError
+from tests.made import library_of
 
 SCENE = "free_body_principal"
 FEW = ("--samples", "256")
+FEWER = " ".join(FEW)
 
 
 @pytest.fixture(scope="module")
@@ -18,6 +22,13 @@ def made(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("made")
     assert main(["generate", *FEW, SCENE, "--out", str(folder)]) == 0
     return folder
+
+
+def test_files_of_few_samples_are_found_to_be_as_made(made):
+    by = sampling_of(made, SCENE)
+    found = files(library_of(SCENE), made, by)
+    assert found.differ == ()
+    assert as_made(library_of(SCENE), found, SCENE).says == f"{made / SCENE}: as made by {FEWER}"
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -245,11 +256,24 @@ def test_formulas_without_a_value_are_refused(tmp_path, capsys):
 
 def test_a_number_of_samples_is_a_whole_number_above_zero(capsys):
     for command in ("generate", "check"):
-        for wrong in ("0", "-5", "many", "1e6"):
+        for wrong in ("0", "-5", "many", "1e6", "9" * 20, "1000000001", "\u0663" * 11):
             with pytest.raises(SystemExit) as stopped:
                 main([command, SCENE, "--samples", wrong])
             assert stopped.value.code == 2
-            assert f"must be a whole number above zero, not '{wrong}'" in capsys.readouterr().err
+            rule = "must be a whole number above zero, up to 1000000000"
+            assert f"{rule}, not '{wrong}'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["generate", "check", "report"])
+def test_of_several_scenes_all_are_posed_before_one_is_measured(
+    command: str, tmp_path: Path, monkeypatch, capsys
+):
+    for module in ("derive.command.generation", "derive.check"):
+        monkeypatch.setattr(f"{module}.prove", lambda _: pytest.fail("a scene is begun"))
+    bad = tmp_path / "bad.toml"
+    bad.write_text('wanted = ["moment"]\nbody = { kind = "rod", axis = "z", moment = -1 }\n')
+    assert main([command, SCENE, str(bad)]) == 2
+    assert "scene 'bad'" in capsys.readouterr().err
 
 
 def test_a_refusal_is_one_line_where_no_one_reads_it_on_a_screen(tmp_path, capsys):

@@ -109,7 +109,7 @@ def number_of(name: str) -> int:
 def test_an_unused_component_is_said_and_a_used_vector_is_not() -> None:
     assert parse_scene(VECTORS, "vectors").warnings == ()
     less = VECTORS.replace('"-k*r_c"]', '"0"]').replace('"r_b", "r_c"]\n', '"r_b", "0"]\n')
-    assert parse_scene(less, "vectors").warnings == ("coordinate 'r_c' is not used",)
+    assert parse_scene(less, "vectors").warnings == ("no formula uses coordinate 'r_c'",)
 
 
 @pytest.mark.parametrize(
