@@ -21,7 +21,6 @@ from derive.verify.reference import NoValueError
 T = TypeVar("T")
 LECTURE_PAGE = "lecture.html"
 GALLERY_PAGE = "index.html"
-LARGEST_FLOAT = (2 - 2.0**-23) * 2.0**127
 
 
 @dataclass(frozen=True)
@@ -65,12 +64,11 @@ def require_posed(scenes: Sequence[str]) -> None:
 
 
 def _posed(source: str) -> None:
-    _ranges_of_floats(library(load(source)))
+    library(load(source))
 
 
 def _made(programs: Library, measuring: Measuring) -> Made:
     scene = programs.scene
-    _ranges_of_floats(programs)
     try:
         prove(programs)
         measured = figures_of(programs, measuring)
@@ -82,18 +80,6 @@ def _made(programs: Library, measuring: Measuring) -> Made:
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in programs.mechanism.doubts())
     texts = scene_files(programs, measured.each, measured.digest)
     return Made(texts, warnings, cost_rows(programs, measured.each), card=card(programs))
-
-
-def _ranges_of_floats(programs: Library) -> None:
-    """Refuse a range whose ends are beyond the smaller of the float types."""
-    given = (q for p in programs.printed() for q in p.inputs)
-    for q in (*programs.vocabulary.given(), *given):
-        end = max(abs(float(q.low or 0)), abs(float(q.high or 0)))
-        if end > LARGEST_FLOAT:
-            raise SceneError(
-                f"scene '{programs.scene.name}': the range of '{q.name}' must fit a float, "
-                f"up to 3.4e38, not {end:.3g}"
-            )
 
 
 def _poles(programs: Library) -> str:

@@ -12,7 +12,7 @@ from derive.lower.setup import SetupPart, in_pairs, setup, with_low_parts
 from derive.lower.wording import meaning
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.mechanics.problem import Problem
-from derive.mechanics.vocabulary import Vocabulary
+from derive.mechanics.vocabulary import Vocabulary, require_floats
 from derive.program.program import Program, Quantity, component_names, read_by
 from derive.program.tape import Tape, free_prefix
 from derive.scene import Scene, SceneError
@@ -65,9 +65,11 @@ def library(scene: Scene) -> Library:
     Raises SceneError, with one sentence that names the scene, if there can be none.
     """
     try:
-        return _library(scene)
+        found = _library(scene)
+        require_floats(q for p in found.printed() for q in p.inputs)
     except SceneError as error:
         raise SceneError(f"scene '{scene.name}': {error}") from None
+    return found
 
 
 def _library(scene: Scene) -> Library:

@@ -27,7 +27,7 @@ FLOORS = (0.1, 0.02, 0.004)  # of a row of size one: what must be left of it bes
 MOST_EXTRA = 5  # unknowns that are solved along without being asked for, before all are
 MOST_SETS = 20_000
 MOST_TOLD = 2  # balances that a sentence names
-CLEAR = mpf(10) ** -25  # of a row of size one: what elimination leaves of 60 digits is far below
+CLEAR = mpf(10) ** -1000  # of a row of size one: elimination of 1500 digits leaves far less
 
 Chosen = tuple[tuple[ValuedBalance, ...], frozenset[int]]
 

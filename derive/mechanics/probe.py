@@ -15,8 +15,9 @@ from sympy import Add, Expr, Mul, Pow, Rational, Symbol, nan, pi, zoo
 from derive.mechanics.words import Words
 from derive.program.program import Quantity
 
-DIGITS = 60
-NOTHING = mpf(10) ** -40
+DIGITS = 1500
+"""So many that numbers as large and as small as a double holds count beside each other."""
+NOTHING = mpf(10) ** -1000
 PROBES = 2
 SEED = "derive: trial values"
 

@@ -4,7 +4,7 @@ Every component has a SymPy symbol named by its place, not by the user's word fo
 that SymPy does can depend on how the user calls things.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -17,6 +17,8 @@ from derive.scene import SceneError
 from derive.scene.escape import brief
 from derive.scene.formula import Formula
 from derive.scene.functions import FUNCTIONS, PLAIN
+
+LARGEST_FLOAT = (2 - 2.0**-23) * 2.0**127
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,15 @@ class Vocabulary:
             rule = "is of a square, so that its sign is lost and its slope jumps"
             raise SceneError(f"the root '{brief(formula)}' {rule}; write it without the root")
         return found
+
+
+def require_floats(quantities: Iterable[Quantity]) -> None:
+    """Refuse a range whose ends are beyond the smaller of the float types."""
+    for q in quantities:
+        end = max(abs(float(q.low or 0)), abs(float(q.high or 0)))
+        if end > LARGEST_FLOAT:
+            rule = f"must fit a float, up to 3.4e38, not {end:.3g}"
+            raise SceneError(f"the range of '{q.name}' {rule}")
 
 
 def rational(value: Fraction) -> Rational:

@@ -7,7 +7,7 @@ from typing import Any
 from sympy import Expr, Integer, Matrix, Symbol, cos, expand_trig, sin, tan
 
 from derive.mechanics.sheet import Sheet
-from derive.mechanics.vocabulary import Vocabulary
+from derive.mechanics.vocabulary import Vocabulary, require_floats
 from derive.program.program import Quantity, Role
 from derive.scene import Input, Scene
 from derive.scene.formula import Formula
@@ -68,6 +68,7 @@ def words(machine: Scene) -> Words:
     given = tuple(q for q in inputs if not unknowns & set(q.components))
     sought = tuple(q for q in inputs if q not in given)
     every_role = Vocabulary(parameters, states, inputs, outputs, numbers, symbols)
+    require_floats(every_role.given())
     book = replace(every_role, inputs=given, outputs=(*outputs, *sought))
     sheet = Sheet(symbols, {}, frozenset(), {})
     rateless = {sheet.symbol(m.name): f"the rate of input '{m.name}' is not known"
