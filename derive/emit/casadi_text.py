@@ -17,21 +17,30 @@ from derive.program.arithmetic import pair_of, rounded
 from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, Row
 from derive.program.pair_sine import coefficients, quarter_turn
 from derive.program.precision import F64
-from derive.program.program import Line, Op, Operand, Program, Quantity, every_op, placed
+from derive.program.program import (
+    Line,
+    Measurement,
+    Op,
+    Operand,
+    Program,
+    Quantity,
+    every_op,
+    placed,
+)
 from derive.program.status import possible, tried
 
 KEPT = "_kept("
 BROKEN = {"finite": "_endless({})", "positive": "{} <= 0.0", "not negative": "{} < 0.0"}
 
 
-def casadi_file(library: Library) -> str:
+def casadi_file(library: Library, figures: Sequence[Measurement] = ()) -> str:
     """Return the text of ``<scene>_casadi.py``."""
     name = library.scene.name
     has_setup = bool(library.constants)
     in_pairs = [p for p in library.emitted() if p.arithmetic == "pairs"]
     functions = [_function(p, name) for p in library.printed()]
     return TEMPLATES.get_template("casadi.py.jinja").render(
-        first_line=first_line(library),
+        first_line=first_line(library, figures),
         title=library.scene.title,
         scene=name,
         setup=_setup(library.setup, name) if has_setup else None,

@@ -46,7 +46,7 @@ def scene_files(
     """Return the path below the output folder and the text of every file of a scene."""
     name = library.scene.name
     texts = c_files(library, figures) | {
-        f"{name}_casadi.py": casadi_file(library),
+        f"{name}_casadi.py": casadi_file(library, figures),
         f"{name}.json": manifest(library, figures, digest),
         f"{name}.html": scene_page(library, figures),
     }

@@ -8,7 +8,7 @@ from typing import Any
 from derive import __version__
 from derive.emit.c.comment import SETUP_ERROR, holds, of_what
 from derive.emit.c.signature import CNames, dense
-from derive.emit.c.source import JACOBIAN_DENSE
+from derive.emit.c.source import JACOBIAN_DENSE, command
 from derive.emit.c.text import pair_functions
 from derive.emit.notation import equation_text
 from derive.lecture.chapters import LECTURE
@@ -16,7 +16,6 @@ from derive.library.library import Library
 from derive.program.precision import F32, F64, PRECISIONS
 from derive.program.program import Measurement, Program, Quantity, Sparsity
 from derive.program.status import possible
-from derive.scene import argument
 from derive.scene.wanted import JACOBIAN
 
 
@@ -27,7 +26,7 @@ def manifest(library: Library, figures: Sequence[Measurement], digest: str = "")
         "scene": scene.name,
         "title": scene.title,
         "generator": f"derive {__version__}",
-        "command": f"derive generate {argument(scene)}",
+        "command": command(library, figures),
         "source": {
             "file": f"{scene.name}.toml",
             "sha256": hashlib.sha256(scene.text.encode()).hexdigest(),

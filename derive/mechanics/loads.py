@@ -112,6 +112,15 @@ def _require_length(frames: Frames, load: Spring, square: Expr) -> None:
             )
 
 
+def idle_springs(frames: Frames) -> Iterator[str]:
+    """Yield a sentence for every spring whose ends coincide, however the machine stands."""
+    for load in frames.machine.loads:
+        if isinstance(load, Spring):
+            d, _ = stretched(frames, load)
+            if vanishes(frames.words, (d.T * d)[0]):
+                yield f"load '{load.name}': its two ends coincide always, so it has no force"
+
+
 def potential_energy(frames: Frames) -> Expr:
     """Return the energy of weights and springs; a weight's is zero at the inertial origin.
 

@@ -13,6 +13,7 @@ from derive.mechanics.balances import Balances
 from derive.mechanics.frames import Frames
 from derive.mechanics.inertia import vanishing
 from derive.mechanics.linearised import unsteady
+from derive.mechanics.loads import idle_springs
 from derive.mechanics.matter import Lean, lean
 from derive.mechanics.problem import Problem, substituted
 from derive.mechanics.rotation import FreeRotation, free_rotation
@@ -91,7 +92,8 @@ class Mechanism:
 
     def doubts(self) -> tuple[str, ...]:
         """Return the warnings of a scene, and those that take its equations to be found."""
-        return (*self.scene.warnings, *self.doubts_at({}))
+        idle = idle_springs(self.answers.frames)
+        return (*self.scene.warnings, *idle, *self.doubts_at({}))
 
     def doubts_at(self, given: Mapping[str, float]) -> tuple[str, ...]:
         """Return warnings that take a scene's equations to be found, where these values are set."""

@@ -24,6 +24,12 @@ def made(tmp_path_factory) -> Path:
     return folder
 
 
+def test_every_file_states_the_command_that_makes_it_again(made):
+    texts = {name: text.decode() for name, text in contents(made).items()}
+    command = f"derive generate {SCENE} {FEWER}"
+    assert {name for name, text in texts.items() if command not in text} == set()
+
+
 def test_files_of_few_samples_are_found_to_be_as_made(made):
     by = sampling_of(made, SCENE)
     found = files(library_of(SCENE), made, by)

@@ -44,6 +44,7 @@ PUSH = 'push = { on = "bob", force = ["0", "0", "k*b/(q - pi/4)"] }\n'
 TUBE = 'shape = "tube"\ninner = "a"\nouter = "a + b"\nlength = "b"'
 
 
+IDLE = "load 's': its two ends coincide always, so it has no force"
 RAD = "rad; are degrees meant?"
 DEGREES = f"in {RAD}"
 ANGLE = 't = { unit = "rad"'
@@ -134,6 +135,15 @@ def test_motion_of_a_machine_with_nothing_free_is_refused(wanted: str) -> None:
 def test_a_spring_whose_ends_coincide_is_refused(name: str) -> None:
     says = "load 's': its two ends coincide"
     assert refused((TRIALS / f"{name}.toml").read_text(encoding="utf-8")).startswith(says)
+
+
+@pytest.mark.parametrize(("at", "says"), [("0", (IDLE,)), ("-b", ())])
+def test_a_spring_without_a_length_whose_ends_coincide_always_is_warned_about(
+    at: str, says: tuple[str, ...]
+) -> None:
+    plain = PLAIN.replace("k = { unit = \"N/m\", range = [-1, 2] }\n", "")
+    spring = f's = {{ on = "bob", spring = 1, at = ["0", "0", "{at}"], to = ["0", "0", "{at}"] }}\n'
+    assert mechanism(parse_scene(plain + spring, "odd")).doubts() == says
 
 
 @pytest.mark.parametrize("name", ["four_bar", "slider_crank"])

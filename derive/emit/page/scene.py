@@ -26,7 +26,7 @@ def scene_page(library: Library, figures: Sequence[Measurement]) -> str:
     scene = library.scene
     rests_on = {a for program in library.printed() for a in program.assumptions}
     return TEMPLATES.get_template("scene.html.jinja").render(
-        first_line=first_line(library).replace("--", "- -"),
+        first_line=first_line(library, figures),
         scene=scene,
         prose=prose,
         given=scene.told,
