@@ -17,6 +17,7 @@ from derive.mechanics.loads import idle_springs
 from derive.mechanics.matter import Lean, lean
 from derive.mechanics.problem import Problem, substituted
 from derive.mechanics.rotation import FreeRotation, free_rotation
+from derive.mechanics.sheet import below
 from derive.mechanics.sweep import ranges, regular, weakest
 from derive.mechanics.vocabulary import Vocabulary
 from derive.mechanics.words import Words, words
@@ -108,7 +109,11 @@ class Mechanism:
         divided += [((s,), [[d]]) for s, value in values.items() for d in _divisors(value)]
         of = ranges(own.words)
         for symbols, matrix in divided:
-            worst = weakest(of, problem.definitions, partial(regular, entries=matrix))
+            needed = below(problem.definitions, [e for row in matrix for e in row])
+            exprs = (*needed.values(), *(e for row in matrix for e in row))
+            if not {s for e in exprs for s in e.free_symbols} <= {*of.symbols, *needed}:
+                continue  # it holds what is found, which has no range
+            worst = weakest(of, needed, partial(regular, entries=matrix))
             if worst.vanishes:
                 says = vanishing(own.answers.balances, symbols, matrix, worst)
                 names = ", ".join(f"'{own.words.sheet.label(s)}'" for s in symbols)

@@ -160,3 +160,9 @@ def test_a_motion_that_carries_nothing_is_said_to_have_no_inertia(wanted: str) -
     idle = idle.replace("accelerations", wanted).replace("AXIAL", "A")
     with pytest.raises(SceneError, match="the inertia of all that moves with 'v' is 0"):
         library(parse_scene(idle, "idle"))
+
+
+def test_a_divisor_that_holds_what_is_found_is_no_pole_of_the_ranges() -> None:
+    found = WHEEL.replace("AXIAL", "A").replace("accelerations", "quick")
+    found += '[results]\nquick = "1/w_dot"\n'
+    assert library(parse_scene(found, "found")).mechanism.pole("quick") == ""
