@@ -2,6 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from sys import float_info
+
+from mpmath import mpf, nstr
 
 from derive.library.admission import tried_rules
 from derive.library.function import Graphed, arranged, function, graphed
@@ -12,8 +15,8 @@ from derive.lower.setup import SetupPart, in_pairs, setup, with_low_parts
 from derive.lower.wording import meaning
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.mechanics.problem import Problem
-from derive.mechanics.vocabulary import Vocabulary, require_floats
-from derive.program.program import Program, Quantity, component_names, read_by
+from derive.mechanics.vocabulary import LARGEST_FLOAT, Vocabulary, require_floats
+from derive.program.program import Program, Quantity, component_names, fixed_numbers, read_by
 from derive.program.tape import Tape, free_prefix
 from derive.scene import Scene, SceneError
 from derive.scene.wanted import ATTITUDES, IN_PAIRS, moves, without_ending
@@ -88,6 +91,8 @@ def _library(scene: Scene) -> Library:
         names = {*terms.constants.names.values(), *part.names.values()}
         functions = tuple(in_pairs(f, names) for f in functions)
         moving = tuple(in_pairs(f, names) if f.name in IN_PAIRS else f for f in moving)
+    _require_numbers((*functions, *moving), "f32", LARGEST_FLOAT)
+    _require_numbers((made,), "f64", float_info.max)
     functions = with_singular(functions, made)
     moving = with_singular(moving, made)
     return Library(
@@ -105,6 +110,16 @@ def _asked(scene: Scene) -> tuple[list[str], list[str]]:
     """Return the functions that satisfy equations, and those that only motions rest on."""
     asked = [name for name in scene.wanted if not moves(name) and name not in ATTITUDES]
     return asked, [name for name in needs(scene) if name not in asked]
+
+
+def _require_numbers(programs: Sequence[Program], precision: str, most: float) -> None:
+    """Refuse a number that stands in a program and is beyond a float type."""
+    for program in programs:
+        for number in fixed_numbers(program)[:1]:
+            if abs(number) > most:
+                size = nstr(mpf(number.numerator) / number.denominator, 3)
+                rule = f"must be made of numbers within {precision}, up to {most:.2g}"
+                raise SceneError(f"'{program.name}' {rule}, but holds {size}")
 
 
 def _of_motion(

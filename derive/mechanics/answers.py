@@ -86,7 +86,8 @@ class Answers:
         held = tuple(row.balance for row in rows)
         every = (*self._balanced(rows), *steps, *sheet.steps([*written, *answers.values()]))
         says = f"{_listed([q.meaning for q in outputs])}."
-        says = says[:1].upper() + says[1:]
+        if outputs[0].meaning not in {str(r.formula) for r in self.machine.results}:
+            says = says[:1].upper() + says[1:]  # of words; a formula stays as it is
         return Problem(base, says, outputs, answers, definitions, written,
                        unknowns, held, tuple(dict.fromkeys(every)))  # fmt: skip
 

@@ -185,6 +185,12 @@ def kinetic_energy(frames: Frames, body: str) -> Expr:
 
 
 def energy_form(frames: Frames, body: str) -> str:
-    """Return the lecture step by which the kinetic energy of a body stands."""
-    fixed = turns_about_fixed_point(frames, body)
-    return "kinetic_energy_about_point" if fixed else "koenig"
+    """Return the lecture step by which the kinetic energy of a body stands.
+
+    Of a body of which no place is known, G is where it is: there is nothing but its turning.
+    """
+    if turns_about_fixed_point(frames, body):
+        return "kinetic_energy_about_point"
+    own, at = centre(frames, body)
+    nowhere = not frames.placed(own, INERTIAL) and at == ZERO and frames.velocity(own) == ZERO
+    return "energy_of_turning" if nowhere else "koenig"

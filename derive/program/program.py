@@ -187,18 +187,28 @@ def every_op(lines: Sequence[Line]) -> Iterator[Op]:
 
 def operands_of(lines: Sequence[Line], results: Sequence[Operand | None] = ()) -> set[str]:
     """Return the names that operations, loops and results refer to."""
+    return {o for o in _operands(lines, results) if isinstance(o, str)}
+
+
+def fixed_numbers(program: Program) -> tuple[Fraction, ...]:
+    """Return the numbers that stand in a program, the largest first."""
+    every = _operands(program.ops, program.results)
+    return tuple(sorted((o for o in every if isinstance(o, Fraction)), key=abs, reverse=True))
+
+
+def _operands(lines: Sequence[Line], results: Sequence[Operand | None] = ()) -> set[Operand | None]:
     found = set(results)
     for line in lines:
         match line:
             case Op():
                 found |= {*line.operands}
             case Loop():
-                found |= operands_of(line.body, (*line.start, *line.then, line.done))
+                found |= _operands(line.body, (*line.start, *line.then, line.done))
             case Even():
-                found |= operands_of(line.body)
+                found |= _operands(line.body)
             case _:
                 found |= names_in(line)
-    return {operand for operand in found if isinstance(operand, str)}
+    return found
 
 
 def component_names(program: Program) -> list[str]:

@@ -10,11 +10,11 @@ import math
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from functools import reduce
-from operator import add
+from operator import add, mul
 from random import Random
 from typing import Any
 
-from mpmath import iv
+from mpmath import iv, mpf
 
 from derive.scene.declaration import SceneError
 from derive.scene.escape import at_place, brief
@@ -125,6 +125,9 @@ def _require(label: str, kind: str, part: Formula, ranges: Ranges) -> None:
             raise SceneError(f"{label}: the {kind} '{brief(part)}' is 0 whatever its symbols are")
         return
     box = {name: ranges[name] for name in used}
+    if kind == "radicand" and _nowhere(part, box):
+        rule = "is that of 0, but for rounding; write 0 instead"
+        raise SceneError(f"{label}: the square root of '{brief(part)}' {rule}")
     place = _place(kind, part, box)
     if place is None:
         return
@@ -146,15 +149,25 @@ def _nothing(part: Formula) -> bool:
     return all(math.isfinite(size) and abs(x) <= ROUNDING * size for x, size in sized)
 
 
+def _nowhere(part: Formula, box: Ranges) -> bool:
+    """Tell whether the terms of a formula cancel wherever it is declared."""
+    sized = (_sized(part, values) for values in _valuations(box))
+    return all(0 < size < math.inf and abs(x) <= ROUNDING * size for x, size in sized)
+
+
 def _sized(part: Formula, values: Valuation) -> tuple[Any, Any]:
     """Return a formula's value and the size of its terms, nan where it has none."""
     return in_floats(part, values), _size(part, values)
 
 
 def _size(part: Formula, values: Valuation) -> Any:
-    if part.operator in ("add", "sub"):
-        return reduce(add, (_size(p, values) for p in part.operands), 0.0)
-    return abs(in_floats(part, values))
+    """Return the size of a formula's terms; that of a sine is its angle's, but 1 at most."""
+    if part.operator in ("add", "sub", "mul", "neg"):
+        sizes = (mpf(_size(p, values)) for p in part.operands)  # a product may be beyond floats
+        return reduce(mul if part.operator == "mul" else add, sizes)
+    if part.operator in ("sin", "tan"):
+        return max(abs(in_floats(part, values)), min(1.0, abs(in_floats(part.operands[0], values))))
+    return 1.0 if part.operator == "cos" else abs(in_floats(part, values))
 
 
 def _valuations(box: Ranges) -> Iterator[Valuation]:

@@ -167,12 +167,12 @@ void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constant
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
- * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
+ * Postcondition: K = 1/2 omega . (I omega)   [lecture step energy_of_turning]
  * Error: median 0.53, largest 5.4 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8348
  *            hard samples no more.
  * Cost: 2 add, 3 sub, 9 mul.
- * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
+ * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_kinetic_energy_f64(const free_body_constants_f64 *constants, const double omega[3],
     double *kinetic_energy);

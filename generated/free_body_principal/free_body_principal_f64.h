@@ -126,12 +126,12 @@ void free_body_principal_angular_momentum_f64(const free_body_principal_constant
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
- * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
+ * Postcondition: K = 1/2 omega . (I omega)   [lecture step energy_of_turning]
  * Error: median 0.5, largest 3.7 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
  * Cost: 2 add, 6 mul.
- * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
+ * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_principal_kinetic_energy_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], double *kinetic_energy);

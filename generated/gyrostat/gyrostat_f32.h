@@ -165,14 +165,14 @@ void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *consta
  *            omega[3]  rad/s  along B  -2 .. 2  angular velocity of the body in the inertial frame
  *            wheel_speeds[3]  rad/s  wheel axes  -300 .. 300  speed of each wheel relative to the body
  * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
- * Follows from, for each body: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
+ * Follows from, for each body: K = 1/2 omega . (I omega)   [lecture step energy_of_turning]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.68, largest 8.4 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
  * Cost: 5 add, 6 sub, 17 mul.
- * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, rigid.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            further_axes_are_right_handed, rigid.
  */
 void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const float omega[3],
     const float wheel_speeds[3], float *kinetic_energy);

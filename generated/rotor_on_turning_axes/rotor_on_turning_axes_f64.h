@@ -114,12 +114,12 @@ void rotor_on_turning_axes_angular_momentum_rate_f64(const rotor_on_turning_axes
  *            W_z  rad/s  -1 .. 1  turn rate of the bearings about z
  *            p  rad/s  -500 .. 500  spin of the rotor in its bearings
  * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
- * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
+ * Postcondition: K = 1/2 omega . (I omega)   [lecture step energy_of_turning]
  * Error: median 0.76, largest 4.9 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
  * Cost: 3 add, 5 mul.
- * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
+ * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void rotor_on_turning_axes_kinetic_energy_f64(const rotor_on_turning_axes_constants_f64 *constants,
     double W_x, double W_y, double W_z, double p, double *kinetic_energy);

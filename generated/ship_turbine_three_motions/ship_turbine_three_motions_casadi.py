@@ -280,7 +280,7 @@ def _pitch_case():
 
 
 def pitch_horizontal_couple():
-    """B*A_pitch_side - a*B_pitch_side. Inputs: parameters, ."""
+    """b*A_pitch_side - a*B_pitch_side. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_pitch_horizontal_couple(), "ship_turbine_three_motions_pitch_horizontal_couple"))
 
 

@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 f8ab8ebe95f5bd9b.
+ * Body of these files: sha256 5d1909bf5f9c475e.
  */
 #ifndef SHIP_TURBINE_THREE_MOTIONS_F32_H
 #define SHIP_TURBINE_THREE_MOTIONS_F32_H
@@ -95,7 +95,7 @@ void ship_turbine_three_motions_turn_case_f32(const ship_turbine_three_motions_c
 void ship_turbine_three_motions_pitch_case_f32(const ship_turbine_three_motions_constants_f32 *constants,
     float *A_pitch, float *B_pitch);
 
-/* B*A_pitch_side - a*B_pitch_side.
+/* b*A_pitch_side - a*B_pitch_side.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  pitch_horizontal_couple  N m  b*A_pitch_side - a*B_pitch_side
  * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step

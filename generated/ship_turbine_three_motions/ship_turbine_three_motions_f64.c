@@ -171,7 +171,7 @@ void ship_turbine_three_motions_pitch_case_f64(const ship_turbine_three_motions_
     *B_pitch = constants->s0013;
 }
 
-/* B*A_pitch_side - a*B_pitch_side. */
+/* b*A_pitch_side - a*B_pitch_side. */
 void ship_turbine_three_motions_pitch_horizontal_couple_f64(const ship_turbine_three_motions_constants_f64 *constants,
     double *pitch_horizontal_couple)
 {

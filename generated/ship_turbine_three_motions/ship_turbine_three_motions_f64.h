@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 252e71c184b113d6.
+ * Body of these files: sha256 d1b775fbf25035f8.
  */
 #ifndef SHIP_TURBINE_THREE_MOTIONS_F64_H
 #define SHIP_TURBINE_THREE_MOTIONS_F64_H
@@ -95,7 +95,7 @@ void ship_turbine_three_motions_turn_case_f64(const ship_turbine_three_motions_c
 void ship_turbine_three_motions_pitch_case_f64(const ship_turbine_three_motions_constants_f64 *constants,
     double *A_pitch, double *B_pitch);
 
-/* B*A_pitch_side - a*B_pitch_side.
+/* b*A_pitch_side - a*B_pitch_side.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  pitch_horizontal_couple  N m  b*A_pitch_side - a*B_pitch_side
  * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step

@@ -227,7 +227,7 @@ def _reactions():
 
 
 def gyro_moment():
-    """A*R_A - b*R_B. Inputs: parameters, ."""
+    """a*R_A - b*R_B. Inputs: parameters, ."""
     return _built(lambda: _from_parameters(_gyro_moment(), "ship_turbine_turn_port_gyro_moment"))
 
 

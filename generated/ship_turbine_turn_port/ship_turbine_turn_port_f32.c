@@ -148,7 +148,7 @@ void ship_turbine_turn_port_reactions_f32(const ship_turbine_turn_port_constants
     *R_B = constants->s0012;
 }
 
-/* A*R_A - b*R_B. */
+/* a*R_A - b*R_B. */
 void ship_turbine_turn_port_gyro_moment_f32(const ship_turbine_turn_port_constants_f32 *constants,
     float *gyro_moment)
 {

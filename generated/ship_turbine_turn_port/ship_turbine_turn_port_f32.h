@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 6b0d9e433c04c517.
+ * Body of these files: sha256 b65c92655db11d3b.
  */
 #ifndef SHIP_TURBINE_TURN_PORT_F32_H
 #define SHIP_TURBINE_TURN_PORT_F32_H
@@ -61,7 +61,7 @@ int ship_turbine_turn_port_setup_f32(float m, float k, float p, float v, float R
 void ship_turbine_turn_port_reactions_f32(const ship_turbine_turn_port_constants_f32 *constants,
     float *R_A, float *R_B);
 
-/* A*R_A - b*R_B.
+/* a*R_A - b*R_B.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  gyro_moment  N m  a*R_A - b*R_B
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]

@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 b8652213c20a7d0b.
+ * Body of these files: sha256 c97fd0ec644969b6.
  */
 #ifndef SHIP_TURBINE_TURN_PORT_F64_H
 #define SHIP_TURBINE_TURN_PORT_F64_H
@@ -61,7 +61,7 @@ int ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, dou
 void ship_turbine_turn_port_reactions_f64(const ship_turbine_turn_port_constants_f64 *constants,
     double *R_A, double *R_B);
 
-/* A*R_A - b*R_B.
+/* a*R_A - b*R_B.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  gyro_moment  N m  a*R_A - b*R_B
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]

@@ -259,7 +259,7 @@ def _from_parameters(hot, name):
 
 
 def M():
-    """B*(B_y - A_y), b*(A_x - B_x) and couple of A on disc along z. Inputs: parameters, w."""
+    """b*(B_y - A_y), b*(A_x - B_x) and couple of A on disc along z. Inputs: parameters, w."""
     return _built(lambda: _from_parameters(_M(), "skewed_disc_M"))
 
 

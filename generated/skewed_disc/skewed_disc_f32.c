@@ -178,7 +178,7 @@ int skewed_disc_setup_f32(float m, float r, float skew, float b,
 #endif
 #endif
 
-/* B*(B_y - A_y), b*(A_x - B_x) and couple of A on disc along z. */
+/* b*(B_y - A_y), b*(A_x - B_x) and couple of A on disc along z. */
 void skewed_disc_M_f32(const skewed_disc_constants_f32 *constants, float w, float *M_x, float *M_y,
     float *M_z)
 {

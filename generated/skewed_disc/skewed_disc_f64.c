@@ -190,7 +190,7 @@ int skewed_disc_setup_f64(double m, double r, double skew, double b,
 #endif
 #endif
 
-/* B*(B_y - A_y), b*(A_x - B_x) and couple of A on disc along z. */
+/* b*(B_y - A_y), b*(A_x - B_x) and couple of A on disc along z. */
 void skewed_disc_M_f64(const skewed_disc_constants_f64 *constants, double w, double *M_x,
     double *M_y, double *M_z)
 {

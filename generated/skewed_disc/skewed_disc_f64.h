@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 5d1739cb487b79ab.
+ * Body of these files: sha256 4b71701791661bae.
  */
 #ifndef SKEWED_DISC_F64_H
 #define SKEWED_DISC_F64_H
@@ -42,7 +42,7 @@ typedef struct {
 int skewed_disc_setup_f64(double m, double r, double skew, double b,
     skewed_disc_constants_f64 *constants);
 
-/* B*(B_y - A_y), b*(A_x - B_x) and couple of A on disc along z.
+/* b*(B_y - A_y), b*(A_x - B_x) and couple of A on disc along z.
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w  rad/s  200 .. 400  speed of the shaft
  * Returned:  M_x  N m  b*(B_y - A_y)

@@ -71,12 +71,12 @@ int t_handle_flip_setup_f64(double I_xx, double I_yy, double I_zz,
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            omega[3]  rad/s  along B  -15 .. 15  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
- * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
+ * Postcondition: K = 1/2 omega . (I omega)   [lecture step energy_of_turning]
  * Error: median 0.5, largest 3.6 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
  * Cost: 2 add, 6 mul.
- * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
+ * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void t_handle_flip_kinetic_energy_f64(const t_handle_flip_constants_f64 *constants,
     const double omega[3], double *kinetic_energy);

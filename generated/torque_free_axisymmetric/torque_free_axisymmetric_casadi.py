@@ -331,7 +331,7 @@ def _tan_beta():
 
 
 def L():
-    """Sqrt(angular_momentum_x^2 + angular_momentum_y^2 + angular_momentum_z^2). Inputs: parameters, w_x, w_y, w_z."""
+    """sqrt(angular_momentum_x^2 + angular_momentum_y^2 + angular_momentum_z^2). Inputs: parameters, w_x, w_y, w_z."""
     return _built(lambda: _from_parameters(_L(), "torque_free_axisymmetric_L"))
 
 

@@ -180,7 +180,7 @@ void torque_free_axisymmetric_tan_beta_f32(float w_x, float w_y, float w_z, floa
     *tan_beta = t4;
 }
 
-/* Sqrt(angular_momentum_x^2 + angular_momentum_y^2 + angular_momentum_z^2). */
+/* sqrt(angular_momentum_x^2 + angular_momentum_y^2 + angular_momentum_z^2). */
 void torque_free_axisymmetric_L_f32(const torque_free_axisymmetric_constants_f32 *constants,
     float w_x, float w_y, float w_z, float *L)
 {

@@ -180,7 +180,7 @@ void torque_free_axisymmetric_tan_beta_f64(double w_x, double w_y, double w_z, d
     *tan_beta = t4;
 }
 
-/* Sqrt(angular_momentum_x^2 + angular_momentum_y^2 + angular_momentum_z^2). */
+/* sqrt(angular_momentum_x^2 + angular_momentum_y^2 + angular_momentum_z^2). */
 void torque_free_axisymmetric_L_f64(const torque_free_axisymmetric_constants_f64 *constants,
     double w_x, double w_y, double w_z, double *L)
 {

@@ -12,7 +12,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 0f0185e10e7a1dab.
+ * Body of these files: sha256 64ef15f03f408468.
  */
 #ifndef TORQUE_FREE_AXISYMMETRIC_F64_H
 #define TORQUE_FREE_AXISYMMETRIC_F64_H
@@ -105,7 +105,7 @@ void torque_free_axisymmetric_tan_theta_f64(const torque_free_axisymmetric_const
  */
 void torque_free_axisymmetric_tan_beta_f64(double w_x, double w_y, double w_z, double *tan_beta);
 
-/* Sqrt(angular_momentum_x^2 + angular_momentum_y^2 + angular_momentum_z^2).
+/* sqrt(angular_momentum_x^2 + angular_momentum_y^2 + angular_momentum_z^2).
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            w_x  rad/s  0 .. 0.1  omega along x
  *            w_y  rad/s  1 .. 2  omega along y, across the axis

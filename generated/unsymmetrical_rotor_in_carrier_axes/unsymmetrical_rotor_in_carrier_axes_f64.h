@@ -143,14 +143,14 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(const unsymme
  *            gamma_dot  rad/s  -300 .. 300  rate of gamma
  *            W  rad/s  -1 .. 1  turn rate of the carrier about z
  * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
- * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
+ * Postcondition: K = 1/2 omega . (I omega)   [lecture step energy_of_turning]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.59, largest 27 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
  * Cost: 1 add, 1 sub, 7 mul, 1 cos.
- * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
- *            constant_mass, further_axes_are_right_handed, rigid.
+ * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
+ *            further_axes_are_right_handed, rigid.
  */
 void unsymmetrical_rotor_in_carrier_axes_kinetic_energy_f64(const unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants,
     double gamma, double gamma_dot, double W, double *kinetic_energy);

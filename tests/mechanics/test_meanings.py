@@ -134,7 +134,7 @@ def test_every_load_sought_and_momentum_of_the_catalogue_names_its_axes(file: Pa
             assert f"{a['name']}{size}  {a['unit']}  along {a['frame']}  " in header
 
 
-ONE_BODY = re.compile(r"(F|M|T|l|l_dot|l_N_dot) = ")
+ONE_BODY = re.compile(r"(F|M|T|K|l|l_dot|l_N_dot) = ")
 
 
 @pytest.mark.parametrize("file", GENERATED, ids=lambda f: f.stem)

@@ -127,6 +127,7 @@ def test_no_function_of_another_scene_names_a_step_that_it_does_not_need(name: s
 NEEDED = (
     ("heavy_top", "kinetic_energy", "kinetic_energy_about_point"),
     ("rigid_body", "kinetic_energy", "koenig"),
+    ("free_body", "kinetic_energy", "energy_of_turning"),
     ("rod_wire_vertical_shaft", "T", "any_point_form"),
     ("centrifuge_gondola", "M", "moving_point_form"),
     ("gyrocompass", "period_s", "general_form"),

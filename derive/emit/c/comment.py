@@ -14,7 +14,7 @@ SETUP_ERROR = (
     "each constant is worked out in twice the working precision and rounded once: at most 1 ulp, "
     "unless the sum that it is cancels to less than 16 u of its largest product"
 )
-OF_ONE_BODY = ("F", "M", "T", "l", "l_dot", "l_N_dot")
+OF_ONE_BODY = ("F", "M", "T", "K", "l", "l_dot", "l_N_dot")
 """What stands on the left of equations of a body; the others are about axes and points."""
 MOMENTS = {
     "general_form": "M about G, a point at rest, or one that accelerates along the line to G",

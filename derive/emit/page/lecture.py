@@ -17,8 +17,8 @@ from derive.lecture.vectors import components
 # Steps from which code is printed: what they rest on is listed at the end of the page.
 ENDS = (
     "mass_centre_motion", "angular_momentum", "rate_in_axes", "transport_theorem", "general_form",
-    "moving_point_form", "kinetic_energy_about_point", "koenig", "gyrostat_momentum",
-    "gyrostat_form", "wheel_equation", "gyrostat_energy", "rotation_of_vector",
+    "moving_point_form", "energy_of_turning", "kinetic_energy_about_point", "koenig",
+    "gyrostat_momentum", "gyrostat_form", "wheel_equation", "gyrostat_energy", "rotation_of_vector",
     "quaternion_rate_scalar", "quaternion_rate_vector", "angular_velocities_add",
 )  # fmt: skip
 # Steps that are also shown along x, y and z.
