@@ -100,7 +100,7 @@ def at_rows(
     at = complete(of, np.array(once).T)
     columns = {name: column.tolist() for name, column in at.own.items()}
     own = [c for q in of.library.vocabulary.parameters for c in q.components]
-    kinds = {tuple(s.values[c] for c in own): s.kind for s in bodies}
+    kinds = {tuple(s.values[c] for c in own): s.kind for s in bodies if own}
     found = [{name: column[n] for name, column in columns.items()} for n in range(len(once))]
     return [
         Sample(first + n, kinds.get(tuple(values[c] for c in own), "found"), values)

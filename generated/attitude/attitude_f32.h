@@ -24,9 +24,9 @@ extern "C" {
  * Given:     left[4]  1  N from A  -1 .. 1  quaternion of the rotation that comes last
  *            right[4]  1  A from B  -1 .. 1  quaternion of the rotation that comes first
  * Returned:  attitude[4]  1  N from B  left times right
- * Error: median 0.3, largest 1.3 u of the largest component, by rounding alone (of attitude;
- *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples
- *            3.4 u (of attitude, sphere).
+ * Error: median 0.3, largest 3.4 u of the largest component, by rounding alone (of attitude;
+ *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
+ *            more.
  * Cost: 7 add, 5 sub, 16 mul.
  */
 void attitude_quaternion_product_f32(const float left[4], const float right[4], float attitude[4]);
@@ -34,9 +34,8 @@ void attitude_quaternion_product_f32(const float left[4], const float right[4], 
 /* quaternion of length 1 along one of any length; (1, 0, 0, 0) for the quaternion 0
  * Given:     quaternion[4]  1  N from B  -1 .. 1  quaternion of any length, scalar first
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
- * Error: median 0.25, largest 1.5 u of the largest component, by rounding alone (of attitude;
- *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples 3
- *            u (of attitude, sphere).
+ * Error: median 0.25, largest 3 u of the largest component, by rounding alone (of attitude; 200000
+ *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
  * Cost: 3 add, 5 mul, 8 div, 1 sqrt, 4 abs, 5 less, 1 power_of_two, 6 select.
  */
 void attitude_quaternion_normalise_f32(const float quaternion[4], float attitude[4]);
@@ -44,9 +43,9 @@ void attitude_quaternion_normalise_f32(const float quaternion[4], float attitude
 /* unit quaternion of a rotation vector
  * Given:     rotation_vector[3]  rad  along B  -3.14159 .. 3.14159  axis times angle, the same along N's and B's axes
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
- * Error: median 0.23, largest 1.2 u of the largest component, by rounding alone (of attitude;
- *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples
- *            3.5 u (of attitude, sphere).
+ * Error: median 0.23, largest 3.5 u of the largest component, by rounding alone (of attitude;
+ *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
+ *            more.
  * Cost: 20 add, 21 sub, 23 mul, 5 div, 1 sqrt, 1 sin, 1 cos, 4 abs, 5 less, 1 power_of_two, 7
  *            select, 1 splitter.
  */
@@ -55,9 +54,9 @@ void attitude_quaternion_exp_f32(const float rotation_vector[3], float attitude[
 /* rotation vector of a quaternion of any length, angle at most pi; 0 for the quaternion 0
  * Given:     quaternion[4]  1  N from B  -1 .. 1  quaternion of any length, scalar first
  * Returned:  rotation_vector[3]  rad  along B  axis times angle, the same along N's and B's axes
- * Error: median 0.31, largest 1.9 u of the largest component, by rounding alone (of
+ * Error: median 0.31, largest 3.8 u of the largest component, by rounding alone (of
  *            rotation_vector; 200000 samples of the ranges, 65536 searched from the worst); at
- *            8246 hard samples 3.8 u (of rotation_vector, sphere).
+ *            8246 hard samples no more.
  * Cost: 2 add, 14 mul, 4 div, 1 neg, 1 sqrt, 8 abs, 1 atan2, 9 less, 1 power_of_two, 11 select.
  */
 void attitude_quaternion_log_f32(const float quaternion[4], float rotation_vector[3]);
@@ -66,9 +65,9 @@ void attitude_quaternion_log_f32(const float quaternion[4], float rotation_vecto
  * Given:     attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            vector_B[3]  1  along B  -1 .. 1  any vector along B's axes
  * Returned:  vector_N[3]  1  along N  any vector along N's axes
- * Error: median 0.44, largest 2.1 u of the largest component, by rounding alone (of vector_N;
- *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples
- *            5.9 u (of vector_N, sphere).
+ * Error: median 0.44, largest 5.9 u of the largest component, by rounding alone (of vector_N;
+ *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
+ *            more.
  * Cost: 11 add, 6 sub, 24 mul.
  */
 void attitude_quaternion_rotate_f32(const float attitude[4], const float vector_B[3],
@@ -78,9 +77,9 @@ void attitude_quaternion_rotate_f32(const float attitude[4], const float vector_
  * Given:     attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  *            vector_N[3]  1  along N  -1 .. 1  any vector along N's axes
  * Returned:  vector_B[3]  1  along B  any vector along B's axes
- * Error: median 0.44, largest 2.9 u of the largest component, by rounding alone (of vector_B;
- *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples
- *            5.9 u (of vector_B, sphere).
+ * Error: median 0.44, largest 5.9 u of the largest component, by rounding alone (of vector_B;
+ *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
+ *            more.
  * Cost: 11 add, 6 sub, 24 mul.
  */
 void attitude_quaternion_rotate_back_f32(const float attitude[4], const float vector_N[3],
@@ -89,9 +88,8 @@ void attitude_quaternion_rotate_back_f32(const float attitude[4], const float ve
 /* rotation matrix of an attitude quaternion
  * Given:     attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Returned:  matrix[9]  1  N from B  rotation matrix R_NB, column by column: v_N = R_NB v_B
- * Error: median 0.27, largest 1.8 u of the largest component, by rounding alone (of matrix; 200000
- *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples 3.4 u (of
- *            matrix, sphere).
+ * Error: median 0.27, largest 3.4 u of the largest component, by rounding alone (of matrix; 200000
+ *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
  * Cost: 9 add, 7 sub, 10 mul.
  */
 void attitude_quaternion_to_matrix_f32(const float attitude[4], float matrix[9]);
@@ -99,9 +97,9 @@ void attitude_quaternion_to_matrix_f32(const float attitude[4], float matrix[9])
 /* attitude quaternion of a rotation matrix, scalar part not negative
  * Given:     matrix[9]  1  N from B  -1 .. 1  rotation matrix R_NB, column by column: v_N = R_NB v_B
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
- * Error: median 0.19, largest 1.5 u of the largest component, by rounding alone (of attitude;
- *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples
- *            4.5 u (of attitude, sphere).
+ * Error: median 0.19, largest 4.5 u of the largest component, by rounding alone (of attitude;
+ *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
+ *            more.
  * Cost: 13 add, 9 sub, 4 mul, 4 div, 1 neg, 1 sqrt, 4 less, 13 select.
  */
 void attitude_quaternion_from_matrix_f32(const float matrix[9], float attitude[4]);
@@ -109,9 +107,8 @@ void attitude_quaternion_from_matrix_f32(const float matrix[9], float attitude[4
 /* modified Rodrigues parameters of an attitude quaternion, of length at most 1
  * Given:     attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Returned:  mrp[3]  1  along B  modified Rodrigues parameters: axis times tan(angle / 4)
- * Error: median 0.24, largest 1.5 u of the largest component, by rounding alone (of mrp; 200000
- *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples 2 u (of
- *            mrp, sphere).
+ * Error: median 0.24, largest 2 u of the largest component, by rounding alone (of mrp; 200000
+ *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
  * Cost: 1 add, 3 div, 1 neg, 1 abs, 1 less, 1 select.
  */
 void attitude_quaternion_to_mrp_f32(const float attitude[4], float mrp[3]);
@@ -119,9 +116,9 @@ void attitude_quaternion_to_mrp_f32(const float attitude[4], float mrp[3]);
 /* attitude quaternion of modified Rodrigues parameters of any length
  * Given:     mrp[3]  1  along B  -1 .. 1  modified Rodrigues parameters: axis times tan(angle / 4)
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
- * Error: median 0.28, largest 1.9 u of the largest component, by rounding alone (of attitude;
- *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples
- *            3.1 u (of attitude, sphere).
+ * Error: median 0.28, largest 3.1 u of the largest component, by rounding alone (of attitude;
+ *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
+ *            more.
  * Cost: 4 add, 1 sub, 11 mul, 5 div, 3 abs, 3 less, 1 power_of_two, 3 select.
  */
 void attitude_quaternion_from_mrp_f32(const float mrp[3], float attitude[4]);
@@ -129,9 +126,8 @@ void attitude_quaternion_from_mrp_f32(const float mrp[3], float attitude[4]);
 /* Euler angles zyx of an attitude quaternion; the third is 0 at gimbal lock
  * Given:     attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Returned:  angles[3]  rad  N from B  angles about z, y, x, each about the axis as the ones before left it
- * Error: median 0.24, largest 1.4 u of the largest component, by rounding alone (of angles; 200000
- *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples 4.1 u (of
- *            angles, sphere).
+ * Error: median 0.24, largest 4.1 u of the largest component, by rounding alone (of angles; 200000
+ *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
  * Cost: 9 add, 5 sub, 11 mul, 1 sqrt, 4 abs, 2 at_most, 3 atan2, 4 select.
  */
 void attitude_quaternion_to_euler_zyx_f32(const float attitude[4], float angles[3]);
@@ -139,9 +135,9 @@ void attitude_quaternion_to_euler_zyx_f32(const float attitude[4], float angles[
 /* attitude quaternion of Euler angles zyx
  * Given:     angles[3]  rad  N from B  -3.14159 .. 3.14159  angles about z, y, x, each about the axis as the ones before left it
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
- * Error: median 0.34, largest 2.6 u of the largest component, by rounding alone (of attitude;
- *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples
- *            4.2 u (of attitude, sphere).
+ * Error: median 0.34, largest 4.2 u of the largest component, by rounding alone (of attitude;
+ *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
+ *            more.
  * Cost: 3 add, 1 sub, 15 mul, 2 neg, 3 sin, 3 cos.
  */
 void attitude_quaternion_from_euler_zyx_f32(const float angles[3], float attitude[4]);
@@ -149,9 +145,8 @@ void attitude_quaternion_from_euler_zyx_f32(const float angles[3], float attitud
 /* Euler angles zxz of an attitude quaternion; the third is 0 at gimbal lock
  * Given:     attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Returned:  angles[3]  rad  N from B  angles about z, x, z, each about the axis as the ones before left it
- * Error: median 0.25, largest 1.1 u of the largest component, by rounding alone (of angles; 200000
- *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples 3.3 u (of
- *            angles, sphere).
+ * Error: median 0.25, largest 3.3 u of the largest component, by rounding alone (of angles; 200000
+ *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
  * Cost: 6 add, 2 sub, 13 mul, 2 div, 2 sqrt, 6 abs, 2 at_most, 3 atan2, 2 less, 1 power_of_two, 6
  *            select.
  */
@@ -160,9 +155,9 @@ void attitude_quaternion_to_euler_zxz_f32(const float attitude[4], float angles[
 /* attitude quaternion of Euler angles zxz
  * Given:     angles[3]  rad  N from B  -3.14159 .. 3.14159  angles about z, x, z, each about the axis as the ones before left it
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
- * Error: median 0.28, largest 2.2 u of the largest component, by rounding alone (of attitude;
- *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples
- *            4.1 u (of attitude, sphere).
+ * Error: median 0.28, largest 4.1 u of the largest component, by rounding alone (of attitude;
+ *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
+ *            more.
  * Cost: 3 add, 1 sub, 15 mul, 1 neg, 3 sin, 3 cos.
  */
 void attitude_quaternion_from_euler_zxz_f32(const float angles[3], float attitude[4]);

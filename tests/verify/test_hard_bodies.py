@@ -13,13 +13,13 @@ from derive.mechanics.mechanism import mechanism
 from derive.program.largest import largest
 from derive.program.precision import F32, F64, PRECISIONS, Precision
 from derive.scene import Scene, catalogue, load, parse_scene
-from derive.verify.draw import Sampled
+from derive.verify.draw import Dice, Sampled, drawn
 from derive.verify.hard_bodies import BODIES, solvable
 from derive.verify.kept import stated_figures
 from derive.verify.sample import Sample, Samples, samples
 from derive.verify.scale import with_values
 from derive.verify.search import Sampling
-from derive.verify.stated import at_samples, figures
+from derive.verify.stated import at_rows, at_samples, figures
 from tests.made import library_of, scene_of, thinned
 
 LONG = Path(__file__).parents[1] / "data" / "long_form"
@@ -210,3 +210,12 @@ def test_other_hard_bodies_err_by_no_more_than_is_stated(name: str) -> None:
         for found in at_samples(of, program, each):
             limit = said[program.name, found.output].worst
             assert largest(found.largest()) <= FRESH * max(STILL, limit), (program.name, limit)
+
+
+def test_what_is_found_in_a_scene_without_parameters_is_within_its_ranges() -> None:
+    made = library_of("attitude")
+    of = Sampled(made, F64)
+    drawn_ = samples(mechanism(made.scene), F64, 1, 0).each
+    rows = drawn(of, Dice("within"), 3)
+    found = at_rows(of, [rows], 0, [replace(drawn_[0], kind="sphere")])
+    assert {s.kind for s in found} == {"found"}
