@@ -21,3 +21,4 @@ bench:
 
 report:
 	$(BIN)/python -m bench.report
+	$(BIN)/python -m bench.pictures

@@ -4,27 +4,14 @@ The difference of two runs, divided by the difference of their calls: what start
 program cancels. The loop around the call stays inside; ``LOOP`` of the table tells how much.
 """
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from bench.build import BuildError, Row, pack, run
+from bench.build import BuildError, Row, pack
 from bench.candidate import SAMPLES
+from derive.check.callgrind import CallgrindError, Stretch, stretches
 
 FEW, MANY = 4, 68  # rounds of SAMPLES calls
-TOTAL = re.compile(r"^(?:summary|totals):\s*(\d+)\s*$", re.MULTILINE)
-
-
-def total(text: str) -> int:
-    """Return the instruction total of a callgrind output file.
-
-    >>> total("version: 1\\nevents: Ir\\nsummary: 4711\\n")
-    4711
-    """
-    found = TOTAL.findall(text)
-    if not found or "events: Ir" not in text:
-        raise BuildError("a callgrind file without 'events: Ir' or without a total")
-    return int(found[-1])
 
 
 def instructions(program: Path, rows: Sequence[Row]) -> float:
@@ -34,7 +21,17 @@ def instructions(program: Path, rows: Sequence[Row]) -> float:
 
 
 def _run(program: Path, given: bytes, rounds: int) -> int:
-    out = program.with_suffix(f".{rounds}.callgrind")
-    tool = ("valgrind", "--tool=callgrind", "-q", f"--callgrind-out-file={out}")
-    run((*tool, str(program), f"{rounds:03d}"), given)  # as many digits: the same start
-    return total(out.read_text(encoding="utf-8"))
+    command = (str(program), f"{rounds:03d}")  # as many digits: the same start
+    _, found = counted(command, given, program.parent)
+    return found[-1].instructions
+
+
+def counted(command: Sequence[str], given: bytes, folder: Path) -> tuple[bytes, list[Stretch]]:
+    """Return what a program prints and its parts, as the reports of scenes count them.
+
+    Raises FileNotFoundError without valgrind, BuildError if the run fails.
+    """
+    try:
+        return stretches(command, given, folder)
+    except CallgrindError as error:
+        raise BuildError(str(error)) from None

@@ -1,4 +1,4 @@
-"""Twelve rooms, lowest first: imports go down, never up and never in a circle.
+"""Thirteen rooms, lowest first: imports go down, never up and never in a circle.
 
 SymPy stays with the symbols, and what only the checkout has stays out of the package.
 """
@@ -12,27 +12,39 @@ from pathlib import Path
 
 import pytest
 
+import derive
 from derive.scene import Scene, catalogue
 from tests.made import SHORT, scene_of
 
 ROOMS = (
     *("lecture", "scene", "program", "mechanics", "lower", "motion"),
-    *("library", "verify", "emit", "check", "solve", "command"),
+    *("library", "verify", "emit", "check", "report", "solve", "command"),
 )
 MODULES = ("__init__", "__main__", "cli")
+API = derive.__all__
+OUTERMOST = ("command", "__main__", "cli")
+"""Rooms and modules that may use the interface of Python: all others are below it."""
+SPOKEN = {"derive", "derive.command", "derive.solve", "derive.scene.escape"}
+"""What commands use of the package: its interface, each other, and what a terminal may show."""
+OF_THEIR_OWN = {"lecture", "costs", "schema", "new", "completion"}
+"""Commands without a counterpart in Python: the lecture, costs, and what editors and shells ask."""
 WITHOUT_SYMPY = (
     *("scene", "program", "motion", "emit/c", "emit/lines"),
     *("emit/casadi_text", "emit/casadi_module"),
     *("lower/graph", "lower/expand", "lower/numbering", "lower/share", "lower/write"),
-    *("lower/schedule", "lower/derivative", "lower/forms", "lower/setup"),
+    *("lower/schedule", "lower/derivative", "lower/forms", "lower/setup", "lower/cancel"),
 )
 """Folders and modules that must not know the symbols."""
 MOST_ASKERS = 10
+MOST_LINES = 300
 """Modules outside mechanics that may import it: what others need of it, a library tells them."""
 FORMS = ("ShortForm", "short_form", "long_form", "read_short", "read_scene", "read_machine")
 """Words by which a module would know one of the two forms that a scene may be written in."""
-PICKS = {"derive.scene": {"short_form", "read_short", "read_machine"}}
-"""The one module that knows them outside the folder of the short form: it picks the reader."""
+PICKS = {
+    "derive.scene": {"short_form", "read_short", "read_machine"},
+    "derive.scene.schema": {"short_form"},
+}
+"""What knows them outside the folder of the short form: it picks the reader, or tells of both."""
 OF_ONE_FORM = ("source", "asked", "inverse", "spoken", "marks")
 """What one form alone lets a file say: where it is from and what a function answers; or what the
 other does without: the inverse problem, and words and letters for what has no name.
@@ -81,7 +93,8 @@ def imported(text: str) -> frozenset[str]:
 def faults(name: str, text: str) -> list[str]:
     """Return a sentence for every import of room ``name`` that goes up, or out of the package."""
     modules = imported(text)
-    rooms = {m.split(".")[1] for m in modules if m.startswith("derive.")} - {name, "__version__"}
+    rooms = {m.split(".")[1] for m in modules if m.startswith("derive.")}
+    rooms -= {name, "__version__", *(API if name in OUTERMOST else ())}
     up = [
         f"derive/{name} (floor {floor(name)}) imports derive/{other} (floor {floor(other)})"
         for other in sorted(rooms)
@@ -200,6 +213,12 @@ def test_the_package_holds_three_modules_and_the_rooms_and_nothing_else() -> Non
     assert held == {*ROOMS, *(f"{name}.py" for name in MODULES), *({"py.typed"} & held)}
 
 
+def test_no_file_has_more_lines_than_one_can_keep_in_mind() -> None:
+    files = [p for top in ("derive", "bench", "tests") for p in (ROOT / top).rglob("*.py")]
+    assert len(files) > 300
+    assert [str(p) for p in files if len(p.read_text().splitlines()) > MOST_LINES] == []
+
+
 def test_every_room_has_a_folder_of_tests_with_its_name() -> None:
     folders = {p.parent.relative_to(TESTS).parts[:1] for p in TESTS.rglob("test_*.py")}
     assert folders == {(), ("bench",), *((name,) for name in ROOMS)}
@@ -215,9 +234,28 @@ def test_every_room_says_in_one_sentence_what_comes_in_and_goes_out(name: str) -
     assert re.search(r"\bin, .*\bout\b", first)
 
 
+def asked(text: str) -> set[str]:
+    """Return what a command imports of the package beside the interface of Python."""
+    own = {m for m in imported(text) if m.split(".")[0] == "derive"}
+    return {m for m in own if m not in SPOKEN and ".".join(m.split(".")[:2]) not in SPOKEN}
+
+
+def test_commands_use_the_interface_of_python_and_no_other_way() -> None:
+    files = [p for p in FILES if room(p) == "command" and p.stem not in OF_THEIR_OWN]
+    assert {p.stem: found for p in files if (found := asked(p.read_text("utf-8")))} == {}
+    assert asked("from derive.check import check\nfrom derive.solve.handle import load") == {
+        "derive.check"
+    }
+
+
+def test_nothing_below_the_commands_uses_the_interface_of_python() -> None:
+    below = [p for p in FILES if room(p) not in OUTERMOST]
+    assert [str(p) for p in below if "derive" in imported(p.read_text("utf-8"))] == []
+
+
 def test_an_import_that_goes_up_is_found() -> None:
     assert faults("program", "from derive.cli import main") == [
-        "derive/program (floor 2) imports derive/cli (floor 12)"
+        "derive/program (floor 2) imports derive/cli (floor 13)"
     ]
     assert faults("program", "def f():\n    from derive import emit") != []
     assert faults("command", "from bench import show") == ["derive/command imports bench"]

@@ -1,13 +1,17 @@
-"""The project's own promises: two commands, six verbs, and a wheel that is complete."""
+"""The project's own promises: two commands, six verbs, and packages that are complete."""
 
 import ast
 import re
+import subprocess
+import sys
 import tomllib
 import zipfile
 from pathlib import Path
 from pkgutil import resolve_name
 
 from hatchling.builders.wheel import WheelBuilder
+
+from derive import __version__
 
 ROOT = Path(__file__).parent.parent
 TESTS = sorted((ROOT / "tests").rglob("*.py"))
@@ -101,6 +105,30 @@ def test_the_wheel_holds_every_template_and_every_scene(tmp_path: Path) -> None:
     wanted = templates | {name for name in data if name.endswith((".toml", ".c"))}
     assert len(templates) > 0
     assert wanted - held == set()
+    assert "derive/py.typed" in held
+    assert re.fullmatch(r"derive_eom-[\d.]+-py3-none-any\.whl", Path(wheel).name)
+
+
+def test_what_the_packages_weigh_is_held_against_what_the_readme_says(tmp_path: Path) -> None:
+    says = (ROOT / "README.md").read_text(encoding="utf-8")
+    (wheel, installed), *_ = re.findall(r"wheel of ([\d.]+) MB; [^.]+, (\d+) MB", says)
+    found, place = tmp_path / "derive.whl", tmp_path / "environment"
+    place.mkdir()
+
+    def told(part: float) -> int:
+        found.write_bytes(bytes(round(float(wheel) * 1e6)))
+        with (place / "all").open("wb") as file:
+            file.truncate(round(float(installed) * part * 1e6))
+        command = [sys.executable, ROOT / ".ci" / "weight", found, place]
+        return subprocess.run(command, capture_output=True, check=False).returncode
+
+    assert (told(1.0), told(1.2), told(0.8)) == (0, 1, 1)
+
+
+def test_the_citation_is_of_this_version_and_licence() -> None:
+    said = dict(re.findall(r"^(\w+): (.+)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert (said["version"], said["license"]) == (__version__, project["license"])
 
 
 def test_every_dependency_has_a_lower_bound() -> None:
@@ -108,8 +136,10 @@ def test_every_dependency_has_a_lower_bound() -> None:
     every = [*project["dependencies"]]
     for extra in project["optional-dependencies"].values():
         every += extra
-    own = [name for name in every if name.startswith("derive[")]
-    assert own == ["derive[test]"]
+    own = [name for name in every if name.startswith("derive")]
+    assert own == ["derive-eom[test]"]
+    assert project["name"] == "derive-eom"  # the package index has another derive
+    assert project["scripts"] == {"derive": "derive.cli:main"}
     bounded = re.compile(r"[\w-]+>=[\d.]+")
     assert [name for name in every if name not in own and not bounded.fullmatch(name)] == []
 

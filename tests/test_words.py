@@ -36,12 +36,12 @@ def test_a_second_type_of_a_name_is_found_whether_class_or_alias_or_plural() -> 
 
 
 WORDS = {
-    "motion": ("how bodies go in time", "check", "emit", "library", "mechanics", "motion",
+    "motion": ("how bodies go in time", "check", "emit", "library", "mechanics", "motion", "report",
                "scene", "solve", "verify"),
     "moved": ("nothing",),
     "moving": ("a scalar that changes in time, axes that turn", "lecture", "scene"),
     "rate": ("a derivative by time", "check", "lecture", "library", "lower", "mechanics", "motion",
-             "scene", "verify"),
+             "report", "scene", "verify"),
     "stage": ("of a Runge-Kutta method", "motion"),
     "draft": ("nothing",),
     "table": ("of a scene file", "scene"),
@@ -76,6 +76,7 @@ ALIKE = {
     ),
     **dict.fromkeys(("from_quaternion", "to_quaternion"), "the way to other parameters"),
     **dict.fromkeys(("after", "by_error", "increment", "step_slope"), "of a Runge-Kutta method"),
+    "load": "a scene: what it declares, and with it what can be done",
     "option": "of a command",
     "potential_energy": "by loads and, beside them, by particles",
     "renamed": "in a formula and in a program",
@@ -112,6 +113,7 @@ ROOMS = ("program", "mechanics", "lower", "motion", "library", "verify")
 SPOKEN = {
     "program/program": (["attitude"], "a role"),
     "mechanics/words": (["attitude"], "a role"),
+    "mechanics/balance": (["force", "moment"], "kinds of balances"),
     "mechanics/balances": (["force", "moment"], "kinds of balances"),
     "mechanics/answers": (["angular_momentum", "rate_in_axes"], "answers and lecture steps"),
     "mechanics/bodies": (["angular_momentum"], "a lecture step"),

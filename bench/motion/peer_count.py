@@ -7,14 +7,13 @@ from standard input, [case, setting] each, and makes every motion once before th
 import ctypes
 import json
 import os
-import shutil
 import sys
 from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 
+from bench import callgrind
 from bench.build import BuildError, run
-from bench.callgrind import total
 from bench.motion.case import cases
 from bench.motion.peers import PEERS, Peer
 
@@ -26,26 +25,18 @@ def counted(peer: Peer, jobs: Sequence[Asked], folder: Path) -> dict[Asked, floa
 
     Raises FileNotFoundError without valgrind, BuildError if the run fails.
     """
-    if not shutil.which("valgrind"):
-        raise FileNotFoundError("no valgrind")
     folder.mkdir(parents=True, exist_ok=True)
-    marks, out = folder / "mark.so", folder / "callgrind"
+    marks = folder / "mark.so"
     source = folder / "mark.c"
     source.write_text((files("bench.motion") / "mark.c").read_text(encoding="utf-8"))
     run(("gcc", "-O1", "-fPIC", "-shared", str(source), "-o", str(marks)))
-    tool = ("valgrind", "--tool=callgrind", "-q", f"--callgrind-out-file={out}", sys.executable)
-    module = ("-m", "bench.motion.peer_count", peer.package, str(marks))
-    said = run((*tool, *module), json.dumps(jobs).encode()).decode()
+    command = (sys.executable, "-m", "bench.motion.peer_count", peer.package, str(marks))
+    said, dumps = callgrind.counted(command, json.dumps(jobs).encode(), folder)
     passes = [int(line) for line in said.split()]
-    totals = [total(_text(out.with_name(f"callgrind.{n + 1}"))) for n in range(len(jobs))]
     if len(passes) != len(jobs):
         raise BuildError(f"{peer.name} answered {len(passes)} of {len(jobs)} jobs")
-    found = zip(jobs, totals, passes, strict=True)
-    return {job: count / steps for job, count, steps in found if steps}
-
-
-def _text(path: Path) -> str:
-    return path.read_text(encoding="utf-8", errors="replace")
+    found = zip(jobs, dumps[: len(jobs)], passes, strict=True)
+    return {job: part.instructions / steps for job, part, steps in found if steps}
 
 
 def marked(package: str, marks: ctypes.CDLL, jobs: Sequence[Asked]) -> list[int]:

@@ -1,19 +1,16 @@
 """Programs that move a body by several methods: built, run for end states and time, counted."""
 
-import re
-import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
+from bench import callgrind
 from bench.build import BuildError, run
-from bench.callgrind import total
 from bench.motion.case import Case
 
 REAL = {"f32": "float", "f64": "double"}
 FLAGS = ("-std=gnu99", "-O2", "-fno-lto", "-w")
-COUNTED = re.compile(r"^desc: Trigger: Client Request: (\w+)$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -94,25 +91,14 @@ def counted(
     mover: Mover, case: Case, parameters: Sequence[float], jobs: Sequence[Job]
 ) -> list[Count]:
     """Return the instructions of jobs; raises FileNotFoundError without valgrind."""
-    if not shutil.which("valgrind"):
-        raise FileNotFoundError("no valgrind")
-    for old in mover.path.parent.glob("callgrind.*"):
-        old.unlink()
-    out = mover.path.parent / "callgrind"
-    tool = ("valgrind", "--tool=callgrind", "-q", f"--callgrind-out-file={out}")
     given = _given(mover, case, parameters, jobs)
-    passes = [int(n) for n in run((*tool, str(mover.path), "count"), given).decode().split()]
-    dumps = [_dump(out.with_name(f"callgrind.{n + 1}")) for n in range(2 * len(passes))]
-    if [kind for kind, _ in dumps] != ["start", "go"] * len(passes):
-        raise BuildError(f"callgrind left other counts than were asked for: {dumps}")
+    said, found = callgrind.counted((str(mover.path), "count"), given, mover.path.parent)
+    passes = [int(n) for n in said.decode().split()]
+    words, dumps = [p.word for p in found[:-1]], [p.instructions for p in found[:-1]]
+    if words != ["start", "go"] * len(passes):
+        raise BuildError(f"callgrind left other counts than were asked for: {words}")
     pairs = zip(dumps[::2], dumps[1::2], passes, strict=True)
-    return [Count(a[1], b[1], n) for a, b, n in pairs]
-
-
-def _dump(path: Path) -> tuple[str, int]:
-    text = path.read_text(encoding="utf-8")
-    found = COUNTED.findall(text)
-    return (found[-1] if found else "", total(text))
+    return [Count(*each) for each in pairs]
 
 
 def _given(mover: Mover, case: Case, parameters: Sequence[float], jobs: Sequence[Job]) -> bytes:

@@ -9,10 +9,11 @@ from rich.table import Table
 
 from bench.report.case_run import Found
 from bench.report.contradictions import contradictions
-from bench.report.page import figure, page
+from bench.report.page import page
 from bench.report.recall import merged, read, recalled
 from bench.report.record import Report, data, text
 from bench.report.run import Ask, made
+from bench.report.written import figure
 from derive.emit.files import require_writable, write
 from derive.scene import SceneError
 

@@ -10,22 +10,22 @@ from typing import Any
 from markupsafe import Markup
 
 from bench.build import TOOLS
+from bench.report.acts import acts
 from bench.report.case_run import PRECISIONS, Found, attainable
-from bench.report.look import look
-from bench.report.plots import panels, svg
+from bench.report.drawn import SAYS, Plot, Plots, of_case, opening
+from bench.report.look import look, shades
+from bench.report.point import Point
 from bench.report.proposals import proposal_says
 from bench.report.recommend import ERRORS, advice, choice, overall, says, sentence
 from bench.report.record import PACKAGES, RULES, Report, best, data, kinds
+from bench.report.written import counted, figure
 from derive import __version__
 from derive.emit.templates import templates_of
+from derive.report.slim import SHAPES, STYLES, shared
 
 TEMPLATES = templates_of(Path(__file__).parent / "templates")
-SAYS = {"f64": "double", "f32": "float"}
-STATE = ("error at the end",)
-SEPARATE = ("omega, relative", "attitude, rad", "energy, relative", "momentum, relative")
 WORKERS = 2
 CHOICE = 3  # steppers that are named for an error
-SMALLEST, LARGEST = 1e-2, 1e4  # numbers outside are written with an exponent
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,8 @@ class Section:
     """A case as the page shows it."""
 
     found: Found
-    plots: Sequence[tuple[str, Markup, Markup]]
+    shown: Plots
+    folded: Sequence[Plots]
     advice: Sequence[tuple[str, str]]
     not_run: Sequence[tuple[str, str]]
 
@@ -41,10 +42,14 @@ class Section:
 def page(report: Report) -> str:
     """Return the text of ``report.html``."""
     figures = data(report)
-    return TEMPLATES.get_template("report.html.jinja").render(
+    first, sections = opening(motions(report.found)), _sections(report.found)
+    groups = [first, *(group for s in sections for group in (s.shown, *s.folded))]
+    text = TEMPLATES.get_template("report.html.jinja").render(
         version=__version__,
         report=report,
-        sections=_sections(report.found),
+        opening=first,
+        sections=sections,
+        acts=acts(report.found),
         overall=_overall(report),
         conditions=[_condition(f) for f in report.found],
         machine=figures["machine"],
@@ -53,10 +58,28 @@ def page(report: Report) -> str:
         proposals=proposal_says(report.proposals),
         says=SAYS,
         precisions=PRECISIONS,
+        shades=shades(),
+        styles=Markup(STYLES),  # noqa: S704 (our own words, as all that is marked so here)
+        shapes=Markup(SHAPES),  # noqa: S704
+        drawn=_drawn,
         figure=figure,
         figures=_figures,
-        number=_number,
+        number=counted,
     )
+    return shared(text, [plot.drawn for group in groups for plot in group.plots])
+
+
+def _drawn(plot: Plot) -> Markup:
+    return Markup(plot.drawn.text)  # noqa: S704 (our own SVG)
+
+
+def motions(found: Sequence[Found]) -> dict[str, dict[str, list[Point]]]:
+    """Return the points of each case, by whether a torque acts."""
+    every = {
+        "without torque": {f.case.name: [*f.points] for f in found if not f.case.torqued},
+        "with torque": {f.case.name: [*f.points] for f in found if f.case.torqued},
+    }
+    return {kind: own for kind, own in every.items() if own}
 
 
 def _sections(found: Sequence[Found]) -> list[Section]:
@@ -68,12 +91,7 @@ def _sections(found: Sequence[Found]) -> list[Section]:
 
 
 def _section(found: Found) -> Section:
-    plots = []
-    for precision in PRECISIONS:
-        own = [p for p in found.points if p.precision == precision]
-        floor = attainable(found.case, precision)
-        whole, parts = svg(panels(STATE), own, floor), svg(panels(SEPARATE), own, floor)
-        plots.append((SAYS[precision], Markup(whole), Markup(parts)))  # noqa: S704 (our own SVG)
+    shown, *folded = of_case(found)
     words = [
         (f"{figure(error)}, {SAYS[precision]}", sentence(one))
         for precision in PRECISIONS
@@ -83,7 +101,8 @@ def _section(found: Found) -> Section:
     reasons: dict[str, dict[str, None]] = {}
     for n in found.not_run:
         reasons.setdefault(n.reason, {})[n.method] = None
-    return Section(found, plots, words, [(", ".join(m), why) for why, m in reasons.items()])
+    missing = [(", ".join(m), why) for why, m in reasons.items()]
+    return Section(found, shown, [group for group in folded if group.plots], words, missing)
 
 
 def _overall(report: Report) -> list[dict[str, Any]]:
@@ -122,28 +141,7 @@ def _units(error: float | None, floor: float | None) -> str:
     return "" if error is None or not floor else figure(error / floor)
 
 
-def figure(x: float | None) -> str:
-    """Return a number as people write it.
-
-    >>> figure(1e-12), figure(0.25), figure(None), figure(3.2e-9), figure(660.2)
-    ('1e-12', '0.25', '', '3.2e-9', '660')
-    """
-    if x is None:
-        return ""
-    if math.isnan(x):
-        return "NaN"
-    if x == 0 or SMALLEST <= abs(x) < LARGEST:
-        return f"{x:.2g}" if abs(x) < LARGEST / 100 else f"{x:.0f}"
-    digits, exponent = f"{x:.1e}".split("e")
-    return f"{digits.removesuffix('.0')}e{int(exponent)}"
-
-
 def _figures(values: Mapping[str, Sequence[float]], precision: str) -> str:
     own = values.get(precision, ())
     shown = [figure(x) for n, x in enumerate(own) if n == 0 or not math.isnan(x)]
     return " / ".join(shown) if shown else "not run"
-
-
-def _number(x: float | None) -> str:
-    """Return a count with its thousands set apart."""
-    return "" if x is None else f"{x:,.0f}".replace(",", "\u202f")

@@ -5,190 +5,149 @@ Text stays text; there is no date, no path, no random name: the same points give
 
 import io
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from bench.report.look import COMPENSATED, Look, look, rank
-from bench.report.point import Point
-from bench.report.slim import slim
+from bench.report.line import Line
+from bench.report.look import GOLD, GRID, INK, PAINT, SOFT, Look, look
+from bench.report.seen import seen
+from bench.report.written import power
+from derive.report.slim import Slim, slim
 
-INK, SOFT, GRID, GOLD = "#1a1c20", "#5b626d", "#e6e8ec", "#b8860b"
-WIDTH, HEIGHT = 8.4, 3.5  # inch
-FEWEST = 5e-17  # an error of zero is drawn here
+WIDTH, HEIGHT = 4.2, 2.9  # inch; half of a page of 60 rem
 STYLE = {
     "svg.fonttype": "none",
     "svg.hashsalt": "derive",
     "font.family": "sans-serif",
     "font.sans-serif": ["Helvetica", "Arial", "DejaVu Sans"],
-    "font.size": 8.5,
+    "font.size": 8,
     "axes.edgecolor": SOFT,
     "axes.labelcolor": INK,
     "xtick.color": SOFT,
     "ytick.color": SOFT,
     "path.simplify": True,
 }
-GAP = 0.052  # between names, of an axis's height
-Series = tuple[Look, list[float], list[float]]
+GAP = 0.056  # between names, of the axes' height
+MOST_TICKS = {"x": 6, "y": 9}
+End = tuple[Look, float, float]
 
 
 @dataclass(frozen=True)
-class Panel:
-    """One pair of axes: which cost, which error, and what is said at its sides.
+class View:
+    """One plot: its curves, and what is said of it.
 
-    judged : whether the attainable error is one of this kind
-    marked : whether points have markers; many small panels do without
+    what : case, precision and which error, for who cannot see it     unit : of costs
+    floor : an error that is drawn across, what is attainable         up : what the errors are of
+    marked : whether points have markers; many small plots do without
     """
 
-    cost: Callable[[Point], float | None]
-    error: Callable[[Point], float]
-    across: str
+    what: str
+    lines: Sequence[Line]
+    unit: str
     up: str
-    judged: bool
+    floor: float | None
     marked: bool
 
 
-INSTRUCTIONS = ("instructions (Ir)", lambda p: p.instructions)
-MICROSECONDS = ("microseconds", lambda p: p.seconds * 1e6)
-ERRORS: Mapping[str, Callable[[Point], float]] = {
-    "error at the end": lambda p: p.wrong.state,
-    "omega, relative": lambda p: p.wrong.omega,
-    "attitude, rad": lambda p: p.wrong.attitude,
-    "energy, relative": lambda p: p.wrong.energy,
-    "momentum, relative": lambda p: p.wrong.momentum,
-}
-INVARIANTS = ("energy, relative", "momentum, relative")
-
-
-def panels(errors: Sequence[str]) -> list[list[Panel]]:
-    """Return rows of two panels, against instructions and against time, a row an error."""
-    marked = len(errors) == 1
-    return [
-        [
-            Panel(cost, ERRORS[name], label, name, name not in INVARIANTS, marked)
-            for label, cost in (INSTRUCTIONS, MICROSECONDS)
-        ]
-        for name in errors
-    ]
-
-
-def figure(rows: Sequence[Sequence[Panel]], points: Sequence[Point], floor: float | None) -> Any:
-    """Return a matplotlib figure of panels; ``floor`` is drawn across: what is attainable."""
-    import matplotlib as mpl
-    from matplotlib.figure import Figure
-
-    with mpl.rc_context(STYLE):
-        drawn = Figure(figsize=(WIDTH, HEIGHT * len(rows)), layout=None)
-        edges = {"top": 1 - 0.03 / len(rows), "bottom": 0.135 / len(rows)}
-        drawn.subplots_adjust(left=0.075, right=0.825, wspace=0.06, hspace=0.24, **edges)
-        axes = drawn.subplots(len(rows), 2, squeeze=False, sharey="row")
-        for row, line in zip(rows, axes, strict=True):
-            for panel, ax in zip(row, line, strict=True):
-                _draw(ax, panel, floor if panel.judged else None)
-                _curves(ax, panel, points)
-            line[0].set_ylabel(row[0].up)
-            curves = [_curve(own, row[1]) for own in grouped(points)]
-            _name(line[1], [*curves, *_attainable(line[1], row[1], floor)])
-        return drawn
-
-
-def svg(rows: Sequence[Sequence[Panel]], points: Sequence[Point], floor: float | None) -> str:
-    """Return a figure as the text of an svg element."""
+def svg(view: View) -> Slim:
+    """Return a plot as an svg element with alternative text."""
     import matplotlib as mpl
 
     with mpl.rc_context(STYLE):
         out = io.StringIO()
         nothing = {"Date": None, "Creator": None, "Format": None, "Type": None}
-        figure(rows, points, floor).savefig(out, format="svg", metadata=nothing)
-    return slim(out.getvalue())
+        figure(view).savefig(out, format="svg", metadata=nothing)
+    says = seen(view.what, view.lines, view.unit, view.floor)
+    return slim(out.getvalue(), says, PAINT)
 
 
-def grouped(points: Iterable[Point]) -> list[list[Point]]:
-    """Return the points of each method, coarse to fine as they came, in the order of ``rank``."""
-    found: dict[tuple[str, str], list[Point]] = {}
-    for p in sorted(points, key=lambda p: (rank(p), p.scene)):
-        found.setdefault((p.method, p.scene), []).append(p)
-    return [own for (method, scene), own in found.items() if _worth(method, scene, found)]
+def figure(view: View) -> Any:
+    """Return a matplotlib figure of a plot."""
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
+    with mpl.rc_context(STYLE):
+        drawn = Figure(figsize=(WIDTH, HEIGHT), layout=None)
+        drawn.patch.set_visible(False)
+        ax = drawn.add_axes((0.135, 0.145, 0.545, 0.83))
+        ax.patch.set_visible(False)
+        _scales(ax, view)
+        for one in view.lines:
+            _curve(ax, one, view.marked)
+        _ticks(ax)
+        for one in view.lines:
+            if len(one.costs) == 1:
+                _beside(ax, one)
+        ends = [
+            (look(one.method), one.costs[-1], one.errors[-1])
+            for one in view.lines
+            if len(one.costs) > 1
+        ]
+        if view.floor:
+            ends.append((Look("κu, attainable", GOLD, "", "-"), ax.get_xlim()[1], view.floor))
+        _name(ax, ends)
+        return drawn
 
 
-def _worth(method: str, scene: str, found: Mapping[tuple[str, str], list[Point]]) -> bool:
-    """Tell whether a compensated stepper ends clearly better than the plain one; others: yes."""
-    plain = found.get((method.removesuffix(COMPENSATED), scene))
-    if plain is None or not method.endswith(COMPENSATED):
-        return True
-    return _least(found[method, scene]) < _least(plain) / 2
-
-
-def _least(points: Sequence[Point]) -> float:
-    return min((p.wrong.state for p in points if math.isfinite(p.wrong.state)), default=math.inf)
-
-
-def _curve(points: Sequence[Point], panel: Panel) -> Series:
-    pairs = [(panel.cost(p), panel.error(p)) for p in points]
-    kept = [(c, max(e, FEWEST)) for c, e in pairs if c and math.isfinite(e) and e < math.tau]
-    return look(points[0].method), [c for c, _ in kept], [e for _, e in kept]
-
-
-def _draw(ax: Any, panel: Panel, floor: float | None) -> None:
-    from matplotlib.ticker import FuncFormatter
-
+def _scales(ax: Any, view: View) -> None:
     ax.set_xscale("log")
     ax.set_yscale("log")
-    ax.minorticks_off()
-    for axis in (ax.xaxis, ax.yaxis):
-        axis.set_major_formatter(FuncFormatter(power))
     ax.grid(color=GRID, linewidth=0.6)
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
-    ax.tick_params(length=2.5, labelsize=8)
-    if floor:
-        ax.axhline(floor, color=GOLD, linewidth=1.2, zorder=1)
-    ax.set_xlabel(panel.across)
+    ax.tick_params(length=0, labelsize=8)
+    if view.floor:
+        ax.axhline(view.floor, color=GOLD, linewidth=1.2, zorder=1)
+    ax.set_xlabel(view.unit)
+    ax.set_ylabel(view.up)
+    ax.yaxis.set_label_coords(-0.17, 0.5)
 
 
-def _curves(ax: Any, panel: Panel, points: Sequence[Point]) -> None:
-    for own in grouped(points):
-        shown, x, y = _curve(own, panel)
-        single = len(x) == 1
-        ax.plot(x, y, color=shown.colour, marker=shown.marker if panel.marked or single else "",
-                linestyle=shown.line, linewidth=0.8 if shown.line == ":" else 1.3,
-                markersize=9 if shown.marker == "*" else 4)  # fmt: skip
+def _ticks(ax: Any) -> None:
+    from matplotlib.ticker import FuncFormatter, LogLocator
+
+    for axis, most in zip((ax.xaxis, ax.yaxis), MOST_TICKS.values(), strict=True):
+        axis.set_major_locator(LogLocator(numticks=most))
+        axis.set_major_formatter(FuncFormatter(power))
+    ax.minorticks_off()
 
 
-def power(x: float, _: int = 0) -> str:
-    """Return a power of ten as text: plain characters, which are quick to draw and to search.
-
-    >>> power(1e-12)
-    '10⁻¹²'
-    """
-    digits = "⁰¹²³⁴⁵⁶⁷⁸⁹"
-    exponent = round(math.log10(x))
-    raised = "".join(digits[int(d)] for d in str(abs(exponent)))
-    return f"10{'⁻' if exponent < 0 else ''}{raised}"
+def _curve(ax: Any, one: Line, marked: bool) -> None:  # noqa: FBT001 (a field of the view)
+    shown = look(one.method)
+    star = shown.marker == "*"
+    ax.plot(one.costs, one.errors, color=shown.colour, linestyle=shown.line,
+            marker=shown.marker if marked or len(one.costs) == 1 else "",
+            linewidth=0.9 if shown.line == ":" else 1.3, markersize=11 if star else 3.5,
+            markeredgewidth=0 if star else 0.8)  # fmt: skip
 
 
-def _attainable(ax: Any, panel: Panel, floor: float | None) -> list[Series]:
-    """Return the golden line as something to be named at the right edge of the axes."""
-    if floor is None or not panel.judged:
-        return []
-    return [(Look("κu, attainable", GOLD, "", "-"), [ax.get_xlim()[1]], [floor])]
+def _beside(ax: Any, one: Line) -> None:
+    """Write the name of a single point beside it."""
+    shown = look(one.method)
+    ax.annotate(
+        shown.label, xy=(one.costs[0], one.errors[0]), xytext=(8, 0), textcoords="offset points",
+        color=shown.colour, va="center", fontsize=8,
+    )  # fmt: skip
 
 
-def _name(ax: Any, curves: Sequence[Series]) -> None:
+def _name(ax: Any, ends: Sequence[End]) -> None:
     """Write each curve's name to the right of the axes, near its end and clear of the others."""
     low, high = (math.log(v) for v in ax.get_ylim())
     ax.set_xlim(ax.get_xlim())
-    ends = [(shown, (math.log(y[-1]) - low) / (high - low), x[-1], y[-1])
-            for shown, x, y in curves if y]  # fmt: skip
-    ends.sort(key=lambda e: e[1])
-    for (shown, _, x, y), place in zip(ends, spread([e[1] for e in ends], GAP), strict=True):
+    placed = [((math.log(y) - low) / (high - low), shown, x, y) for shown, x, y in ends]
+    placed.sort(key=lambda end: end[0])
+    places = spread([end[0] for end in placed], GAP)
+    for (_, shown, x, y), place in zip(placed, places, strict=True):
         ax.annotate(
-            shown.label, xy=(x, y), xycoords="data", xytext=(1.035, place),
-            textcoords="axes fraction", color=shown.colour, va="center", fontsize=8,
+            "", xy=(x, y), xycoords="data", xytext=(1.04, place), textcoords="axes fraction",
             annotation_clip=False,
-            arrowprops={"arrowstyle": "-", "color": shown.colour, "linewidth": 0.5, "alpha": 0.45,
-                        "shrinkA": 1, "shrinkB": 3},
+            arrowprops={"arrowstyle": "-", "color": shown.colour, "linewidth": 0.5,
+                        "shrinkA": 0, "shrinkB": 3},
         )  # fmt: skip
+    for (_, shown, _, _), place in zip(placed, places, strict=True):  # above all lines
+        ax.text(1.05, place, shown.label, transform=ax.transAxes, color=shown.colour, va="center",
+                fontsize=8)  # fmt: skip
 
 
 def spread(places: Sequence[float], gap: float) -> list[float]:

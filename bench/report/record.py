@@ -142,7 +142,7 @@ def _case(found: Found) -> dict[str, Any]:
         "attainable": {p: attainable(case, p) for p in PRECISIONS},
         "points": [_point(p) for p in found.points],
         "not_run": [asdict(n) for n in found.not_run],
-        "command": f"derive report --only {case.name}",
+        "command": f"python -m bench.report --only {case.name}",
     }
 
 
@@ -162,7 +162,7 @@ def _hard(row: Hard) -> dict[str, Any]:
         "naive_holds": {p: row.naive_holds(p) for p in row.naive_found},
         "holds": {p: row.holds(p) for p in row.ours_found},
     }
-    return asdict(row) | verdicts | {"command": "derive report --only hard"}
+    return asdict(row) | verdicts | {"command": "python -m bench.report --only hard"}
 
 
 def _plain(value: Any) -> Any:

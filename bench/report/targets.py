@@ -34,7 +34,7 @@ NOT = "not measured"
 class Target:
     """One target: what, the limit, what was measured; ``reached`` is None if it was not measured.
 
-    only : the part of the report that shows it, for `derive report --only`
+    only : the part of the report that shows it, for `python -m bench.report --only`
     """
 
     says: str

@@ -39,8 +39,7 @@ from derive.check.refusals import casadi_status, refuses_alike
 from derive.check.sphere import near_a_sphere
 from derive.check.turned import turned_axes
 from derive.check.verdict import JUDGED, Verdict
-from derive.library.library import Library, library
-from derive.scene import load
+from derive.library.library import Library
 from derive.scene.escape import visible
 from derive.verify.draw import Sampled, with_motion
 from derive.verify.kept import stated_figures
@@ -61,23 +60,22 @@ NO_PARAMETERS = "none with values was found"
 
 
 def check(
-    sources: Sequence[str], folder: Path, samples: int, told: Callable[[str], None]
+    made: Library, source: str, folder: Path, samples: int, told: Callable[[str], None]
 ) -> Iterator[Verdict]:
-    """Yield the verdicts on scenes' files, made anew; what lies below ``folder`` must be the same.
+    """Yield verdicts on a scene's files, made anew; what lies below ``folder`` must be the same.
 
     Nothing that lies there is run.
 
+    source  : what the user named the scene by, for the command that makes its files
     samples : fresh ones that stated errors are tried at       told : hears how far that is
     Raises CompilerError if there is no C compiler.
     """
     with_ = find_compiler()
-    for source in sources:
-        made = library(load(source))
-        with TemporaryDirectory(prefix="derive-") as workshop:
-            found = files(made, folder, sampling_of(folder, made.scene.name))
-            yield as_made(made, found, source)
-            yield from check_library(made, found, Path(workshop), with_, ORDINARY)
-            yield from fresh(made, stated_figures(found.manifest), samples, told)
+    with TemporaryDirectory(prefix="derive-") as workshop:
+        found = files(made, folder, sampling_of(folder, made.scene.name))
+        yield as_made(made, found, source)
+        yield from check_library(made, found, Path(workshop), with_, ORDINARY)
+        yield from fresh(made, stated_figures(found.manifest), samples, told)
 
 
 def check_library(

@@ -18,6 +18,7 @@ from derive.check.emitted import Emitted, errors_of, from_parameters, inputs, ve
 from derive.check.verdict import JUDGED, Verdict
 from derive.program.arithmetic import LIBM, working
 from derive.program.largest import largest
+from derive.program.precision import Precision
 from derive.program.program import Program
 from derive.scene.formula import Arithmetic
 from derive.verify.draw import Sampled
@@ -54,8 +55,12 @@ def same_values(a: Sequence[float], b: Sequence[float]) -> bool:
 
 def linked_arithmetic(emitted: Emitted) -> Arithmetic:
     """Return the file's arithmetic with the sine and cosine that the C is linked with."""
-    loaded, dtype = ctypes.CDLL(str(emitted.shared)), emitted.precision.dtype
-    functions = emitted.precision.functions
+    return arithmetic_of(ctypes.CDLL(str(emitted.shared)), emitted.precision)
+
+
+def arithmetic_of(loaded: ctypes.CDLL, precision: Precision) -> Arithmetic:
+    """Return the arithmetic of a precision with the sine and cosine of a loaded library."""
+    dtype, functions = precision.dtype, precision.functions
     linked = {name: _linked(loaded, functions[name], dtype) for name in sorted(LIBM)}
     return {**working(dtype), **linked}
 

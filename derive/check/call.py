@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from derive.check.compiler import callable_library
+
 SCALARS = {"f32": ctypes.c_float, "f64": ctypes.c_double}
 
 
@@ -59,8 +61,8 @@ class CFunction:
 
 def c_functions(manifest: Mapping[str, Any], library: Path, precision: str) -> dict[str, CFunction]:
     """Return the functions that a manifest describes, from a compiled library."""
-    loaded = ctypes.CDLL(str(library))
-    return {f["name"]: _function(f, loaded, precision) for f in manifest["functions"]}
+    shared = callable_library(library)
+    return {f["name"]: _function(f, shared, precision) for f in manifest["functions"]}
 
 
 def _function(described: Mapping[str, Any], loaded: Any, precision: str) -> CFunction:

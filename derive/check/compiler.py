@@ -1,5 +1,6 @@
 """A C compiler, found or explained, and shared libraries made by it with the strictest warnings."""
 
+import ctypes
 import hashlib
 import os
 import shlex
@@ -11,17 +12,20 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
+from derive.scene.declaration import DeriveError
+
 WARNINGS = (
     *("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow"),
     *("-Wstrict-prototypes", "-Wfloat-equal", "-Werror"),
 )
-FLAGS = ("-std=c99", "-O2", *WARNINGS, "-fPIC", "-shared")
+OPTIMISED = ("-std=c99", "-O2", *WARNINGS)
+FLAGS = (*OPTIMISED, "-fPIC", "-shared")
 HOW_TO_GET_ONE = (
     "no C compiler: set CC, put gcc, cc or clang on the PATH, or `python -m pip install ziglang`"
 )
 
 
-class CompilerError(RuntimeError):
+class CompilerError(DeriveError, RuntimeError):
     """No compiler, or a file that it refuses; the message is the sentence or what it said."""
 
 
@@ -65,10 +69,39 @@ def compiled(texts: Mapping[str, str], source: str, folder: Path, with_: Compile
         for name, text in texts.items():
             (place / name).write_text(text, encoding="utf-8")
         _run((*with_.command, *FLAGS, source, "-o", library.name, "-lm"), place)
+    if not library.exists():
+        raise CompilerError(f"`{' '.join(with_.command)}` made no library, and did not say why")
     return library
+
+
+def program_made(text: str, source: str, folder: Path, with_: Compiler) -> Path:
+    """Return a program made of one source, which may open shared libraries.
+
+    It is made once a folder. Raises CompilerError with the compiler's complaint.
+    """
+    program = folder / Path(source).stem
+    if not program.exists():
+        (folder / source).write_text(text, encoding="utf-8")
+        _run((*with_.command, *OPTIMISED, source, "-o", program.name, "-ldl"), folder)
+    return program
+
+
+def callable_library(library: Path) -> ctypes.CDLL:
+    """Return a library as this process calls it.
+
+    Raises CompilerError for one that was made for another machine.
+    """
+    try:
+        return ctypes.CDLL(str(library))
+    except OSError as error:
+        said = str(error).removeprefix(f"{library}: ")
+        raise CompilerError(
+            f"what the compiler made cannot be called here: {said}; set CC to one for this machine"
+        ) from None
 
 
 def _run(command: tuple[str, ...], folder: Path) -> None:
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise CompilerError(f"`{' '.join(command)}` said: {done.stderr.strip()[-2000:]}")
+        said = done.stderr.strip()[-2000:] or f"nothing, and ended with code {done.returncode}"
+        raise CompilerError(f"`{' '.join(command)}` said: {said}")

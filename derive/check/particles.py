@@ -40,7 +40,7 @@ def clouds(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
             with mp.workdps(DIGITS):
                 given = {name: digits(x) for name, x in values.items()}
             if base == "linearised" or outputs[0].name in MATRICES:
-                gaps = _small(scene, given, true)
+                gaps = _small(scene, given | _left_out(library, base), true)
             else:
                 gaps = _gaps(scene.posed(base), given, base, {name: true[name] for name in names})
             worst, count = largest([worst, *gaps]), count + len(gaps)
@@ -181,6 +181,13 @@ def digits(ball: Any) -> Any:
     with ctx.workprec(400):
         man, exp = arb(ball).mid().man_exp()
     return mpf(int(man)) * mpf(2) ** int(exp)
+
+
+def _left_out(library: Library, function: str) -> dict[str, Any]:
+    """Return 0 for each input of a scene that a function does not take: a motor's that holds it."""
+    (program,) = [one for one in library.functions if one.name == function]
+    taken = {c for q in program.inputs for c in q.components}
+    return {one.name: mpf(0) for one in library.scene.inputs if one.name not in taken}
 
 
 def _small(machine: Scene, given: Mapping[str, Any], true: Mapping[str, Solved]) -> list[Any]:

@@ -4,14 +4,11 @@ import argparse
 
 from rich.table import Table
 
-from derive.check import check as verdicts_on
-from derive.command.generation import require_posed
+import derive
 from derive.command.scenes import samples_argument, scene_argument
-from derive.command.terminal import OUT, console, progress
-from derive.scene import catalogue
-
-FRESH = 4096
-"""Samples that take a second a scene; a release is tried with a million."""
+from derive.command.terminal import OUT, console, print_rows, progress
+from derive.solve.handle import FRESH
+from derive.solve.several import checked
 
 
 def options(command: argparse.ArgumentParser) -> None:
@@ -23,7 +20,6 @@ def options(command: argparse.ArgumentParser) -> None:
 
 def check(given: argparse.Namespace) -> int:
     """Compile the emitted files and compare them with ball arithmetic and with each other."""
-    require_posed(given.scenes)
     table = Table("scene", "function", "in", "check", "verdict", "found", box=None)
     found: list[str] = []
     with progress() as shown:
@@ -32,12 +28,13 @@ def check(given: argparse.Namespace) -> int:
         def told(says: str) -> None:
             shown.update(task, description=says)
 
-        verdicts = verdicts_on(given.scenes or catalogue(), OUT, given.samples, told)
-        for count, v in enumerate(verdicts, 1):
-            shown.update(task, description=f"{v.scene}: {v.function} ({count} checks)")
+        for v in checked(
+            [derive.load(source) for source in given.scenes], OUT, given.samples, told
+        ):
             found.append(v.outcome)
+            told(f"{v.scene}: {v.function} ({len(found)} checks)")
             table.add_row(v.scene, v.function, v.precision, v.check, v.outcome, v.says)
-    console.print(table)
+    print_rows(table)
     failed, skipped = found.count("FAILS"), found.count("skipped")
     console.print(f"{found.count('holds')} passed, {failed} failed, {skipped} skipped")
     return 1 if failed else 0

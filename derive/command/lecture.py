@@ -5,7 +5,7 @@ from difflib import get_close_matches
 
 from rich.table import Table
 
-from derive.command.terminal import console, progress
+from derive.command.terminal import console, print_rows, progress
 from derive.emit.notation import expression_text
 from derive.lecture.chapters import LECTURE
 from derive.lecture.step import first_fall, verify
@@ -35,7 +35,7 @@ def _verified() -> int:
     for row in rows:
         verdict = "holds" if row.holds else f"FAILS: {row.fault}"
         table.add_row(row.name, row.kind, ", ".join(row.reasons), verdict)
-    console.print(table)
+    print_rows(table)
     fallen = sum(not row.holds for row in rows)
     deduced = sum(row.kind == "deduce" for row in rows)
     seconds = sum(row.seconds for row in rows)

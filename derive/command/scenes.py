@@ -4,10 +4,10 @@ import argparse
 
 from rich.table import Table
 
-from derive.check.emitted import SAMPLES
-from derive.command.terminal import console
-from derive.scene import catalogue, load
+import derive
+from derive.command.terminal import print_rows
 from derive.scene.escape import brief, visible
+from derive.solve.generation import NUMBERS
 
 
 def options(command: argparse.ArgumentParser) -> None:
@@ -25,10 +25,9 @@ def scene_argument(command: argparse.ArgumentParser) -> None:
 def list_scenes(_: argparse.Namespace) -> int:
     """Print the catalogue: name, title, wanted functions."""
     table = Table("scene", "what it is", "functions", box=None)
-    for name in catalogue():
-        scene = load(name)
-        table.add_row(name, scene.title, ", ".join(scene.wanted))
-    console.print(table)
+    for scene in map(derive.load, derive.catalogue()):
+        table.add_row(scene.name, scene.title, ", ".join(scene.wanted))
+    print_rows(table)
     return 0
 
 
@@ -44,8 +43,8 @@ def samples_argument(command: argparse.ArgumentParser, default: int, says: str) 
 
 
 def _samples(text: str) -> int:
-    digits = len(str(SAMPLES[-1]))
-    if not text.isdecimal() or len(text) > digits or int(text) not in SAMPLES:
-        rule = f"must be a whole number above zero, up to {SAMPLES[-1]}"
+    digits = len(str(NUMBERS[-1]))
+    if not text.isdecimal() or len(text) > digits or int(text) not in NUMBERS:
+        rule = f"must be a whole number above zero, up to {NUMBERS[-1]}"
         raise argparse.ArgumentTypeError(f"{rule}, not '{brief(visible(text))}'")
     return int(text)

@@ -1,33 +1,126 @@
-"""``derive solve``: the answers of a scene as a table."""
+"""``derive solve``: the answers of a scene, its limits and motions, from the command line."""
 
 import argparse
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from rich.table import Table
 
-from derive.command.terminal import console, error_console
-from derive.scene import SceneError
-from derive.scene.unit import behind
-from derive.solve import command as answers
+import derive
+from derive.command.terminal import complain, print_rows
+from derive.solve.handle import STEP
+
+Printed = tuple[str, str, str, str]
+"""What, where from, its value and its unit."""
+NOWHERE = "none in its range"
 
 
 def options(command: argparse.ArgumentParser) -> None:
     """Declare the options of ``derive solve``."""
-    answers.options(command)
+    command.add_argument("scene", metavar="SCENE", help="catalogue name or path to a TOML file")
+    command.add_argument(
+        "--set",
+        action="append",
+        nargs="+",
+        default=[],
+        metavar="NAME=VALUE",
+        help="a parameter or input, in SI units, or as 3deg or 5000rpm",
+    )
+    command.add_argument(
+        "--limit",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="find the values of NAME, in its range, at which stability changes",
+    )
+    command.add_argument(
+        "--until", type=float, metavar="SECONDS", help="move in time by the scene's step_rk4"
+    )
+    command.add_argument(
+        "--step",
+        type=float,
+        metavar="SECONDS",
+        help=f"longest step, of which --until is a multiple ({STEP:g})",
+    )
+    command.add_argument(
+        "--plot", type=Path, metavar="FILE", help="write the motion as SVG (with --until)"
+    )
     command.set_defaults(run=solve)
 
 
 def solve(given: argparse.Namespace) -> int:
     """Print the answers of a scene with their units; refuse at the end what has no values."""
-    found = answers.printout(given)
-    for doubt in found.doubts:
-        error_console.print(
-            f"derive: warning: {doubt}", style="yellow", highlight=False, markup=False
-        )
-    table = Table("function", "answer", "value", "unit", box=None)
-    for row in found.rows:
-        table.add_row(*row[:3], behind(row[3]).strip())
-    if found.rows or not found.unanswered:
-        console.print(table)
+    _require_one_question(given)
+    scene = derive.load(given.scene)
+    values = named([text for group in given.set for text in group])
+    if given.until is not None or given.limit:
+        ask = _limits if given.limit else _simulated
+        rows, doubts = ask(scene, given, values)
+        _print(rows, (*scene.doubts(values), *doubts))
+        return 0
+    found = scene.solve(values)
+    rows = [(row.of, row.name, f"{row.value:.12g}", row.unit) for row in found.rows]
+    _print(rows if rows or not found.unanswered else None, found.doubts)
     if found.unanswered:
-        raise SceneError(f"set values by --set: {'; '.join(found.unanswered)}")
+        each = [f"'{name}' needs {', '.join(own)}" for name, own in found.unanswered.items()]
+        raise derive.DeriveError(f"set values by --set: {'; '.join(each)}")
     return 0
+
+
+def _print(rows: Sequence[Printed] | None, doubts: Sequence[str]) -> None:
+    """Print warnings, then a table of rows, None for none."""
+    for doubt in doubts:
+        complain(f"derive: warning: {doubt}", "yellow")
+    if rows is not None:
+        table = Table("function", "answer", "value", "unit", box=None)
+        for of, name, value, unit in rows:
+            table.add_row(of, name, value, "" if unit == "1" else unit)
+        print_rows(table)
+
+
+def named(texts: Sequence[str]) -> dict[str, str]:
+    """Return the texts of values by name, of a list such as ``m=1200 skew=3deg``.
+
+    Raises DeriveError for a name that is set twice.
+    """
+    values: dict[str, str] = {}
+    for text in texts:
+        name, _, value = text.partition("=")
+        if name.strip() in values:
+            raise derive.DeriveError(f"--set {text[:60]}: '{name.strip()}' is set twice")
+        values[name.strip()] = value
+    return values
+
+
+def _require_one_question(given: argparse.Namespace) -> None:
+    if given.plot is not None and given.until is None:
+        rule = "a plot shows a motion and needs --until SECONDS"
+        raise derive.DeriveError(f"--plot {given.plot}: {rule}")
+    if given.step is not None and given.until is None:
+        rule = "a step is of a motion and needs --until SECONDS"
+        raise derive.DeriveError(f"--step {given.step:g}: {rule}")
+    if given.limit and given.until is not None:
+        rule = f"limits of stability are no motion; leave out --until {given.until:g}"
+        raise derive.DeriveError(f"--limit {given.limit[0]}: {rule}")
+
+
+def _simulated(
+    scene: derive.Handle, given: argparse.Namespace, values: Mapping[str, str]
+) -> tuple[list[Printed], tuple[str, ...]]:
+    """Return the state at the end of a motion, and warnings; write its plot to a named file."""
+    step = STEP if given.step is None else given.step
+    motion = scene.simulate(values, given.until, step, given.plot)
+    at = f"at {motion.times[-1]:.6g} s"
+    rows = [(at, n, f"{v[-1]:.12g}", motion.units[n]) for n, v in motion.states.items()]
+    return rows, motion.doubts
+
+
+def _limits(
+    scene: derive.Handle, given: argparse.Namespace, values: Mapping[str, str]
+) -> tuple[list[Printed], tuple[str, ...]]:
+    unit = {c: q.unit for q in scene.quantities for c in q.components}
+    rows: list[Printed] = []
+    for name in given.limit:
+        each = [f"{v:.12g}" for v in scene.limits(values, name)]
+        rows += [("limit of stability", name, v, unit.get(name, "")) for v in each or [NOWHERE]]
+    return rows, ()

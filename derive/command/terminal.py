@@ -2,18 +2,25 @@
 
 import sys
 from pathlib import Path
+from typing import TextIO
 
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
 
 from derive.scene.escape import visible
 
 OUT = Path("generated")
 WIDE = 150  # columns of a table that goes to a file or a pipe
-console = Console(width=None if sys.stdout.isatty() else WIDE, markup=False, emoji=False)
-error_console = Console(
-    stderr=True, width=None if sys.stderr.isatty() else WIDE, markup=False, emoji=False
-)
+
+
+def _width(stream: TextIO | None) -> int | None:
+    """Return the columns of a table, None for those of a terminal; None is a closed stream."""
+    return None if stream is not None and stream.isatty() else WIDE
+
+
+console = Console(width=_width(sys.stdout), markup=False, emoji=False)
+error_console = Console(stderr=True, width=_width(sys.stderr), markup=False, emoji=False)
 
 
 def complain(sentence: str, style: str) -> None:
@@ -22,6 +29,17 @@ def complain(sentence: str, style: str) -> None:
     error_console.print(
         shown, style=style, highlight=False, soft_wrap=not error_console.is_terminal
     )
+
+
+def print_rows(table: Table, width: int | None = None) -> None:
+    """Print a table; in a file or a pipe no line ends in blanks."""
+    if console.is_terminal:
+        console.print(table, width=width, highlight=False)
+        return
+    with console.capture() as shown:
+        console.print(table, width=width, highlight=False)
+    lines = [line.rstrip() for line in shown.get().splitlines()]
+    console.print("\n".join(lines), highlight=False, soft_wrap=True)
 
 
 def progress() -> Progress:

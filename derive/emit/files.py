@@ -17,14 +17,18 @@ from derive.emit.c.source import c_files
 from derive.emit.casadi_text import casadi_file
 from derive.emit.manifest import manifest
 from derive.emit.page.scene import scene_page
+from derive.emit.reported import NOTHING_BESIDE, Beside
 from derive.library.library import Library
 from derive.program.program import Measurement
+from derive.scene.declaration import DeriveError
 
+REPORTS = ("_report.html", "_report.json")
+"""How files end that `derive report` makes beside those of a scene: measured, not generated."""
 UNFINISHED = ".derive-unfinished"
 """Lists the files that a run is about to replace; it lies there until all of them are."""
 
 
-class OutputError(OSError):
+class OutputError(DeriveError, OSError):
     """A folder or file that cannot be written; the sentence names it and the reason."""
 
 
@@ -41,16 +45,24 @@ class Difference:
 
 
 def scene_files(
-    library: Library, figures: Sequence[Measurement], digest: str = ""
+    library: Library, figures: Sequence[Measurement], digest: str = "", by: Beside = NOTHING_BESIDE
 ) -> dict[str, str]:
-    """Return the path below the output folder and the text of every file of a scene."""
+    """Return the path below the output folder and the text of every file of a scene.
+
+    digest : of all that the figures depend on        by : what the page can lead to
+    """
     name = library.scene.name
     texts = c_files(library, figures) | {
         f"{name}_casadi.py": casadi_file(library, figures),
         f"{name}.json": manifest(library, figures, digest),
-        f"{name}.html": scene_page(library, figures),
+        f"{name}.html": scene_page(library, figures, by),
     }
     return {f"{name}/{file}": text for file, text in texts.items()}
+
+
+def manifests(folder: Path) -> list[Path]:
+    """Return the JSON of every scene whose files lie below a folder; reports have another."""
+    return sorted(p for p in folder.glob("*/*.json") if p.stem == p.parent.name)
 
 
 def write(folder: Path, texts: Mapping[str, str]) -> None:
@@ -213,7 +225,9 @@ def folders_left_over(folder: Path, texts: Mapping[str, str]) -> Iterator[Differ
 
 
 def _left_over(folder: Path, name: str, texts: Mapping[str, str]) -> Iterator[Difference]:
+    made = any(file.startswith(f"{name}/") for file in texts)
+    own = {f"{name}{ending}" for ending in REPORTS if made}
     for path in sorted((folder / name).glob("*")):
         file = f"{name}/{path.name}"
-        if file not in texts and path.is_file():
+        if file not in texts and path.is_file() and path.name not in own:
             yield Difference(file, f"{file}: no scene makes this file; delete it\n", left_over=True)

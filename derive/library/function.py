@@ -12,7 +12,13 @@ from derive.lower.apart import apart
 from derive.lower.arrange import plan
 from derive.lower.arrange.arrangement import Arrangement
 from derive.lower.expand import families
-from derive.lower.forms import Dependents, best_values, best_with_jacobian, cost
+from derive.lower.forms import (
+    Dependents,
+    best_values,
+    best_with_jacobian,
+    cost,
+    without_what_cancels,
+)
 from derive.lower.graph import Graph, Value
 from derive.lower.lower import lower
 from derive.lower.setup import Constants, hot, used_inputs
@@ -104,7 +110,9 @@ def function(terms: Graphed, wanted: Arranged, name: str) -> Program:
 
 
 def _lowered(terms: Graphed, problem: Problem, way: Arrangement) -> Arranged:
-    values = iter(lower(terms.graph, way, terms.by_symbol()))
+    lowered = lower(terms.graph, way, terms.by_symbol())
+    (found,) = without_what_cancels(terms.graph, [lowered])
+    values = iter(found)
     return Arranged(
         problem, tuple(tuple(islice(values, len(q.components))) for q in problem.outputs)
     )

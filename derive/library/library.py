@@ -106,6 +106,11 @@ def _library(scene: Scene) -> Library:
     )
 
 
+def posed_again(known: Library, scene: Scene) -> Library:
+    """Return a library with the machine of another scene, for who asks for equations alone."""
+    return replace(known, mechanism=mechanism(scene))
+
+
 def _asked(scene: Scene) -> tuple[list[str], list[str]]:
     """Return the functions that satisfy equations, and those that only motions rest on."""
     asked = [name for name in scene.wanted if not moves(name) and name not in ATTITUDES]

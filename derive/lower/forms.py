@@ -13,6 +13,7 @@ from fractions import Fraction
 from itertools import accumulate, product
 from math import prod
 
+from derive.lower.cancel import what_is_left
 from derive.lower.derivative import slopes_by
 from derive.lower.expand import (
     Expanded,
@@ -64,6 +65,12 @@ def _loads(ops: Sequence[Op]) -> int:
     return sum(n > 1 for n in uses.values()) + sum(n > 1 for n in alone)
 
 
+def without_what_cancels(graph: Graph, forms: Sequence[Sequence[Value]]) -> list[tuple[Value, ...]]:
+    """Return forms without products that cancel identically, unless that is dearer."""
+    found = zip(what_is_left(graph, forms), map(tuple, forms), strict=True)
+    return [min(pair, key=lambda form: cost(graph, form)) for pair in found]
+
+
 def value_forms(graph: Graph, group: Dependents) -> list[tuple[Value, ...]]:
     """Return the ways to compute the values of ``group``, the arranged one first."""
     forms = [group.values]
@@ -72,7 +79,7 @@ def value_forms(graph: Graph, group: Dependents) -> list[tuple[Value, ...]]:
         expanded = _expanded(graph, group, stop)
         if expanded is not None:
             forms += [tuple(way(graph, t) for t in expanded) for way in WAYS]
-    return list(dict.fromkeys(forms))
+    return list(dict.fromkeys(without_what_cancels(graph, forms)))
 
 
 def _expanded(graph: Graph, group: Dependents, kept: frozenset[Family]) -> list[Expanded] | None:
@@ -115,10 +122,9 @@ def best_with_jacobian(
         return values, rows
     own = [leaf for quantity in varying for leaf in quantity]
     fixed = [leaf for leaf in leaves if leaf not in own]
-    more = jacobian(graph, values, fixed)
-    by_leaf = [
-        dict(zip((*own, *fixed), (*a, *b), strict=True)) for a, b in zip(rows, more, strict=True)
-    ]
+    (more,) = without_what_cancels(graph, [_flat(jacobian(graph, values, fixed))])
+    both = zip(rows, _in_rows(more, len(fixed)), strict=True)
+    by_leaf = [dict(zip((*own, *fixed), (*a, *b), strict=True)) for a, b in both]
     return values, [[row[leaf] for leaf in leaves] for row in by_leaf]
 
 
@@ -127,7 +133,8 @@ def _best_by_varying(
 ) -> tuple[list[Value], list[list[Value]]]:
     leaves = [leaf for quantity in group.inputs for leaf in quantity]
     forms = value_forms(graph, group)
-    jacobians = _cheapest(graph, [jacobian(graph, form, leaves) for form in forms])
+    found = without_what_cancels(graph, [_flat(jacobian(graph, form, leaves)) for form in forms])
+    jacobians = _cheapest(graph, [_in_rows(entries, len(leaves)) for entries in found])
     forms = sorted(forms, key=lambda form: cost(graph, form))[:FINALISTS]
     choices: list[tuple[tuple[int, int], tuple[Value, ...], list[list[Value]]]] = []
     for rows in jacobians:
@@ -140,6 +147,10 @@ def _best_by_varying(
 
 def _cheapest(graph: Graph, jacobians: list[list[list[Value]]]) -> list[list[list[Value]]]:
     return sorted(jacobians, key=lambda rows: cost(graph, _flat(rows)))[:FINALISTS]
+
+
+def _in_rows(entries: Sequence[Value], size: int) -> list[list[Value]]:
+    return [list(entries[k : k + size]) for k in range(0, len(entries), size or 1)]
 
 
 def _flat(rows: Sequence[Sequence[Value]]) -> list[Value]:

@@ -8,7 +8,8 @@ from functools import cached_property
 from sympy import Expr, Integer, Matrix, Symbol
 
 from derive.lecture.stated import by_law
-from derive.mechanics.balances import Balances, ValuedBalance
+from derive.mechanics.balance import ValuedBalance
+from derive.mechanics.balances import Balances
 from derive.mechanics.bodies import (
     centre,
     centre_velocity,
@@ -22,7 +23,7 @@ from derive.mechanics.frames import ZERO, Frames
 from derive.mechanics.linearised import Linearised, linearised, require_nothing_prescribed
 from derive.mechanics.loads import potential_energy
 from derive.mechanics.matter import without_factors
-from derive.mechanics.probe import NOTHING, PROBES, independent
+from derive.mechanics.probe import PROBES, independent
 from derive.mechanics.problem import Problem, substituted
 from derive.mechanics.regular import Regular
 from derive.program.program import Quantity
@@ -241,7 +242,7 @@ class Answers:
             values: list[Expr] = [self.expression(steady.vanishes)]
             return self._asked(base, (q,), dict(zip(self._symbols(q), values, strict=True)), ())
         require_nothing_prescribed(
-            self.machine, "steady", ", or say what vanishes by steady.vanishes"
+            self.machine.coordinates, "steady", ", or say what vanishes by steady.vanishes"
         )
         rows = self._at_rest(len(steady.unknown))
         split = self.frames.sheet.split
@@ -266,7 +267,7 @@ class Answers:
         every, symbols = self.balances.unknowns, self.frames.sheet.symbols
         still = frozenset(every.index(symbols[n]) for n in free if symbols[n] in every)
         found = unbalanced(self.balances, still)
-        rows = [row for row in found if _lasts(row)] or list(found)
+        rows = [row for row in found if row.lasts] or list(found)
         kept = independent(({p: row.values[p][0] for p in range(PROBES)} for row in rows), count)
         if len(kept) < count:
             raise SceneError(
@@ -275,12 +276,6 @@ class Answers:
                 "as steady.vanishes = 'theta_ddot'"
             )
         return [rows[k] for k in kept]
-
-
-def _lasts(row: ValuedBalance) -> bool:
-    """Tell whether a balance still says something where nothing but the steady motion is left."""
-    rest = row.values[-1]
-    return bool(abs(rest[0]) > NOTHING * max(map(abs, rest)))
 
 
 SAYS = {

@@ -4,78 +4,29 @@ Whole vectors are valued at trial points in common axes, so that thousands of ba
 looked at; only those that are chosen are written out.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
-from typing import Any, Literal
+from typing import Any
 
 from mpmath import mp
 from numpy.typing import NDArray
 from sympy import Expr, Integer, Matrix, Symbol
 
 from derive.lecture.stated import by_law
+from derive.mechanics.balance import Balance, ValuedBalance
 from derive.mechanics.bodies import carries, form_about, moment_about
 from derive.mechanics.frames import ZERO, Frames, Located
 from derive.mechanics.loads import Wrench
 from derive.mechanics.own_axes import frame_called
-from derive.mechanics.probe import DIGITS, NOTHING, PROBES
+from derive.mechanics.probe import DIGITS, NOTHING
 from derive.mechanics.sheet import AXES
 from derive.mechanics.valued import Sides, Valued, sides, trial_probes
 from derive.scene.machine import Force, Spring
 
 MOST_TOGETHER = 6
 FEW = 2  # bodies that are cut free together though no load joins them
-
-
-@dataclass(frozen=True)
-class Balance:
-    """One equation: bodies cut free, force or moment about a point, along an axis of a frame."""
-
-    bodies: tuple[str, ...]
-    kind: Literal["force", "moment"]
-    point: Located | None
-    spot: str
-    frame: str
-    axis: str
-    central: bool = False  # about the mass centre of its one body, whatever the spot is called
-
-    def __str__(self) -> str:
-        return self.told({})
-
-    def told(self, spoken: Mapping[str, str]) -> str:
-        """Return the balance in words; ``spoken`` has those for what the user gave no names."""
-        about = f" about {spoken.get(self.spot, self.spot)}" if self.kind == "moment" else ""
-        frame = spoken.get(self.frame, f"of {frame_called(self.frame)}")
-        along = f"{self.axis} {frame}".rstrip()
-        along = along if self.axis in AXES else f"the axis of {self.axis}"
-        bodies = " + ".join(spoken.get(body, body) for body in self.bodies)
-        return f"{self.kind} on {bodies}{about} along {along}"
-
-
-@dataclass(frozen=True, eq=False)
-class ValuedBalance:
-    """A balance with its coefficients at each trial point: the rest first, then the unknowns.
-
-    The last point is at rest, where what is independent elsewhere may not be.
-    """
-
-    balance: Balance
-    values: tuple[NDArray[Any], ...]
-
-    @cached_property
-    def holds(self) -> frozenset[int]:
-        """Return which unknowns enter."""
-        found = set()
-        for row in self.values[:PROBES]:
-            size = max(abs(x) for x in row)
-            found |= {k - 1 for k, x in enumerate(row) if k and abs(x) > NOTHING * size}
-        return frozenset(found)
-
-    @cached_property
-    def empty(self) -> bool:
-        """Tell whether nothing is left: the balance holds by itself."""
-        return all(max(abs(x) for x in row) <= NOTHING for row in self.values[:PROBES])
 
 
 @dataclass

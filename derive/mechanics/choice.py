@@ -9,7 +9,8 @@ import numpy as np
 from mpmath import mp, mpf
 from numpy.typing import NDArray
 
-from derive.mechanics.balances import Balances, ValuedBalance
+from derive.mechanics.balance import ValuedBalance
+from derive.mechanics.balances import Balances
 from derive.mechanics.probe import (
     DIGITS,
     NOTHING,

@@ -4,7 +4,7 @@ Every named quantity is carried along with its first derivatives by displacement
 valued at the given motion as it goes, so that the expressions stay as small as their results.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,13 +12,15 @@ import networkx as nx
 from mpmath import mp, mpf
 from sympy import Expr, Integer, Matrix, Symbol, zeros
 
-from derive.mechanics.balances import Balances, ValuedBalance
+from derive.mechanics.balance import ValuedBalance
+from derive.mechanics.balances import Balances
 from derive.mechanics.choice import chosen
 from derive.mechanics.inertia import require_held
 from derive.mechanics.probe import DIGITS, Probe, at_rest, independent, random_probe, small, solved
 from derive.mechanics.valued import Valued
 from derive.mechanics.words import Words
 from derive.scene import Input, Scene, SceneError
+from derive.scene.declaration import Moving
 from derive.scene.escape import brief
 
 NEARBY = 1e-6
@@ -52,7 +54,6 @@ def linearised(machine: Scene, balances: Balances) -> Linearised:
     """
     free = [m for m in (*machine.coordinates, *machine.speeds) if m.free]
     sheet = balances.frames.sheet
-    require_nothing_prescribed(machine, "linearised")
     if not free:
         raise SceneError("'linearised' needs a free coordinate or speed")
     accelerations = [sheet.symbols[m.unknown] for m in free]
@@ -60,13 +61,18 @@ def linearised(machine: Scene, balances: Balances) -> Linearised:
     require_held(balances, accelerations)
     rows, held = chosen(balances, frozenset(every.index(a) for a in accelerations))
     written = [balances.written(row) for row in rows]
+    below = sheet.needed(written)
+    held_by = {s for e in (*written, *below.values()) for s in e.free_symbols}
+    require_nothing_prescribed(
+        [c for c in machine.coordinates if sheet.symbols[c.name] in held_by], "linearised"
+    )
     reactions = [every[k] for k in sorted(held) if every[k] not in accelerations]
     base = {sheet.symbols[n]: balances.frames.words.expression(f) for n, f in machine.about.items()}
     velocities = [sheet.symbols[m.rate.name] if isinstance(m.rate, Input) else
                   sheet.symbols[m.name] for m in free]  # fmt: skip
     places = [sheet.symbols[m.name] if m.kind == "coordinate" else None for m in free]
     about = _Expansion(base, [*velocities, *(p for p in places if p is not None)])
-    about.define(sheet.needed(written))
+    about.define(below)
     eliminated = _Eliminated(balances, about, written, reactions)
     columns = {
         "mass_matrix": eliminated.coefficients(accelerations),
@@ -79,9 +85,11 @@ def linearised(machine: Scene, balances: Balances) -> Linearised:
     return Linearised(matrices, tuple(rows), tuple(written))
 
 
-def require_nothing_prescribed(machine: Scene, answer: str, way_out: str = "") -> None:
+def require_nothing_prescribed(
+    coordinates: Iterable[Moving], answer: str, way_out: str = ""
+) -> None:
     """Refuse coordinates that formulas move: by them it cannot be told what is small, or rests."""
-    for c in machine.coordinates:
+    for c in coordinates:
         if c.state and not c.free:
             rule = f"needs coordinates that are free, but the rate of '{c.name}' is"
             raise SceneError(f"'{answer}' {rule} '{brief(c.rate)}'; let it be free{way_out}")

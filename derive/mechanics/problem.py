@@ -12,7 +12,7 @@ from typing import Any
 from mpmath import mp, mpf
 from sympy import Expr, Symbol
 
-from derive.mechanics.balances import Balance
+from derive.mechanics.balance import Balance
 from derive.mechanics.probe import DIGITS, Probe, solved
 from derive.mechanics.sheet import Split, below, split
 from derive.program.program import Quantity

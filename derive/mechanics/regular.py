@@ -6,7 +6,8 @@ from functools import cached_property
 
 from sympy import Expr, Integer, Symbol
 
-from derive.mechanics.balances import Balances, ValuedBalance
+from derive.mechanics.balance import ValuedBalance
+from derive.mechanics.balances import Balances
 from derive.mechanics.choice import chosen, clearly_told, contradiction, require_no_ring
 from derive.mechanics.frames import Frames
 from derive.mechanics.inertia import require_held, vanishing

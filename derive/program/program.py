@@ -70,6 +70,11 @@ class Sparsity:
     colind: tuple[int, ...]
     row: tuple[int, ...]
 
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Return how many rows and columns the matrix has."""
+        return len(self.rows), len(self.columns)
+
     def places(self) -> tuple[tuple[int, int], ...]:
         """Return (row, column) of each nonzero, in storage order."""
         return tuple(

@@ -5,21 +5,24 @@
 
 import os
 import tomllib
+from collections.abc import Mapping
 from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 from typing import Any
 
-from derive.scene.declaration import Given, Input, Parameter, SceneError, Turning
+from derive.scene.declaration import DeriveError, Given, Input, Parameter, SceneError, Turning
 from derive.scene.escape import brief, visible
 from derive.scene.machine import Scene
 from derive.scene.names import file_name
 from derive.scene.reader import read_machine
 from derive.scene.short_form import read_short
 from derive.scene.table import THE_FILE, gate, nearest, shown, table
+from derive.scene.toml import toml
 from derive.scene.wanted import idle_times
 
 __all__ = [
+    "DeriveError",
     "Given",
     "Input",
     "Parameter",
@@ -28,6 +31,8 @@ __all__ = [
     "Turning",
     "argument",
     "catalogue",
+    "contents",
+    "document_text",
     "load",
     "parse_scene",
 ]
@@ -52,7 +57,7 @@ def argument(scene: Scene) -> str:
     'heavy_top'
     """
     file = f"{scene.name}.toml"
-    known = scene.name in catalogue() and _contents(CATALOGUE / file) == scene.text
+    known = scene.name in catalogue() and of_the_scene(_contents(CATALOGUE / file)) == scene.text
     return scene.name if known else file
 
 
@@ -64,6 +69,14 @@ def load(source: str | Path) -> Scene:
     >>> [body.name for body in load("heavy_top").bodies]
     ['body']
     """
+    return parse_scene(*contents(source))
+
+
+def contents(source: str | Path) -> tuple[str, str]:
+    """Return the text of a scene, and its name: that of the catalogue, or the file's stem.
+
+    Raises SceneError with one sentence if there is no such scene or it cannot be read.
+    """
     if isinstance(source, str) and source in catalogue():
         source = CATALOGUE / f"{source}.toml"
     path = Path(source)
@@ -73,7 +86,19 @@ def load(source: str | Path) -> Scene:
     if path.suffix != ".toml" and not os.path.exists(path):
         hint = nearest(str(source), catalogue())
         raise SceneError(f"scene {shown(str(source))}: neither in the catalogue nor a file{hint}")
-    return parse_scene(_contents(path), path.stem)
+    return _contents(path), path.stem
+
+
+def document_text(document: Mapping[str, object], name: str) -> str:
+    """Return the text of a scene that is given as a dict, the parsed form of its TOML.
+
+    Raises SceneError for a name that none can have, and for values that TOML does not know.
+    """
+    try:
+        file_name(name)
+        return toml(document)
+    except SceneError as error:
+        raise SceneError(f"scene {_quoted(name)}: {error}") from None
 
 
 def _contents(path: Path) -> str:
@@ -103,12 +128,22 @@ def parse_scene(text: str, name: str) -> Scene:
         file_name(name)
         document = _document(text)
         gate(document, THE_FILE)
-        scene = read(document, name, text)
+        scene = read(document, name, of_the_scene(text))
         times = table(document.get("motion", {}), "motion").entries
         idle = idle_times(times, scene.wanted)
         return replace(scene, warnings=(*scene.warnings, *idle))
     except SceneError as error:
         raise SceneError(f"scene {_quoted(name)}: {error}") from None
+
+
+def of_the_scene(text: str) -> str:
+    """Return a file's text without a first line that names its schema: editors alone read it.
+
+    >>> of_the_scene("#:schema scene.schema.json" + chr(10) + "wanted = []")
+    'wanted = []'
+    """
+    first, _, rest = text.partition("\n")
+    return rest if first.startswith("#:schema ") else text
 
 
 def _quoted(name: str) -> str:

@@ -16,19 +16,22 @@ from derive.scene.machine import Entries, Frame, Member
 from derive.scene.numbers import check_member, positive
 from derive.scene.scalars import Scalars
 from derive.scene.shape import (
+    AXIS_AFTER,
     CONE_CENTRE,
     ROUND,
+    Portion,
     about_axis,
+    blade_parts,
     box,
     by_parallel_axes,
     diagonal,
     moment,
+    round_part,
 )
 from derive.scene.table import Table, formulas, one_of
 from derive.scene.unit import LENGTH
 
 InertiaKind = Literal["general", "principal", "axisymmetric", "spherical", "rod"]
-NEXT: Mapping[str, Axis] = {"x": "y", "y": "z", "z": "x"}
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,7 @@ class Substance:
     offset: Triple = (ZERO, ZERO, ZERO)
     lengths: Mapping[str, Formula] | None = None
     given: Entries = ()
+    parts: tuple[Portion, ...] = ()
 
     def apex(self) -> Triple:
         """Return the mass centre of a cone, from its apex along its axis."""
@@ -68,7 +72,7 @@ def read_member(name: str, given: Table, frames: tuple[Frame, ...], scalars: Sca
     return Member(
         name, said["frame"], made.mass, made.inertia, centre, made.axis, said["turned"] or (),
         said["spin"], said["axial_speed"], said["angular_velocity"], made.look, made.lengths or {},
-        given=made.given,
+        given=made.given, parts=made.parts,
     )  # fmt: skip
 
 
@@ -156,16 +160,20 @@ def of_shape(
     if row is not None:
         axial, across = (moment(terms, mass, lengths) for terms in (row.axial, row.transverse))
         inertia = about_axis(axis, axial, across)
-        return Substance(row.kind, mass, inertia, axis, said, shape, lengths=lengths)
+        return Substance(row.kind, mass, inertia, axis, said, shape, lengths=lengths,
+                         parts=(round_part(shape, axis, lengths),))  # fmt: skip
     if axis is not None and shape == "blades":
-        return replace(_blades(axis, mass, said), lengths=lengths)
+        parts = blade_parts(axis, said["number"], said["length"])
+        return replace(_blades(axis, mass, said), lengths=lengths, parts=parts)
     if shape == "point":
         inertia = diagonal(ZERO, ZERO, ZERO)
-        return Substance("spherical", mass, inertia, None, said, shape, lengths=lengths)
+        return Substance("spherical", mass, inertia, None, said, shape, lengths=lengths,
+                         parts=(Portion("ball", "z"),))  # fmt: skip
     edges = _edges(given, tuple(name for name in AXES if name != axis), by)
     x, y, z = (edges.get(name, ZERO) for name in AXES)  # a plate has no edge across
     drawn = {f"length_{n}": edge for n, edge in enumerate(edges.values(), 1)}
-    return Substance("principal", mass, box(mass, (x, y, z)), None, said, shape, lengths=drawn)
+    return Substance("principal", mass, box(mass, (x, y, z)), None, said, shape, lengths=drawn,
+                     parts=(Portion("box", axis or "z", edges=(x, y, z)),))  # fmt: skip
 
 
 def _edges(given: Table, along: tuple[Axis, ...], by: Reading) -> dict[Axis, Formula]:
@@ -182,7 +190,7 @@ def _blades(axis: Axis, mass: Formula, said: Mapping[str, Any]) -> Substance:
     """Return slender blades from the hub: a rod for one and two, else as good as a disc."""
     count, length = said["number"], said["length"]
     one = mass * length**2
-    first = NEXT[axis]
+    first = AXIS_AFTER[axis]
     if count == 1:
         inertia = about_axis(first, ZERO, number(Fraction(1, 12)) * one)
         x, y, z = (number(Fraction(1, 2)) * length if a == first else ZERO for a in AXES)

@@ -19,8 +19,15 @@ ANY = (Fraction(-1), Fraction(1))
 """The range of what none is given for."""
 
 
-class SceneError(ValueError):
-    """A scene that breaks a rule; the sentence names scene, quantity, rule and value found."""
+class DeriveError(Exception):
+    """What is refused or cannot be done; the sentence names the quantity, the rule and the value.
+
+    Every error that this package raises at what it is given is one of these.
+    """
+
+
+class SceneError(DeriveError, ValueError):
+    """A scene, or a value given for it, that breaks a rule; the sentence names what and which."""
 
 
 @dataclass(frozen=True)

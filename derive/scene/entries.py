@@ -209,7 +209,7 @@ POSITION = (
 )
 FILE = (
     Entry("title", "text", "of the scene; its name if left out"),
-    Entry("source", "text", "where a machine is described", default="own"),
+    Entry("source", "text", "where a machine is described"),
     Entry("wanted", "any", "functions, a list", default=REQUIRED),
     Entry("form", "word", "whether they work on pairs of floats", default="fast",
           words=("fast", "accurate")),

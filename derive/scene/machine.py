@@ -10,6 +10,7 @@ from typing import Literal
 
 from derive.scene.declaration import Axis, Given, Moving, Parameter, Triple, Turning
 from derive.scene.formula import ZERO, Formula
+from derive.scene.shape import Portion
 
 INERTIAL = "inertial"
 LEFT_OVER = "0 where motion is steady"
@@ -47,7 +48,8 @@ class Frame:
 class Member:
     """A rigid body in a frame: inertia (xx, yy, zz, xy, xz, yz) about its mass centre, own axes.
 
-    None stands for data that the user does not know. ``look`` is the shape, for people;
+    None stands for data that the user does not know. ``look`` is the shape, for people, ``parts``
+    what is drawn of it, along the body's own axes;
     ``spin_axis`` a unit vector along the frame, of a body that spins about none of its axes;
     ``given`` the inertia as the user gave it, if that is about the frame's origin.
     """
@@ -66,6 +68,7 @@ class Member:
     lengths: Mapping[str, Formula] = field(default_factory=dict)
     spin_axis: Triple | None = None
     given: Entries = ()
+    parts: tuple[Portion, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from typing import Any
 
 from derive.scene.bodies import read_member
@@ -63,7 +64,9 @@ def read_file(
         if key in document:
             raise SceneError(f"table '{key}' {form.rule}")
     if "wanted" not in document:
-        raise SceneError("the file needs 'wanted', above its first [table]")
+        near = get_close_matches("wanted", document, 1)
+        hint = f" (is it meant by '{near[0]}'?)" if near else ""
+        raise SceneError(f"the file needs 'wanted', above its first [table]{hint}")
     rows = [Entry(key, "any", "", default={}) for key in form.tables]
     rows[0] = replace(rows[0], default=REQUIRED)
     said = entries_of(Table(THE_FILE, document), (*FILE, *rows), Reading())
@@ -71,7 +74,8 @@ def read_file(
     part = {key: table(value, key) for key, value in own.items() if key != "wheels"}
     times = entries_of(Table("motion", {}), (TIME_STEP, TIME), Reading())
     times |= entries_of(part["motion"], form.motion, Reading())
-    head = {"name": name, "text": source, **said, **times, "title": said["title"] or name}
+    head = {"name": name, "text": source, **said, **times}
+    head |= {"title": said["title"] or name, "source": said["source"] or ""}
     return head, part
 
 

@@ -6,8 +6,10 @@ Every function here raises SceneError with a sentence that begins at the table's
 import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from datetime import date, time
 from decimal import Decimal
 from fractions import Fraction
+from numbers import Number
 
 from derive.scene.declaration import SceneError, Triple
 from derive.scene.escape import brief
@@ -146,16 +148,20 @@ def shown(value: object) -> str:
     return kind + brief(_spelled(value))
 
 
-def _spelled(value: object) -> str:
-    """Return a TOML value in one line."""
+def _spelled(value: object, depth: int = 0) -> str:
+    """Return a TOML value in one line; what is not one by its type."""
+    if isinstance(value, dict | list) and depth > DEEPEST:
+        return "..."
     if isinstance(value, dict):
-        each = [f"{key} = {_spelled(own)}" for key, own in value.items()]
+        each = [f"{key} = {_spelled(own, depth + 1)}" for key, own in value.items()]
         return f"{{ {', '.join(each)} }}" if each else "{}"
     if isinstance(value, list):
-        return f"[{', '.join(map(_spelled, value))}]"
+        return f"[{', '.join(_spelled(own, depth + 1) for own in value)}]"
     if isinstance(value, int) and value.bit_length() > LONGEST_INTEGER_BITS:
         return f"a number of {value.bit_length()} bits"
-    return repr(value) if isinstance(value, str) else str(value).lower()
+    if isinstance(value, str):
+        return repr(value)
+    return str(value).lower() if isinstance(value, Number | date | time) else type(value).__name__
 
 
 def one_of(value: object, label: str, known: Iterable[str]) -> str:

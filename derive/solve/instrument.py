@@ -1,8 +1,9 @@
 """A scene as something to read numbers from: its emitted CasADi functions, called by name."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import cached_property, lru_cache, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import ModuleType
@@ -18,6 +19,9 @@ from derive.program.status import refusal
 from derive.scene import SceneError, load
 from derive.scene.machine import Tensor
 from derive.scene.numbers import member_doubts
+
+LATEST = 64
+"""Sets of parameters whose constants are kept: those that were asked for last."""
 
 
 @dataclass(frozen=True)
@@ -61,9 +65,8 @@ class Instrument:
 
     def require_admissible(self, given: Mapping[str, Any]) -> None:
         """Raise SceneError for parameters that set-up refuses; symbols are not tried."""
-        setup = self.library.setup
-        values = [self._value(q, q.name, given) for q in setup.inputs]
-        if all(isinstance(x, int | float) for x in values) and (why := refusal(setup, values)):
+        values = self._parameters(given)
+        if all(isinstance(x, int | float) for x in values) and (why := self._refusal(values)):
             raise SceneError(f"scene '{self.name}': {why}")
 
     def doubts(self, given: Mapping[str, Any]) -> tuple[str, ...]:
@@ -84,14 +87,36 @@ class Instrument:
         own = {n: x for n, x in given.items() if n not in scene.about}
         return (*found, *self.library.mechanism.doubts_at(own)) if whole else found
 
+    @cached_property
+    def _refusal(self) -> Callable[[tuple[float, ...]], str]:
+        return lru_cache(LATEST)(partial(refusal, self.library.setup))
+
+    @cached_property
+    def _constants(self) -> Callable[[tuple[float, ...]], Any]:
+        return lru_cache(LATEST)(self._constants_of)
+
+    def _constants_of(self, parameters: tuple[Any, ...]) -> Any:
+        return self._made("setup")(casadi.vertcat(*parameters))
+
+    def _made(self, builder: str) -> Any:
+        """Return a function of the scene's CasADi file, built once."""
+        if builder not in self.built:
+            self.built[builder] = getattr(self.module, builder)()
+        return self.built[builder]
+
+    def _parameters(self, given: Mapping[str, Any]) -> tuple[Any, ...]:
+        return tuple(self._value(q, q.name, given) for q in self.library.setup.inputs)
+
     def _called(self, program: Program, given: Mapping[str, Any]) -> list[Any]:
-        if program.name not in self.built:
-            self.built[program.name] = getattr(self.module, program.name)()
         arguments = [self._column(q, given) for q in program.inputs if q.role != "constants"]
-        if any(q.role == "constants" for q in program.inputs):
-            of_setup = [self._value(q, q.name, given) for q in self.library.setup.inputs]
-            arguments.insert(0, casadi.vertcat(*of_setup))
-        results = self.built[program.name].call(arguments)
+        prepared = len(arguments) < len(program.inputs)
+        if prepared:
+            values = self._parameters(given)
+            known = all(isinstance(x, int | float) for x in values)
+            make = self._constants if known else self._constants_of
+            arguments.insert(0, make(values))
+        function = self._made(f"{program.name}_hot" if prepared else program.name)
+        results = function.call(arguments)
         sparse = program.sparsity or {}
         found = [
             x
@@ -112,7 +137,11 @@ class Instrument:
 
 def opened(source: str) -> Instrument:
     """Return the instrument of a catalogue name or of a file."""
-    made = library(load(source))
+    return instrument(library(load(source)))
+
+
+def instrument(made: Library) -> Instrument:
+    """Return the instrument of a scene's programs."""
     name = f"{made.scene.name}_casadi"
     with TemporaryDirectory(prefix="derive-") as folder:
         return Instrument(made, imported(name, casadi_file(made), Path(folder)))

@@ -1,6 +1,7 @@
 """Steady and small motions of a machine: roots by CasADi, frequencies by an eigenvalue routine."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise, product
 from typing import Any
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from derive.program.largest import largest
 from derive.scene import SceneError
 from derive.solve.instrument import Instrument
+from derive.solve.lacking import advice_on
 
 STARTS = 200  # of one unknown; of several, so many in all
 SAME = 1e-7  # distance of two roots that are one, beside the root or, near 0, beside its range
@@ -22,7 +24,7 @@ HALVINGS = 60
 def _steady(found: Instrument) -> tuple[str, ...]:
     scene = found.library.scene
     if scene.steady is None:
-        raise SceneError(f"scene '{found.name}': roots need [steady]")
+        raise SceneError(advice_on(scene, "steady", "a search for roots"))
     return scene.steady.unknown
 
 
@@ -98,18 +100,42 @@ def eigenvalues(matrices: Mapping[str, float]) -> NDArray[Any]:
     return found
 
 
+@dataclass(frozen=True)
+class SmallMotion:
+    """Circular frequencies in rad/s, rising, and the fastest growth in 1/s, 0 where none grows."""
+
+    frequencies: list[float]
+    growth: float
+
+
+def small_motion(found: Instrument, given: Mapping[str, float]) -> SmallMotion:
+    """Return how small motions go; no growth is what is no more than rounding.
+
+    Raises SceneError if the scene does not ask for them, or its mass matrix has no inverse.
+    """
+    if "linearised" not in found.library.scene.wanted:
+        raise SceneError(advice_on(found.library.scene, "linearised", "small motion"))
+    try:
+        every = eigenvalues(found.answer("linearised", given))
+    except np.linalg.LinAlgError as error:
+        raise SceneError(
+            f"scene '{found.name}': small motion needs a mass matrix that can be inverted, "
+            f"but with these values: {error}"
+        ) from None
+    least = UNSTABLE * max(abs(every), default=0.0)
+    fastest = float(max(every.real, default=0.0))
+    rising = sorted(float(v.imag) for v in every if v.imag > least)
+    return SmallMotion(rising, fastest if fastest > least else 0.0)
+
+
 def frequencies(found: Instrument, given: Mapping[str, float]) -> list[float]:
     """Return the circular frequencies of small motion, rising, in rad/s."""
-    every = eigenvalues(found.answer("linearised", given))
-    size = max(abs(every), default=0.0)
-    return sorted(float(v.imag) for v in every if v.imag > UNSTABLE * size)
+    return small_motion(found, given).frequencies
 
 
 def growth(found: Instrument, given: Mapping[str, float]) -> float:
     """Return the fastest growth of small motion, in 1/s; 0 if it is no more than rounding."""
-    every = eigenvalues(found.answer("linearised", given))
-    fastest = float(max(every.real))
-    return fastest if fastest > UNSTABLE * max(abs(every)) else 0.0
+    return small_motion(found, given).growth
 
 
 def limits(found: Instrument, given: Mapping[str, float], name: str) -> list[float]:

@@ -1,6 +1,6 @@
 """A motion in time by the scene's own step, and a plot of it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from math import ceil, isfinite
@@ -8,11 +8,14 @@ from typing import Any
 
 import casadi
 import numpy as np
+from numpy.typing import NDArray
 
 from derive.program.program import Quantity
 from derive.scene import SceneError
 from derive.scene.unit import behind
+from derive.solve.arguments import one_number
 from derive.solve.instrument import Instrument
+from derive.solve.lacking import advice_on
 
 STEP = "step_rk4"
 WIDTH, HEIGHT, LEFT, GAP = 640, 110, 90, 14
@@ -23,11 +26,15 @@ SHOWN = 600  # points of a line, at most
 
 @dataclass(frozen=True)
 class Simulation:
-    """Times and, for each component of the state, its values."""
+    """Times and, for each component of the state, its values.
 
-    times: tuple[float, ...]
-    states: Mapping[str, tuple[float, ...]]
+    doubts : warnings about what lies outside of its declared range, given or on the way
+    """
+
+    times: NDArray[np.float64]
+    states: Mapping[str, NDArray[np.float64]]
     units: Mapping[str, str]
+    doubts: tuple[str, ...] = ()
 
 
 def simulated(
@@ -40,11 +47,13 @@ def simulated(
     Raises SceneError if the scene does not ask for that step, a state is not given, a time has no
     sense, or the motion does not stay finite.
     """
+    label = f"scene '{found.name}'"
+    until, step = (one_number(label, n, x) for n, x in (("until", until), ("step", step)))
     count = _count(until, step)
     step = until / count if count else step
     scene = found.library.scene
     if STEP not in scene.wanted:
-        raise SceneError(f"scene '{found.name}': a simulation needs wanted = [..., \"{STEP}\"]")
+        raise SceneError(advice_on(scene, STEP, "a simulation"))
     states = found.library.vocabulary.states
     names = [c for q in states for c in q.components]
     missing = [n for n in names if n not in given]
@@ -53,40 +62,56 @@ def simulated(
     start = [float(given[n]) for n in names]
     moved = _one_step(found, dict(given) | {"time_step": step}, names)
     after = moved.mapaccum("motion", count)(start).full() if count else np.zeros((len(names), 0))
-    rows = [start, *after.T.tolist()]
-    _require_finite(found.name, names, rows, step)
-    columns = zip(*rows, strict=True)
-    return Simulation(
-        tuple(step * k for k in range(len(rows))),
-        dict(zip(names, (tuple(c) for c in columns), strict=True)),
-        _units(states),
-    )
+    columns = np.column_stack([start, after])
+    _require_finite(found.name, names, columns, step)
+    times: NDArray[np.float64] = step * np.arange(columns.shape[1], dtype=np.float64)
+    motion = dict(zip(names, columns, strict=True))
+    return Simulation(times, motion, _units(states), tuple(_outside(found, given, times, motion)))
+
+
+def _outside(
+    found: Instrument,
+    given: Mapping[str, float],
+    times: NDArray[np.float64],
+    motion: Mapping[str, NDArray[np.float64]],
+) -> Iterator[str]:
+    """Yield a warning for each quantity that leaves its declared range, and changes the rates."""
+    matters = {*found.needed(STEP)} - motion.keys() | {*found.needed("state_rate")}
+    for q in found.quantities():
+        low, high = float(q.low or 0), float(q.high or 0)
+        for name in () if q.is_quaternion else filter(matters.__contains__, q.components):
+            values = motion.get(name, np.array([given.get(name, low)]))
+            wrong = np.flatnonzero((values < low) | (values > high))
+            if len(wrong):
+                when = f" after {times[wrong[0]]:.4g} s" if name in motion and wrong[0] else ""
+                value = f"{name} is {values[wrong[0]]:.6g}{behind(q.unit)}{when}"
+                yield f"{value}, outside of its declared range, {low:g} to {high:g}"
 
 
 def _count(until: float, step: float) -> int:
     """Return the number of steps; raise SceneError for times that make none."""
     if not (isfinite(step) and step > 0):
-        raise SceneError(f"--step must be a positive number of seconds, not {step}")
+        raise SceneError(f"step must be a positive number of seconds, not {step}")
     if not (isfinite(until) and until >= 0):
-        raise SceneError(f"--until must be a number of seconds from 0 up, not {until}")
+        raise SceneError(f"until must be a number of seconds from 0 up, not {until}")
     if until > MOST * step:
         raise SceneError(
-            f"--until must be at most {MOST:,} steps of --step {step:g}, that is "
+            f"until must be at most {MOST:,} steps of {step:g} s, that is "
             f"{MOST * step:g} s, not {until:g}"
         )
     return ceil(until / step * (1 - ROUNDING))
 
 
 def _require_finite(
-    scene: str, names: Sequence[str], rows: Sequence[Sequence[float]], step: float
+    scene: str, names: Sequence[str], columns: NDArray[np.float64], step: float
 ) -> None:
-    for k, row in enumerate(rows):
-        for name, value in zip(names, row, strict=True):
-            if not isfinite(value):
-                raise SceneError(
-                    f"scene '{scene}': a motion must stay finite, but {name} is {value} after "
-                    f"{step * k:.6g} s; a shorter --step may help"
-                )
+    wrong = np.argwhere(~np.isfinite(columns.T))
+    if len(wrong):
+        k, place = wrong[0]
+        raise SceneError(
+            f"scene '{scene}': a motion must stay finite, but {names[place]} is "
+            f"{columns[place, k]} after {step * k:.6g} s; a shorter step may help"
+        )
 
 
 def _one_step(found: Instrument, given: Mapping[str, float], names: Sequence[str]) -> Any:
@@ -101,7 +126,7 @@ def _units(states: Sequence[Quantity]) -> dict[str, str]:
     return {c: q.unit for q in states for c in q.components}
 
 
-def plot(simulation: Simulation) -> str:
+def plot_of(simulation: Simulation) -> str:
     """Return an SVG with a line for every component of the state."""
     height = len(simulation.states) * (HEIGHT + GAP) + GAP + 16
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" role="img">'
@@ -109,7 +134,9 @@ def plot(simulation: Simulation) -> str:
     parts = [head, style]
     for place, (name, values) in enumerate(simulation.states.items()):
         top = GAP + place * (HEIGHT + GAP)
-        parts += _line(name, simulation.units[name], simulation.times, values, top)
+        parts += _line(
+            name, simulation.units[name], simulation.times.tolist(), values.tolist(), top
+        )
     end = simulation.times[-1]
     parts.append(f'<text x="{WIDTH - 60}" y="{height - 6}">{end:.6g} s</text>')
     return "\n".join([*parts, "</svg>"]) + "\n"

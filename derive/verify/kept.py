@@ -46,10 +46,18 @@ class Figures:
 def figures_of(library: Library, by: Measuring) -> Figures:
     """Return the figures of a scene, measured if none are kept that are still true."""
     digest = digest_of(library, by.sampling)
+    return Figures(_kept(library, by, digest) or figures(library, by.sampling), digest)
+
+
+def are_kept(library: Library, by: Measuring) -> bool:
+    """Tell whether the figures of a scene need not be measured."""
+    return bool(_kept(library, by, digest_of(library, by.sampling)))
+
+
+def _kept(library: Library, by: Measuring, digest: str) -> tuple[Measurement, ...]:
     name = library.scene.name
     file = None if by.folder is None else by.folder / name / f"{name}.json"
-    kept = () if file is None else kept_figures(_read(file), digest)
-    return Figures(kept or figures(library, by.sampling), digest)
+    return () if file is None else kept_figures(_read(file), digest)
 
 
 def digest_of(library: Library, by: Sampling) -> str:

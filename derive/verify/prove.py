@@ -17,6 +17,7 @@ from derive.library.library import Library
 from derive.program.program import Op, Program, component_names, read_by
 from derive.program.recorded import needed
 from derive.program.run import results_by_name
+from derive.scene.declaration import DeriveError
 from derive.scene.formula import Arithmetic
 from derive.scene.wanted import JACOBIAN
 from derive.verify.equations import Equations, stated
@@ -31,7 +32,7 @@ BITS = 4000
 SPAN = 9973  # numerators up to this, denominators up to its hundredth
 
 
-class ProofError(ArithmeticError):
+class ProofError(DeriveError, ArithmeticError):
     """A program that does not satisfy its equations; the sentence says where and by how much."""
 
 

@@ -2,6 +2,8 @@
  *
  * Attitudes: quaternions, rotation vectors, matrices, Rodrigues parameters, Euler angles
  *
+ * Formulas for attitudes, which need no body.
+ *
  * Use:
  *     float left[4] = {1.0F, 0.0F, 0.0F, 0.0F}; float right[4] = {1.0F, 0.0F, 0.0F, 0.0F};
  *     float attitude[4];

@@ -2,6 +2,8 @@
  *
  * Attitudes: quaternions, rotation vectors, matrices, Rodrigues parameters, Euler angles
  *
+ * Formulas for attitudes, which need no body.
+ *
  * Use:
  *     double left[4] = {1.0, 0.0, 0.0, 0.0}; double right[4] = {1.0, 0.0, 0.0, 0.0};
  *     double attitude[4];

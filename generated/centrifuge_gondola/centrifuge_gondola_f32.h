@@ -2,6 +2,15 @@
  *
  * Gondola at the arm of a centrifuge: force and moment at its pivot, gravity apart
  *
+ * Frame pivot is carried by inertial; its origin has the acceleration (a_x, a_y, 0).
+ * Frame gondola is carried by pivot and turned from it about z by yaw, then about y by pitch, then
+ *   about x by spin.
+ * Body gondola is carried by gondola, with a full inertia tensor, its mass centre at (e_x, 0,
+ *   e_z).
+ * Load pivot: the force (F_x, F_y, F_z) and the couple (M_x, M_y, M_z) along inertial at (0, 0, 0)
+ *   of gondola, on gondola.
+ * Source: own.
+ *
  * Use:
  *     centrifuge_gondola_constants_f32 constants;
  *     if (centrifuge_gondola_setup_f32(450.0F, 300.0F, 375.0F, 350.0F, 0.0F, 0.0500000007F, (-0.150000006F), &constants) != 0) { return 1; }

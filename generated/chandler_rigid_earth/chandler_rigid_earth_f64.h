@@ -2,6 +2,10 @@
  *
  * Rigid Earth: how long is the free wobble?
  *
+ * Frame earth is carried by inertial and turns in it with (w_x, w_y, rate) along its own axes.
+ * Body earth is carried by earth, symmetrical about its z axis.
+ * Source: Goldstein 5.6; observed, the Earth not being rigid, it is longer.
+ *
  * Use:
  *     chandler_rigid_earth_constants_f64 constants;
  *     if (chandler_rigid_earth_setup_f64(0.801, 0.804, 7.3e-05, &constants) != 0) { return 1; }

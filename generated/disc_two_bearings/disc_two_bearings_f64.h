@@ -2,6 +2,13 @@
  *
  * Disc midway between the bearings of an axle that is itself turned: what do they carry?
  *
+ * Frame axle is carried by inertial and turns in it with (0, 0, W) along its own axes.
+ * Body disc, a disc, is carried by axle, and spins about its x axis at w relative to it.
+ * Load weight: gravity (0, 0, -g) along axle, on disc.
+ * Load A: the force (A_x, A_y, -R_down) along axle at (d/2, 0, 0) of axle, on disc.
+ * Load B: the force (0, B_y, R_up) along axle at (-d/2, 0, 0) of axle, on disc.
+ * Source: Khurmi & Gupta, Theory of Machines, example 14.2.
+ *
  * Use:
  *     disc_two_bearings_constants_f64 constants;
  *     if (disc_two_bearings_setup_f64(5.0, 0.075, 105.0, 6.0, 0.1, 9.8, &constants) != 0) { return 1; }

@@ -2,6 +2,15 @@
  *
  * Edge runner: what does the roller press with, what does its hinge carry?
  *
+ * Frame axle is carried by inertial and turns in it with (0, 0, W) along its own axes.
+ * Body roller, a cylinder, is carried by axle, its mass centre at (L, 0, 0), and spins about its x
+ *   axis at -W*L/r relative to it.
+ * Load weight: gravity (0, 0, -g) along axle, on roller.
+ * Load hinge: the force (hinge_radial, hinge_side, hinge_z) and the couple (0, 0, drive) along
+ *   axle at (0, 0, 0) of axle, on roller.
+ * Load ground: the force (0, friction, N) along axle at (L, 0, -r) of axle, on roller.
+ * Source: classical edge runner; N as in Beer & Johnston, disc rolling on a floor.
+ *
  * Use:
  *     edge_runner_flat_constants_f32 constants;
  *     if (edge_runner_flat_setup_f32(1200.0F, 0.600000024F, 0.949999988F, 9.80000019F, &constants) != 0) { return 1; }

@@ -2,6 +2,14 @@
  *
  * Euler's disc: how fast does a coin precess whose centre is at rest?
  *
+ * Frame line is carried by inertial and turns in it with (0, 0, W) along its own axes.
+ * Frame disc is carried by line and turned from it about x by tilt.
+ * Body disc, a disc, is carried by disc, and spins about its z axis at -W*cos(tilt) relative to
+ *   it.
+ * Load weight: gravity (0, 0, -g) along line, on disc.
+ * Load ground: the force (ground_x, ground_y, ground_z) along line at (0, -r, 0) of disc, on disc.
+ * Source: Moffatt 2000; classical.
+ *
  * Use:
  *     eulers_disk_constants_f64 constants;
  *     if (eulers_disk_setup_f64(0.4, 0.04, 0.275, 9.8, &constants) != 0) { return 1; }

@@ -2,6 +2,10 @@
  *
  * Rigid body with a full inertia tensor about its mass centre, in body axes
  *
+ * The axes xyz are fixed in the body.
+ * The body has a full inertia tensor about the centre of mass.
+ * Moments are about the centre of mass.
+ *
  * Use:
  *     free_body_constants_f32 constants;
  *     if (free_body_setup_f32(1.39999998F, 1.60000002F, 1.79999995F, 0.0F, 0.0F, 0.0F, &constants) != 0) { return 1; }

@@ -2,6 +2,10 @@
  *
  * Rigid body with a full inertia tensor about its mass centre, in body axes
  *
+ * The axes xyz are fixed in the body.
+ * The body has a full inertia tensor about the centre of mass.
+ * Moments are about the centre of mass.
+ *
  * Use:
  *     free_body_constants_f64 constants;
  *     if (free_body_setup_f64(1.4, 1.6, 1.8, 0.0, 0.0, 0.0, &constants) != 0) { return 1; }

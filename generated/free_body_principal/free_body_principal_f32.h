@@ -2,6 +2,10 @@
  *
  * Rigid body along its principal axes through the mass centre: Euler's equations
  *
+ * The axes xyz are fixed in the body.
+ * The body has its own axes as principal axes about the centre of mass.
+ * Moments are about the centre of mass.
+ *
  * Use:
  *     free_body_principal_constants_f32 constants;
  *     if (free_body_principal_setup_f32(1.39999998F, 1.60000002F, 1.79999995F, &constants) != 0) { return 1; }

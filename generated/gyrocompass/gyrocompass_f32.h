@@ -2,6 +2,14 @@
  *
  * Gyrocompass: a rotor held horizontal on the rotating Earth seeks the meridian
  *
+ * Frame earth is carried by inertial and turns in it with (we*cos(lat), 0, we*sin(lat)) along its
+ *   own axes.
+ * Frame gimbal is carried by earth and turned from it about z by alpha.
+ * Body rotor, a disc, is carried by gimbal, and has the angular velocity w3 along its x axis.
+ * Load support: the force (support_x, support_y, support_z) and the couple (0, hold, 0) along
+ *   gimbal at (0, 0, 0) of gimbal, on rotor.
+ * Source: classical.
+ *
  * Use:
  *     gyrocompass_constants_f32 constants;
  *     if (gyrocompass_setup_f32(5.0F, 0.100000001F, 2000.0F, 0.699999988F, 7.24999991e-05F, &constants) != 0) { return 1; }

@@ -2,6 +2,18 @@
  *
  * Carrier with three wheels along its axes, attitude by yaw, pitch and roll
  *
+ * The axes xyz are turned from the inertial axes about z by psi, then about y by theta, then about
+ *   x by phi, and are fixed in the body.
+ * The body has a full inertia tensor about the centre of mass.
+ * Moments are about the centre of mass.
+ * Wheel 1 turns in the body about (1, 0, 0) at s_1, with the moment of inertia C_1 about this axis
+ *   and the torque u_1 of its motor.
+ * Wheel 2 turns in the body about (0, 1, 0) at s_2, with the moment of inertia C_2 about this axis
+ *   and the torque u_2 of its motor.
+ * Wheel 3 turns in the body about (0, 0, 1) at s_3, with the moment of inertia C_3 about this axis
+ *   and the torque u_3 of its motor.
+ * The inertia of the body is that of the whole, wheels locked.
+ *
  * Use:
  *     gyrostat_constants_f64 constants;
  *     if (gyrostat_setup_f64(1.4, 1.6, 1.8, 0.0, 0.0, 0.0, 0.0125, 0.0125, 0.0125, &constants) != 0) { return 1; }

@@ -2,6 +2,13 @@
  *
  * Heavy body of any shape about a fixed point: gravity turns with the attitude
  *
+ * The axes xyz are fixed in the body; their attitude is a unit quaternion, scalar first, body to
+ *   inertial.
+ * The body has its own axes as principal axes about the fixed point.
+ * Moments are about the fixed point.
+ * The external moment is (2*w*(attitude_y*attitude_z + attitude_w*attitude_x),
+ *   -2*w*(attitude_x*attitude_z - attitude_w*attitude_y), 0) along xyz.
+ *
  * Use:
  *     heavy_body_constants_f32 constants;
  *     if (heavy_body_setup_f32(1.39999998F, 1.60000002F, 1.79999995F, 2.0F, &constants) != 0) { return 1; }

@@ -2,6 +2,12 @@
  *
  * Heavy symmetrical top about a fixed point, in axes that do not spin with it
  *
+ * The axes xyz are turned from the inertial axes about z by psi, then about x by theta; in them
+ *   the body is turned about z by phi.
+ * The body is symmetrical about its z axis.
+ * Moments are about the fixed point.
+ * The external moment is (m*g*l*sin(theta), 0, 0) along xyz.
+ *
  * Use:
  *     heavy_top_constants_f32 constants;
  *     if (heavy_top_setup_f32(0.00150000001F, 0.000600000028F, 0.600000024F, 9.80000019F, 0.0399999991F, &constants) != 0) { return 1; }

@@ -2,6 +2,12 @@
  *
  * Heavy symmetrical top about a fixed point, in axes that do not spin with it
  *
+ * The axes xyz are turned from the inertial axes about z by psi, then about x by theta; in them
+ *   the body is turned about z by phi.
+ * The body is symmetrical about its z axis.
+ * Moments are about the fixed point.
+ * The external moment is (m*g*l*sin(theta), 0, 0) along xyz.
+ *
  * Use:
  *     heavy_top_constants_f64 constants;
  *     if (heavy_top_setup_f64(0.0015, 0.0006, 0.6, 9.8, 0.04, &constants) != 0) { return 1; }

@@ -2,6 +2,13 @@
  *
  * Propeller of three blades on a yawing aircraft: what does its hub carry?
  *
+ * Frame aircraft is carried by inertial and turns in it with (0, 0, W) along its own axes.
+ * Body propeller, a blades, is carried by aircraft, and spins about its x axis at p relative to
+ *   it.
+ * Load hub: the force (F_x, F_y, F_z) and the couple (M_x, M_y, M_z) along aircraft at (0, 0, 0)
+ *   of aircraft, on propeller.
+ * Source: Den Hartog; Ghosh & Mallik.
+ *
  * Use:
  *     propeller_3_blade_constants_f32 constants;
  *     if (propeller_3_blade_setup_f32(12.5F, 1.10000002F, 250.0F, 0.5F, &constants) != 0) { return 1; }

@@ -2,6 +2,22 @@
  *
  * Satellite with three reaction wheels: accelerations of body and wheels
  *
+ * Frame hub is carried by inertial and turns in it with (w_x, w_y, w_z) along its own axes.
+ * Body hub is carried by hub, with a full inertia tensor.
+ * Body wheel1 is carried by hub, symmetrical about its x axis, and spins about its x axis at s_1
+ *   relative to it.
+ * Body wheel2 is carried by hub, symmetrical about its y axis, and spins about its y axis at s_2
+ *   relative to it.
+ * Body wheel3 is carried by hub, symmetrical about its z axis, and spins about its z axis at s_3
+ *   relative to it.
+ * Load motor1: the couple (u_1, b_1, c_1) along hub at (0, 0, 0) of hub, on wheel1, and the
+ *   opposite on hub.
+ * Load motor2: the couple (a_2, u_2, c_2) along hub at (0, 0, 0) of hub, on wheel2, and the
+ *   opposite on hub.
+ * Load motor3: the couple (a_3, b_3, u_3) along hub at (0, 0, 0) of hub, on wheel3, and the
+ *   opposite on hub.
+ * Source: Wie; Hughes, gyrostats.
+ *
  * Use:
  *     reaction_wheel_satellite_constants_f32 constants;
  *     if (reaction_wheel_satellite_setup_f32(1.20000005F, 1.5F, 0.899999976F, 0.0F, 0.0F, 0.0F, 0.00200000009F, &constants) != 0) { return 1; }

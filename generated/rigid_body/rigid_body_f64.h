@@ -2,6 +2,12 @@
  *
  * Rigid body that moves and turns freely: position, quaternion, velocity, angular velocity
  *
+ * The axes xyz are fixed in the body; their attitude is a unit quaternion, scalar first, body to
+ *   inertial.
+ * The body, of mass m, has a full inertia tensor about the centre of mass.
+ * Moments are about the centre of mass.
+ * The body goes where the forces take it: its place is a state, in inertial axes.
+ *
  * Use:
  *     rigid_body_constants_f64 constants;
  *     if (rigid_body_setup_f64(12.5, 1.4, 1.6, 1.8, 0.0, 0.0, 0.0, &constants) != 0) { return 1; }

@@ -2,6 +2,12 @@
  *
  * Rigid body that moves and turns freely: a step with its derivatives, as loops for small memories
  *
+ * The axes xyz are fixed in the body; their attitude is a unit quaternion, scalar first, body to
+ *   inertial.
+ * The body, of mass m, has a full inertia tensor about the centre of mass.
+ * Moments are about the centre of mass.
+ * The body goes where the forces take it: its place is a state, in inertial axes.
+ *
  * Use:
  *     rigid_body_steps_constants_f32 constants;
  *     if (rigid_body_steps_setup_f32(12.5F, 1.39999998F, 1.60000002F, 1.79999995F, 0.0F, 0.0F, 0.0F, &constants) != 0) { return 1; }

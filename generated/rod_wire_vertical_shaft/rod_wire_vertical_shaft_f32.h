@@ -2,6 +2,15 @@
  *
  * Inclined rod pinned to a rotating vertical axle and held by a wire
  *
+ * Frame axle is carried by inertial and turns in it with (0, 0, w) along its own axes.
+ * Body rod, a rod, is carried by axle, turned from it about y by -beta, its mass centre at
+ *   (L/2*cos(beta), 0, L/2*sin(beta)).
+ * Load weight: gravity (0, 0, -g) along axle, on rod.
+ * Load pin: the force (A_x, A_y, A_z) and the couple (roll, 0, drive) along axle at (0, 0, 0) of
+ *   axle, on rod.
+ * Load wire: the force (-T, 0, 0) along axle at (L*cos(beta), 0, L*sin(beta)) of axle, on rod.
+ * Source: Beer & Johnston, Vector Mechanics, sample problem 18.3.
+ *
  * Use:
  *     rod_wire_vertical_shaft_constants_f32 constants;
  *     if (rod_wire_vertical_shaft_setup_f32(40.0F, 8.0F, 1.0F, 15.0F, 21.0F, &constants) != 0) { return 1; }

@@ -2,6 +2,15 @@
  *
  * Cone rolling on a plane about its apex: energy, point of support, and when it tips
  *
+ * Frame line is carried by inertial and turns in it with (0, 0, W) along its own axes.
+ * Frame cone is carried by line and turned from it about y by -a.
+ * Body cone, a cone, is carried by cone, its mass centre at (3/4*h, 0, 0), and spins about its x
+ *   axis at -W/sin(a) relative to it.
+ * Load weight: gravity (0, 0, -g) along line, on cone.
+ * Load ground: the force (ground_x, ground_y, ground_z) and the couple (0, -lever, 0) along line
+ *   at (0, 0, 0) of cone, on cone.
+ * Source: Landau & Lifshitz, Mechanics, section 32.
+ *
  * Use:
  *     rolling_cone_constants_f64 constants;
  *     if (rolling_cone_setup_f64(3.0, 0.25, 0.15, 0.5, 9.8, &constants) != 0) { return 1; }

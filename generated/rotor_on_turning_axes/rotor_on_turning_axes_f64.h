@@ -2,6 +2,11 @@
  *
  * Symmetrical rotor in bearings that turn in any way: which moment do they carry?
  *
+ * The axes xyz turn with the angular velocity (W_x, W_y, W_z) along themselves; in them the body
+ *   spins about its x axis at p.
+ * The body is symmetrical about its x axis.
+ * Moments are about the centre of mass.
+ *
  * Use:
  *     rotor_on_turning_axes_constants_f64 constants;
  *     if (rotor_on_turning_axes_setup_f64(0.8, 0.95, &constants) != 0) { return 1; }

@@ -2,6 +2,11 @@
  *
  * Satellite with torques along its principal axes: steps and their derivatives
  *
+ * The axes xyz are fixed in the body; their attitude is a unit quaternion, scalar first, body to
+ *   inertial.
+ * The body has its own axes as principal axes about the centre of mass.
+ * Moments are about the centre of mass.
+ *
  * Use:
  *     satellite_constants_f32 constants;
  *     if (satellite_setup_f32(1.39999998F, 1.60000002F, 1.79999995F, &constants) != 0) { return 1; }

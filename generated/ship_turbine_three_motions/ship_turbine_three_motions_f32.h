@@ -2,6 +2,29 @@
  *
  * Ship's turbine while the ship rolls, turns, or pitches: what do the bearings carry?
  *
+ * Frame rolling is carried by inertial and turns in it with (roll, 0, 0) along its own axes.
+ * Frame turning is carried by inertial and turns in it with (0, 0, turn) along its own axes.
+ * Frame pitching is carried by inertial and turns in it with (0, pitch, 0) along its own axes.
+ * Body rolling is carried by rolling, and spins about its x axis at ws relative to it.
+ * Body turning is carried by turning, and spins about its x axis at ws relative to it.
+ * Body pitching is carried by pitching, and spins about its x axis at ws relative to it.
+ * Load weight_rolling: gravity (0, 0, -g) along rolling, on rolling.
+ * Load weight_turning: gravity (0, 0, -g) along turning, on turning.
+ * Load weight_pitching: gravity (0, 0, -g) along pitching, on pitching.
+ * Load A_rolling: the force (thrust_roll, A_roll_side, A_roll) along rolling at (b, 0, 0) of
+ *   rolling, on rolling.
+ * Load B_rolling: the force (0, B_roll_side, B_roll) along rolling at (-a, 0, 0) of rolling, on
+ *   rolling.
+ * Load A_turning: the force (thrust_turn, A_turn_side, A_turn) along turning at (b, 0, 0) of
+ *   turning, on turning.
+ * Load B_turning: the force (0, B_turn_side, B_turn) along turning at (-a, 0, 0) of turning, on
+ *   turning.
+ * Load A_pitching: the force (thrust_pitch, A_pitch_side, A_pitch) along pitching at (b, 0, 0) of
+ *   pitching, on pitching.
+ * Load B_pitching: the force (0, B_pitch_side, B_pitch) along pitching at (-a, 0, 0) of pitching,
+ *   on pitching.
+ * Source: Hibbeler, Engineering Mechanics: Dynamics, problem 21-63.
+ *
  * Use:
  *     ship_turbine_three_motions_constants_f32 constants;
  *     if (ship_turbine_three_motions_setup_f32(400.0F, 0.300000012F, 200.0F, 0.800000012F, 1.29999995F, 9.80000019F, 0.800000012F, 1.35000002F, &constants) != 0) { return 1; }

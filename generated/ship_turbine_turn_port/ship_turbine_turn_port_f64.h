@@ -2,6 +2,13 @@
  *
  * Ship's turbine, the ship turning to port: what do the bearings carry?
  *
+ * Frame ship is carried by inertial and turns in it with (0, 0, v/R) along its own axes.
+ * Body rotor is carried by ship, and spins about its x axis at -p relative to it.
+ * Load weight: gravity (0, 0, -g) along ship, on rotor.
+ * Load A: the force (A_x, A_y, R_A) along ship at (a, 0, 0) of ship, on rotor.
+ * Load B: the force (0, B_y, R_B) along ship at (-b, 0, 0) of ship, on rotor.
+ * Source: Meriam & Kraige, Dynamics, sample problem 7/8.
+ *
  * Use:
  *     ship_turbine_turn_port_constants_f64 constants;
  *     if (ship_turbine_turn_port_setup_f64(1000.0, 0.2, 500.0, 12.0, 400.0, 0.6, 0.9, 9.8, &constants) != 0) { return 1; }

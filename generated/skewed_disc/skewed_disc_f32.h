@@ -2,6 +2,13 @@
  *
  * Disc fixed at a small angle on its shaft: what do the bearings feel?
  *
+ * Frame shaft is carried by inertial and turned from it about z by phi.
+ * Body disc, a disc, is carried by shaft, turned from it about y by skew.
+ * Load A: the force (A_x, A_y, A_z) and the couple (0, 0, M_z) along shaft at (0, 0, b) of shaft,
+ *   on disc.
+ * Load B: the force (B_x, B_y, 0) along shaft at (0, 0, -b) of shaft, on disc.
+ * Source: Meriam & Kraige, chapter 7; Huston.
+ *
  * Use:
  *     skewed_disc_constants_f32 constants;
  *     if (skewed_disc_setup_f32(10.0F, 0.200000003F, 0.0549999997F, 0.25F, &constants) != 0) { return 1; }

@@ -2,6 +2,13 @@
  *
  * Sleeping top: how fast must it spin, how does it wobble?
  *
+ * Frame stem is carried by inertial and turned from it about x by alpha, then about y by beta.
+ * Body disc, a disc, is carried by stem, its mass centre at (0, 0, l), and has the angular
+ *   velocity n along its z axis.
+ * Load weight: gravity (0, 0, -g) along inertial, on disc.
+ * Load tip: the force (tip_x, tip_y, tip_z) along stem at (0, 0, 0) of stem, on disc.
+ * Source: classical.
+ *
  * Use:
  *     sleeping_top_constants_f32 constants;
  *     if (sleeping_top_setup_f32(0.5F, 0.0500000007F, 0.0599999987F, 110.0F, 9.80000019F, &constants) != 0) { return 1; }

@@ -2,6 +2,12 @@
  *
  * T-handle that flips: a free body spun about its middle axis
  *
+ * The axes xyz are fixed in the body; their attitude is a unit quaternion, scalar first, body to
+ *   inertial.
+ * The body has its own axes as principal axes about the centre of mass.
+ * Moments are about the centre of mass.
+ * No external moment acts.
+ *
  * Use:
  *     t_handle_flip_constants_f32 constants;
  *     if (t_handle_flip_setup_f32(0.300000012F, 0.349999994F, 0.400000006F, &constants) != 0) { return 1; }

@@ -2,6 +2,12 @@
  *
  * T-handle that flips: a free body spun about its middle axis
  *
+ * The axes xyz are fixed in the body; their attitude is a unit quaternion, scalar first, body to
+ *   inertial.
+ * The body has its own axes as principal axes about the centre of mass.
+ * Moments are about the centre of mass.
+ * No external moment acts.
+ *
  * Use:
  *     t_handle_flip_constants_f64 constants;
  *     if (t_handle_flip_setup_f64(0.3, 0.35, 0.4, &constants) != 0) { return 1; }

@@ -2,6 +2,13 @@
  *
  * Heavy symmetric top: at which rates does it precess steadily?
  *
+ * Frame nodal is carried by inertial and turned from it about z by psi, then about x by theta.
+ * Body disc, a disc, is carried by nodal, its mass centre at (0, 0, l), and has the angular
+ *   velocity n along its z axis.
+ * Load weight: gravity (0, 0, -g) along inertial, on disc.
+ * Load tip: the force (tip_x, tip_y, tip_z) along nodal at (0, 0, 0) of nodal, on disc.
+ * Source: Goldstein, Classical Mechanics, chapter 5.
+ *
  * Use:
  *     top_steady_precession_constants_f64 constants;
  *     if (top_steady_precession_setup_f64(0.05, 0.06, 0.65, 250.0, 9.8, &constants) != 0) { return 1; }

@@ -2,6 +2,10 @@
  *
  * Free precession of an axisymmetric body: rates and cones
  *
+ * Frame body is carried by inertial and turns in it with (w_x, w_y, w_z) along its own axes.
+ * Body body is carried by body, symmetrical about its z axis.
+ * Source: Meriam & Kraige 7/11; Goldstein 5.6.
+ *
  * Use:
  *     torque_free_axisymmetric_constants_f64 constants;
  *     if (torque_free_axisymmetric_setup_f64(0.875, 1.3, &constants) != 0) { return 1; }

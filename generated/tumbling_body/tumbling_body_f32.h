@@ -2,6 +2,12 @@
  *
  * Rigid body that tumbles without torque: exact motion, and every step that suits it
  *
+ * The axes xyz are fixed in the body; their attitude is a unit quaternion, scalar first, body to
+ *   inertial.
+ * The body has its own axes as principal axes about the centre of mass.
+ * Moments are about the centre of mass.
+ * No external moment acts.
+ *
  * Use:
  *     tumbling_body_constants_f32 constants;
  *     if (tumbling_body_setup_f32(1.39999998F, 1.60000002F, 1.79999995F, &constants) != 0) { return 1; }

@@ -2,6 +2,12 @@
  *
  * Rigid body that tumbles without torque: exact motion, and every step that suits it
  *
+ * The axes xyz are fixed in the body; their attitude is a unit quaternion, scalar first, body to
+ *   inertial.
+ * The body has its own axes as principal axes about the centre of mass.
+ * Moments are about the centre of mass.
+ * No external moment acts.
+ *
  * Use:
  *     tumbling_body_constants_f64 constants;
  *     if (tumbling_body_setup_f64(1.4, 1.6, 1.8, &constants) != 0) { return 1; }

@@ -2,6 +2,12 @@
  *
  * Axisymmetric body that tumbles without torque: what symmetry saves
  *
+ * The axes xyz are fixed in the body; their attitude is a unit quaternion, scalar first, body to
+ *   inertial.
+ * The body is symmetrical about its z axis.
+ * Moments are about the centre of mass.
+ * No external moment acts.
+ *
  * Use:
  *     tumbling_disc_constants_f32 constants;
  *     if (tumbling_disc_setup_f32(1.5F, 1.70000005F, &constants) != 0) { return 1; }

@@ -2,6 +2,12 @@
  *
  * Axisymmetric body that tumbles without torque: what symmetry saves
  *
+ * The axes xyz are fixed in the body; their attitude is a unit quaternion, scalar first, body to
+ *   inertial.
+ * The body is symmetrical about its z axis.
+ * Moments are about the centre of mass.
+ * No external moment acts.
+ *
  * Use:
  *     tumbling_disc_constants_f64 constants;
  *     if (tumbling_disc_setup_f64(1.5, 1.7, &constants) != 0) { return 1; }

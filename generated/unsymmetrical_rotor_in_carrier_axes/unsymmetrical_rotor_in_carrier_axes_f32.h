@@ -2,6 +2,11 @@
  *
  * Unsymmetrical rotor, as a two-blade propeller, in the axes of the carrier that turns
  *
+ * The axes xyz turn with the angular velocity (0, 0, W) along themselves; in them the body is
+ *   turned about x by gamma.
+ * The body has its own axes as principal axes about the centre of mass.
+ * Moments are about the centre of mass.
+ *
  * Use:
  *     unsymmetrical_rotor_in_carrier_axes_constants_f32 constants;
  *     if (unsymmetrical_rotor_in_carrier_axes_setup_f32(1.79999995F, 1.70000005F, 0.400000006F, &constants) != 0) { return 1; }

@@ -4,11 +4,12 @@ import shutil
 
 import pytest
 
-from bench.build import O2, BuildError, build
-from bench.callgrind import instructions, total
+from bench.build import O2, build
+from bench.callgrind import instructions
 from bench.candidate import SAMPLES, Argument, Candidate, Source, pointer_glue
 from bench.problem import FREE_BODY
 from bench.sample import SETS, samples
+from derive.check.callgrind import CallgrindError, total
 
 FILE = """\
 # callgrind format
@@ -35,7 +36,7 @@ def test_the_total_of_a_callgrind_file_is_read() -> None:
 
 @pytest.mark.parametrize("lost", ["events: Ir", "189137"])
 def test_a_file_without_its_total_is_refused(lost: str) -> None:
-    with pytest.raises(BuildError, match="without a total"):
+    with pytest.raises(CallgrindError, match="without a total"):
         total(FILE.replace(lost, ""))
 
 

@@ -48,6 +48,11 @@ def test_a_warning_is_refused_with_the_compilers_words(tmp_path: Path) -> None:
         compiled({"t.h": HEADER, "t.c": narrow}, "t.c", tmp_path, find_compiler())
 
 
+def test_a_compiler_that_fails_without_a_word_is_said_to(tmp_path: Path) -> None:
+    with pytest.raises(CompilerError, match="said: nothing, and ended with code 1"):
+        compiled({"t.c": SOURCE}, "t.c", tmp_path, Compiler(("false",)))
+
+
 MANIFEST = """{"functions": [{"name": "sum", "returns": "int: 0", "symbols": {"f64": "sum_f64"},
  "arguments": [
   {"name": "k", "direction": "in", "type": "scalar", "shape": [], "components": ["k"]},

@@ -9,8 +9,8 @@ import pytest
 from derive.check.compiler import find_compiler
 from derive.check.emitted import Emitted, Files, loaded
 from derive.emit.files import scene_files
-from derive.solve import Instrument, frequencies, limits, opened, roots
-from derive.solve.motions import eigenvalues
+from derive.solve.instrument import Instrument, opened
+from derive.solve.motions import eigenvalues, frequencies, limits, roots
 from derive.verify.sample import Sample
 from tests.check.expected import (
     CASES,

@@ -11,7 +11,7 @@ import pytest
 from derive.check.compiler import find_compiler
 from derive.check.emitted import Files, loaded
 from derive.emit.files import scene_files
-from derive.solve import Instrument, opened
+from derive.solve.instrument import Instrument, opened
 from derive.verify.sample import Sample
 from tests.check.expected import DATA, HANDLE_START, HANDLE_TIMES, handle_expected
 from tests.made import library_of

@@ -14,12 +14,13 @@ from typing import Any
 import casadi
 import pytest
 
+from derive.emit.files import manifests
 from derive.scene import SceneError, parse_scene
 from derive.scene.unit import BESIDE_SI, behind, dimension, misnamed
 from tests.made import thinned
 
 GENERATED = Path(__file__).parents[2] / "generated"
-SCENES = sorted(GENERATED.glob("*/*.json"))
+SCENES = manifests(GENERATED)
 Units = tuple[float, float, float]
 SI, OTHER = (
     (1.0, 1.0, 1.0),

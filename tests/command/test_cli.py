@@ -1,5 +1,8 @@
 """The command line does what it says, and bad input gets one sentence, exit code 2 and no file."""
 
+import re
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 
 import pytest
@@ -7,6 +10,7 @@ import pytest
 from derive.check import as_made
 from derive.check.emitted import files, sampling_of
 from derive.cli import main
+from derive.emit.c.comment import of_what
 from derive.emit.files import OutputError, folders_left_over, write
 from derive.verify.prove import ProofError
 from derive.verify.reference import NoValueError
@@ -20,14 +24,21 @@ FEWER = " ".join(FEW)
 @pytest.fixture(scope="module")
 def made(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("made")
-    assert main(["generate", *FEW, SCENE, "--out", str(folder)]) == 0
+    with redirect_stdout(StringIO()) as told:
+        assert main(["generate", *FEW, SCENE, "--out", str(folder)]) == 0
+    folder.with_suffix(".told").write_text(told.getvalue())
     return folder
 
 
+def test_what_a_function_costs_is_told_and_what_its_errors_are_a_part_of(made):
+    told, program = made.with_suffix(".told").read_text(), library_of(SCENE)["acceleration"]
+    assert re.search(rf"^ *acceleration +{program.flops()} 0( +[\d.]+){{4}} *$", told, re.M)
+    assert f"here a part {of_what(program)} (acceleration" in " ".join(told.split())
+
+
 def test_every_file_states_the_command_that_makes_it_again(made):
-    texts = {name: text.decode() for name, text in contents(made).items()}
-    command = f"derive generate {SCENE} {FEWER}"
-    assert {name for name, text in texts.items() if command not in text} == set()
+    texts, command = contents(made), f"derive generate {SCENE} {FEWER}".encode()
+    assert {name for name, text in texts.items() if command not in text} == {"lecture.html"}
 
 
 def test_files_of_few_samples_are_found_to_be_as_made(made):
@@ -42,9 +53,8 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 
 def test_a_scene_becomes_its_files_and_no_others(made):
-    names = {f"{SCENE}/{SCENE}{end}" for end in ("_f32.c", "_f32.h", "_f64.c", "_f64.h")}
-    names |= {f"{SCENE}/{SCENE}{end}" for end in ("_casadi.py", ".json", ".html")}
-    assert contents(made).keys() == names
+    ends = ("_f32.c", "_f32.h", "_f64.c", "_f64.h", "_casadi.py", ".json", ".html")
+    assert contents(made).keys() == {"lecture.html", *(f"{SCENE}/{SCENE}{end}" for end in ends)}
 
 
 def test_what_was_generated_passes_the_check(made):
@@ -119,6 +129,7 @@ def test_files_of_a_scene_outside_the_catalogue_name_its_file(tmp_path):
     source = scene(tmp_path, "ball", '"acceleration"', body)
     assert main(["generate", *FEW, source, "--out", str(tmp_path / "out")]) == 0
     made = contents(tmp_path / "out")
+    assert made.pop("lecture.html")
     assert len(made) == 7
     assert all(b"derive generate ball.toml" in text for text in made.values())
 
@@ -238,7 +249,7 @@ def test_what_fails_its_proof_is_told_from_bad_input(raised, code, monkeypatch, 
     def fails(_):
         raise raised
 
-    monkeypatch.setattr("derive.command.generation.prove", fails)
+    monkeypatch.setattr("derive.solve.generation.prove", fails)
     assert main(["generate", *FEW, SCENE, "--check"]) == code
     assert str(raised) in capsys.readouterr().err
 
@@ -247,7 +258,7 @@ def test_a_bug_of_ours_is_not_called_bad_input(monkeypatch):
     def fails(*_):
         raise ZeroDivisionError
 
-    monkeypatch.setattr("derive.command.generation.figures_of", fails)
+    monkeypatch.setattr("derive.solve.generation.figures_of", fails)
     with pytest.raises(ZeroDivisionError):
         main(["generate", *FEW, SCENE, "--check"])
 
@@ -274,7 +285,7 @@ def test_a_number_of_samples_is_a_whole_number_above_zero(capsys):
 def test_of_several_scenes_all_are_posed_before_one_is_measured(
     command: str, tmp_path: Path, monkeypatch, capsys
 ):
-    for module in ("derive.command.generation", "derive.check"):
+    for module in ("derive.solve.generation", "derive.check"):
         monkeypatch.setattr(f"{module}.prove", lambda _: pytest.fail("a scene is begun"))
     bad = tmp_path / "bad.toml"
     bad.write_text('wanted = ["moment"]\nbody = { kind = "rod", axis = "z", moment = -1 }\n')

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from derive import cli
-from derive.command.generation import made
-from derive.scene import SceneError
+from derive.library.library import library
+from derive.scene import SceneError, load
+from derive.solve.generation import made
 from derive.verify.kept import Measuring
 from derive.verify.prove import ProofError
 from derive.verify.search import Sampling
@@ -62,7 +63,7 @@ def outcome(path: Path, *case: str) -> str:
     file = path / "hostile.toml"
     file.write_text(text, encoding="utf-8")
     try:
-        made(str(file), FEW)
+        made(library(load(str(file))), FEW)
     except (SceneError, ProofError) as error:
         return str(error)
     return ""
@@ -92,6 +93,6 @@ def test_no_command_lets_a_warning_of_numpy_through(monkeypatch: pytest.MonkeyPa
         found.extend(np.geterr().values())
         return 0
 
-    monkeypatch.setitem(cli.COMMANDS, "lecture", (lambda p: p.set_defaults(run=seen), ""))
+    monkeypatch.setitem(cli.COMMANDS, "lecture", (lambda p: p.set_defaults(run=seen), "says", ()))
     assert cli.main(["lecture"]) == 0
     assert set(found) == {"ignore"}

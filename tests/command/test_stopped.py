@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from derive.command.generate import _mended as mended
+from derive import Generation
+from derive.command.generate import mended
 from derive.emit.files import UNFINISHED, OutputError, abandoned, differences, unfinished, write
 
 OLD = {"page": "old page", "one/a": "old a", "one/b": "old b", "two/c": "old c"}
@@ -150,5 +151,6 @@ def test_a_link_that_leads_nowhere_is_refused_in_one_sentence(tmp_path: Path, to
 
 def test_what_a_stopped_run_has_left_is_named_by_scene(tmp_path: Path) -> None:
     (tmp_path / UNFINISHED).write_text("rotor/rotor.json\nrotor/rotor.html\ntop/top.json\n")
-    says = mended(tmp_path, ["rotor/rotor.json"])
+    left = unfinished(tmp_path)
+    says = mended(Generation(tmp_path, (), (), ("rotor/rotor.json",), left))
     assert says.endswith("; 3 are still to be made: generate again rotor, top")

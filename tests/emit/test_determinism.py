@@ -61,10 +61,13 @@ def test_the_hash_seed_changes_no_byte(scenes: tuple[str, ...]) -> None:
     assert len(found) == 1
 
 
-NAMED = ("parameters", "coordinates", "speeds", "inputs", "frames", "bodies", "loads", "results")
+NAMED = (
+    *("parameters", "coordinates", "speeds", "inputs", "frames", "bodies", "loads", "results"),
+    "linearised",
+)
 """The tables of a scene whose keys are names of the scene's own."""
-SPOKEN = ("title", "source", "meaning", "unit", "kind", "shape", "axis", "about")
-"""Entries that hold no name."""
+SPOKEN = ("title", "source", "meaning", "unit", "kind", "shape", "axis", "about", "components")
+"""Entries that hold no name of its own."""
 LEAN = ("heavy_top", "edge_runner_flat", "skewed_disc")
 EVERY = [n if n in LEAN else pytest.param(n, marks=pytest.mark.long) for n in catalogue()]
 
@@ -93,6 +96,9 @@ def renamed(entry: Any, names: Mapping[str, str], key: str = "") -> Any:
             return {own.get(k, k): renamed(v, names, k) for k, v in entry.items()}
         case list():
             return [renamed(each, names, key) for each in entry]
+        case str() if key == "turned":
+            axis, angle = entry.split(maxsplit=1)
+            return f"{axis} {renamed(angle, names)}"
         case str() if key not in SPOKEN:
             return re.sub(r"[A-Za-z]\w*", word, entry)
     return entry

@@ -1,4 +1,4 @@
-"""What a reader sees: dots clear of their letters, words apart, nothing wider than its card."""
+"""What a reader sees of equations: dots that are no accents, words apart, pieces read whole."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -7,7 +7,6 @@ from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
-import numpy as np
 import pytest
 from sympy import symbols
 
@@ -15,16 +14,12 @@ from derive.emit.notation import _claims, name_mathml, sympy_equation_mathml
 from derive.emit.notation.lines import WIDEST, pieces, width
 from derive.emit.notation.mathml import row
 from derive.lecture.chapters import LECTURE
-from tests.emit.browser import picture, too_wide
 
 GENERATED = Path(__file__).parents[2] / "generated"
 PAGES = sorted(GENERATED.rglob("*.html"))
 MATH = "{http://www.w3.org/1998/Math/MathML}"
 INVISIBLE = "\u2062"
 FUNCTIONS = ("sin", "cos", "tan")
-OVER = re.compile(r'<mover accent="\w+">(?:(?!<mover).)*?</mover>')
-CELL, COLUMNS, INK = 48, 20, 110
-"""Sides of a cell in px, cells beside each other, and how dark a pixel of ink is at least."""
 
 
 @cache
@@ -108,57 +103,5 @@ def test_a_fraction_that_is_too_wide_is_written_on_one_line() -> None:
     shown = sympy_equation_mathml(each[0], (each[0] + each[1]) / (each[2] * each[3]), {})
     assert "mfrac" not in shown
     assert "".join(signs(shown)) == (
-        "mass_of_body=(length_of_arm+mass_of_body)/(rate_of_turn·spring_of_door)"
+        "mass of body=(length of arm+mass of body)/(rate of turn·spring of door)"
     )
-
-
-def cells(letters: list[str]) -> str:
-    """Return a page with each letter in a cell of its own."""
-    places = (
-        f'<div style="left:{CELL * (i % COLUMNS)}px;top:{CELL * (i // COLUMNS)}px"><math>{one}'
-        "</math></div>"
-        for i, one in enumerate(letters)
-    )
-    box = f"position:absolute;width:{CELL}px;height:{CELL}px;line-height:{CELL}px"
-    style = f"div{{{box};font-size:18px;text-align:center}}"
-    head = f'<head><meta charset="utf-8"/><style>{style}</style></head>'
-    return f"<!DOCTYPE html><html>{head}<body>{''.join(places)}</body></html>"
-
-
-def layers(letters: list[str], folder: Path) -> list[int]:
-    """Return in how many layers, one above another and apart, each letter is drawn."""
-    high = CELL * (1 + len(letters) // COLUMNS)
-    dark = picture(cells(letters), (CELL * COLUMNS, high), folder) > INK
-    found = []
-    for i in range(len(letters)):
-        top, left = CELL * (i // COLUMNS), CELL * (i % COLUMNS)
-        inked = dark[top : top + CELL, left : left + CELL].any(axis=1)
-        found.append(int(np.count_nonzero(inked[1:] & ~inked[:-1])))
-    return found
-
-
-@pytest.mark.long
-def test_every_dot_is_drawn_clear_of_its_letter(tmp_path: Path) -> None:
-    text = "".join(page.read_text(encoding="utf-8") for page in PAGES)
-    dotted = sorted(set(OVER.findall(text)))
-    bare = [re.sub(r'<mover accent="\w+">(.*)<mo .*?</mo></mover>', r"\1", one) for one in dotted]
-    assert len(dotted) > 20
-    apart = dict(zip(dotted, layers(dotted, tmp_path), strict=True))
-    alone = layers(bare, tmp_path)
-    assert [one for one, base in zip(dotted, alone, strict=True) if apart[one] != base + 1] == []
-    drawn_in = [one.replace('accent="false"', 'accent="true"') for one in dotted]
-    assert any(n < apart[d] for n, d in zip(layers(drawn_in, tmp_path), dotted, strict=True))
-
-
-@pytest.mark.long
-def test_nothing_is_wider_than_what_holds_it_on_a_desk_or_a_telephone(tmp_path: Path) -> None:
-    found = too_wide(PAGES, (1400, 390), tmp_path)
-    assert {key: wide for key, wide in found.items() if wide} == {}
-
-
-@pytest.mark.long
-def test_what_is_too_wide_is_seen(tmp_path: Path) -> None:
-    page = tmp_path / "wide.html"
-    page.write_text('<div style="overflow-x:auto"><p style="width:600px">a</p></div>')
-    found = too_wide([page], (1400, 390), tmp_path)
-    assert [bool(wide) for wide in found.values()] == [False, True]

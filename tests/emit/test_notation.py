@@ -1,5 +1,6 @@
 """Every operator of the lecture can be written, and what is written says what the tree says."""
 
+import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 
@@ -11,12 +12,14 @@ from derive.emit.notation import (
     equation_text,
     expression_text,
     mathml,
+    name_mathml,
 )
 from derive.emit.notation import tree as notation_tree
 from derive.emit.notation.mathml import row
 from derive.emit.notation.symbolic import symbolic_layout
 from derive.emit.notation.text import plain
 from derive.emit.notation.tree import NotationError
+from derive.emit.page.equation import _apart
 from derive.lecture.chapters import LECTURE
 from derive.lecture.step import Step
 from derive.lecture.sums import others
@@ -165,3 +168,32 @@ def test_scene_expressions_use_the_users_names_in_an_order_of_their_own() -> Non
         "- 3 (I_xx - omega_x)^2 omega_x + sin(theta)^2/(2 I_xx)"
     )
     assert "<mi>ω</mi><mi>x</mi>" in row(symbolic_layout(y * cos(t), names))
+
+
+def test_names_are_drawn_as_a_book_draws_them() -> None:
+    drawn = {name: name_mathml(name, "scalar") for name in ("roller_omega_x", "blade_mass", "w3")}
+    assert "<msub><mi>ω</mi>" in drawn["roller_omega_x"]
+    assert re.findall(r"<m[in]>(\w+)", drawn["roller_omega_x"]) == ["ω", "roller", "x"]
+    assert "<mi>blade mass</mi>" in drawn["blade_mass"]
+    assert "<msub><mi>w</mi><mn>3</mn></msub>" in drawn["w3"]
+
+
+def test_no_two_quantities_of_a_scene_look_alike() -> None:
+    a, b, c = symbols("a b c")
+    shown = _apart({a: "roller_omega_x", b: "omega_roller_x", c: "omega_x"})
+    assert shown == {a: "roller_omega_x", b: "omega roller x", c: "omega_x"}
+    assert len({name_mathml(name, "scalar") for name in shown.values()}) == 3
+
+
+def test_numbers_in_names_order_sums_and_products_as_numbers() -> None:
+    each = symbols("k1:12")
+    assert plain(symbolic_layout(sum(each), {})) == " + ".join(map(str, each))
+    assert plain(symbolic_layout(each[9] * each[8], {})) == "k9 k10"
+
+
+def test_a_factor_of_minus_signs_only_is_written_with_plus_signs() -> None:
+    I, m, a = symbols("I m a")  # noqa: E741
+    for power, found in ((1, "(I + m) a"), (-1, "-a/(I + m)"), (2, "(I + m)^2 a")):
+        sign = -1 if power == 1 else 1
+        assert plain(symbolic_layout(sign * a * (-I - m) ** power, {})) == found
+    assert plain(symbolic_layout(-I - m, {})) == "-I - m"

@@ -9,8 +9,10 @@ import pytest
 from derive.emit.page.code import listing
 from derive.emit.page.equation import passages, written_names
 from derive.emit.page.lecture import ENDS, IN_COMPONENTS, lecture_page
+from derive.emit.page.links import neighbours
 from derive.emit.page.prose import prose
 from derive.emit.page.scene import scene_page
+from derive.emit.reported import Beside
 from derive.lecture.chapters import LECTURE
 from derive.library.library import Library, library
 from derive.program.program import Measurement
@@ -79,11 +81,34 @@ def test_every_link_leads_to_a_place_that_is_there(name: str) -> None:
     scene = load(name).name if name != "lecture" else ""
     files = {f"{scene}_{p}.{e}" for p in ("f32", "f64") for e in "ch"}
     files |= {f"{scene}_casadi.py", f"{scene}.json", "../lecture.html"}
+    files |= {"../index.html", "../report.html", "index.html", "report.html"}
+    files |= {f"../{other}/{other}.html" for other in catalogue()}
     for link in parsed(page(name)).iter(f"{XHTML}a"):
         file, _, place = link.attrib["href"].partition("#")
         assert file in ("", *files)
         if place:
             assert place in (lecture if file else own)
+
+
+def test_every_page_of_the_catalogue_leads_to_all_others() -> None:
+    first, *_, last = catalogue()
+    step = {name: re.findall('rel="next" href="../([a-z0-9_]+)/', page(name)) for name in (first,)}
+    assert step == {first: [catalogue()[1]]}
+    assert re.findall('rel="(?:prev|next)" href', page(first)) == ['rel="next" href']
+    assert neighbours(load(last)) == {"prev": catalogue()[-2]}
+    for text in (page(first), page("lecture")):
+        links = {e.attrib["href"].split("/")[-1] for e in parsed(text).iter(f"{XHTML}a")}
+        assert {"index.html"} <= links
+        assert "report.html" not in links, "which only `make report` writes"
+    lead = Beside(reports=("report.html",))
+    for text in (scene_page(library_of(first), (), lead), lecture_page(lead.reports)):
+        assert 'report.html">Speed against error</a>' in text
+
+
+def test_a_scene_of_ones_own_leads_to_no_page_of_the_catalogue() -> None:
+    text = scene_page(library(parse_scene(TAKEN, "taken")), ())
+    assert "index.html" not in text
+    assert "../lecture.html" in text
 
 
 @pytest.mark.parametrize("name", thinned(catalogue(), 4))

@@ -25,7 +25,7 @@ OF_NUMPY = {"sum", "mean", "std", "var", "dot", "vdot", "inner", "matmul", "eins
             "log2", "log10", "power", "prod", "cumsum", "average", "percentile", "quantile",
             "hypot", "convolve", "fft", "random", "float128", "longdouble"}  # fmt: skip
 """Of numpy: rounded in an order or by a method of its own."""
-MEASURED = ("bench", "solve")
+MEASURED = ("bench", "report", "solve")
 """Rooms whose figures are of one run on one machine, or answers: times, peers, roots."""
 ASKED = {
     "verify/operators.py: sin": "a first value, and the size of terms, rounded to two digits",
@@ -73,6 +73,7 @@ WHOLE = {
     "emit/notation/symbolic.py: _degree": "powers",
     "emit/notation/symbolic.py: _term_key": "powers",
     "program/program.py: flops": "operations counted",
+    "report/price.py: price_of": "operations counted",
     "verify/solution.py: _through": "balls",
     "bench/report/code_size.py: code_size": "bytes",
     "lower/share.py: _negations": "signs counted",

@@ -11,7 +11,8 @@ from derive.mechanics.mechanism import mechanism
 from derive.program.precision import F64
 from derive.scene import Scene, catalogue, load, parse_scene
 from derive.scene.formula import Formula
-from derive.solve import opened, roots
+from derive.solve.instrument import opened
+from derive.solve.motions import roots
 from derive.verify.cloud import answers
 from derive.verify.equations import equations_of
 from derive.verify.reference import reference

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from derive.emit.files import manifests
 from derive.emit.page.equation import written_names
 from derive.mechanics.mechanism import mechanism
 from derive.program.program import Quantity
@@ -16,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 PAGES = [(ROOT / "docs" / f"{page}.md").read_text("utf-8") for page in ("scenes", "motion")]
 EXAMPLES = [t for page in PAGES for t in re.findall(r"^```toml\n(.*?)^```$", page, re.M | re.S)]
 FILES = sorted((ROOT / "tests").glob("*/*/*.toml"))
-GENERATED = sorted((ROOT / "generated").glob("*/*.json"))
+GENERATED = manifests(ROOT / "generated")
 LONG = """
 wanted = ["bearing", "phi_rate"]
 parameters.m = { unit = "kg", range = [1, 2] }

@@ -117,7 +117,9 @@ def test_a_comment_says_where_a_rate_has_no_value(top: Library) -> None:
 
 RATE = '"w_y/sin(theta)"'
 SCOPE = "; only parameters, coordinates and speeds may stand here"
-FREE = "needs coordinates that are free, but the rate of 'psi' is 'w_y/sin(theta)'; let it be free"
+FREE = "needs coordinates that are free, but the rate of '{}' is '{}'; let it be free"
+PSI, THETA = FREE.format("psi", "w_y/sin(theta)"), FREE.format("theta", "w_x")
+"""Of psi, which nothing depends on, small motion needs nothing."""
 REFUSED = (
     ('"w_q/sin(theta)"', "rate uses 'w_q', which the scene does not declare (did you mean 'w_y'?)"),
     ('"w_y*l"', "rate = 'w_y*l' is in m/s, not rad/s"),
@@ -128,8 +130,8 @@ REFUSED = (
 )
 UNANSWERED = (
     ("psi_ddot", "wanted has 'psi_ddot', which is no answer"),
-    ("linearised", f"'linearised' {FREE}"),
-    ("steady", f"'steady' {FREE}, or say what vanishes by steady.vanishes"),
+    ("linearised", f"'linearised' {THETA}"),
+    ("steady", f"'steady' {PSI}, or say what vanishes by steady.vanishes"),
 )
 
 

@@ -13,7 +13,7 @@ import pytest
 
 from derive.scene import parse_scene
 from derive.scene.formula import FLOATS, evaluate
-from derive.solve import opened
+from derive.solve.instrument import opened
 from tests.scene.test_shape import ANGLES, MASS, ROUNDING, Particle, gauss, summed
 
 A, B, C = 0.3, 0.5, 1.4

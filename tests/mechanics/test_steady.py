@@ -6,13 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from derive.cli import parser
+from derive import load
 from derive.library.library import library
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.scene import SceneError, parse_scene
 from derive.scene.machine import LEFT_OVER
-from derive.solve import opened, roots
-from derive.solve.command import PrintedRow, printout
+from derive.solve.answers import AnswerRow
+from derive.solve.instrument import opened
+from derive.solve.motions import roots
 
 HOOP = Path(__file__).parent / "scenes" / "hoop_steady.toml"
 PENDULUM = """
@@ -84,7 +85,7 @@ def test_a_root_at_zero_is_found_once_and_no_scale_of_the_residual_makes_another
 
 def test_what_is_left_of_a_balance_is_said_to_be_no_answer() -> None:
     rows = _solved(str(HOOP), GIVEN | {"W": 5.0})
-    assert [row[1] for row in rows if row[0] == "steady"] == [f"steady, {LEFT_OVER}"]
+    assert [row.name for row in rows if row.of == "steady"] == [f"steady, {LEFT_OVER}"]
 
 
 def test_what_vanishes_and_what_is_found_have_their_units(tmp_path: Path) -> None:
@@ -92,14 +93,14 @@ def test_what_vanishes_and_what_is_found_have_their_units(tmp_path: Path) -> Non
     other = tmp_path / "hoop.toml"
     other.write_text(text + "vanishes = 'theta_ddot*m*r^2'\n", encoding="utf-8")
     given = {n: x for n, x in GIVEN.items() if n != "theta"} | {"W": -20.0, "theta_dot": 0.0}
-    assert {row[3] for row in _solved(str(other), given) if row[0].startswith("steady")} == {"rad"}
+    found = _solved(str(other), given)
+    assert {row.unit for row in found if row.of.startswith("steady")} == {"rad"}
     left = _solved(str(other), given | {"theta": 0.8})
-    assert [row[3] for row in left if row[0] == "steady"] == ["N m"]
+    assert [row.unit for row in left if row.of == "steady"] == ["N m"]
 
 
-def _solved(scene: str, values: dict[str, float]) -> list[PrintedRow]:
-    texts = [f"{name}={value}" for name, value in values.items()]
-    return printout(parser().parse_args(["solve", scene, "--set", *texts])).rows
+def _solved(scene: str, values: dict[str, float]) -> tuple[AnswerRow, ...]:
+    return load(scene).solve(values).rows
 
 
 @pytest.mark.long

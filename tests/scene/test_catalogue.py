@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from derive.mechanics.words import words
-from derive.scene import CATALOGUE, SceneError, Turning, catalogue, load
+from derive.scene import CATALOGUE, SceneError, Turning, catalogue, load, of_the_scene
 from derive.scene.formula import ZERO, symbol
 from derive.scene.grammar import parse
 from derive.scene.names import distinct
@@ -27,7 +27,7 @@ def test_every_scene_of_the_catalogue_loads_without_a_warning(name: str) -> None
     scene = load(name)
     assert scene.name == name
     assert scene.warnings == ()
-    assert scene.text == (CATALOGUE / f"{name}.toml").read_text(encoding="utf-8")
+    assert scene.text == of_the_scene((CATALOGUE / f"{name}.toml").read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("name", catalogue())

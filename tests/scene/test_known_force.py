@@ -13,6 +13,7 @@ from flint import arb, ctx
 from mpmath import mp, mpf
 
 from derive.check.particles import digits
+from derive.emit.c.source import c_files
 from derive.library.library import Library, library
 from derive.program.precision import PRECISIONS
 from derive.program.program import Quantity, component_names
@@ -116,3 +117,10 @@ def test_a_quantity_with_an_empty_range_cannot_be_made() -> None:
 def test_a_quantity_without_a_range_is_not_sampled() -> None:
     with pytest.raises(ValueError, match="'force' has no range to draw samples from"):
         Quantity("force", ("force",), (), "N", "", None, None, "").ends  # noqa: B018
+
+
+def test_the_header_says_which_forces_act_and_along_which_axes() -> None:
+    header = c_files(library(parse_scene(INPUT_IN_A_MOMENT, "turned")), ())["turned_f64.h"]
+    assert " * The external moment is (u, -u/4, 0) along xyz.\n" in header
+    assert " * The axes xyz are fixed in the body.\n" in header
+    assert " *\n *\n" not in header

@@ -11,7 +11,8 @@ from math import cos, pi, sin, sqrt
 
 import pytest
 
-from derive.scene.formula import FLOATS, ZERO, evaluate
+from derive.scene.formula import FLOATS, ZERO, evaluate, symbol
+from derive.scene.shape import ROUND, Portion, moment, round_part
 from derive.scene.short_form.declared import Body
 from tests.made import short
 
@@ -170,6 +171,45 @@ def test_a_cone_about_its_apex_is_the_sum_over_its_mass_from_there() -> None:
     assert body.kind == "axisymmetric"
     assert body.centre is not None
     assert evaluate(body.centre[2], VALUES, FLOATS) == pytest.approx(middle, rel=ROUNDING)
+
+
+def of_rims(part: Portion) -> Iterator[Particle]:
+    """Yield particles of what is drawn of a round body, along z: solid, plate, ring or line."""
+    rims = [tuple(evaluate(f, VALUES, FLOATS) for f in rim) for rim in part.rims]
+    if len(rims) == 1:
+        ((z, inner, outer),) = rims
+        for (s, ds), (turn, share) in product(gauss(inner, outer), ANGLES):
+            weight = ds * s if outer > inner else 1.0
+            yield weight * share, (s * cos(turn), s * sin(turn), z)
+        return
+    (low, *start), (high, *end) = rims
+    for (z, dz), (t, dt), (turn, share) in product(gauss(low, high), gauss(0, 1), ANGLES):
+        at = (z - low) / (high - low)
+        inner, outer = (a + (b - a) * at for a, b in zip(start, end, strict=True))
+        s = inner + (outer - inner) * t
+        weight = dz * dt * (outer - inner) * s if max(*start, *end) else dz * dt
+        yield weight * share, (s * cos(turn), s * sin(turn), z)
+
+
+@pytest.mark.parametrize("shape", [name for name, row in ROUND.items() if row.rims])
+def test_what_is_drawn_of_a_shape_has_its_inertia_and_its_mass_centre(shape: str) -> None:
+    own = {"radius": "r", "length": "h", "height": "h", "inner": "a", "outer": "b"}
+    lengths = {name: symbol(value) for name, value in own.items()}
+    row, cloud = ROUND[shape], list(of_rims(round_part(shape, "z", lengths)))
+    whole = sum(w for w, _ in cloud)
+    assert abs(sum(w * z for w, (_, _, z) in cloud)) <= ROUNDING * whole * LENGTH
+    axial, across = (
+        evaluate(moment(terms, symbol("m"), lengths), VALUES, FLOATS)
+        for terms in (row.axial, row.transverse)
+    )
+    found = summed(cloud, (0, 0, 0))
+    expected = [across, across, axial, 0, 0, 0]
+    assert found == pytest.approx(expected, rel=ROUNDING, abs=ROUNDING * across)
+
+
+def test_a_sphere_is_drawn_by_its_radius_alone() -> None:
+    for shape in ("sphere", "hollow_sphere"):
+        assert round_part(shape, None, {"radius": symbol("r")}).edges == (symbol("r"),) * 3
 
 
 def test_a_wrong_factor_is_seen_by_the_quadrature() -> None:

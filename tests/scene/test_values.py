@@ -9,13 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import iv
 
-from derive.command.generation import made
+from derive import load
 from derive.scene import CATALOGUE, SceneError, parse_scene, safe
 from derive.scene.formula import FLOATS, evaluate
 from derive.scene.functions import INTERVALS
 from derive.scene.grammar import parse
-from derive.verify.kept import Measuring
-from derive.verify.search import Sampling
 
 PENDULUM = """
 wanted = ["q_ddot", "N"]
@@ -152,4 +150,4 @@ def test_a_scene_without_a_value_at_a_singular_attitude_is_refused_by_its_angle(
     text = (CATALOGUE / "heavy_top.toml").read_text(encoding="utf-8")
     (tmp_path / "top.toml").write_text(text.replace("[0.2, 2.9]", "[-0.5, 1]"), encoding="utf-8")
     with pytest.raises(SceneError, match=r"other two merge, theta = 0$"):
-        made(str(tmp_path / "top.toml"), Measuring(Sampling(samples=64, rounds=1, batch=16), None))
+        load(tmp_path / "top.toml").generate(tmp_path, samples=64)

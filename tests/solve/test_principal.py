@@ -1,12 +1,14 @@
 """Principal axes against fifty digits, on ordinary tensors and on the hard ones."""
 
 from math import isclose
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import eigsy, matrix, mp, mpf
 
+from derive import DeriveError
 from derive.solve.principal import PrincipalAxes, principal_axes
 
 Rows = list[list[float]]
@@ -111,6 +113,20 @@ def test_the_triad_is_right_handed() -> None:
 def test_a_tensor_that_is_not_symmetric_is_refused() -> None:
     with pytest.raises(ValueError, match=r"inertia tensor: must be symmetric, but 1.0 faces 2.0"):
         principal_axes([[1, 1, 0], [2, 1, 0], [0, 0, 1]])
+
+
+@pytest.mark.parametrize(
+    ("tensor", "says"),
+    [
+        ([[1, 0], [0, 1]], r"must have the shape \(3, 3\), .* not \(2, 2\)"),
+        ([[[1, 0, 0], [0, 1, 0], [0, 0, 1]]] * 2, r"must be one, of the shape"),
+        ([["1", 0, 0], [0, 1, 0], [0, 0, 1]], "must be an array of real numbers"),
+        (None, "must be an array of real numbers, not None"),
+    ],
+)
+def test_what_is_no_tensor_is_refused(tensor: Any, says: str) -> None:
+    with pytest.raises(DeriveError, match=says):
+        principal_axes(tensor)
 
 
 def test_a_tensor_that_is_not_finite_is_refused() -> None:

@@ -1,33 +1,26 @@
 """``derive solve`` answers, finds roots and limits, moves in time, and says what it still needs."""
 
 import os
-from functools import cache
+import tomllib
 from math import pi
 from pathlib import Path
 
 import pytest
 
+from derive import Handle, load
 from derive.cli import main
-from derive.scene import CATALOGUE, SceneError
-from derive.solve import Instrument, opened, plot, simulated
-from derive.solve.command import settings
+from derive.scene import CATALOGUE, SceneError, catalogue
+from derive.solve.lacking import advice_on
+from derive.solve.settings import settings
+from derive.solve.simulation import plot_of
 from tests.made import thinned
 
 TOP = {"m": 0.5, "r": 0.05, "l": 0.06, "g": 9.81, "n": 120.0}
 START = {"alpha": 0.1, "beta": 0.0, "alpha_dot": 0.0, "beta_dot": 0.0}
 
 
-opened_once = cache(opened)
-
-
-@pytest.fixture(autouse=True)
-def once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the command open a scene once, however often it is run on it."""
-    monkeypatch.setattr("derive.solve.command.opened", opened_once)
-
-
-def top() -> Instrument:
-    return opened_once("sleeping_top")
+def top() -> Handle:
+    return load("sleeping_top")
 
 
 def test_an_answer_is_printed_with_its_unit(capsys: pytest.CaptureFixture[str]) -> None:
@@ -54,13 +47,13 @@ def test_what_can_be_answered_is_shown_before_what_cannot(
 
 
 REFUSED = {
-    "--step must be a positive number of seconds, not 0.0": ["--until=1", "--step=0"],
-    "--step must be a positive number of seconds, not -0.1": ["--until=1", "--step=-0.1"],
-    "--step must be a positive number of seconds, not nan": ["--until=1", "--step=nan"],
-    "--until must be a number of seconds from 0 up, not nan": ["--until=nan"],
-    "--until must be a number of seconds from 0 up, not inf": ["--until=inf"],
-    "--until must be a number of seconds from 0 up, not -1.0": ["--until=-1"],
-    "--until must be at most 10,000,000 steps": ["--until=1e9"],
+    "step must be a positive number of seconds, not 0.0": ["--until=1", "--step=0"],
+    "step must be a positive number of seconds, not -0.1": ["--until=1", "--step=-0.1"],
+    "step must be a positive number of seconds, not nan": ["--until=1", "--step=nan"],
+    "until must be a number of seconds from 0 up, not nan": ["--until=nan"],
+    "until must be a number of seconds from 0 up, not inf": ["--until=inf"],
+    "until must be a number of seconds from 0 up, not -1.0": ["--until=-1"],
+    "until must be at most 10,000,000 steps": ["--until=1e9"],
     "must stay finite, but": ["--until=1", "--step=1", "--set", "alpha_dot=1e200"],
     "output file '/nonexistent/x.svg' must be writable": [
         "--until=0.1",
@@ -69,10 +62,10 @@ REFUSED = {
     "--plot x.svg: a plot shows a motion and needs --until": ["--plot=x.svg"],
     "--limit n: limits of stability are no motion": ["--limit=n", "--until=1"],
     "--step 0.1: a step is of a motion and needs --until": ["--step=0.1"],
-    "--set m=1deg: the value is in kg, not in deg": ["--set", "m=1deg"],
-    "--set alpha=1rpm: the value is in rad, not in rpm": ["--set", "alpha=1rpm"],
-    "--set m=nan: a value is a number": ["--set", "m=nan"],
-    "--set m=-infdeg: a value is a number": ["--set", "m=-infdeg"],
+    "m=1deg: the value is in kg, not in deg": ["--set", "m=1deg"],
+    "alpha=1rpm: the value is in rad, not in rpm": ["--set", "alpha=1rpm"],
+    "m=nan: a value is a number": ["--set", "m=nan"],
+    "m=-infdeg: a value is a number": ["--set", "m=-infdeg"],
     "body 'disc'.mass must be positive, and is not so at m = 0": ["--set", "m=0"],
 }
 
@@ -90,18 +83,18 @@ def test_what_makes_no_sense_is_refused_in_one_sentence(
 
 def test_a_limit_needs_small_motion(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["solve", "edge_runner_flat", "--limit", "W"]) == 2
-    assert 'needs wanted = [..., "linearised"]' in " ".join(capsys.readouterr().err.split())
+    assert "small motion needs a free coordinate" in " ".join(capsys.readouterr().err.split())
 
 
 def test_a_name_that_the_scene_does_not_have_is_refused_with_a_hint() -> None:
     with pytest.raises(SceneError, match=r"has no 'alhpa' to set \(did you mean 'alpha'"):
-        settings(top(), ["alhpa=1"])
+        top().solve({"alhpa": 1})
     with pytest.raises(SceneError, match="a value is a number"):
-        settings(top(), ["alpha=much"])
+        top().solve({"alpha": "much"})
 
 
 def test_degrees_and_turns_a_minute_may_be_set() -> None:
-    found = settings(top(), ["alpha=3deg", "n=60rpm"])
+    found = settings("top", top().quantities, {"alpha": "3deg", "n": "60rpm"})
     assert found == {"alpha": pytest.approx(pi / 60), "n": pytest.approx(2 * pi)}
 
 
@@ -125,17 +118,17 @@ def test_a_limit_that_is_nowhere_is_said_to_be(capsys: pytest.CaptureFixture[str
 
 @pytest.mark.parametrize(("step", "count"), [(3e-3, 4), (0.05, 1), (1e-3, 10)])
 def test_a_motion_ends_when_it_is_asked_to(step: float, count: int) -> None:
-    motion = simulated(top(), TOP | START, 0.01, step)
+    motion = top().simulate(TOP | START, 0.01, step)
     assert motion.times[-1] == pytest.approx(0.01, abs=1e-15)
     assert len(motion.times) - 1 == count
 
 
 def test_a_motion_keeps_its_energy_and_is_plotted(tmp_path: Path) -> None:
-    motion = simulated(top(), TOP | START, 1.0, 1e-3)
+    motion = top().simulate(TOP | START, 1.0, 1e-3)
     ends = [{name: row[k] for name, row in motion.states.items()} for k in (0, -1)]
-    first, last = (top().answer("energy", TOP | end)["energy"] for end in ends)
+    first, last = (top().solve(TOP | end)["energy"] for end in ends)
     assert last == pytest.approx(first, rel=1e-8)
-    assert plot(motion).count("<polyline") == len(START)
+    assert plot_of(motion).count("<polyline") == len(START)
     target = tmp_path / "top.svg"
     data = [f"{name}={value}" for name, value in (TOP | START).items()]
     command = ["solve", "sleeping_top", "--set", *data, "--until", "0.1", "--plot", str(target)]
@@ -168,6 +161,60 @@ def test_a_plot_replaces_no_scene_and_nothing_but_a_regular_file(
 
 def test_a_motion_needs_a_step_and_a_start() -> None:
     with pytest.raises(SceneError, match="begins at alpha, alpha_dot, beta, beta_dot"):
-        simulated(top(), TOP, 1.0, 1e-3)
-    with pytest.raises(SceneError, match="needs wanted"):
-        simulated(opened("edge_runner_flat"), {}, 1.0, 1e-3)
+        top().simulate(TOP, 1.0, 1e-3)
+    with pytest.raises(SceneError, match="needs a free coordinate or speed, and here none is"):
+        load("edge_runner_flat").simulate({}, 1.0, 1e-3)
+
+
+def test_a_motion_outside_of_the_declared_ranges_is_doubted(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert top().simulate(TOP | START, 0.01).doubts == ()
+    far = top().simulate(TOP | START | {"m": 50, "alpha_dot": 300.0}, 0.01).doubts
+    assert "m is 50 kg, outside of its declared range, 0.4 to 0.6" in far
+    assert any(says.startswith("alpha_dot is 300 rad/s, outside") for says in far)
+    assert any(says.startswith("alpha is ") and " after 0." in says for says in far)
+    data = [f"{name}={value}" for name, value in (TOP | START | {"m": 50}).items()]
+    assert main(["solve", "sleeping_top", "--set", *data, "--until", "0.01"]) == 0
+    assert "warning: m is 50 kg, outside of its declared range" in capsys.readouterr().err
+
+
+def followed(name: str, function: str) -> tuple[str, str]:
+    """Return what a scene is advised to say for a function, and what it says if it does."""
+    document = tomllib.loads((CATALOGUE / f"{name}.toml").read_text(encoding="utf-8"))
+    scene = load(name)
+    advice = advice_on(scene.scene, function, "it")
+    try:
+        _ = load(document | {"wanted": [function]}, name).library
+    except SceneError as error:
+        return advice, str(error)
+    return advice, ""
+
+
+ADVISED = [
+    (name, function)
+    for name in catalogue()
+    for function in ("linearised", "step_rk4")
+    if function not in load(name).wanted
+]
+QUICK = [("heavy_top", "linearised"), ("attitude", "step_rk4"), ("edge_runner_flat", "step_rk4"),
+         ("rotor_on_turning_axes", "step_rk4")]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(case, marks=() if case in QUICK else pytest.mark.long)
+        for case in ADVISED
+    ],
+)
+def test_advice_can_be_followed_and_is_given_where_it_can(case: tuple[str, str]) -> None:
+    advice, refused = followed(*case)
+    assert (f'wanted = [..., "{case[1]}"]' in advice) == (refused == "")
+
+
+def test_what_only_machines_have_is_not_advised_to_one_body() -> None:
+    ball = load({"wanted": ["moment"], "body": {"kind": "spherical", "moment": 0.4}}, "ball")
+    for ask in (ball.frequencies, ball.roots):
+        with pytest.raises(SceneError, match="is of machines, and this scene is not written as"):
+            ask({})

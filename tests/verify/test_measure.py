@@ -29,16 +29,22 @@ LARGEST = 30.0
 """In u: what a function keeps within the declared ranges, wherever the search has been, and at hard
 samples too."""
 RARE = {
+    ("rattleback", "step_rk4"): 1e3,
     ("rigid_body_steps", "step_rk4"): 1e4,
     ("unsymmetrical_rotor_in_carrier_axes", "moment"): 3e6,
     ("unsymmetrical_rotor_in_carrier_axes", "moment_jacobian"): 3e6,
     ("unsymmetrical_rotor_in_carrier_axes", "angular_momentum"): 3e6,
     ("unsymmetrical_rotor_in_carrier_axes", "angular_momentum_rate"): 3e6,
 }
-"""At hard samples. A rod of condition 1e9, of which a step magnifies what is rounded within it; a
+"""At hard samples. A stone that is a thin rod, which resists next to nothing about the line to
+where it touches; a rod of condition 1e9, of which a step magnifies what is rounded within it; a
 thin rod turned in its axes, whose moment is I_yy - (I_yy - I_zz) cos^2 in the fewest operations:
 where it all but vanishes, it is less than the rod's difference by the ratio of its moments, some
 1e6, and three products of it are rounded."""
+FULL_CIRCLE = ("acrobot", "cart_pendulum", "rolling_disc", "wheel_pendulum")
+NEAR_PI = 2000.0
+"""In u, for steps of machines whose angles go to pi: a stage's angle near pi is rounded by u pi,
+its sine is 1.6e-3 at the ranges' ends, and nothing else need move there: u pi / 1.6e-3."""
 ALIKE = 2.5
 """Two searches for the worst of one sum, in two orders of its terms, end so near each other."""
 FEW = Sampling(samples=256, rounds=2, batch=64, balls=2, corners=1)
@@ -56,8 +62,9 @@ def test_stated_errors_are_small_and_looked_for_widely(name: str) -> None:
     for m in committed(name):
         assert (m.samples, m.searched) == (SAMPLING.samples, SAMPLING.searched())
         assert m.median <= MEDIAN_BOUND
-        assert m.within <= LARGEST
-        assert m.within <= m.worst <= RARE.get((name, m.function), LARGEST)
+        here = NEAR_PI if name in FULL_CIRCLE and m.function == "step_rk4" else LARGEST
+        assert m.within <= here
+        assert m.within <= m.worst <= RARE.get((name, m.function), here)
 
 
 @pytest.mark.parametrize("precision", ["f32", "f64"])

@@ -4,11 +4,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
 from derive.check import proof
 from derive.library.library import Library, library
+from derive.program.arithmetic import working
 from derive.program.program import Op, Program
+from derive.program.run import run
 from derive.scene import catalogue, parse_scene
 from derive.scene.wanted import JACOBIAN
 from derive.verify.prove import ProofError, lectured, prove
@@ -17,7 +20,10 @@ from tests.made import library_of, thinned
 FLIPPED = {"add": "sub", "sub": "add", "mul": "div", "div": "mul", "sin": "cos", "cos": "sin"}
 
 
-LARGE = ("centrifuge_gondola", "gyrostat", "reaction_wheel_satellite", "rigid_body")
+LARGE = (
+    *("centrifuge_gondola", "gyrostat", "quadrotor", "rattleback"),
+    *("reaction_wheel_satellite", "rigid_body"),
+)
 QUICK_FIRST = [
     pytest.param(name, marks=pytest.mark.long) if name.startswith(LARGE) or place % 3 else name
     for place, name in enumerate(catalogue())
@@ -74,7 +80,7 @@ def test_no_mutant_of_any_program_is_proved(name: str) -> None:
         difference(program, mutant)
         for program in made.functions
         for mutant in mutants(program)
-        if proved(alone(made, mutant))
+        if proved(alone(made, mutant)) and not agree(program, mutant)
     ]
     assert survivors == []
 
@@ -92,9 +98,26 @@ def test_no_mutant_of_any_set_up_is_proved(name: str) -> None:
     survivors = [
         difference(made.setup, mutant)
         for mutant in mutants(made.setup)
-        if not scales(made.setup, mutant) and proved(replace(made, setup=mutant))
+        if not scales(made.setup, mutant)
+        and proved(replace(made, setup=mutant))
+        and not agree(made.setup, mutant)
     ]
     assert survivors == []
+
+
+def agree(program: Program, mutant: Program) -> bool:
+    """Tell whether a mutant is none: it has the same results, as (a - b)^2 and (b - a)^2 have.
+
+    Sums of 53 bits differ by a few parts in 10^16, mutants in the first digits.
+    """
+    dice = np.random.default_rng(0)
+    count = sum(len(quantity.components) for quantity in program.inputs)
+    for _ in range(3):
+        values = list(dice.uniform(0.5, 1.5, count))
+        one, other = (run(p, working(np.float64), values) for p in (program, mutant))
+        if not np.allclose(one, other, rtol=1e-9, atol=0):
+            return False
+    return True
 
 
 def scales(setup: Program, mutant: Program) -> bool:

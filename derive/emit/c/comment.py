@@ -48,6 +48,11 @@ def comment(program: Program, figures: Sequence[Measurement], bodies: int) -> st
     return f"/*{text[2:]}\n */" if text.startswith(" *") else text
 
 
+def wrapped(sentence: str) -> list[str]:
+    """Return the lines of a sentence of a header's comment."""
+    return wrap(sentence, WIDTH, subsequent_indent="  ", break_long_words=False)
+
+
 def _labelled(label: str, text: str) -> list[str]:
     return wrap(f"{label} {text}", WIDTH, subsequent_indent=" " * 11, break_long_words=False)
 

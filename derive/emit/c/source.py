@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from derive import __version__
-from derive.emit.c.comment import comment
+from derive.emit.c.comment import comment, wrapped
 from derive.emit.c.example import example
 from derive.emit.c.scope import declared_in_c, require_free, require_no_symbol
 from derive.emit.c.signature import CNames, dense, dense_size, prototype
@@ -80,6 +80,7 @@ def _header(
     return TEMPLATES.get_template("header.h.jinja").render(
         first_line=f"/* {first_line(library, figures)}",
         title=library.scene.title,
+        declared=[line for each in library.scene.told for line in wrapped(each)],
         example=example(library, names, precision),
         digest=digest,
         guard=names.file(precision, "h").upper().replace(".", "_"),

@@ -79,5 +79,10 @@ def _layout(expression: Any) -> Layout:
     return symbolic_layout(expression, {})
 
 
+def equation_layouts(step: Step) -> list[tuple[Layout, Layout]]:
+    """Return left and right of every claim of a lecture step."""
+    return [(_layout(left), _layout(right)) for left, right in step.claims]
+
+
 def _claims(step: Step) -> list[Layout]:
-    return [Layout("equal", (_layout(left), _layout(right))) for left, right in step.claims]
+    return [Layout("equal", sides) for sides in equation_layouts(step)]

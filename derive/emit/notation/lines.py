@@ -8,13 +8,15 @@ of its own, and the page fills its lines with them.
 from collections.abc import Callable
 from itertools import pairwise
 
-from derive.emit.notation.glyph import GREEK, glyph
+from derive.emit.notation.glyph import glyph, spelt
 from derive.emit.notation.layout import Layout, grouped_sum, in_parentheses, is_number, operand
 from derive.emit.notation.mathml import SIGNS, TOUCHING, TRANSPOSED, row, space_between, total_sign
 from derive.program.added import added
 
 WIDEST = 14.0
 """Width of a piece in em at most: a card of 300 px less its margins, letters of 18 px."""
+HALF = "<mrow><mn>1</mn><mo>/</mo><mn>2</mn></mrow>"
+"""What stands above a root that is too wide for its sign."""
 _LETTER, _OF_WORD, _SMALL, _SIGN, _FENCES = 0.65, 0.5, 0.4, 1.2, 0.8  # em; small ones: indices
 
 
@@ -52,10 +54,9 @@ def width(layout: Layout) -> float:
 
 def _of_name(text: str) -> float:
     parts = glyph(text)
-    letters = len(GREEK.get(parts.base, parts.base))
-    indices = added(len(GREEK.get(index, index)) + 0.4 for index in parts.indices)
+    indices = added(len(spelt(index)) + 0.6 for index in parts.indices)
     small = _SMALL * (indices + len(parts.seen_from)) + (_of_name(parts.by) if parts.by else 0)
-    return max(_LETTER, _OF_WORD * letters) + small
+    return max(_LETTER, _OF_WORD * len(spelt(parts.base))) + small
 
 
 def _led(sign: str, layout: Layout) -> list[str]:
@@ -93,7 +94,7 @@ def _product(layout: Layout) -> list[str]:
     for before, factor in pairwise(layout.parts):
         first, *rest = _led(space_between(before, factor), factor)
         room -= width(factor) + _SMALL
-        if room < 0 or rest:
+        if (room < 0 or rest) and not is_number(before):
             found.append(first)
             room = WIDEST - width(factor)
         else:
@@ -123,8 +124,11 @@ def _raised(layout: Layout) -> list[str]:
     if base.kind != "group":
         return [row(layout)]
     above = row(layout.parts[1]) if layout.kind == "power" else TRANSPOSED
-    right = f'<msup><mo stretchy="false" rspace="0">)</mo>{above}</msup>'
-    return _enclosed(pieces(base.parts[0]), right)
+    return _enclosed(pieces(base.parts[0]), _raised_fence(above))
+
+
+def _raised_fence(above: str) -> str:
+    return f'<msup><mo stretchy="false" rspace="0">)</mo>{above}</msup>'
 
 
 def _fraction(layout: Layout) -> list[str]:
@@ -135,9 +139,9 @@ def _fraction(layout: Layout) -> list[str]:
 
 
 def _call(layout: Layout) -> list[str]:
-    if layout.text == "sqrt":
-        return [row(layout)]
     (inside,) = layout.parts
+    if layout.text == "sqrt":
+        return _enclosed(pieces(inside), _raised_fence(HALF))
     first, *rest = _enclosed(pieces(inside), _close(")"))
     return [f"<mi>{layout.text}</mi>{first}", *rest]
 

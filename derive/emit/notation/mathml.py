@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from html import escape
 from itertools import pairwise
 
-from derive.emit.notation.glyph import GREEK, Glyph, glyph
+from derive.emit.notation.glyph import Glyph, glyph, slanted, spelt
 from derive.emit.notation.layout import Layout, grouped_sum
 from derive.scene.functions import FUNCTIONS
 
@@ -30,7 +30,6 @@ _PLACES = (("A", "Z"), ("a", "z"), ("Α", "Ω"), ("α", "ω"))
 _PLANCK = "ℎ"  # the italic small h has its place outside the alphabet
 _BOLD_DIGITS = 0x1D7CE
 BREAK = "&#8203;"  # a space without width: signs bring their own
-DIFFERENTIAL = "dm"  # of two letters, but one symbol
 DOTS = {1: "˙", 2: "¨"}
 """As accents, browsers draw them into the letter; as an over-script at the letter's own size, clear
 of it."""
@@ -137,8 +136,8 @@ def _is_bare(layout: Layout) -> bool:
 def _is_word(factor: Layout) -> bool:
     """Return whether a factor is a name of several letters, in which nothing is multiplied."""
     base = _base(factor)
-    letters = GREEK.get(glyph(base.text).base, glyph(base.text).base)
-    return base.kind == "name" and len(letters) > 1 and letters != DIFFERENTIAL
+    own = glyph(base.text).base if base.kind == "name" else ""
+    return len(spelt(own)) > 1 and not slanted(own)
 
 
 def _joined(layout: Layout) -> str:
@@ -183,8 +182,8 @@ def _accented(parts: Glyph, base: str) -> str:
 
 
 def _letter(base: str, style: str) -> str:
-    letter = GREEK.get(base, base)
-    if style != "scalar" or base == DIFFERENTIAL:
+    letter = spelt(base)
+    if style != "scalar" or (slanted(base) and len(letter) > 1):
         letter = styled(letter, style)
     if letter.isdigit():
         return f"<mn>{letter}</mn>"
@@ -192,17 +191,11 @@ def _letter(base: str, style: str) -> str:
 
 
 def _indices(parts: Glyph) -> str:
-    items = [_index(index) for index in parts.indices]
+    items = [_letter(index, "scalar") for index in parts.indices]
     if parts.by:
         items.append(f"<mo>∕</mo>{_name(glyph(parts.by), 'scalar')}")
-    gap = '<mspace width="0.15em"/>'
+    gap = '<mspace width="0.25em"/>'
     return items[0] if len(items) == 1 else f"<mrow>{gap.join(items)}</mrow>"
-
-
-def _index(index: str) -> str:
-    if index.isdigit():
-        return f"<mn>{index}</mn>"
-    return f"<mi>{escape(GREEK.get(index, index))}</mi>"
 
 
 # One row a kind of layout.
@@ -217,7 +210,7 @@ _FORMS: dict[str, Callable[[Layout], str]] = {
     "fraction": lambda x: f"<mfrac>{row(x.parts[0])}{row(x.parts[1])}</mfrac>",
     "power": _power,
     "transposed": lambda x: f"<msup>{row(x.parts[0])}{TRANSPOSED}</msup>",
-    "index": lambda x: f"<msub>{row(x.parts[0])}{_index(x.text)}</msub>",
+    "index": lambda x: f"<msub>{row(x.parts[0])}{_letter(x.text, 'scalar')}</msub>",
     "skew": lambda x: f"<msub>{_fenced('[', row(x.parts[0]), ']')}<mo>×</mo></msub>",
     "group": lambda x: _fenced("(", row(x.parts[0]), ")"),
     "call": _call,

@@ -1,5 +1,6 @@
 """From a SymPy expression to its layout, in an order that depends on nothing but the symbols."""
 
+import re
 from collections.abc import Mapping
 from fractions import Fraction
 
@@ -11,6 +12,9 @@ from derive.emit.notation.tree import NotationError
 from derive.scene.functions import FUNCTIONS
 
 Names = Mapping[Symbol, str]
+Counted = tuple[tuple[str, int], ...]
+"""A text as words, and the whole numbers behind them."""
+PARTS = re.compile(r"([^0-9]*)([0-9]+|$)")
 
 
 def symbolic_layout(expression: Expr, names: Names) -> Layout:
@@ -40,10 +44,19 @@ def _sum(expression: Add, names: Names) -> Layout:
     return added([parts[first], *parts[:first], *parts[first + 1 :]])
 
 
-def _term_key(term: Expr, names: Names) -> tuple[int, list[str], str]:
+def _term_key(term: Expr, names: Names) -> tuple[int, list[Counted], Counted]:
     factors = [f for f in Mul.make_args(term) if not isinstance(f, Rational)]
     text = plain(symbolic_layout(term, names))
-    return sum(map(_degree, factors)), sorted(map(_first, factors)), text
+    return sum(map(_degree, factors)), sorted(counted(_first(f)) for f in factors), counted(text)
+
+
+def counted(text: str) -> Counted:
+    """Return what a text is ordered by: digits in it as the numbers that they are.
+
+    >>> sorted(["k10", "k9", "k"], key=counted)
+    ['k', 'k9', 'k10']
+    """
+    return tuple((words, int(digits or 0)) for words, digits in PARTS.findall(text))
 
 
 def _degree(factor: Expr) -> int:
@@ -65,7 +78,8 @@ def _product(expression: Expr, names: Names) -> Layout:
     above: list[Layout] = []
     below: list[Layout] = []
     for factor in sorted(Mul.make_args(rest), key=lambda f: _factor_key(f, names)):
-        base, exponent = factor.as_base_exp()
+        sign, base, exponent = _turned(factor)
+        coefficient *= sign
         under = exponent.is_Rational and exponent < 0
         power = _power(base, -exponent if under else exponent, names)
         (below if under else above).append(power)
@@ -78,10 +92,20 @@ def _product(expression: Expr, names: Names) -> Layout:
     return negative(whole) if value < 0 else whole
 
 
-def _factor_key(factor: Expr, names: Names) -> tuple[bool, str, str]:
+def _factor_key(factor: Expr, names: Names) -> tuple[bool, Counted, Counted]:
     base, exponent = factor.as_base_exp()
     size = abs(exponent) if exponent.is_Rational else exponent
-    return base.func.__name__ in FUNCTIONS, _first(factor), plain(_power(base, size, names))
+    text = plain(_power(base, size, names))
+    return base.func.__name__ in FUNCTIONS, counted(_first(factor)), counted(text)
+
+
+def _turned(factor: Expr) -> tuple[int, Expr, Expr]:
+    """Return sign, base and exponent of a factor; of a sum of minus signs only, with plus signs."""
+    base, exponent = factor.as_base_exp()
+    whole = isinstance(base, Add) and exponent.is_Integer
+    if whole and all(term.as_coeff_Mul()[0] < 0 for term in base.args):
+        return -1 if exponent.is_odd else 1, -base, exponent
+    return 1, base, exponent
 
 
 def _power(base: Expr, exponent: Expr, names: Names) -> Layout:

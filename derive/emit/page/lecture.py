@@ -1,6 +1,7 @@
 """The lecture as a page: every step numbered, with its sentence, its equation and its reasons."""
 
 import re
+from collections.abc import Sequence
 
 from markupsafe import Markup
 from sympy import Matrix
@@ -54,11 +55,15 @@ _BUILT = {
 }
 
 
-def lecture_page() -> str:
-    """Return the text of ``lecture.html``, complete in one file and without scripts."""
+def lecture_page(reports: Sequence[str] = ()) -> str:
+    """Return the text of ``lecture.html``, complete in one file and without scripts.
+
+    reports : the page of many cases, if it is there
+    """
     return TEMPLATES.get_template("lecture.html.jinja").render(
         title=LECTURE.title,
         version=__version__,
+        reports=reports,
         chapters=CHAPTERS,
         marks=_MARKS,
         kinds={kind: sum(s.kind == kind for s in LECTURE.steps) for kind in _MARKS},

@@ -3,15 +3,20 @@
 from collections.abc import Sequence
 from functools import partial
 
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from derive.emit.c.comment import SETUP_ERROR, cost_line, of_what
 from derive.emit.c.source import first_line
+from derive.emit.drawing.drawing import drawing
 from derive.emit.notation import name_mathml
+from derive.emit.page.answer import answer_lines
 from derive.emit.page.code import listing
-from derive.emit.page.equation import letter, notes, passages, taken_names
+from derive.emit.page.equation import letter, notes, passages, taken_names, written_names
+from derive.emit.page.links import neighbours
 from derive.emit.page.pattern import pattern_drawing
+from derive.emit.page.principal import principal_lines
 from derive.emit.page.prose import prose
+from derive.emit.reported import NOTHING_BESIDE, Beside
 from derive.emit.templates import TEMPLATES
 from derive.lecture.chapters import LECTURE
 from derive.library.library import Library
@@ -21,18 +26,29 @@ from derive.scene.wanted import JACOBIAN
 _PRECISIONS = ("f32", "f64")
 
 
-def scene_page(library: Library, figures: Sequence[Measurement]) -> str:
-    """Return the text of ``<scene>.html``, complete in one file and without scripts."""
+def scene_page(
+    library: Library, figures: Sequence[Measurement], by: Beside = NOTHING_BESIDE
+) -> str:
+    """Return the text of ``<scene>.html``, complete in one file and without scripts.
+
+    by : what the page can lead to: the scene's report and its sentence, the report of many cases
+    """
     scene = library.scene
     rests_on = {a for program in library.printed() for a in program.assumptions}
     return TEMPLATES.get_template("scene.html.jinja").render(
         first_line=first_line(library, figures),
         scene=scene,
+        by=by,
         prose=prose,
         given=scene.told,
+        around=neighbours(scene),
+        drawing=Markup(drawing(scene)),  # noqa: S704 (numbers and checked names)
+        answers=answer_lines(library),
+        moves=[p.name for p in library.motions],
         assumptions=[step for step in LECTURE.steps if step.name in rests_on],
         constants=library.constants,
         parameters=library.vocabulary.parameters,
+        principal=list(principal_lines(scene)),
         setup_cost=library.setup.flops(),
         setup_error=SETUP_ERROR,
         symbol=partial(_symbol, library),
@@ -68,6 +84,7 @@ def _section(library: Library, program: Program, owner: str) -> dict[str, object
     equations = passages(library.mechanism, _base(program)) if posed else ()
     links = {line.unknown: line.place for passage in equations for line in passage.lines}
     sparsity = (program.sparsity or {}).get("jacobian")
+    own = notes(library.mechanism, _base(program)) if posed else []
     says = f"pattern of the Jacobian of {_base(program)}"
     return {
         "program": program,
@@ -75,8 +92,20 @@ def _section(library: Library, program: Program, owner: str) -> dict[str, object
         "passages": equations if owner == program.name else (),
         "code": listing(program, library.scene.name, links),
         "pattern": pattern_drawing(sparsity, says) if sparsity else "",
-        "notes": notes(library.mechanism, _base(program)) if posed else [],
+        "notes": [_noted(library, note) for note in own],
     }
+
+
+def _noted(library: Library, note: str) -> Markup:
+    """Return a note with the names that it lists as equations write them; balances stay words."""
+    says, _, listed = note.removesuffix(".").partition(": ")
+    known, symbols = written_names(library.mechanism), library.mechanism.words.sheet.symbols
+    taken = taken_names(library.mechanism)
+    if says == "Balances":
+        return escape(note)
+    names = [known[symbols[n]] if n in symbols else letter(n, taken) for n in listed.split(", ")]
+    drawn = [name_mathml(n, "scalar") if n.isidentifier() else escape(n) for n in names]
+    return escape(says) + Markup(": ") + Markup(", ".join(drawn)) + Markup(".")  # noqa: S704 (MathML of checked names)
 
 
 def _symbol(library: Library, q: Quantity) -> Markup:

@@ -138,7 +138,8 @@ def _order(step: TaylorStep) -> Iterator[Line]:
         **{f"{x}_k": _term(x, K) for x in step.rates},
     }
     rates = {x: rate for x, (_, rate) in step.rates.items()}
-    read = {SHARE, *rates.values()}.union(*(op.operands for op in step.each))
+    moved = {SHARE for rate in rates.values() if rate != 0}
+    read = {*moved, *rates.values()}.union(*(op.operands for op in step.each))
     yield from (Assign(n, v, makes="constant") for n, v in given.items() if n in read)
     yield from _sums(step)
     yield from step.each

@@ -41,7 +41,7 @@ def read_body(given: Table, point: str, scalars: Scalars) -> Body:
     through_coordinates(turned, "body.turned", scalars)
     return Body(
         cast("InertiaKind", made.kind), made.mass, cast("Sextuple", made.inertia), centre,
-        made.axis, turned, spin, made.lengths or {}, made.look,
+        made.axis, turned, spin, made.lengths or {}, made.look, made.parts,
     )  # fmt: skip
 
 

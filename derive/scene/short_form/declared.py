@@ -19,6 +19,7 @@ from derive.scene.declaration import (
     Turning,
 )
 from derive.scene.formula import Formula
+from derive.scene.shape import Portion
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,7 @@ class Body:
     spin: Formula | None
     lengths: Mapping[str, Formula]
     look: str = ""
+    parts: tuple[Portion, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -173,7 +173,8 @@ def _body(scene: ShortForm) -> Member:
         for turn in reversed(body.turned):
             x, y, z = _turned(centre, turn)
             centre = (x, y, z)
-    return Member(BODY, FRAME, body.mass, inertia, centre, body.axis, body.turned, body.spin)
+    return Member(BODY, FRAME, body.mass, inertia, centre, body.axis, body.turned, body.spin,
+                  parts=body.parts)  # fmt: skip
 
 
 def _wheel(scene: ShortForm, n: int, motion: Motion) -> tuple[Moving, Member, Load]:

@@ -3,21 +3,39 @@
 import re
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
+from bench.report.curve import instructions
 from bench.report.hard import Hard
+from bench.report.line import Line, line, methods, state
 from bench.report.page import page
-from bench.report.plots import figure, panels, spread, svg
+from bench.report.plots import View, figure, spread, svg
 from tests.bench.report.made_up import found, report
 
 pytest.importorskip("matplotlib")
+GENERATED = Path(__file__).parents[3] / "generated"
+LARGEST = 1_500_000  # bytes
+FEWEST = 200  # plots of a whole run
 LINK = re.compile(r"""(?:href|src|xlink:href|url)\s*[=(]\s*["']?([^"')\s>]+)""")
 
 
 @pytest.fixture(scope="module")
 def html() -> str:
     return page(report())
+
+
+def test_the_page_opens_with_a_plot_then_says_what_to_use_then_all_else(html: str) -> None:
+    places = [html.index(mark) for mark in ("<h1>", "<svg viewBox", 'id="choose"', "<table")]
+    assert places == sorted(places)
+    assert html.count("<h2>", 0, html.index('id="choose"')) == 0
+
+
+def test_the_page_that_is_kept_is_light_enough_to_send() -> None:
+    kept = GENERATED / "report.html"
+    assert kept.stat().st_size < LARGEST
+    assert kept.read_text(encoding="utf-8").count('<svg viewBox="') > FEWEST
 
 
 def test_the_page_has_no_script(html: str) -> None:
@@ -55,11 +73,37 @@ def test_every_heading_of_the_contents_exists(html: str) -> None:
         assert f'id="{place}"' in html
 
 
+def view() -> View:
+    """Return a plot of the made-up curves."""
+    points = [p for p in found().points if p.precision == "f64"]
+    lines = [line(own, instructions, state) for own in methods(points, instructions)]
+    star = Line("flow_exact", ours=True, costs=(2e3,), errors=(1e-14,))
+    return View("made up", [*lines, star], "instructions", "error", 1e-13, marked=True)
+
+
 def test_the_same_points_give_the_same_svg() -> None:
-    rows, points = panels(["error at the end"]), found().points
-    once, again = (svg(rows, points, 1e-13) for _ in range(2))
+    once, again = (svg(view()) for _ in range(2))
     assert once == again
-    assert "<metadata" not in once
+    assert "<metadata" not in once.text
+    assert "#" not in once.text.replace('href="#', "")
+
+
+def test_every_picture_says_in_words_what_is_seen_and_no_two_say_the_same(html: str) -> None:
+    pictures = re.findall(r"<svg (?!class=.shapes)[^>]*>", html)
+    said = [re.search(r'role="img" aria-label="([^"]*)"', picture) for picture in pictures]
+    words = [one[1] for one in said if one]
+    assert len(words) == len(pictures) == len(set(words)) > 20
+    assert any(w.startswith("asym_ii_generic, double: error at the end against") for w in words)
+    assert all(re.search(r" costs |no error below", w) for w in words)
+
+
+def test_what_plots_share_stands_on_the_page_once(html: str) -> None:
+    places = re.findall(r'\sid="([^"]+)"', html)
+    assert len(places) == len(set(places))
+    assert set(re.findall(r'<use [^>]*href="#([^"]+)"', html)) <= set(places)
+    classes = {name for text in re.findall(r'class="(p\d+)"', html) for name in text.split()}
+    assert classes
+    assert classes <= set(re.findall(r"\.(p\d+)\{", html))
 
 
 def test_names_of_curves_do_not_lie_over_each_other() -> None:
@@ -71,6 +115,10 @@ def test_names_of_curves_do_not_lie_over_each_other() -> None:
 
 
 def test_every_curve_is_named_once() -> None:
-    drawn = figure(panels(["error at the end"]), found().points, 1e-13)
-    names = [t.get_text() for ax in drawn.axes for t in ax.texts]
-    assert sorted(names) == ["heyoka", "step_dmv", "step_rk4", "κu, attainable"]
+    names = [text.get_text() for ax in figure(view()).axes for text in ax.texts]
+    assert sorted(name for name in names if name) == [
+        "flow_exact",
+        "step_dmv",
+        "step_rk4",
+        "κu, attainable",
+    ]

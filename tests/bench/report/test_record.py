@@ -51,7 +51,7 @@ def test_what_is_not_finite_is_null() -> None:
 def test_every_case_and_hard_case_says_how_to_see_it_again() -> None:
     whole = data(report())
     commands = [row["command"] for row in (*whole["cases"], *whole["hard_cases"])]
-    assert all(c.startswith("derive report --only ") for c in commands)
+    assert all(c.startswith("python -m bench.report --only ") for c in commands)
 
 
 def test_a_peer_that_is_not_installed_is_listed_as_not_run(

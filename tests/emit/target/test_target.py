@@ -10,11 +10,13 @@ from pathlib import Path
 
 import pytest
 
+from derive.emit.files import manifests
+
 pytestmark = pytest.mark.target
 
 HERE = Path(__file__).parent
 GENERATED = HERE.parents[2] / "generated"
-MANIFESTS = sorted(GENERATED.glob("*/*.json"))
+MANIFESTS = manifests(GENERATED)
 WARNINGS = (
     *("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion"),
     *("-Wshadow", "-Wstrict-prototypes", "-Wfloat-equal", "-Werror"),

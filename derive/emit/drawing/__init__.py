@@ -1,0 +1,1 @@
+"""A scene in, a drawing of its machine out: bodies, axes, loads and springs, as SVG."""

@@ -1,0 +1,126 @@
+"""The report of a scene: all that is measured of it, and the sentence that says it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from derive.check.compiler import HOW_TO_GET_ONE
+from derive.library.digest import digest_of_programs
+from derive.library.library import Library
+from derive.program.precision import PRECISIONS
+from derive.program.program import Program
+from derive.report.courses import StepErrors, Tell, step_errors
+from derive.report.driver import Driver, drivers
+from derive.report.found import FunctionFigures, figures_in_form, functions_of, hard_cases
+from derive.report.hard import HardCase
+from derive.report.instructions import WITHOUT, Instructions, instructions
+from derive.report.machine import Machine, machine_here
+from derive.report.price import STEPS, Nanoseconds, nanoseconds
+from derive.report.sentence import functions_sentence, motion_sentence
+from derive.report.states import Begun
+from derive.report.wishes import OTHER_FORM, Wished, in_other_form, wished
+from derive.scene import SceneError
+
+Posed = tuple[Driver, str, Sequence[Program], Begun | None, float]
+"""Functions to be timed, with their form, and where and how far their steps go."""
+NO_MOTION = "nothing of it moves by itself: a step in time has nothing to do"
+
+
+@dataclass(frozen=True)
+class SceneReport:
+    """What was found of a scene.
+
+    refused  : why steps cannot be wanted, by name     motion : None where there is none
+    without  : what was not measured, and why          machine : what ran it
+    """
+
+    library: Library
+    digest: str
+    wished: Wished
+    motion: StepErrors | None
+    figures: tuple[FunctionFigures, ...]
+    hard: tuple[HardCase, ...]
+    times: tuple[Nanoseconds, ...]
+    instructions: tuple[Instructions, ...]
+    without: tuple[str, ...]
+    machine: Machine
+
+    @cached_property
+    def best(self) -> str:
+        """Return the sentence of the report, free of measured times."""
+        if self.motion is not None:
+            return motion_sentence(self.motion)
+        return functions_sentence(self.figures)
+
+    @cached_property
+    def sentence(self) -> str:
+        """Return the sentence of the report with the times that were measured."""
+        if self.motion is None:
+            return self.best
+        own = {(t.function, t.precision): t.median for t in self.times}
+        return motion_sentence(self.motion, own)
+
+
+def silent(_: str) -> None:
+    """Say nothing of what is being done."""
+
+
+def report(library: Library, until: float | None = None, tell: Tell = silent) -> SceneReport:
+    """Return the report of a scene: its steps and functions, their errors and what they cost.
+
+    until : s, the end at which errors of motion are taken; None for what suits the scene
+    tell  : hears what is being done
+    Raises SceneError for a time that has no sense or a motion that cannot be followed.
+    """
+    tell("what else the scene could want")
+    own = wished(library)
+    if until is not None and not own.steps:
+        raise SceneError(f"scene '{library.scene.name}': until is of motion, but {NO_MOTION}")
+    other = in_other_form(library.scene)
+    with TemporaryDirectory(prefix="derive-") as folder:
+        tell("compiling")
+        by = drivers(own.library, PRECISIONS, Path(folder))
+        motion = step_errors(own, by, until, tell) if own.steps else None
+        form = library.scene.form
+        figures = list(figures_in_form(library, form, tell))
+        if other is not None:
+            figures += figures_in_form(other, OTHER_FORM[form], tell)
+        hard = hard_cases(library, other, tell)
+        every = _posed(own, other, by, motion, Path(folder))
+        tell("timing")
+        times = [t for one in every for t in nanoseconds(*one)]
+        tell("counting instructions")
+        counts = [c for one in every for c in instructions(*one, Path(folder))]
+    return SceneReport(
+        library, digest_of_programs(library), own, motion, tuple(figures), hard, tuple(times),
+        tuple(counts), without(times, counts), machine_here(),
+    )  # fmt: skip
+
+
+def _posed(
+    own: Wished,
+    other: Library | None,
+    by: Sequence[Driver],
+    motion: StepErrors | None,
+    folder: Path,
+) -> list[Posed]:
+    """Return what is timed and counted: the functions of each form in each precision."""
+    form, start, length = own.library.scene.form, None, 0.0
+    if motion is not None:
+        start, length = motion.start.at([-1]), motion.time / STEPS
+    programs = (*(own.library[name] for name in own.steps), *functions_of(own.library))
+    every: list[Posed] = [(driver, form, programs, start, length) for driver in by]
+    if other is not None and by[0].shared is not None:
+        more = drivers(other, PRECISIONS, folder)
+        every += [(one, OTHER_FORM[form], functions_of(other), None, 0.0) for one in more]
+    return every
+
+
+def without(times: Sequence[Nanoseconds], counts: Sequence[Instructions]) -> tuple[str, ...]:
+    """Return what was not measured, and why."""
+    slow = [] if times else [f"nanoseconds: not measured, {HOW_TO_GET_ONE}"]
+    uncounted = [] if counts or not times else [WITHOUT]
+    return (*slow, *uncounted,
+            "a Cortex-M: not measured, as nothing of this scene was run on one")  # fmt: skip

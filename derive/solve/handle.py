@@ -1,0 +1,299 @@
+"""A scene that was loaded, with all that can be done with it; what was made once is kept."""
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache, partial
+from pathlib import Path
+from typing import Any
+
+from derive.check import check
+from derive.check.verdict import Verdict
+from derive.emit.equations import FORMS, equations
+from derive.emit.files import require_folder, require_writable, write
+from derive.library.library import Library, library
+from derive.program.program import Quantity
+from derive.report import SceneReport, report, report_files
+from derive.scene import Scene, SceneError, contents, document_text, of_the_scene, parse_scene
+from derive.scene.table import one_of
+from derive.scene.unit import behind
+from derive.solve.answers import Answered, every_answer
+from derive.solve.arguments import one_number
+from derive.solve.bound import Accuracy, By, bound, evaluation, kernel_of, program_of
+from derive.solve.function import Kernel, SceneFunction
+from derive.solve.generation import (
+    STATED,
+    FigureSource,
+    Generation,
+    made_and_told,
+    measuring,
+    page_anew,
+    samples_of,
+    stored,
+)
+from derive.solve.instrument import Instrument, instrument
+from derive.solve.motions import limits, roots, small_motion
+from derive.solve.settings import NamedValues, settable, settings
+from derive.solve.simulation import Simulation, plot_of, simulated
+from derive.solve.told import listener, met, path
+from derive.verify.reference import NoValueError
+
+KEPT = 64
+"""Scenes that are kept ready, those that were asked for last."""
+FRESH = 4096
+"""Samples that take a second a scene; a release is tried with a million."""
+STEP = 1e-3  # s
+
+
+def silent(_: str) -> None:
+    """Hear how far something is, and say nothing."""
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Handle:
+    """A scene that was read: everything else is derived when it is first asked for, and kept.
+
+    Values are given by name, in SI units: {"m": 1200, "omega": [0, 0, 3]}, or {"omega_z": 3} by
+    component. What is refused is refused by a DeriveError, with the sentence of the command line.
+
+    scene : what was declared         source : what it was loaded by
+    """
+
+    scene: Scene
+    source: str
+    kernels: dict[tuple[str, str, str], Kernel] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """Return what the scene is called: its files and C symbols begin with it."""
+        return self.scene.name
+
+    @property
+    def title(self) -> str:
+        """Return the scene's own title."""
+        return self.scene.title
+
+    @property
+    def wanted(self) -> tuple[str, ...]:
+        """Return the functions that the scene asks for."""
+        return self.scene.wanted
+
+    @property
+    def quantities(self) -> tuple[Quantity, ...]:
+        """Return everything that may be given a value: shape, unit, range and meaning of each."""
+        return self.library.vocabulary.given()
+
+    @cached_property
+    def library(self) -> Library:
+        """Return the programs of the scene. Raises DeriveError if there can be none."""
+        return library(self.scene)
+
+    @cached_property
+    def _instrument(self) -> Instrument:
+        return instrument(self.library)
+
+    def function(
+        self,
+        name: str,
+        parameters: Mapping[str, float] | None = None,
+        precision: Accuracy = "double",
+        by: By = "any",
+    ) -> SceneFunction:
+        """Return a wanted function of the scene, for NumPy arrays.
+
+        name       : as in ``wanted``; ``..._jacobian_dense`` returns the whole matrix
+        parameters : values that hold for all calls; others are named in each
+        precision  : "float" computes as the C in float does, which CasADi cannot
+        by         : "any" is a C compiler, where there is one, and CasADi elsewhere: the same bits
+        Raises DeriveError for a name that the scene does not want, for parameters that it does not
+        have or that set-up refuses, and if a compiler is needed and there is none.
+        """
+        of = program_of(self.library, name)
+        key = (name, *evaluation(self.name, precision, by))
+        if key not in self.kernels:
+            self.kernels[key] = kernel_of(self.library, of, lambda: self._instrument.module, *key)
+        again = partial(self.function, name, precision=precision, by=by)
+        given = {} if parameters is None else parameters
+        return bound(self.library, of, name, self.kernels[key], given, again)
+
+    def solve(self, values: NamedValues) -> Answered:
+        """Return all that the values let the scene answer, roots and frequencies among it.
+
+        Raises DeriveError for values that make no sense or have no answer.
+        """
+        return every_answer(self._instrument, self._settings(values))
+
+    def roots(self, values: NamedValues) -> list[dict[str, float]]:
+        """Return the unknowns of every steady motion in the declared ranges.
+
+        values : all that the scene's ``steady`` needs but its unknowns
+        """
+        return roots(self._instrument, self._settings(values))
+
+    def frequencies(self, values: NamedValues) -> list[float]:
+        """Return the circular frequencies of small motion, rising, in rad/s."""
+        return small_motion(self._instrument, self._settings(values)).frequencies
+
+    def growth(self, values: NamedValues) -> float:
+        """Return the fastest growth of small motion, in 1/s; 0 if it is no more than rounding."""
+        return small_motion(self._instrument, self._settings(values)).growth
+
+    def limits(self, values: NamedValues, name: str) -> list[float]:
+        """Return the values of one quantity, in its range, at which stability changes."""
+        if not isinstance(name, str):
+            raise SceneError(f"scene '{self.name}': a limit is of a name, not {met(name)}")
+        q = settable(self.name, self.quantities, name)
+        if name not in q.components:
+            says = f"the limit of one component is found, of {', '.join(q.components)}"
+            raise SceneError(f"scene '{self.name}': {says}, not of {name}")
+        return limits(self._instrument, self._settings(values), name)
+
+    def doubts(self, values: NamedValues) -> tuple[str, ...]:
+        """Return warnings about values: inertias that no masses have, motions off equilibrium."""
+        return self._instrument.doubts(self._settings(values))
+
+    def simulate(
+        self, values: NamedValues, until: float, step: float = STEP, plot: str | Path | None = None
+    ) -> Simulation:
+        """Return the motion from the state in ``values``, other inputs held, by ``step_rk4``.
+
+        until : s, the end        step : s, at most the length of a step, all being equal
+        plot  : a file that the motion is drawn to, as SVG
+        """
+        file = None if plot is None else path("plot", plot)
+        if file is not None:
+            self._require_another_file(file)
+            require_writable(file)
+        motion = simulated(self._instrument, self._settings(values), until, step)
+        if file is not None:
+            write(file.parent, {file.name: plot_of(motion)})
+        return motion
+
+    def generate(
+        self,
+        folder: str | Path,
+        samples: int = STATED,
+        figures: FigureSource = "kept",
+    ) -> Generation:
+        """Write the scene's C, CasADi, JSON and HTML below a folder, proved and measured.
+
+        samples : that each stated error is looked for at; 256 are quick
+        figures : "kept" takes over those in ``folder`` that nothing has changed, "anew" measures
+        Raises DeriveError for a scene whose ranges hold a pole, and for a folder that cannot be
+        written to. Files are replaced all or none.
+        """
+        into = path("folder", folder)
+        require_folder(into)
+        by = measuring(into, samples, figures)
+        return stored(into, [made_and_told(self.library, by, "costs", into)], {})
+
+    def report(
+        self,
+        folder: str | Path,
+        until: float | None = None,
+        told: Callable[[str], None] = silent,
+    ) -> SceneReport:
+        """Measure the scene's speed against error, and write its page and JSON below a folder.
+
+        The scene's own page, if it lies there, is made anew: it shows the sentence of the report.
+
+        until : s, the end at which errors of motion are taken; about ten turns if it is None
+        told  : hears what is being done
+        Raises DeriveError for a time that has no sense, and for a motion without an end.
+        """
+        into = path("folder", folder)
+        require_folder(into)
+        end = None if until is None else one_number(f"scene '{self.name}'", "until", until)
+        found = report(self.library, end, listener(told))
+        write(into, report_files(found, into))
+        write(into, page_anew(self.library, into))
+        return found
+
+    def check(
+        self, folder: str | Path, samples: int = FRESH, told: Callable[[str], None] = silent
+    ) -> Iterator[Verdict]:
+        """Yield what compiling and comparing finds of the scene's files, made anew.
+
+        folder  : where files may lie, which must be those       told : hears how far it is
+        samples : fresh ones that stated errors are tried at
+        Raises DeriveError if there is no C compiler.
+        """
+        into, many, hears = path("folder", folder), samples_of(samples), listener(told)
+        return self._checked(into, many, hears)
+
+    def _checked(
+        self, folder: Path, samples: int, told: Callable[[str], None]
+    ) -> Iterator[Verdict]:
+        try:
+            yield from check(self.library, self.source, folder, samples, told)
+        except NoValueError as error:
+            raise SceneError(str(error)) from None
+
+    def equations(self, form: str = "text") -> str:
+        """Return the scene's equations: the lecture's law, what it becomes here, its solution.
+
+        form : "text" or "ascii", for a terminal; "latex", a document; "sympy", a module of Python
+        Raises DeriveError for any other form.
+        """
+        return equations(self.library, one_of(form, "form", FORMS))
+
+    def _settings(self, values: NamedValues) -> dict[str, float]:
+        return settings(self.name, self.quantities, values)
+
+    def _require_another_file(self, file: Path) -> None:
+        """Refuse to write over the scene itself."""
+        there = file.read_bytes() if os.path.isfile(file) else b""
+        if of_the_scene(there.decode("utf-8-sig", "replace")) == self.scene.text:
+            raise SceneError(f"plot {file}: the scene itself lies there; name another file")
+
+    def __reduce__(self) -> Any:
+        """Return how another process loads the same scene, by its text."""
+        return handle, (self.scene.text, self.name, self.source)
+
+    def __repr__(self) -> str:
+        """Return what the scene is, what it wants, and what may be given to it."""
+        own = [
+            ("parameter", q.name, q.unit, q.meaning)
+            for q in self.scene.parameters
+            if q.value is None
+        ]
+        own += [(q.kind, q.name, q.unit, q.meaning) for q in self.scene.moving]
+        wide = max((len(name) for _, name, _, _ in own), default=0)
+        rows = [
+            f"  {what:10} {name:{wide}}{behind(unit)}  {says}".rstrip()
+            for what, name, unit, says in own
+        ]
+        wanted = ", ".join(self.wanted)
+        return "\n".join([f"scene '{self.name}': {self.title}", f"  functions {wanted}", *rows])
+
+
+@lru_cache(KEPT)
+def handle(text: str, name: str, source: str) -> Handle:
+    """Return the scene that a text declares; the same text is read once."""
+    scene = parse_scene(text, name)
+    return Handle(scene, source) if scene.text == text else handle(scene.text, name, source)
+
+
+def load(source: str | Path | Mapping[str, object], name: str = "") -> Handle:
+    """Return a scene: of the catalogue by its name, of a file by its path, or of a dict.
+
+    source : a dict is the parsed form of a TOML file, and read as strictly
+    name   : what the scene of a dict is called; a file's is its stem
+
+    Raises DeriveError with one sentence if there is no such scene or it breaks a rule.
+
+    >>> load("heavy_top").wanted
+    ('state_rate', 'state_rate_jacobian', 'kinetic_energy', 'angular_momentum')
+    """
+    if not isinstance(name, str):
+        raise SceneError(f"a scene's name is a text, not {type(name).__name__}")
+    if isinstance(source, Mapping):
+        if not name:
+            raise SceneError("a scene that is a dict needs a name: load(..., name='rotor')")
+        return handle(document_text(source, name), name, f"{name}.toml")
+    if not isinstance(source, str | Path):
+        raise SceneError(f"a scene is a name, a path or a dict, not {type(source).__name__}")
+    text, stem = contents(source)
+    if name not in ("", stem):
+        raise SceneError(f"scene '{stem}': a file names its scene; rename it to '{name}.toml'")
+    return handle(text, stem, str(source))

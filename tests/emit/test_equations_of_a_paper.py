@@ -1,0 +1,60 @@
+"""Equations to take away read as in a paper: letters, values, tidy sums, nothing said twice."""
+
+import re
+from pathlib import Path
+
+import sympy
+
+from derive.emit.equations import equations
+from derive.emit.equations.assumed import ALONE, alone
+from derive.lecture.chapters import LECTURE
+from derive.library.library import library
+from derive.scene import parse_scene
+from tests.emit.test_equations import differences, module, residuals
+from tests.made import library_of
+
+PENDULUM = """
+wanted = ["energy", "accelerations", "rail"]
+[parameters]
+m = { unit = "kg", range = [1, 2] }
+l = { unit = "m", range = [1, 2] }
+g = { unit = "m/s^2", value = 9.81, meaning = "gravity" }
+[coordinates]
+swing = { unit = "rad", range = [-1, 1] }
+yaw = { unit = "rad", range = [-1, 1], motion="prescribed", rate={range=[-1,1]}, acceleration = 0 }
+[frames]
+post.turned = ["z yaw"]
+arm = { parent = "post", turned = ["y swing"] }
+[bodies]
+rod = { frame="arm", shape="rod", axis="z", mass="m", length="l", centre = ["0", "0", "l/2"] }
+[loads]
+weight = { gravity = ["0", "0", "-g"] }
+hinge = { on = "rod", force = ["?rail", "?across", "?up"], couple = ["?a", "0", "?c"] }
+"""
+
+
+def test_letters_are_those_of_a_paper_and_values_stand_in_the_list(tmp_path: Path) -> None:
+    lib = library(parse_scene(PENDULUM, "pendulum"))
+    told, tex = equations(lib, "text"), equations(lib, "latex")
+    assert not re.findall("981/|Source:", told)
+    assert r"\dot{q}_{\mathrm{swing}}" in tex
+    assert r"\dot{\psi}" in tex
+    for part in ("g [m/s^2] gravity = 9.81", "-m g . r_G of each weight", "energy = T + V"):
+        assert part in told
+    made = module(equations(lib, "sympy"), tmp_path)
+    assert made["CONSTANTS"] == {made["g"]: sympy.Rational(981, 100)}
+    assert differences(lib, made) == residuals(lib, made) == []
+
+
+def test_sums_are_tidied_and_what_stood_before_is_not_repeated() -> None:
+    told = equations(library_of("cart_pendulum"), "text")
+    assert told.count("F = m a_G") == 1
+    for part in ("16, mass_centre_motion, as above.", "As in state_rate: ", "(M + m)⋅sin(θ)"):
+        assert part in told
+
+
+def test_assumptions_stand_alone() -> None:
+    every = [step for step in LECTURE.steps if step.kind == "assume"]
+    assert ALONE.keys() <= {step.name for step in every}
+    leaning = "First|Second|Third|There is no|This is|Other axes|Suppose, the|Let them|The first"
+    assert [step.name for step in every if re.match(leaning, alone(step))] == []

@@ -1,0 +1,36 @@
+"""A report that is committed is of the scene's present programs."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from derive.emit.reported import reported
+from derive.scene import catalogue
+from tests.made import library_of, thinned
+
+GENERATED = Path(__file__).parents[2] / "generated"
+NAMES = sorted(path.parent.name for path in GENERATED.glob("*/*_report.json"))
+
+
+@pytest.mark.parametrize("name", thinned(NAMES, 12))
+def test_a_committed_report_is_of_the_scenes_present_programs(name: str) -> None:
+    said = json.loads((GENERATED / name / f"{name}_report.json").read_text(encoding="utf-8"))
+    found = reported(library_of(name), GENERATED)
+    assert found == said["best"] != "", f"`derive report {name}` makes it anew"
+    assert (GENERATED / name / f"{name}_report.html").is_file()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", catalogue())
+def test_every_scene_of_the_catalogue_has_a_report_of_its_present_programs(name: str) -> None:
+    assert reported(library_of(name), GENERATED) != "", f"`derive report {name}` makes it"
+
+
+def test_a_report_of_other_programs_is_not_shown(tmp_path: Path) -> None:
+    folder = tmp_path / "heavy_top"
+    folder.mkdir()
+    for text in ("", "[]", '{"digest": "0", "best": "for nothing"}'):
+        (folder / "heavy_top_report.json").write_text(text, encoding="utf-8")
+        assert reported(library_of("heavy_top"), tmp_path) == ""
+    assert reported(library_of("heavy_top"), tmp_path / "nowhere") == ""
