@@ -12,7 +12,7 @@ where it cannot and a derivative exists, it gives NaN or an infinity.
 import casadi as ca
 
 PARAMETERS = ['m', 'r', 'n', 'g']
-CONSTANTS = ['k1', 'r', 'half_r_r', 'k2', 'k3', 'k4', 'k5', 'k6', 'half_m_r_r_n', 'k7', 'minus_m_r_g', 'k8', 'k9', 'm_r', 'k10', 'm_g', 'k11', 'k12', 'm_r_g', 'k13']
+CONSTANTS = ['k1', 'r', 'k2', 'k3', 'k4', 'half_m_r_r_n', 'k5', 'minus_m_r_g', 'k6', 'k7', 'm_r', 'k8', 'm_g', 'k9', 'k10', 'm_r_g', 'k11']
 SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 2: 'a mass is not positive', 3: 'a length of a body is not positive', 5: 'a constant is not finite'}
 
 
@@ -160,31 +160,27 @@ def _tried():
     parameters = ca.SX.sym("parameters", 4)
     s0 = _mul((parameters[3], 0.0), (0.8, -4.4408920985006264e-17))
     s1 = _div(s0, (parameters[1], 0.0))
-    s2 = _mul((parameters[1], 0.0), (parameters[1], 0.0))
-    s3 = _mul(s2, (0.5, 0.0))
-    s4 = _mul(s2, (0.25, 0.0))
-    s5 = _neg(s3)
-    s6 = _mul((parameters[1], 0.0), (parameters[0], 0.0))
-    s7 = _mul((parameters[1], 0.0), s6)
-    s8 = _mul(s7, (1.25, 0.0))
-    s9 = _mul(s7, (0.25, 0.0))
-    s10 = _mul(s7, (1.5, 0.0))
-    s11 = _mul((parameters[2], 0.0), s7)
-    s12 = _mul(s11, (0.5, 0.0))
-    s13 = _mul((parameters[2], 0.0), s10)
-    s14 = _neg(s13)
-    s15 = _mul((parameters[3], 0.0), s6)
-    s16 = _neg(s15)
-    s17 = _mul(s6, (0.3333333333333333, 1.850371707708594e-17))
-    s18 = _mul((parameters[0], 0.0), s0)
-    s19 = _mul(s6, (0.2, -1.1102230246251566e-17))
-    s20 = _mul((parameters[3], 0.0), (parameters[0], 0.0))
-    s21 = _mul(s7, (0.625, 0.0))
-    s22 = _mul(s7, (0.125, 0.0))
-    s23 = _mul(s7, (0.75, 0.0))
-    constants = ca.vertcat(s1[0], parameters[1], s3[0], s4[0], s5[0], s8[0], s9[0], s10[0], s12[0], s14[0], s16[0], s17[0], s18[0], s6[0], s19[0], s20[0], s21[0], s22[0], s15[0], s23[0])
+    s2 = _mul((parameters[1], 0.0), (parameters[0], 0.0))
+    s3 = _mul((parameters[1], 0.0), s2)
+    s4 = _mul(s3, (1.25, 0.0))
+    s5 = _mul(s3, (0.25, 0.0))
+    s6 = _mul(s3, (1.5, 0.0))
+    s7 = _mul((parameters[2], 0.0), s3)
+    s8 = _mul(s7, (0.5, 0.0))
+    s9 = _mul((parameters[2], 0.0), s6)
+    s10 = _neg(s9)
+    s11 = _mul((parameters[3], 0.0), s2)
+    s12 = _neg(s11)
+    s13 = _mul(s2, (0.3333333333333333, 1.850371707708594e-17))
+    s14 = _mul((parameters[0], 0.0), s0)
+    s15 = _mul(s2, (0.2, -1.1102230246251566e-17))
+    s16 = _mul((parameters[3], 0.0), (parameters[0], 0.0))
+    s17 = _mul(s3, (0.625, 0.0))
+    s18 = _mul(s3, (0.125, 0.0))
+    s19 = _mul(s3, (0.75, 0.0))
+    constants = ca.vertcat(s1[0], parameters[1], s4[0], s5[0], s6[0], s8[0], s10[0], s12[0], s13[0], s14[0], s2[0], s15[0], s16[0], s17[0], s18[0], s11[0], s19[0])
     status = ca.SX(0)
-    status = _refused(status, 5, _endless(s1[0]), _endless(s3[0]), _endless(s4[0]), _endless(s5[0]), _endless(s8[0]), _endless(s9[0]), _endless(s10[0]), _endless(s12[0]), _endless(s14[0]), _endless(s16[0]), _endless(s17[0]), _endless(s18[0]), _endless(s6[0]), _endless(s19[0]), _endless(s20[0]), _endless(s21[0]), _endless(s22[0]), _endless(s15[0]), _endless(s23[0]))
+    status = _refused(status, 5, _endless(s1[0]), _endless(s4[0]), _endless(s5[0]), _endless(s6[0]), _endless(s8[0]), _endless(s10[0]), _endless(s12[0]), _endless(s13[0]), _endless(s14[0]), _endless(s2[0]), _endless(s15[0]), _endless(s16[0]), _endless(s17[0]), _endless(s18[0]), _endless(s11[0]), _endless(s19[0]))
     status = _refused(status, 3, parameters[1] <= 0.0)
     status = _refused(status, 2, parameters[0] <= 0.0)
     status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]), _endless(parameters[3]))
@@ -226,35 +222,34 @@ def state_rate_hot():
 
 
 def _state_rate():
-    constants = ca.SX.sym("constants", 20)
+    constants = ca.SX.sym("constants", 17)
     lean = ca.SX.sym("lean", 1)
     lean_dot = ca.SX.sym("lean_dot", 1)
     yaw = ca.SX.sym("yaw", 1)
     W = ca.SX.sym("W", 1)
     s = ca.SX.sym("s", 1)
     t0 = ca.sin(lean[0])
-    t1 = ca.cos(lean[0])
-    t2 = W[0] * t1
-    t3 = W[0] * t2
-    t4 = t3 + constants[0]
-    t5 = t0 * t4
-    t6 = t2 * s[0]
-    t7 = t6 * 1.2
-    t8 = t5 + t7
+    t1 = t0 * constants[0]
+    t2 = s[0] * 1.2
+    t3 = t0 * W[0]
+    t4 = t2 + t3
+    t5 = ca.cos(lean[0])
+    t6 = W[0] * t5
+    t7 = t4 * t6
+    t8 = t1 + t7
     t9 = ca.cos(yaw[0])
     t10 = s[0] * constants[1]
     t11 = t9 * t10
     t12 = ca.sin(yaw[0])
     t13 = t12 * t10
     t14 = lean_dot[0] * s[0]
-    t15 = t14 * constants[2]
-    t16 = t1 * constants[3]
-    t17 = t15 / t16
-    t18 = -t17
-    t19 = t0 * t17
-    t20 = lean_dot[0] * t2
-    t21 = t20 * 1.6666666666666667
-    t22 = t19 - t21
+    t15 = t14 * 2.0
+    t16 = t15 / t5
+    t17 = -t16
+    t18 = t0 * t16
+    t19 = lean_dot[0] * t6
+    t20 = t19 * 1.6666666666666667
+    t21 = t18 - t20
     return ca.Function(
         "rolling_disc_state_rate_hot",
         [constants, lean, lean_dot, yaw, W, s],
@@ -264,8 +259,8 @@ def _state_rate():
             ca.vertcat(W[0]),
             ca.vertcat(t11),
             ca.vertcat(t13),
-            ca.vertcat(t18),
-            ca.vertcat(t22),
+            ca.vertcat(t17),
+            ca.vertcat(t21),
         ],
         ['constants', 'lean', 'lean_dot', 'yaw', 'W', 's'],
         ['lean_rate', 'lean_dot_rate', 'yaw_rate', 'x_rate', 'y_rate', 'W_rate', 's_rate'],
@@ -288,78 +283,77 @@ def state_rate_jacobian_hot():
 
 
 def _state_rate_jacobian():
-    constants = ca.SX.sym("constants", 20)
+    constants = ca.SX.sym("constants", 17)
     lean = ca.SX.sym("lean", 1)
     lean_dot = ca.SX.sym("lean_dot", 1)
     yaw = ca.SX.sym("yaw", 1)
     W = ca.SX.sym("W", 1)
     s = ca.SX.sym("s", 1)
     t0 = ca.cos(lean[0])
-    t1 = t0 * constants[3]
-    t2 = 1.0 / t1
-    t3 = ca.sin(lean[0])
-    t4 = t3 * constants[0]
-    t5 = s[0] * 1.2
-    t6 = t3 * W[0]
-    t7 = t5 + t6
-    t8 = W[0] * t0
-    t9 = t7 * t8
-    t10 = t4 + t9
-    t11 = ca.cos(yaw[0])
-    t12 = s[0] * constants[1]
-    t13 = t11 * t12
-    t14 = ca.sin(yaw[0])
-    t15 = t14 * t12
-    t16 = lean_dot[0] * constants[4]
-    t17 = s[0] * t16
-    t18 = t2 * t17
-    t19 = lean_dot[0] * -1.6666666666666667
-    t20 = t8 * t19
-    t21 = t3 * t18
-    t22 = t20 - t21
+    t1 = 1.0 / t0
+    t2 = ca.sin(lean[0])
+    t3 = t2 * constants[0]
+    t4 = s[0] * 1.2
+    t5 = t2 * W[0]
+    t6 = t4 + t5
+    t7 = W[0] * t0
+    t8 = t6 * t7
+    t9 = t3 + t8
+    t10 = ca.cos(yaw[0])
+    t11 = s[0] * constants[1]
+    t12 = t10 * t11
+    t13 = ca.sin(yaw[0])
+    t14 = t13 * t11
+    t15 = s[0] * t1
+    t16 = t15 * -2.0
+    t17 = lean_dot[0] * t16
+    t18 = lean_dot[0] * -1.6666666666666667
+    t19 = t7 * t18
+    t20 = t2 * t17
+    t21 = t19 - t20
+    t22 = t7 * t7
     t23 = t0 * constants[0]
-    t24 = t8 * t8
-    t25 = t23 + t24
-    t26 = t7 * t6
-    t27 = t25 - t26
-    t28 = t3 * t2
-    t29 = t17 * constants[3]
-    t30 = t28 * t29
-    t31 = t2 * t30
-    t32 = t6 * t19
-    t33 = t0 * t18
-    t34 = t32 + t33
-    t35 = t28 * t30
-    t36 = t34 + t35
-    t37 = -t36
-    t38 = s[0] * constants[4]
-    t39 = t2 * t38
-    t40 = t8 * -1.6666666666666667
-    t41 = t28 * t38
-    t42 = t40 - t41
-    t43 = -t15
-    t44 = t0 * t7
-    t45 = t3 * t8
-    t46 = t44 + t45
-    t47 = t0 * t19
-    t48 = t8 * 1.2
-    t49 = t11 * constants[1]
-    t50 = t14 * constants[1]
-    t51 = t2 * t16
-    t52 = t28 * t16
-    t53 = -t52
+    t24 = t22 + t23
+    t25 = t6 * t5
+    t26 = t24 - t25
+    t27 = lean_dot[0] * t2
+    t28 = t1 * t27
+    t29 = t16 * t28
+    t30 = t2 * t15
+    t31 = t28 * t30
+    t32 = t31 + t31
+    t33 = W[0] * t27
+    t34 = t33 * -1.6666666666666667
+    t35 = t32 - t34
+    t36 = t0 * t17
+    t37 = t35 - t36
+    t38 = t7 * -1.6666666666666667
+    t39 = _kept(t38 + t30)
+    t40 = t39 + t30
+    t41 = -t14
+    t42 = t0 * t6
+    t43 = t2 * t7
+    t44 = t42 + t43
+    t45 = t0 * t18
+    t46 = t7 * 1.2
+    t47 = t10 * constants[1]
+    t48 = t13 * constants[1]
+    t49 = lean_dot[0] * t1
+    t50 = t49 * -2.0
+    t51 = t28 * -2.0
+    t52 = -t51
     return ca.Function(
         "rolling_disc_state_rate_jacobian_hot",
         [constants, lean, lean_dot, yaw, W, s],
         [
             ca.vertcat(lean_dot[0]),
-            ca.vertcat(t10),
+            ca.vertcat(t9),
             ca.vertcat(W[0]),
-            ca.vertcat(t13),
-            ca.vertcat(t15),
-            ca.vertcat(t18),
-            ca.vertcat(t22),
-            ca.SX(ca.Sparsity(7, 7, [0, 3, 6, 8, 8, 8, 11, 16], [1, 5, 6, 0, 5, 6, 3, 4, 1, 2, 6, 1, 3, 4, 5, 6]), ca.vertcat(t27, t31, t37, 1.0, t39, t42, t43, t13, t46, 1.0, t47, t48, t49, t50, t51, t53)),
+            ca.vertcat(t12),
+            ca.vertcat(t14),
+            ca.vertcat(t17),
+            ca.vertcat(t21),
+            ca.SX(ca.Sparsity(7, 7, [0, 3, 6, 8, 8, 8, 11, 16], [1, 5, 6, 0, 5, 6, 3, 4, 1, 2, 6, 1, 3, 4, 5, 6]), ca.vertcat(t26, t29, t37, 1.0, t16, t40, t41, t12, t44, 1.0, t45, t46, t47, t48, t50, t52)),
         ],
         ['constants', 'lean', 'lean_dot', 'yaw', 'W', 's'],
         ['lean_rate', 'lean_dot_rate', 'yaw_rate', 'x_rate', 'y_rate', 'W_rate', 's_rate', 'jacobian'],
@@ -378,14 +372,14 @@ def linearised_hot():
 
 
 def _linearised():
-    constants = ca.SX.sym("constants", 20)
+    constants = ca.SX.sym("constants", 17)
     return ca.Function(
         "rolling_disc_linearised_hot",
         [constants],
         [
-            ca.vertcat(constants[5], 0.0, 0.0, 0.0, constants[6], 0.0, 0.0, 0.0, constants[7]),
-            ca.vertcat(0.0, constants[8], 0.0, constants[9], 0.0, 0.0, 0.0, 0.0, 0.0),
-            ca.vertcat(constants[10], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+            ca.vertcat(constants[2], 0.0, 0.0, 0.0, constants[3], 0.0, 0.0, 0.0, constants[4]),
+            ca.vertcat(0.0, constants[5], 0.0, constants[6], 0.0, 0.0, 0.0, 0.0, 0.0),
+            ca.vertcat(constants[7], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         ],
         ['constants'],
         ['mass_matrix', 'damping_matrix', 'stiffness_matrix'],
@@ -404,7 +398,7 @@ def steady_hot():
 
 
 def _steady():
-    constants = ca.SX.sym("constants", 20)
+    constants = ca.SX.sym("constants", 17)
     lean = ca.SX.sym("lean", 1)
     W = ca.SX.sym("W", 1)
     s = ca.SX.sym("s", 1)
@@ -440,7 +434,7 @@ def ground_hot():
 
 
 def _ground():
-    constants = ca.SX.sym("constants", 20)
+    constants = ca.SX.sym("constants", 17)
     lean = ca.SX.sym("lean", 1)
     lean_dot = ca.SX.sym("lean_dot", 1)
     W = ca.SX.sym("W", 1)
@@ -449,24 +443,24 @@ def _ground():
     t1 = 1.0 / t0
     t2 = W[0] * t0
     t3 = lean_dot[0] * t2
-    t4 = t3 * constants[11]
+    t4 = t3 * constants[8]
     t5 = ca.sin(lean[0])
-    t6 = t0 * constants[12]
+    t6 = t0 * constants[9]
     t7 = W[0] * t5
     t8 = s[0] + t7
     t9 = t8 * t7
-    t10 = t9 * constants[13]
+    t10 = t9 * constants[10]
     t11 = lean_dot[0] * lean_dot[0]
-    t12 = t11 * constants[13]
+    t12 = t11 * constants[10]
     t13 = t10 + t12
     t14 = t6 - t13
     t15 = t5 * t14
     t16 = t0 * s[0]
     t17 = t16 * t2
-    t18 = t17 * constants[14]
+    t18 = t17 * constants[11]
     t19 = t15 + t18
     t20 = -t19
-    t21 = t0 * constants[15]
+    t21 = t0 * constants[12]
     t22 = t21 - t13
     t23 = t1 * t22
     t24 = t19 * t5
@@ -495,30 +489,30 @@ def energy_of_all_hot():
 
 
 def _energy_of_all():
-    constants = ca.SX.sym("constants", 20)
+    constants = ca.SX.sym("constants", 17)
     lean = ca.SX.sym("lean", 1)
     lean_dot = ca.SX.sym("lean_dot", 1)
     W = ca.SX.sym("W", 1)
     s = ca.SX.sym("s", 1)
     t0 = lean_dot[0] * lean_dot[0]
-    t1 = t0 * constants[16]
+    t1 = t0 * constants[13]
     t2 = ca.cos(lean[0])
     t3 = W[0] * t2
     t4 = t3 * t3
-    t5 = t4 * constants[17]
+    t5 = t4 * constants[14]
     t6 = t1 + t5
-    t7 = t2 * constants[18]
+    t7 = t2 * constants[15]
     t8 = t6 + t7
     t9 = s[0] * s[0]
-    t10 = t9 * constants[19]
+    t10 = t9 * constants[16]
     t11 = t8 + t10
     t12 = ca.sin(lean[0])
     t13 = W[0] * t12
     t14 = s[0] * t13
-    t15 = t14 * constants[7]
+    t15 = t14 * constants[4]
     t16 = t11 + t15
     t17 = t13 * t13
-    t18 = t17 * constants[19]
+    t18 = t17 * constants[16]
     t19 = t16 + t18
     return ca.Function(
         "rolling_disc_energy_of_all_hot",
@@ -550,7 +544,7 @@ def step_rk4_hot():
 
 
 def _step_rk4():
-    constants = ca.SX.sym("constants", 20)
+    constants = ca.SX.sym("constants", 17)
     lean = ca.SX.sym("lean", 1)
     lean_dot = ca.SX.sym("lean_dot", 1)
     yaw = ca.SX.sym("yaw", 1)
@@ -560,182 +554,178 @@ def _step_rk4():
     s = ca.SX.sym("s", 1)
     time_step = ca.SX.sym("time_step", 1)
     t0 = time_step[0] * 0.5
-    t15 = lean_dot[0] * t0
-    t29 = lean[0] + t15
-    t34 = ca.sin(t29)
-    t35 = ca.cos(t29)
-    t46 = t35 * constants[3]
-    t17 = W[0] * t0
-    t31 = yaw[0] + t17
-    t43 = ca.cos(t31)
-    t44 = ca.sin(t31)
-    t18 = constants[1] * t0
-    t19 = s[0] * t18
-    t22 = constants[2] * t0
-    t26 = t0 * 1.6666666666666667
+    t14 = lean_dot[0] * t0
+    t28 = lean[0] + t14
+    t33 = ca.sin(t28)
+    t38 = ca.cos(t28)
+    t34 = t33 * constants[0]
+    t16 = W[0] * t0
+    t30 = yaw[0] + t16
+    t42 = ca.cos(t30)
+    t43 = ca.sin(t30)
+    t17 = constants[1] * t0
+    t18 = s[0] * t17
+    t21 = t0 * 2.0
+    t25 = t0 * 1.6666666666666667
     t1 = ca.sin(lean[0])
-    t2 = ca.cos(lean[0])
-    t3 = W[0] * t2
-    t13 = t2 * constants[3]
-    t4 = W[0] * t3
-    t5 = t4 + constants[0]
-    t6 = t1 * t5
-    t7 = t3 * s[0]
-    t8 = t7 * 1.2
-    t9 = t6 + t8
-    t16 = t9 * t0
-    t14 = lean_dot[0] * t3
-    t27 = t14 * t26
-    t30 = lean_dot[0] + t16
-    t48 = t30 * t0
-    t59 = lean[0] + t48
-    t64 = ca.sin(t59)
-    t65 = ca.cos(t59)
-    t76 = t65 * constants[3]
+    t2 = t1 * constants[0]
+    t4 = t1 * W[0]
+    t3 = s[0] * 1.2
+    t5 = t3 + t4
+    t6 = ca.cos(lean[0])
+    t7 = W[0] * t6
+    t8 = t5 * t7
+    t9 = t2 + t8
+    t15 = t9 * t0
+    t13 = lean_dot[0] * t7
+    t26 = t13 * t25
+    t29 = lean_dot[0] + t15
+    t46 = t29 * t0
+    t57 = lean[0] + t46
+    t62 = ca.sin(t57)
+    t67 = ca.cos(t57)
+    t63 = t62 * constants[0]
     t10 = ca.cos(yaw[0])
-    t20 = t10 * t19
+    t19 = t10 * t18
     t11 = ca.sin(yaw[0])
-    t21 = t11 * t19
+    t20 = t11 * t18
     t12 = lean_dot[0] * s[0]
-    t23 = t12 * t22
-    t24 = t23 / t13
-    t25 = t1 * t24
-    t28 = t25 - t27
-    t33 = s[0] + t28
-    t45 = t30 * t33
-    t54 = t45 * t22
-    t55 = t54 / t46
-    t56 = t34 * t55
-    t62 = W[0] - t55
-    t66 = t62 * t65
-    t67 = t62 * t66
-    t68 = t67 + constants[0]
-    t69 = t64 * t68
-    t80 = t62 * t0
-    t91 = t80 * 2.0
-    t96 = yaw[0] + t91
-    t108 = ca.cos(t96)
-    t109 = ca.sin(t96)
-    t51 = t33 * t18
-    t52 = t43 * t51
-    t53 = t44 * t51
-    t32 = W[0] - t24
-    t36 = t32 * t35
-    t40 = t36 * t33
-    t41 = t40 * 1.2
-    t47 = t30 * t36
-    t57 = t47 * t26
-    t58 = t56 - t57
-    t37 = t32 * t36
-    t38 = t37 + constants[0]
-    t39 = t34 * t38
-    t42 = t39 + t41
-    t49 = t42 * t0
-    t50 = t32 * t0
-    t134 = t50 + t80
-    t135 = t134 * 2.0
-    t136 = t17 + t135
-    t61 = yaw[0] + t50
-    t73 = ca.cos(t61)
-    t74 = ca.sin(t61)
-    t60 = lean_dot[0] + t49
-    t77 = t60 * t66
-    t87 = t77 * t26
-    t78 = t60 * t0
-    t124 = t48 + t78
-    t125 = t124 * 2.0
-    t126 = t15 + t125
-    t89 = t78 * 2.0
-    t94 = lean[0] + t89
-    t99 = ca.sin(t94)
-    t100 = ca.cos(t94)
-    t111 = t100 * constants[3]
-    t63 = s[0] + t58
-    t70 = t66 * t63
-    t71 = t70 * 1.2
-    t72 = t69 + t71
-    t79 = t72 * t0
-    t129 = t49 + t79
-    t130 = t129 * 2.0
-    t131 = t16 + t130
-    t90 = t79 * 2.0
-    t95 = lean_dot[0] + t90
-    t75 = t60 * t63
-    t84 = t75 * t22
-    t85 = t84 / t76
-    t86 = t64 * t85
-    t88 = t86 - t87
-    t154 = t58 + t88
-    t155 = t154 * 2.0
-    t156 = t28 + t155
-    t93 = t88 * 2.0
-    t98 = s[0] + t93
-    t149 = t55 + t85
-    t150 = t149 * 2.0
-    t151 = t24 + t150
-    t92 = t85 * 2.0
-    t97 = W[0] - t92
-    t101 = t97 * t100
-    t102 = t97 * t101
-    t103 = t102 + constants[0]
-    t104 = t99 * t103
-    t115 = t97 * t0
-    t137 = t136 + t115
-    t138 = t137 * 0.3333333333333333
-    t161 = yaw[0] + t138
-    t105 = t101 * t98
-    t106 = t105 * 1.2
-    t107 = t104 + t106
-    t114 = t107 * t0
-    t132 = t131 + t114
-    t133 = t132 * 0.3333333333333333
-    t160 = lean_dot[0] + t133
-    t112 = t95 * t101
-    t122 = t112 * t26
-    t113 = t95 * t0
-    t127 = t126 + t113
-    t128 = t127 * 0.3333333333333333
-    t159 = lean[0] + t128
-    t110 = t95 * t98
-    t119 = t110 * t22
-    t120 = t119 / t111
-    t121 = t99 * t120
-    t123 = t121 - t122
-    t157 = t156 + t123
-    t152 = t151 + t120
-    t153 = t152 * 0.3333333333333333
-    t164 = W[0] - t153
-    t158 = t157 * 0.3333333333333333
-    t165 = s[0] + t158
-    t116 = t98 * t18
-    t117 = t108 * t116
-    t118 = t109 * t116
-    t81 = t63 * t18
-    t82 = t73 * t81
-    t139 = t52 + t82
-    t83 = t74 * t81
-    t144 = t53 + t83
-    t145 = t144 * 2.0
-    t146 = t21 + t145
-    t147 = t146 + t118
-    t148 = t147 * 0.3333333333333333
-    t163 = y[0] + t148
-    t140 = t139 * 2.0
-    t141 = t20 + t140
-    t142 = t141 + t117
-    t143 = t142 * 0.3333333333333333
-    t162 = x[0] + t143
+    t22 = t12 * t21
+    t23 = t22 / t6
+    t24 = t1 * t23
+    t27 = t24 - t26
+    t32 = s[0] + t27
+    t35 = t32 * 1.2
+    t44 = t29 * t32
+    t52 = t44 * t21
+    t53 = t52 / t38
+    t49 = t32 * t17
+    t50 = t42 * t49
+    t51 = t43 * t49
+    t54 = t33 * t53
+    t60 = W[0] - t53
+    t65 = t62 * t60
+    t68 = t60 * t67
+    t77 = t60 * t0
+    t88 = t77 * 2.0
+    t93 = yaw[0] + t88
+    t105 = ca.cos(t93)
+    t106 = ca.sin(t93)
+    t31 = W[0] - t23
+    t36 = t33 * t31
+    t37 = t35 + t36
+    t39 = t31 * t38
+    t40 = t37 * t39
+    t41 = t34 + t40
+    t45 = t29 * t39
+    t55 = t45 * t25
+    t56 = t54 - t55
+    t47 = t41 * t0
+    t48 = t31 * t0
+    t130 = t48 + t77
+    t131 = t130 * 2.0
+    t132 = t16 + t131
+    t59 = yaw[0] + t48
+    t71 = ca.cos(t59)
+    t72 = ca.sin(t59)
+    t58 = lean_dot[0] + t47
+    t74 = t58 * t68
+    t84 = t74 * t25
+    t75 = t58 * t0
+    t120 = t46 + t75
+    t121 = t120 * 2.0
+    t122 = t14 + t121
+    t86 = t75 * 2.0
+    t91 = lean[0] + t86
+    t96 = ca.sin(t91)
+    t101 = ca.cos(t91)
+    t97 = t96 * constants[0]
+    t61 = s[0] + t56
+    t73 = t58 * t61
+    t81 = t73 * t21
+    t82 = t81 / t67
+    t83 = t62 * t82
+    t85 = t83 - t84
+    t150 = t56 + t85
+    t151 = t150 * 2.0
+    t152 = t27 + t151
+    t90 = t85 * 2.0
+    t95 = s[0] + t90
+    t145 = t53 + t82
+    t146 = t145 * 2.0
+    t147 = t23 + t146
+    t89 = t82 * 2.0
+    t94 = W[0] - t89
+    t99 = t96 * t94
+    t102 = t94 * t101
+    t111 = t94 * t0
+    t133 = t132 + t111
+    t134 = t133 * 0.3333333333333333
+    t157 = yaw[0] + t134
+    t98 = t95 * 1.2
+    t100 = t98 + t99
+    t103 = t100 * t102
+    t104 = t97 + t103
+    t110 = t104 * t0
+    t112 = t95 * t17
+    t113 = t105 * t112
+    t114 = t106 * t112
+    t78 = t61 * t17
+    t79 = t71 * t78
+    t135 = t50 + t79
+    t80 = t72 * t78
+    t140 = t51 + t80
+    t141 = t140 * 2.0
+    t142 = t20 + t141
+    t143 = t142 + t114
+    t144 = t143 * 0.3333333333333333
+    t159 = y[0] + t144
+    t136 = t135 * 2.0
+    t137 = t19 + t136
+    t138 = t137 + t113
+    t139 = t138 * 0.3333333333333333
+    t158 = x[0] + t139
+    t64 = t61 * 1.2
+    t66 = t64 + t65
+    t69 = t66 * t68
+    t70 = t63 + t69
+    t76 = t70 * t0
+    t125 = t47 + t76
+    t126 = t125 * 2.0
+    t127 = t15 + t126
+    t128 = t127 + t110
+    t129 = t128 * 0.3333333333333333
+    t156 = lean_dot[0] + t129
+    t87 = t76 * 2.0
+    t92 = lean_dot[0] + t87
+    t107 = t92 * t95
+    t115 = t107 * t21
+    t116 = t115 / t101
+    t117 = t96 * t116
+    t148 = t147 + t116
+    t149 = t148 * 0.3333333333333333
+    t160 = W[0] - t149
+    t108 = t92 * t102
+    t118 = t108 * t25
+    t119 = t117 - t118
+    t153 = t152 + t119
+    t109 = t92 * t0
+    t123 = t122 + t109
+    t124 = t123 * 0.3333333333333333
+    t155 = lean[0] + t124
+    t154 = t153 * 0.3333333333333333
+    t161 = s[0] + t154
     return ca.Function(
         "rolling_disc_step_rk4_hot",
         [constants, lean, lean_dot, yaw, x, y, W, s, time_step],
         [
+            ca.vertcat(t155),
+            ca.vertcat(t156),
+            ca.vertcat(t157),
+            ca.vertcat(t158),
             ca.vertcat(t159),
             ca.vertcat(t160),
             ca.vertcat(t161),
-            ca.vertcat(t162),
-            ca.vertcat(t163),
-            ca.vertcat(t164),
-            ca.vertcat(t165),
         ],
         ['constants', 'lean', 'lean_dot', 'yaw', 'x', 'y', 'W', 's', 'time_step'],
         ['lean_next', 'lean_dot_next', 'yaw_next', 'x_next', 'y_next', 'W_next', 's_next'],

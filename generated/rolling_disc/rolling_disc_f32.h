@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 3c1205b6d3156c49.
+ * Body of these files: sha256 8a6894602761d89c.
  */
 #ifndef ROLLING_DISC_F32_H
 #define ROLLING_DISC_F32_H
@@ -33,24 +33,21 @@ extern "C" {
 typedef struct {
     float k1; /* 4/5*g/r */
     float r; /* r */
-    float half_r_r; /* 1/2*r^2 */
-    float k2; /* 1/4*r^2 */
-    float k3; /* -1/2*r^2 */
-    float k4; /* 5/4*m*r^2 */
-    float k5; /* 1/4*m*r^2 */
-    float k6; /* 3/2*m*r^2 */
+    float k2; /* 5/4*m*r^2 */
+    float k3; /* 1/4*m*r^2 */
+    float k4; /* 3/2*m*r^2 */
     float half_m_r_r_n; /* 1/2*m*r^2*n */
-    float k7; /* -3/2*m*r^2*n */
+    float k5; /* -3/2*m*r^2*n */
     float minus_m_r_g; /* -m*r*g */
-    float k8; /* 1/3*m*r */
-    float k9; /* 4/5*m*g */
+    float k6; /* 1/3*m*r */
+    float k7; /* 4/5*m*g */
     float m_r; /* m*r */
-    float k10; /* 1/5*m*r */
+    float k8; /* 1/5*m*r */
     float m_g; /* m*g */
-    float k11; /* 5/8*m*r^2 */
-    float k12; /* 1/8*m*r^2 */
+    float k9; /* 5/8*m*r^2 */
+    float k10; /* 1/8*m*r^2 */
     float m_r_g; /* m*r*g */
-    float k13; /* 3/4*m*r^2 */
+    float k11; /* 3/4*m*r^2 */
 } rolling_disc_constants_f32;
 
 /* Make the constants of this scene from its parameters; call it once.
@@ -63,7 +60,7 @@ typedef struct {
  *            body is not positive; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
- * Cost: once; 21 operations on pairs.
+ * Cost: once; 18 operations on pairs.
  */
 int rolling_disc_setup_f32(float m, float r, float n, float g,
     rolling_disc_constants_f32 *constants);
@@ -89,11 +86,11 @@ int rolling_disc_setup_f32(float m, float r, float n, float g,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
- * Error: median 0.71, largest 7 u of the largest product or sum in the equation (of lean_dot_rate;
- *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
- *            more.
+ * Error: median 0.68, largest 8.3 u of the largest product or sum in the equation (of
+ *            lean_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 8318
+ *            hard samples no more.
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate infinite, no number or beyond all measure.
- * Cost: 2 add, 1 sub, 14 mul, 1 div, 1 neg, 2 sin, 2 cos.
+ * Cost: 2 add, 1 sub, 13 mul, 1 div, 1 neg, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -124,12 +121,12 @@ void rolling_disc_state_rate_f32(const rolling_disc_constants_f32 *constants, fl
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
- * Error: median 0.71, largest 11 u of the largest product or sum in the equation (of jacobian;
+ * Error: median 0.68, largest 8 u of the largest product or sum in the equation (of lean_dot_rate;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate, jacobian infinite, no number or beyond all
  *            measure.
- * Cost: 6 add, 3 sub, 37 mul, 1 div, 3 neg, 2 sin, 2 cos.
+ * Cost: 7 add, 4 sub, 35 mul, 1 div, 2 neg, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -273,7 +270,7 @@ void rolling_disc_energy_of_all_f32(const rolling_disc_constants_f32 *constants,
  *            infinite, no number or beyond all measure.
  * Singular: where a divisor vanishes, as at lean = 1.551, lean_dot = 3.815, W = 1.724, s = -11.62,
  *            time_step = 0.005105, W_next, s_next infinite, no number or beyond all measure.
- * Cost: 47 add, 8 sub, 91 mul, 4 div, 8 sin, 8 cos.
+ * Cost: 47 add, 8 sub, 87 mul, 4 div, 8 sin, 8 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -6,12 +6,13 @@ from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from math import prod
 
-from sympy import Add, Expr, Integer, Mul, Pow, Symbol, factor_terms, sin
+from sympy import Add, Expr, Mul, Pow, Symbol, factor_terms, sin
 
 from derive.lecture.turning import reduced
 from derive.lower.arrange.block import unused_symbol
 from derive.lower.arrange.like_terms import gathered
 from derive.mechanics.problem import Problem, substituted
+from derive.mechanics.sheet import Split
 
 LONGEST = 150  # operations of a term that is multiplied out
 MANY_TERMS = 10  # a named quantity of more terms is not multiplied out by its users
@@ -62,10 +63,29 @@ def shortened(problem: Problem, constant: AbstractSet[Symbol]) -> Problem:
         whole = in_what_is_given(problem, e, constant)
         return e if whole is None else gathered(reduced(whole), constant)
 
-    rows = [short(rest) + sum((c * u for u, c in slopes.items()), Integer(0))
-            for rest, slopes in problem.parts]  # fmt: skip
+    rows = [sum((c * u for u, c in slopes.items()), rest) for rest, slopes in (
+        primitive(problem, (short(rest), slopes), constant) for rest, slopes in problem.parts
+    )]  # fmt: skip
     answers = {s: short(e) for s, e in problem.answers.items()}
     return substituted(replace(problem, rows=tuple(rows), answers=answers), {})
+
+
+def primitive(problem: Problem, row: Split, constant: AbstractSet[Symbol]) -> Split:
+    """Return a balance without the powers of parameters that all its terms have in common.
+
+    They stay where a term is too long to be looked into, or where there are none.
+    """
+    parts = [in_what_is_given(problem, e, constant) for e in (row[0], *row[1].values())]
+    terms = [term for e in parts if e is not None for term in Add.make_args(e) if term != 0]
+    if None in parts or not terms:
+        return row
+    powers = [term.as_powers_dict() for term in terms]
+    common = {s: min(own[s] for own in powers) for s in constant & powers[0].keys()}
+    shared = Mul(*(s**p for s, p in common.items() if p > 0))
+    if shared == 1:
+        return row
+    rest, *slopes = (gathered(reduced((e / shared).expand()), constant) for e in parts)
+    return rest, dict(zip(row[1], slopes, strict=True))
 
 
 def in_what_is_given(problem: Problem, e: Expr, constant: AbstractSet[Symbol]) -> Expr | None:
