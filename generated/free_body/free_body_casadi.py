@@ -49,10 +49,10 @@ def _low(a):
 
 def _add(a, b):
     s = _kept(a[0] + b[0])
-    v = s - a[0]
+    v = _kept(s - a[0])
     e = (a[0] - (s - v)) + (b[0] - v)
     t = _kept(a[1] + b[1])
-    w = t - a[1]
+    w = _kept(t - a[1])
     f = (a[1] - (t - w)) + (b[1] - w)
     c = e + t
     x = _kept(s + c)
@@ -68,7 +68,7 @@ def _sub(a, b):
 def _two_product(a, b):
     p = a * b
     ca_, cb = 134217729.0 * a, 134217729.0 * b
-    ah, bh = ca_ - (ca_ - a), cb - (cb - b)
+    ah, bh = ca_ - _kept(ca_ - a), cb - _kept(cb - b)
     al, bl = a - ah, b - bh
     return p, ((ah * bh - p) + ah * bl + al * bh) + al * bl
 

@@ -7,7 +7,9 @@ CasADi makes the expressions anew, products with inverses are quotients, and las
 
 import re
 from collections.abc import Callable
+from fractions import Fraction
 from functools import cache
+from itertools import product
 from pathlib import Path
 from tempfile import mkdtemp
 from types import ModuleType
@@ -183,3 +185,55 @@ def test_every_function_is_the_same_where_it_is_called_with_sx(name: str) -> Non
 def test_pairs_that_casadi_sees_through_are_noticed(name: str) -> None:
     rows = inlined_rows(name, 'return ca.remainder(x, float("inf"))', "return x")
     assert "FAILS" in rows
+
+
+def shapes(x: Any, y: Any) -> dict[str, Any]:
+    """Return what a number of a pair may be made of: CasADi's rules turn on signs and factors."""
+    return {
+        "x": x, "-x": -x, "2 x": 2.0 * x, "-2 x": -(2.0 * x), "x + y": x + y, "x - y": x - y,
+        "-x - y": -(x + y), "x y": x * y, "x / y": x / y, "1 / x": 1.0 / x, "x^2": x * x,
+        "1.3": 1.3, "2": 2.0, "-1": -1.0, "0": 0.0,
+    }  # fmt: skip
+
+
+PAIRS = [*product(shapes(1.0, 1.0), repeat=2)]
+CLOSE = 2.0**-96
+
+
+def exactly(operation: str, a: Fraction, b: Fraction) -> Fraction:
+    match operation:
+        case "_add":
+            return a + b
+        case "_sub":
+            return a - b
+        case "_mul":
+            return a * b
+    return a / b
+
+
+@pytest.mark.parametrize(
+    "operation",
+    ["_mul", *(pytest.param(o, marks=pytest.mark.long) for o in ("_add", "_sub", "_div"))],
+)
+def test_pairs_of_whatever_expressions_stay_pairs(operation: str) -> None:
+    made, worst = free_body("fast"), dict[str, float]()
+    x, y = 1.2345678901234567, 0.9876543210987654
+    for p, q in PAIRS:
+        if operation == "_div" and q == "0":
+            continue
+
+        def build(p: str = p, q: str = q) -> Any:
+            at = ca.SX.sym("x"), ca.SX.sym("y")
+            a, b = ((shapes(*at)[shape], 0.0) for shape in (p, q))
+            found = getattr(made, operation)(a, made._neg(b))
+            return ca.Function("pair", at, [ca.vertcat(a[0], b[0], *found)])
+
+        for way in ANEW[:2]:
+            first, second, high, low = map(Fraction, values(way(made._built(build)), x, y)[0])
+            true = exactly(operation, first, -second)
+            size = max(abs(first), abs(second)) if operation in ("_add", "_sub") else abs(true)
+            if size:
+                error = float(abs(high + low - true) / size)
+                worst[f"{p}, {q}"] = max(error, worst.get(f"{p}, {q}", 0.0))
+    assert len(worst) > len(PAIRS) / 2
+    assert {case: error for case, error in worst.items() if error > CLOSE} == {}
