@@ -107,11 +107,20 @@ def _drawn(trial: _Trial, count: int, reach: float) -> dict[str, NDArray[Any]]:
         own = [
             [middle + half * (2 * dice.random() - 1) for _ in range(count)] for _ in q.components
         ]
-        rows = np.array(own)
+        columns |= dict(zip(q.components, np.array(own), strict=True))
+    return _of_norm_one(trial, columns)
+
+
+def _of_norm_one(trial: _Trial, columns: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Return columns with quaternions of norm 1, but those that are nothing."""
+    made = dict(columns)
+    for q in trial.free():
         if q.is_quaternion:
-            rows = rows / np.sqrt((rows * rows).sum(axis=0))
-        columns |= dict(zip(q.components, rows, strict=True))
-    return columns
+            rows = np.array([columns[c] for c in q.components])
+            norm = np.sqrt((rows * rows).sum(axis=0))
+            rows = rows / np.where(norm > 0, norm, 1.0)
+            made |= dict(zip(q.components, rows, strict=True))
+    return made
 
 
 def _places(trial: _Trial) -> list[SingularAt]:
@@ -135,7 +144,7 @@ def _hits(trial: _Trial, places: Sequence[SingularAt], usual: NDArray[Any]) -> l
     for k, (components, value) in enumerate(places):
         for c in components:
             columns[c][k * OTHERS : (k + 1) * OTHERS] = value
-    results = np.abs(trial.results(columns))
+    results = np.abs(trial.results(_of_norm_one(trial, columns)))
     beyond = ~(results / BEYOND <= usual[:, None])
     every = beyond.reshape(len(beyond), len(places), OTHERS).all(axis=2)
     names = component_names(trial.program)

@@ -13,12 +13,12 @@ import pytest
 from derive.emit.c.comment import comment, singular_clause
 from derive.emit.casadi_text import casadi_file
 from derive.emit.manifest import manifest
-from derive.library.library import Library
+from derive.library.library import Library, library
 from derive.library.singular import with_singular
 from derive.program.arithmetic import extended, paired, working
 from derive.program.program import Op, Operand, Program, Quantity, component_names
 from derive.program.run import run
-from derive.scene import catalogue
+from derive.scene import catalogue, parse_scene
 from tests.made import library_of, thinned
 
 Divisor = Callable[[list[str]], tuple[list[Op], Operand]]
@@ -154,3 +154,34 @@ def without_value(program: Program, values: dict[str, float]) -> set[str]:
         results = run(program, working(np.float32), [np.array([x]) for x in given])
     names = component_names(program)
     return {c for c, r in zip(names, results, strict=True) if not np.all(np.isfinite(r))}
+
+
+PULLED = """
+title  = "A push along an inertial axis, turned into the body by the attitude"
+wanted = ["state_rate", "state_rate_jacobian"]
+axes   = { attitude = "quaternion" }
+[parameters]
+m = { unit = "kg", range = [5, 20], meaning = "mass" }
+[inputs]
+push = { unit = "N", range = [-1, 1], meaning = "push" }
+[body]
+kind    = "principal"
+mass    = "m"
+moments = [1, 2, 3]
+[known]
+moment = [0, 0, 0]
+force  = [
+    "push*(1 - 2*(attitude_y^2 + attitude_z^2))",
+    "2*push*(attitude_x*attitude_y - attitude_w*attitude_z)",
+    "2*push*(attitude_x*attitude_z + attitude_w*attitude_y)",
+]
+[position]
+position = { range = [-100, 100] }
+velocity = { range = [-50, 50] }
+"""
+
+
+def test_a_quaternion_keeps_its_norm_where_a_component_is_nothing() -> None:
+    """Two rates are nothing but rounding, as long as the norm is 1."""
+    lib = library(parse_scene(PULLED, "pulled"))
+    assert [only(lib, program) for program in lib.functions] == [[], []]
