@@ -1,6 +1,6 @@
 """From the programs of a scene to its files: proved, measured, printed and written."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import isfinite
 from pathlib import Path
@@ -15,6 +15,7 @@ from derive.emit.page.scene import scene_page
 from derive.emit.reported import NOTHING_BESIDE, lying_beside, reports_in
 from derive.library.library import Library
 from derive.library.saving import Saving, savings
+from derive.program.precision import PRECISIONS
 from derive.program.program import Measurement
 from derive.scene import SceneError
 from derive.scene.table import one_of
@@ -32,6 +33,8 @@ NUMBERS = SAMPLES
 """The numbers of samples that may be asked for."""
 STATED = SAMPLING.samples
 """Samples that each stated error is looked for at."""
+MANY = 1e4
+"""u on the declared ranges of which a reader is warned: 4 of the 7 digits of a float are gone."""
 LECTURE_PAGE = "lecture.html"
 GALLERY_PAGE = "index.html"
 
@@ -149,7 +152,8 @@ def made(programs: Library, by: Measuring, reports: Path | None = None) -> Made:
         why = scene.merging or _poles(programs) or str(error)
         raise SceneError(f"scene '{scene.name}': {rule}, but {why}") from None
     _finite(programs, measured.each)
-    warnings = tuple(f"scene '{scene.name}': {warning}" for warning in programs.mechanism.doubts())
+    doubts = (*programs.mechanism.doubts(), *few_digits(measured.each))
+    warnings = tuple(f"scene '{scene.name}': {warning}" for warning in doubts)
     lies = NOTHING_BESIDE if reports is None else lying_beside(programs, reports)
     texts = scene_files(programs, measured.each, measured.digest, lies)
     return Made(texts, warnings, cost_rows(programs, measured.each), card=card(programs, lies.best))
@@ -169,6 +173,17 @@ def _finite(programs: Library, measured: Sequence[Measurement]) -> None:
                 f"scene '{scene}': ranges must keep '{m.function}' within {m.precision}, "
                 f"but {_poles(programs) or f'the error of {m.output} is {m.worst}'}"
             )
+
+
+def few_digits(measured: Sequence[Measurement]) -> Iterator[str]:
+    """Yield what functions lose more digits on the declared ranges than anyone would think."""
+    scalars = {p.name: p.scalar for p in PRECISIONS}
+    worst = {m.function: m for m in sorted(measured, key=lambda m: m.within) if m.within > MANY}
+    for m in worst.values():
+        yield (
+            f"{m.function}: rounding makes {m.output} wrong by up to {m.within:.2g} u in"
+            f" {scalars[m.precision]}; `derive report` tells at which state, why, and what to do"
+        )
 
 
 def lecture_made(folder: Path) -> Made:

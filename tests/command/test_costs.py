@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,8 +13,11 @@ from derive.command.costs import WIDTH, full, print_costs, usual
 from derive.command.generate import VIEWS
 from derive.library.saving import Saving
 from derive.scene import catalogue
-from derive.solve.generation import CostRow, Made
+from derive.solve.generation import CostRow, Made, few_digits
 from derive.solve.several import made_of
+from derive.verify.kept import Measuring, figures_of
+from derive.verify.search import SAMPLING
+from tests.made import library_of
 
 GENERATED = Path(__file__).parents[2] / "generated"
 UNKNOWNS = ("hinge_radial", "hinge_side", "hinge_z", "friction", "N", "drive") * 3
@@ -80,3 +84,13 @@ def test_what_is_asked_for_at_length_is_worked_out_and_shown():
     scene = load("propeller_3_blade")
     found = [made_of([scene], GENERATED, tell=tell)[0].savings for tell in asked]
     assert [bool(each) for each in found] == [False, True]
+
+
+def test_who_loses_most_digits_is_told_where_to_look() -> None:
+    measured = figures_of(library_of("heavy_top"), Measuring(SAMPLING, GENERATED)).each
+    assert list(few_digits(measured)) == []
+    bad = [replace(m, within=m.within * 1e5) for m in measured if m.function == "state_rate"]
+    (warned,) = few_digits([*measured, *bad])
+    worst = max(bad, key=lambda m: m.within)
+    rule = f"state_rate: rounding makes {worst.output} wrong by up to {worst.within:.2g} u in"
+    assert warned.startswith(f"{rule} {'double' if worst.precision == 'f64' else 'float'}; ")
