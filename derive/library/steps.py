@@ -17,6 +17,7 @@ from derive.motion.compensated import remainder
 from derive.motion.exact import flow_exact, principal_ratios, turn_and_rates
 from derive.motion.moser_veselov import plan_dmv, plan_slopes, step_dmv
 from derive.motion.runge_kutta.compact import compact
+from derive.motion.runge_kutta.dependence import attitude_and_omega, closure
 from derive.motion.runge_kutta.system import System, next_of
 from derive.motion.splitting import Start, step_split
 from derive.motion.taylor import taylor_step
@@ -96,6 +97,7 @@ def _runge_kutta(setting: Setting, name: str) -> Program:
     states, taken = setting.terms.vocabulary.states, setting.terms.taken()
     system = System(states, rates["state_rate"], slopes, step, taken)
     _check_quaternions(setting, name, len(system.quaternions))
+    _check_free_turn(system, name)
     program = runge_kutta.step(system, name)
     if program.sparsity and not any(pattern.row for pattern in program.sparsity.values()):
         rule = "must have entries, but nothing that it is a derivative by changes the step"
@@ -120,6 +122,24 @@ def _check_quaternions(setting: Setting, name: str, count: int) -> None:
     if _looped(setting, name) and count > 1:
         rule = f"emission = 'compact' is for one quaternion at most, and the state has {count}"
         raise SceneError(f"'{name}': {rule}")
+
+
+def _check_free_turn(system: System, name: str) -> None:
+    """Refuse a step that keeps the length of q where what turns q rests on it, or nothing does."""
+    if step_of(name) != "step_rk4_unit":
+        return
+    count, places = len(system.quaternions), attitude_and_omega(system)
+    if count != 1:
+        rule = f"keeps the length of one quaternion, and the state has {count or 'none'}"
+        raise SceneError(f"'{name}' {rule}")
+    if places is None:
+        rule = "needs an angular velocity among the states that turns the quaternion, and has none"
+        raise SceneError(f"'{name}' {rule}: want step_rk4")
+    attitude, omega = (system.names[place] for place in places)
+    found = [part for part in attitude if part in closure(system, set(omega))]
+    if found:
+        rule = f"is for rates of '{omega[0]}' that do not rest on '{found[0]}'"
+        raise SceneError(f"'{name}' {rule}, as they do here: want step_rk4")
 
 
 def _time_step(setting: Setting) -> Quantity:

@@ -13,8 +13,8 @@ from derive.library.library import Library, library
 from derive.scene import Scene, SceneError, read
 from derive.scene.wanted import ATTITUDES, COMPENSATED, STEP_FUNCTIONS, moves
 
-STEPS = (*STEP_FUNCTIONS, *COMPENSATED)
-"""All that moves a state, derivatives aside."""
+STEPS = tuple(n for n in (*STEP_FUNCTIONS, *COMPENSATED) if n != "step_rk4_unit")
+"""All that moves a state, derivatives aside; on the sphere, step_rk4_unit is step_rk4."""
 ORDERS = ("step_taylor", "step_taylor12")
 """Of the orders that Taylor steps come in: the highest and the lowest, and those wanted."""
 OTHER_FORM = {"fast": "accurate", "accurate": "fast"}

@@ -18,12 +18,24 @@ EQUATIONS = (
 
 SPLITTINGS = {"step_split2": 2, "step_split": 4, "step_split6": 6}
 TAYLOR = {"step_taylor": 20} | {f"step_taylor{order}": order for order in range(12, 20)}
-STEP_FUNCTIONS = ("step_rk4", "step_lie", *SPLITTINGS, "step_dmv", *TAYLOR, "flow_exact")
+STEP_FUNCTIONS = (
+    "step_rk4",
+    "step_rk4_unit",
+    "step_lie",
+    *SPLITTINGS,
+    "step_dmv",
+    *TAYLOR,
+    "flow_exact",
+)
 """Motion in time: steps of the whole state, and the exact torque-free rotation."""
 
 COMPENSATED = tuple(f"{name}_compensated" for name in ("step_rk4", "step_lie", *SPLITTINGS))
 STEP_DERIVATIVES = (
-    *(f"step_rk4_{kind}" for kind in ("jacobian", "tangent", "sensitivity")),
+    *(
+        f"{name}_{kind}"
+        for name in ("step_rk4", "step_rk4_unit")
+        for kind in ("jacobian", "tangent", "sensitivity")
+    ),
     *(f"step_lie_{kind}" for kind in ("jacobian", "tangent")),
 )
 TORQUE_FREE = ("step_dmv", "flow_exact")
@@ -34,12 +46,16 @@ OF_MACHINES = (
     "step_rk4_tangent",
     "step_rk4_sensitivity",
     *TAYLOR,
+    "step_rk4_unit",
+    "step_rk4_unit_jacobian",
+    "step_rk4_unit_tangent",
+    "step_rk4_unit_sensitivity",
 )
 """Those that need nothing but the rate of a state, so that machines may ask for them."""
 ROTATIONAL = (*TORQUE_FREE, *SPLITTINGS, *(f"{name}_compensated" for name in SPLITTINGS))
 """Those that move a free rotation, attitude and omega, and nothing else."""
 
-IN_PAIRS = ("step_rk4", "step_lie", *STEP_DERIVATIVES, *SPLITTINGS)
+IN_PAIRS = ("step_rk4", "step_rk4_unit", "step_lie", *STEP_DERIVATIVES, *SPLITTINGS)
 """Those that can work on pairs of floats, as the accurate form does."""
 
 SEQUENCES = tuple(
@@ -110,10 +126,12 @@ def moves(name: str) -> bool:
 def step_of(name: str) -> str:
     """Return the step that a compensated step or a derivative belongs to.
 
-    >>> step_of("step_rk4_jacobian"), step_of("step_split6_compensated")
-    ('step_rk4', 'step_split6')
+    >>> step_of("step_rk4_unit_jacobian"), step_of("step_split6_compensated")
+    ('step_rk4_unit', 'step_split6')
     """
-    return "_".join(name.split("_")[:2])
+    if name in COMPENSATED or name in STEP_DERIVATIVES:
+        return name.rpartition("_")[0]
+    return name
 
 
 def without_ending(name: str) -> str:

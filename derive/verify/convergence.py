@@ -24,8 +24,10 @@ from derive.verify.solution import solution
 
 BITS = 500
 LEVELS = 18
-CLAIMED = {"step_rk4": 4, "step_lie": 4, "step_dmv": 10} | SPLITTINGS | TAYLOR
-TURN = {"step_rk4": 0.02, "step_lie": 0.02, "step_dmv": 0.3, "step_split2": 0.02}
+CLAIMED = {"step_rk4": 4, "step_rk4_unit": 4, "step_lie": 4, "step_dmv": 10} | SPLITTINGS | TAYLOR
+TURN = {"step_dmv": 0.3} | dict.fromkeys(
+    ("step_rk4", "step_rk4_unit", "step_lie", "step_split2"), 0.02
+)
 USUAL_TURN = 0.2
 """Turn in rad in the longer of two steps: small for a low order, large where a loop ends at u.
 

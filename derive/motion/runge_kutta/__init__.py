@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from derive.lower.order import with_values_read_soon
 from derive.lower.signs import with_signs_outside
 from derive.motion.compensated import compensated_sums, normalising_increment, remainder
-from derive.motion.runge_kutta import classic, lie, sensitivity
+from derive.motion.runge_kutta import classic, lie, sensitivity, unit
 from derive.motion.runge_kutta.matrices import Matrix, NumberRow
 from derive.motion.runge_kutta.system import System, next_of, slopes_of, tape_for
 from derive.program.pattern import compressed
@@ -25,14 +25,15 @@ class Method:
     """A step by stages, recorded on a tape: what is said of it, and how it is worked out.
 
     after      : the state (n,) after the step
-    increments : the state before it and what it adds, an attitude not yet of length one
+    increments : the state before it and what it adds, an attitude not yet of length one; None of a
+                 step that carries nothing
     slopes     : by the kind of derivatives, the state after it and its derivatives by the state and
                  what else there is, of a tangent with three errors of attitude for its four parts
     """
 
     says: str
     after: Callable[[Tape, System], NumberRow]
-    increments: Callable[[Tape, System], tuple[NumberRow, NumberRow]]
+    increments: Callable[[Tape, System], tuple[NumberRow, NumberRow]] | None
     slopes: Mapping[str, Callable[[Tape, System], tuple[NumberRow, Matrix]]] = field(
         default_factory=dict
     )
@@ -47,6 +48,16 @@ METHODS: Mapping[str, Method] = {
             "jacobian": sensitivity.step_slopes,
             "tangent": sensitivity.by_errors,
             "sensitivity": sensitivity.step_slopes,
+        },
+    ),
+    "rk4_unit": Method(
+        "One classic Runge-Kutta step that keeps the length of the quaternion (order 4)",
+        unit.after,
+        None,
+        {
+            "jacobian": unit.step_slopes,
+            "tangent": unit.by_errors,
+            "sensitivity": unit.step_slopes,
         },
     ),
     "lie": Method(
@@ -84,13 +95,15 @@ class Recorded:
 def step(system: System, name: str) -> Program:
     """Return one step of a state as a program.
 
-    name : step_rk4 or step_lie, the state after ``time_step``; with _compensated, sums carry a
-    remainder from call to call; with _jacobian there are derivatives by the state and the inputs;
-    with _tangent over three errors of attitude, delta in rad along body axes for q exp(delta / 2),
-    before and after; with _sensitivity by what ``system.slopes`` has beside the states
+    name : step_rk4, step_rk4_unit or step_lie, the state after ``time_step``; with _compensated,
+    sums carry a remainder from call to call; with _jacobian there are derivatives by the state and
+    the inputs; with _tangent over three errors of attitude, delta in rad along body axes for
+    q exp(delta / 2), before and after; with _sensitivity by what ``system.slopes`` has beside the
+    states
     Raises ValueError for a state, or a system without slopes, of which there is no such step.
     """
-    _, method, kind = f"{name}_".split("_")[:3]
+    named = name.removeprefix("step_")
+    method, kind = (named, "") if named in METHODS else named.rsplit("_", 1)
     how = METHODS[method]
     if kind in JACOBIANS:
         made = _with_slopes(how, system, kind)
@@ -116,6 +129,8 @@ def _without_slopes(how: Method, system: System, kind: str) -> Recorded:
     tape = tape_for(system)
     if not kind:
         return Recorded(tape, how.after(tape, system))
+    if how.increments is None:
+        raise ValueError(f"{how.says}: it carries no remainder")
     rest = remainder(system.states)
     start, gains = how.increments(tape, system)
     for place in system.quaternions:

@@ -108,18 +108,18 @@ def step_slopes(tape: Tape, system: System) -> tuple[NumberRow, Matrix]:
     """Return the state after a step and its derivatives (n, n + m) by the state and the rest."""
     at = stages(tape, system)
     after, squares = normalised(system, at)
-    made, scales = _unconstrained(at), [1 / sqrt(squared) for squared in squares]
+    made, scales = unconstrained(at), [1 / sqrt(squared) for squared in squares]
     if at.turn is None:
         for place, scale in zip(system.quaternions, scales, strict=True):
             for part in (made.state, made.rest):
                 part[place] = _on_the_sphere(after[place], times(scale, part[place]))
         return after, beside(made.state, made.rest)
     (attitude,), (scale,) = system.quaternions, scales
-    q, turned = after[attitude], _turned(system, at, at.turn)
-    made.rest[attitude] = product(tangent_matrix(q), turned.rest)
-    made.state[attitude] = product(tangent_matrix(q), turned.state)
+    q, turn = after[attitude], turn_carried_back(system, at, at.turn)
+    made.rest[attitude] = product(tangent_matrix(q), turn.rest)
+    made.state[attitude] = product(tangent_matrix(q), turn.state)
     own = _attitude_by_itself(one_and(at.turn.increment), scale, at.start[attitude], q)
-    _put(made.state[attitude], attitude, own)
+    put(made.state[attitude], attitude, own)
     return after, beside(made.state, made.rest)
 
 
@@ -130,13 +130,13 @@ def by_errors(tape: Tape, system: System) -> tuple[NumberRow, Matrix]:
         raise ValueError("a tangent space needs one attitude quaternion among the states")
     at = stages(tape, system)
     after, squares = normalised(system, at)
-    made = _unconstrained(at)
+    made = unconstrained(at)
     if at.turn is None:
         drop = times(2 / sqrt(squares[0]), transposed(tangent_matrix(after[attitude])))
         rows = Back(product(drop, made.state[attitude]), product(drop, made.rest[attitude]))
     else:
-        turned = _turned(system, at, at.turn)
-        rows = Back(times(2, turned.state), times(2, turned.rest))
+        turn = turn_carried_back(system, at, at.turn)
+        rows = Back(times(2, turn.state), times(2, turn.rest))
     made.state[attitude] = rows.state
     made.rest[attitude] = rows.rest
     state = lifted(at.start[attitude], attitude, made.state)
@@ -144,11 +144,11 @@ def by_errors(tape: Tape, system: System) -> tuple[NumberRow, Matrix]:
         whole = one_and(at.turn.increment)
         inverse = [x / norm_squared(whole) for x in conjugate(whole)]
         errors = slice(attitude.start, attitude.start + 3)
-        _put(state[errors], errors, sandwich_matrix(inverse, whole))
+        put(state[errors], errors, sandwich_matrix(inverse, whole))
     return after, beside(state, made.rest)
 
 
-def _unconstrained(stages: Stages) -> Back:
+def unconstrained(stages: Stages) -> Back:
     """Return the derivatives of start + (k1 + 2 k2 + 2 k3 + k4) h / 6."""
     unit = identity(len(stages.start))
     rest = zeros(*(len(unit),) * 2)
@@ -161,13 +161,13 @@ def _on_the_sphere(q: NumberRow, rows: Matrix) -> Matrix:
     return minus(rows, product([[x] for x in q], product([q], rows)))
 
 
-def _turned(system: System, stages: Stages, turn: StageTurns) -> Back:
+def turn_carried_back(system: System, stages: Stages, turn: StageTurns) -> Back:
     """Return the derivatives (3, n) and (3, m) of v, if the attitude q changes by q (0, v)."""
     n, omega = len(stages.start), free_omega(system) or slice(0)
     scale = stages.time_step * Fraction(1, 12) / norm_squared(one_and(turn.increment))
     on_states = [zeros(3, n) for _ in turn.quarters]
     for rows, part in zip(on_states, turn_slopes(turn, scale), strict=True):
-        _put(rows, omega, part)
+        put(rows, omega, part)
     return carried_back(stages, on_states, [zeros(3, n)] * 4)
 
 
@@ -175,12 +175,12 @@ def _attitude_by_itself(
     whole: NumberRow, scale: Number, start: NumberRow, after: NumberRow
 ) -> Matrix:
     """Return the derivative (4, 4) of q0 P / |q0 P| by q0."""
-    turned = right_matrix([x * scale for x in whole])
+    own = right_matrix([x * scale for x in whole])
     inverse = scale * scale * norm_squared(whole)  # 1 / |q0|^2
     radial = [x * inverse for x in start]
-    return minus(turned, product([[x] for x in after], [radial]))
+    return minus(own, product([[x] for x in after], [radial]))
 
 
-def _put(rows: Matrix, place: slice, parts: Matrix) -> None:
+def put(rows: Matrix, place: slice, parts: Matrix) -> None:
     for row, entries in zip(rows, parts, strict=True):
         row[place] = entries

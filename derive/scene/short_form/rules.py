@@ -202,7 +202,11 @@ def _steps_admitted(scene: ShortForm) -> Iterator[str]:
         yield from _rod(scene, name)
         if scene.point.kind == "moving" and name in ROTATIONAL:
             yield f"'{name}' is about a fixed point or the mass centre, not 'moving'"
-        turning = step_of(name) == "step_lie" or name in ROTATIONAL or name.endswith("_tangent")
+        turning = (
+            step_of(name) in ("step_lie", "step_rk4_unit")
+            or name in ROTATIONAL
+            or name.endswith("_tangent")
+        )
         if turning and not scene.axes.quaternion:
             yield f"'{name}' moves a quaternion: say axes.attitude = 'quaternion'"
         yield from _rotated(scene, name) if name in ROTATIONAL else ()
