@@ -6,6 +6,8 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from math import isfinite
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -21,6 +23,7 @@ from derive.report.march import ended
 from derive.report.price import price_of
 from derive.report.reference import End, NoEndError, end_of
 from derive.report.states import LEAST_TURNS, MOST_TURNS, Begun, fastest, horizon
+from derive.report.two_doubles import extrapolation_made
 from derive.report.wishes import Wished
 from derive.scene import SceneError
 
@@ -65,6 +68,7 @@ class StepErrors:
     time, given : s, and whether it was asked for      fast : rad/s, as ``fastest`` says
     start : the states, the ``hard`` ones first         tried, aside : how many were looked at, and
     how many of those were left aside, by the reason     costs : operations of a call of each step
+    work : operations in long floats that following the true motions took
     floors : by precision, what rounding the given numbers alone makes of the end, state by state
     """
 
@@ -75,6 +79,7 @@ class StepErrors:
     hard: int
     tried: int
     aside: Mapping[str, int]
+    work: int
     attempts: tuple[Attempt, ...]
     costs: dict[str, int]
     floors: dict[str, tuple[float, ...]]
@@ -83,6 +88,21 @@ class StepErrors:
     def lost(self) -> int:
         """Return how many states were left aside."""
         return Counter(self.aside).total()
+
+
+@dataclass(frozen=True)
+class Followed:
+    """States whose motions the reference followed, and their ends.
+
+    hard : how many of them are hard, which come first      aside : how many were not, by the reason
+    work : operations in long floats that all took
+    """
+
+    start: Begun
+    ends: list[End]
+    hard: int
+    aside: Counter[str]
+    work: int
 
 
 def step_errors(of: Wished, by: Sequence[Driver], until: float | None, tell: Tell) -> StepErrors:
@@ -97,8 +117,8 @@ def step_errors(of: Wished, by: Sequence[Driver], until: float | None, tell: Tel
     time = time_of(library, until, fast)
     found = hardest(double, "measured", time, fast)
     tell("following the true motion")
-    start, ends, hard, broken = followed_to_the_end(library, found, time, fast)
-    true = true_ends(library.vocabulary.states, ends)
+    followed = followed_to_the_end(library, found, time, fast)
+    start, true = followed.start, true_ends(library.vocabulary.states, followed.ends)
     attempts: list[Attempt] = []
     for driver in by:
         for name in of.steps:
@@ -108,8 +128,8 @@ def step_errors(of: Wished, by: Sequence[Driver], until: float | None, tell: Tel
     floors = floors_of(double, start, time, _smoothest(attempts))
     costs = {name: price_of(library[name]) for name in of.steps}
     return StepErrors(
-        time, until is not None, fast, start, hard, found.tried, Counter(found.aside) + broken,
-        tuple(attempts), costs, floors,
+        time, until is not None, fast, start, followed.hard, found.tried,
+        Counter(found.aside) + followed.aside, followed.work, tuple(attempts), costs, floors,
     )  # fmt: skip
 
 
@@ -129,37 +149,41 @@ def time_of(library: Library, until: float | None, fast: float) -> float:
     return float(np.float32(until))
 
 
-def followed_to_the_end(
-    library: Library, given: Hardest, time: float, fast: float
-) -> tuple[Begun, list[End], int, Counter[str]]:
-    """Return the states that the reference follows, their ends, how many are hard, and the rest."""
-    hard, plain = given.hard, given.plain
-    both = hard.joined(plain)
-    work = partial(_one_end, library, time, fast)
-    with ProcessPoolExecutor(WORKERS) as pool:
-        first = [*range(min(HARD, len(hard))), *range(len(hard), len(both))]
+def followed_to_the_end(library: Library, given: Hardest, time: float, fast: float) -> Followed:
+    """Return the states that the reference follows to their end, the hard ones first.
+
+    Those beside the hardest are followed, all at once, where these have no end.
+    """
+    hard, both = given.hard, given.hard.joined(given.plain)
+    first = [*range(min(HARD, len(hard))), *range(len(hard), len(both))]
+    with TemporaryDirectory(prefix="derive-") as folder, ProcessPoolExecutor(WORKERS) as pool:
+        work = partial(_one_end, library, time, fast, extrapolation_made(Path(folder)))
+        found: dict[int, End | NoEndError]
         found = dict(zip(first, pool.map(work, map(both.values, first)), strict=True))
-        for place in range(HARD, len(hard)):
-            if len([k for k in found if k < len(hard) and isinstance(found[k], End)]) >= HARD:
-                break
-            found[place] = pool.submit(work, both.values(place)).result()
+        if not all(isinstance(found[k], End) for k in first[:HARD]):
+            more = range(HARD, len(hard))
+            found |= dict(zip(more, pool.map(work, map(both.values, more)), strict=True))
     ended = {place: end for place, end in sorted(found.items()) if isinstance(end, End)}
-    aside = Counter(why for why in found.values() if isinstance(why, str))
+    aside = Counter(error.why for error in found.values() if isinstance(error, NoEndError))
     if not ended:
         why = ", or ".join({**given.aside, **aside})
         rule = f"no motion of {time:g} s could be followed to its end: it {why}"
         raise SceneError(f"scene '{library.scene.name}': {rule}; give a shorter until")
     if given.unmet and not any(isinstance(found.get(k), End) for k in range(HARD)):
         aside = Counter({LOSES: given.unmet})  # none of them was measured, so that all are aside
-    return both.at([*ended]), [*ended.values()], sum(k < len(hard) for k in ended), aside
+    spent = sum(one.work for one in found.values())
+    hardest_of_all = sum(k < len(hard) for k in ended)
+    return Followed(both.at([*ended]), [*ended.values()], hardest_of_all, aside, spent)
 
 
-def _one_end(library: Library, time: float, fast: float, values: dict[str, float]) -> End | str:
+def _one_end(
+    library: Library, time: float, fast: float, made: Path | None, values: dict[str, float]
+) -> End | NoEndError:
     """Return the true end of a motion, or what becomes of it instead."""
     try:
-        return end_of(library, values, time, fast)
+        return end_of(library, values, time, fast, made)
     except NoEndError as error:
-        return str(error)
+        return error
 
 
 def _attempts(

@@ -48,6 +48,7 @@ def _motion(report: SceneReport, found: StepErrors) -> dict[str, Any]:
         "tried": found.tried,
         "lost": found.lost,
         "aside": dict(found.aside),
+        "operations_in_long_floats": found.work,
         "steps": [{"name": s, "wanted": s in report.wished.own, "operations": found.costs[s]}
                   for s in report.wished.steps],
         "refused": report.wished.refused,

@@ -1,23 +1,24 @@
 """The true end of a motion, from the lecture's equations of the state's rate alone, in long floats.
 
 The equations of the problem are solved as they stand, block by block, and their solution is
-followed by extrapolation of midpoint rules, in lengths that keep what it leaves below ``LEFT``. No
-step, arrangement or program of ours has a part in it.
+followed by extrapolation of midpoint rules, in lengths that keep what it leaves below ``LEFT``: in
+C on sums of two doubles; without a compiler, and where it is stiff, in floats of 128 bits. No step,
+arrangement or program of ours has a part in it.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 from typing import Any
 
-from flint import arb, arb_mat, ctx
+from flint import arb, ctx
 
 from derive.library.library import Library
-from derive.report.extrapolation import DEEPEST, extrapolated, rule_for
-from derive.report.states import rate_equations
+from derive.report.extrapolation import DEEPEST, Rule, extrapolated, rule_for
+from derive.report.rate import RateOfState, rate_of_state
+from derive.report.two_doubles import taken_in_c
 from derive.verify.convergence import unit_attitude
-from derive.verify.equations import Block, Coefficient, Equations, Sum
-from derive.verify.operators import LONG_FLOATS
-from derive.verify.valuation import raised, value
 
 BITS = 128
 GROWN = 100
@@ -29,14 +30,23 @@ LEFT = 1e-20
 """Relative: what extrapolation may leave in each of its lengths, far below u of a double."""
 SHORTEST = 1e-13
 """Of the whole time: a motion that needs shorter lengths runs into a place without a value."""
-MOST, WORK = 4000, 100_000
-"""Lengths of a motion, a hundred times as many as most need, and what so many blocks allow."""
-EARLY, SLOW = 150, 0.25
-"""So many lengths that bring less than so much of their share of the time say that it is long."""
+WORK = {"C": 400_000_000, "Python": 30_000_000}
+"""Operations that one motion may take: some five seconds."""
+From = Callable[[list[Any]], Callable[[float], tuple[list[Any], float]]]
+"""From a state, then a length, to the state after it, and what extrapolation leaves."""
+EARLY, SLOW = 50, 0.25
+"""From so many lengths on, less than so much of their share of the time says that it is long."""
 
 
 class NoEndError(ArithmeticError):
-    """A motion that cannot be followed to its end."""
+    """A motion that cannot be followed to its end.
+
+    work : operations that it took to see it
+    """
+
+    def __init__(self, why: str, work: int) -> None:
+        super().__init__(why, work)  # as it goes from one process to another
+        self.why, self.work = why, work
 
 
 @dataclass(frozen=True)
@@ -44,137 +54,80 @@ class End:
     """Where a motion truly ends, and the largest size of each component of the state on its way.
 
     state : of each component two doubles, of which the second is what the first leaves
+    work  : operations in long floats that it took
     """
 
     state: Mapping[str, tuple[float, float]]
     sizes: Mapping[str, float]
+    work: int
 
 
-@dataclass(frozen=True)
-class RateOfState:
-    """The rate of a state as the lecture's equations give it; what is held is worked out once."""
-
-    equations: Equations
-    states: tuple[int, ...]
-    rates: tuple[int, ...]
-    held: Mapping[int, Any]
-    coefficients: tuple[Any, ...]
-    blocks: tuple[Block, ...]
-
-    def __call__(self, state: Sequence[Any]) -> list[Any]:
-        """Return the rates of a state's components."""
-        at = {**self.held, **dict(zip(self.states, state, strict=True))}
-        _apply(self.equations, at)
-        for block in self.blocks:
-            _solve(self.equations, block, self.coefficients, at)
-        return [at[place] for place in self.rates]
-
-
-def rate_of_state(library: Library, given: Mapping[str, Any]) -> RateOfState:
-    """Return the rate of a scene's state, all but the state held at what is given."""
-    equations, rates = rate_equations(library)
-    place = {name: n for n, name in equations.names.items()}
-    states = [c for q in library.vocabulary.states for c in q.components]
-    sought = {u for block in equations.blocks for u in block.unknowns}
-    at = {n: given[c] for c, n in place.items() if c in given and c not in states}
-    at = {n: x for n, x in at.items() if n not in sought}  # what is given to other functions
-    _apply(equations, at)
-    fixed = {n: at[n] for n in equations.fixed}
-    coefficients = tuple(_coefficient(c, fixed) for c in equations.coefficients)
-    left: list[Block] = []
-    for block in equations.blocks:
-        if _needs(block) <= at.keys():
-            _solve(equations, block, coefficients, at)
-        else:
-            left.append(block)
-    lost = len(place)  # a place of its own for each state that no equation knows
-    own = [place.get(c, -lost - k) for k, c in enumerate(states)]
-    wanted = [place[name] for name in rates]
-    return RateOfState(equations, tuple(own), tuple(wanted), at, coefficients, tuple(left))
-
-
-def _needs(block: Block) -> set[int]:
-    sums = [*(s for row in block.matrix for s in row), *block.right]
-    return {atom for s in sums for part in s for atom, _ in part.factors}
-
-
-def _coefficient(polynomial: Coefficient, fixed: Mapping[int, Any]) -> Any:
-    return sum((value((term,), fixed, LONG_FLOATS) for term in polynomial), arb(0)).mid()
-
-
-def _apply(equations: Equations, at: dict[int, Any]) -> None:
-    """Add the functions whose operands have values by now."""
-    for place, made_of in equations.functions.items():
-        if place not in at and made_of <= at.keys():
-            atom = equations.atoms[place]
-            if atom.kind == "pi":
-                at[place] = LONG_FLOATS["pi"]()
-                continue
-            inner = value(atom.inner, at, LONG_FLOATS)
-            found = 1 / inner if atom.kind == "inverse" else LONG_FLOATS[atom.kind](inner)
-            at[place] = found.mid()
-
-
-def _solve(
-    equations: Equations, block: Block, coefficients: Sequence[Any], at: dict[int, Any]
-) -> None:
-    """Add the unknowns of a block, and the functions that are made of them."""
-    right = [_summed(s, coefficients, at) for s in block.right]
-    rows = [[_summed(s, coefficients, at) for s in row] for row in block.matrix]
-    try:
-        if len(right) == 1:
-            found = [right[0] / rows[0][0]]
-        else:
-            found = arb_mat(rows).solve(arb_mat([[b] for b in right])).entries()
-    except ZeroDivisionError:
-        raise NoEndError(NO_VALUE) from None
-    at.update(zip(block.unknowns, (x.mid() for x in found), strict=True))
-    _apply(equations, at)
-
-
-def _summed(parts: Sum, coefficients: Sequence[Any], at: Mapping[int, Any]) -> Any:
-    total = arb(0)
-    for part in parts:
-        product = coefficients[part.coefficient]
-        for atom, power in part.factors:
-            product = product * (at[atom] if power == 1 else raised(at[atom], power))
-        total += product
-    return total
-
-
-def end_of(library: Library, values: Mapping[str, float], time: float, fast: float) -> End:
+def end_of(
+    library: Library,
+    values: Mapping[str, float],
+    time: float,
+    fast: float,
+    made: Path | None = None,
+) -> End:
     """Return where the motion from a state ends after ``time``, followed from ``fast`` on.
 
     fast : rad/s, about how fast it goes: the first length is a turn of 1 rad
+    made : what takes lengths in C, as ``extrapolation_made`` gives it
     Raises NoEndError where the motion cannot be followed.
     """
     with ctx.workprec(BITS):
         given = unit_attitude(library, {c: arb(x) for c, x in values.items()})
-        rate = rate_of_state(library, given)
         names = [c for q in library.vocabulary.states for c in q.components]
-        here = [given[c] for c in names]
-        sizes = [abs(float(x)) for x in here]
-        first, by = max(sizes), rule_for(rate, here, fast)
-        done, length = arb(0), min(time, 1 / fast)
-        most = min(MOST, WORK // max(1, len(rate.blocks)))
-        for tried in range(most):
-            if tried == EARLY and float(done) < SLOW * EARLY / most * time:
-                raise NoEndError(GROWS if max(sizes) > GROWN * (1 + first) else LONG)
-            after, left = extrapolated(by, here, length)
-            if left > LEFT:
-                length *= max(0.2, 0.9 * (LEFT / left) ** (1 / (2 * DEEPEST)))
-                if not length > SHORTEST * time:
-                    break
-                continue
-            here, done = after, (done + arb(length)).mid()
+        start = [given[c] for c in names]
+        sizes = [abs(float(x)) for x in start]
+        here, large, why, part, tried = start, GROWN * (1 + max(sizes)), NO_VALUE, 0.0, 0
+        rate = rate_of_state(library, given)
+        rule = rule_for(rate, start, fast)
+        price = rule.calls * max(1, rate.count)
+        by, work = _takes(rule, rate, made)
+        most = max(EARLY, work // price)
+        lengths = _lengths(by, start, time, min(time, 1 / fast))
+        for tried, (here, part) in enumerate(lengths, 1):
             sizes = [max(size, abs(float(x))) for size, x in zip(sizes, here, strict=True)]
-            rest = float(arb(time) - done)
-            if rest <= 0:
-                ends = [(float(x), float(x - arb(float(x)))) for x in here]
-                state = dict(zip(names, ends, strict=True))
-                return End(state, dict(zip(names, sizes, strict=True)))
-            grown = 0.9 * (LEFT / max(left, 1e-40)) ** (1 / (2 * DEEPEST))
-            length = min(rest, length * min(3.0, max(1.0, grown)))
-        else:
-            raise NoEndError(GROWS if max(sizes) > GROWN * (1 + first) else LONG)
-        raise NoEndError(INFINITE if max(sizes) > GROWN * (1 + first) else NO_VALUE)
+            if tried >= EARLY and part < max(SLOW * tried, tried + 1 - most) / most:
+                why = LONG
+                break
+        if part < 1:
+            grown = max(sizes) > large
+            raise NoEndError(
+                {LONG: GROWS, NO_VALUE: INFINITE}[why] if grown else why, tried * price
+            )
+        ends = [(float(x), float(x - arb(float(x)))) for x in here]
+        state = dict(zip(names, ends, strict=True))
+        return End(state, dict(zip(names, sizes, strict=True)), tried * price)
+
+
+def _takes(rule: Rule, rate: RateOfState, made: Path | None) -> tuple[From, int]:
+    """Return what takes a length from a state on, and the operations that a motion may take."""
+    in_c = None if made is None or rule.stiff else taken_in_c(made, rate)
+    if in_c is None:
+        return lambda here: partial(extrapolated, rule.begun(here)), WORK["Python"]
+    return lambda here: partial(in_c, here), WORK["C"]
+
+
+def _lengths(
+    by: From, here: list[Any], time: float, length: float
+) -> Iterator[tuple[list[Any], float]]:
+    """Yield after each length that is tried where a motion is, and which part of its time is done.
+
+    They end with the motion, or once they are nothing.
+    """
+    done, taken = arb(0), by(here)
+    while length > SHORTEST * time:
+        after, left = taken(length)
+        if left > LEFT:
+            length *= max(0.2, 0.9 * (LEFT / left) ** (1 / (2 * DEEPEST)))
+            yield here, float(done) / time
+            continue
+        here, done = after, (done + arb(length)).mid()
+        rest = float(arb(time) - done)
+        yield here, float(done) / time if rest > 0 else 1.0
+        if rest <= 0:
+            return
+        grown = 0.9 * (LEFT / max(left, 1e-40)) ** (1 / (2 * DEEPEST))
+        length, taken = min(rest, length * min(3.0, max(1.0, grown))), by(here)

@@ -4,7 +4,8 @@ import pytest
 from flint import arb, ctx
 
 from derive.library.library import Library, library
-from derive.report.reference import BITS, NoEndError, end_of, rate_of_state
+from derive.report.rate import rate_of_state
+from derive.report.reference import BITS, NoEndError, end_of
 from derive.report.states import begun
 from derive.scene import parse_scene
 from derive.verify.convergence import right_hand_side, unit_attitude

@@ -38,7 +38,7 @@ def made_up(**errors: list[float]) -> StepErrors:
     floors = {"f64": (1e-15,), "f32": (1e-6,)}
     return StepErrors(
         time=1.0, given=True, fast=1.0, start=NOBODY, hard=1, tried=8, aside={},
-        attempts=attempts, costs=own, floors=floors,
+        work=0, attempts=attempts, costs=own, floors=floors,
     )  # fmt: skip
 
 
@@ -81,8 +81,8 @@ def test_the_sentence_holds_from_the_hardest_states_of_another_search(
     library = wished(library_of(name)).library
     (driver,) = drivers(library, (F64,), tmp_path)
     found = hardest(driver, "another", time, fast)
-    start, ends, *_ = followed_to_the_end(library, found, time, fast)
-    true = true_ends(library.vocabulary.states, ends)
+    followed = followed_to_the_end(library, found, time, fast)
+    start, true = followed.start, true_ends(library.vocabulary.states, followed.ends)
 
     def error(count: int) -> float:
         end = ended(driver, chosen["step"], start, time, count)
