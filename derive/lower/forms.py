@@ -79,7 +79,7 @@ def value_forms(graph: Graph, group: Dependents) -> list[tuple[Value, ...]]:
         expanded = _expanded(graph, group, stop)
         if expanded is not None:
             forms += [tuple(way(graph, t) for t in expanded) for way in WAYS]
-    return list(dict.fromkeys(without_what_cancels(graph, forms)))
+    return list(dict.fromkeys(forms))
 
 
 def _expanded(graph: Graph, group: Dependents, kept: frozenset[Family]) -> list[Expanded] | None:
@@ -93,7 +93,7 @@ def best_values(graph: Graph, groups: Sequence[Dependents]) -> list[Value]:
     if prod(len(each) for each in forms) > MANY_CHOICES:
         forms = [[min(each, key=lambda form: cost(graph, form))] for each in forms]
     best = min(_choices(forms), key=lambda values: cost(graph, values))
-    return list(best)
+    return list(*without_what_cancels(graph, [best]))
 
 
 def _choices(forms: Sequence[Sequence[tuple[Value, ...]]]) -> Iterable[list[Value]]:
@@ -133,9 +133,9 @@ def _best_by_varying(
 ) -> tuple[list[Value], list[list[Value]]]:
     leaves = [leaf for quantity in group.inputs for leaf in quantity]
     forms = value_forms(graph, group)
-    found = without_what_cancels(graph, [_flat(jacobian(graph, form, leaves)) for form in forms])
-    jacobians = _cheapest(graph, [_in_rows(entries, len(leaves)) for entries in found])
-    forms = sorted(forms, key=lambda form: cost(graph, form))[:FINALISTS]
+    entries = _cheapest(graph, [_flat(jacobian(graph, form, leaves)) for form in forms])
+    jacobians = [_in_rows(e, len(leaves)) for e in without_what_cancels(graph, entries)]
+    forms = without_what_cancels(graph, _cheapest(graph, forms))
     choices: list[tuple[tuple[int, int], tuple[Value, ...], list[list[Value]]]] = []
     for rows in jacobians:
         homogeneous = by_euler(graph, group, rows)
@@ -145,8 +145,8 @@ def _best_by_varying(
     return list(best), rows
 
 
-def _cheapest(graph: Graph, jacobians: list[list[list[Value]]]) -> list[list[list[Value]]]:
-    return sorted(jacobians, key=lambda rows: cost(graph, _flat(rows)))[:FINALISTS]
+def _cheapest(graph: Graph, forms: Sequence[Sequence[Value]]) -> Sequence[Sequence[Value]]:
+    return sorted(forms, key=lambda form: cost(graph, form))[:FINALISTS]
 
 
 def _in_rows(entries: Sequence[Value], size: int) -> list[list[Value]]:
