@@ -84,7 +84,8 @@ def _counts(name: str, precision: Precision, folder: Path) -> dict[str, float]:
     (driver,) = drivers(library, (precision,), place)
     own = [p for p in library.printed() if p.name != "setup"]
     try:
-        found = instructions(driver, "", own, start, TURN / max(rate, 1.0), place)
+        lengths = {program.name: TURN / max(rate, 1.0) for program in own}
+        found = instructions(driver, "", own, start, lengths, place)
     except CallgrindError:
         return {}
     return {one.function: round(one.count, 1) for one in found}

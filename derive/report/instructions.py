@@ -6,7 +6,7 @@ argument and ten more.
 """
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -42,19 +42,19 @@ def instructions(
     form: str,
     programs: Sequence[Program],
     start: Begun | None,
-    length: float,
+    lengths: Mapping[str, float],
     folder: Path,
 ) -> list[Instructions]:
     """Return the instructions of calls; nothing without a compiler or without valgrind.
 
-    start, length : where steps begin, and s of theirs
+    start, lengths : where steps begin, and s of theirs, by name
     Raises CallgrindError if a program cannot be counted.
     """
     if driver.shared is None or not is_there():
         return []
     text = TEMPLATES.get_template("report_count.c.jinja").render(mark=MARKING)
     program = program_made(text, "count.c", folder, find_compiler())
-    given = [_given(driver, p, start, length) for p in programs]
+    given = [_given(driver, p, start, lengths.get(p.name, 0.0)) for p in programs]
     command = (str(program), str(driver.path))
     _, found = stretches(command, b"".join(data for data, _ in given), folder)
     few, many = found[1::3], found[2::3]  # each ends at a mark: what comes before, N calls, 2N

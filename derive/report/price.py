@@ -5,7 +5,7 @@ steps do not count; the median of the batches stands beside their quartiles.
 """
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,11 +16,13 @@ from derive.report.march import march
 from derive.report.states import Begun
 from derive.verify.draw import Dice, Sampled, complete, drawn
 
-BATCHES = 21
+BATCHES, TRIED = 21, 3
+"""As many as are measured, and as tell how many rounds they have."""
 LASTS = 4e-4
 """s of a batch."""
-MOST, STEPS = 1 << 22, 1 << 12
-"""Rounds of a batch, of a function and of a step, which is to stay within its motion."""
+MOST, STEPS, FEWEST = 1 << 22, 1 << 12, 1 << 8
+"""Rounds of a batch of a function; steps of a motion in the shortest length timed, and in the
+longest, which are the rounds of a batch of steps: it stays within its motion."""
 ROWS = 64
 """Samples that calls of a function go through in turn; a step moves one state on and on."""
 LIBM_COSTS = {"sin": 20, "cos": 20, "atan2": 40}
@@ -50,15 +52,23 @@ def price_of(program: Program) -> int:
 
 
 def nanoseconds(
-    driver: Driver, form: str, programs: Sequence[Program], start: Begun | None, length: float
+    driver: Driver,
+    form: str,
+    programs: Sequence[Program],
+    start: Begun | None,
+    lengths: Mapping[str, float],
 ) -> list[Nanoseconds]:
-    """Return how long calls of functions take; nothing where there is no compiler."""
+    """Return how long calls of functions take; nothing where there is no compiler.
+
+    lengths : s, of steps by name: their motion from ``start`` has ``STEPS`` of the shortest
+    """
     if driver.shared is None:
         return []
     found = []
     for program in programs:
+        length = lengths.get(program.name, 0.0)
         batch, calls = _batch(driver, program, start, length)
-        most = STEPS if calls == 1 else MOST
+        most = FEWEST if calls == 1 else MOST
         low, middle, high = _quartiles(batch, calls, most)
         found.append(Nanoseconds(program.name, form, driver.precision.name, middle, low, high))
     return found
@@ -96,11 +106,13 @@ def rows_at(driver: Driver) -> Storage:
 
 
 def _quartiles(batch: Callable[[int], None], calls: int, most: int) -> tuple[float, float, float]:
-    """Return the quartiles of the ns that a call takes in many batches."""
+    """Return the quartiles of the ns that a call takes in many batches, less what empty ones take."""
     rounds = 1
-    while (took := _timed(batch, rounds)) < LASTS and rounds < most:
+    while (took := min(_timed(batch, rounds) for _ in range(TRIED))) < LASTS and rounds < most:
         rounds = min(most, rounds * max(2, int(1.2 * LASTS / max(took, 1e-7))))
-    each = [_timed(batch, rounds) / (rounds * calls) * 1e9 for _ in range(BATCHES)]
+    idle = float(np.median([_timed(batch, 0) for _ in range(BATCHES)]))
+    whole = (max(_timed(batch, rounds) - idle, 0.0) for _ in range(BATCHES))
+    each = [took / (rounds * calls) * 1e9 for took in whole]
     low, middle, high = (float(x) for x in np.quantile(each, (0.25, 0.5, 0.75)))
     return low, middle, high
 

@@ -23,6 +23,8 @@ RateLine = tuple[str, tuple[int, ...]]
 """What is done, the place where it goes, and those that it is made of, as ``DONE`` reads them."""
 Done = Callable[[list[Any]], None]
 ONE = arb(1)
+FUNCTION = 50
+"""Operations that a function is counted as: a sine of two doubles takes so many."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +119,7 @@ class _Prepared:
             return
         source, to = self.sum(number, terms), self.place(None)
         self.lines.append((kind, (to, source)))
-        self.count += 8  # about what a function takes beside a product
+        self.count += FUNCTION
         self.places[atom] = to
 
     def solve(self, block: Block) -> None:

@@ -30,7 +30,7 @@ LEFT = 1e-20
 """Relative: what extrapolation may leave in each of its lengths, far below u of a double."""
 SHORTEST = 1e-13
 """Of the whole time: a motion that needs shorter lengths runs into a place without a value."""
-WORK = {"C": 400_000_000, "Python": 30_000_000}
+WORK = {"C": 600_000_000, "Python": 40_000_000}
 """Operations that one motion may take: some five seconds."""
 From = Callable[[list[Any]], Callable[[float], tuple[list[Any], float]]]
 """From a state, then a length, to the state after it, and what extrapolation leaves."""

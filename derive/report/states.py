@@ -26,6 +26,8 @@ MOST_TURNS = 100_000
 LEAST_TURNS = 1e-6
 """Below, a motion is hardly more than what floats round of it."""
 QUANTILE, RATES = 0.9, 256
+SMALL = 2.0**-20
+"""Beside the usual size of a number, of differences for slopes."""
 STATE_RATE = "state_rate"
 
 
@@ -146,8 +148,9 @@ def fastest(library: Library) -> float:
     """Return the rate, rad/s, that a scene typically turns with, from states inside its ranges.
 
     It is the largest of the speeds that nine of ten states keep to, and of what half of them keep
-    to: rates of angles and roots of angular accelerations, which grow without end beside a pole.
-    Of a state without any, it is what changes beside the width of its range.
+    to: rates of angles, roots of angular accelerations, which grow without end beside a pole, and
+    the rates that small changes of a state swing with. Of a state without any turning, it is also
+    what changes beside the width of its range.
     """
     start = anywhere(library, "rates", RATES)
     rates, turning = rates_at(library, start), Sampled(library, F32).turning
@@ -163,7 +166,28 @@ def fastest(library: Library) -> float:
     for q in () if others else library.vocabulary.states:
         wide = float(q.ends[1] - q.ends[0]) if q.low is not None else 1.0
         others += [np.abs(rates[c]) / wide for c in q.components]
-    return max(_kept_to(speeds, QUANTILE), _kept_to(others, 1 / 2))
+    swings = [_swings(library, start)]
+    return max(_kept_to(speeds, QUANTILE), _kept_to(others, 1 / 2), _kept_to(swings, 1 / 2))
+
+
+def _swings(library: Library, start: Begun) -> Column:
+    """Return the largest rate, rad/s, that small changes of each state swing with.
+
+    Of the slopes of its rate, by differences, it is the largest imaginary part of an eigenvalue.
+    """
+    names = [c for q in library.vocabulary.states for c in q.components]
+    own, count = [start.names.index(c) for c in names], len(start)
+    sizes = np.median(np.abs(start.columns[own]), axis=1)
+    changes = SMALL * np.where(sizes > 0, sizes, 1.0)
+    every = np.repeat(start.columns[:, None, :], 1 + len(own), axis=1)
+    for k, place in enumerate(own):
+        every[place, 1 + k] += changes[k]
+    found = rates_at(library, Begun(start.names, every.reshape(len(start.names), -1)))
+    each = np.array([found[c].reshape(1 + len(own), count) for c in names])
+    slopes = np.moveaxis((each[:, 1:] - each[:, :1]) / changes[:, None], 2, 0)
+    told = np.isfinite(slopes).all(axis=(1, 2))
+    swings: Column = np.abs(np.linalg.eigvals(slopes[told]).imag).max(axis=1)
+    return swings
 
 
 def _kept_to(each: list[Column], part: float) -> float:

@@ -1,6 +1,6 @@
 """The report of a scene: all that is measured of it, and the sentence that says it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -17,14 +17,14 @@ from derive.report.found import FunctionFigures, figures_in_form, functions_of, 
 from derive.report.hard import HardCase
 from derive.report.instructions import WITHOUT, Instructions, instructions
 from derive.report.machine import Machine, machine_here
-from derive.report.price import STEPS, Nanoseconds, nanoseconds
-from derive.report.sentence import functions_sentence, motion_sentence
+from derive.report.price import FEWEST, STEPS, Nanoseconds, nanoseconds
+from derive.report.sentence import choice, functions_sentence, motion_sentence, said_of
 from derive.report.states import Begun
 from derive.report.wishes import OTHER_FORM, Wished, in_other_form, wished
 from derive.scene import SceneError
 
-Posed = tuple[Driver, str, Sequence[Program], Begun | None, float]
-"""Functions to be timed, with their form, and where and how far their steps go."""
+Posed = tuple[Driver, str, Sequence[Program], Begun | None, Mapping[str, float]]
+"""Functions to be timed, with their form, and where and how far their steps go, by name."""
 NO_MOTION = "nothing of it moves by itself: a step in time has nothing to do"
 
 
@@ -107,15 +107,31 @@ def _posed(
     folder: Path,
 ) -> list[Posed]:
     """Return what is timed and counted: the functions of each form in each precision."""
-    form, start, length = own.library.scene.form, None, 0.0
-    if motion is not None:
-        start, length = motion.start.at([-1]), motion.time / STEPS
+    form = own.library.scene.form
+    start = None if motion is None else motion.start.at([-1])
     programs = (*(own.library[name] for name in own.steps), *functions_of(own.library))
-    every: list[Posed] = [(driver, form, programs, start, length) for driver in by]
+    every: list[Posed] = [
+        (driver, form, programs, start, _lengths_of_use(motion, driver.precision.name))
+        for driver in by
+    ]
     if other is not None and by[0].shared is not None:
         more = drivers(other, PRECISIONS, folder)
-        every += [(one, OTHER_FORM[form], functions_of(other), None, 0.0) for one in more]
+        every += [(one, OTHER_FORM[form], functions_of(other), None, {}) for one in more]
     return every
+
+
+def _lengths_of_use(motion: StepErrors | None, precision: str) -> dict[str, float]:
+    """Return the length, s, at which each step is timed: the one that it would be used at.
+
+    It is the one that keeps to the error that the report states, as far as the motion has steps
+    enough for a batch of them; where none keeps to it, the shortest that a batch may have.
+    """
+    if motion is None:
+        return {}
+    target = said_of(motion).target
+    chosen = {step: choice(motion, step, precision, target) for step in motion.costs}
+    counts = {step: STEPS if c is None else c.attempt.count for step, c in chosen.items()}
+    return {step: motion.time / min(max(n, FEWEST), STEPS) for step, n in counts.items()}
 
 
 def without(times: Sequence[Nanoseconds], counts: Sequence[Instructions]) -> tuple[str, ...]:

@@ -10,6 +10,8 @@ from derive.scene import catalogue
 from tests.made import library_of, thinned
 
 GENERATED = Path(__file__).parents[2] / "generated"
+MOST = 3e9
+"""Operations in long floats of a report: 10 ns each in C, on two cores a quarter of a minute."""
 NAMES = sorted(path.parent.name for path in GENERATED.glob("*/*_report.json"))
 
 
@@ -19,6 +21,13 @@ def test_a_committed_report_is_of_the_scenes_present_programs(name: str) -> None
     found = reported(library_of(name), GENERATED)
     assert found == said["best"] != "", f"`derive report {name}` makes it anew"
     assert (GENERATED / name / f"{name}_report.html").is_file()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_true_motions_of_a_report_take_their_part_of_a_minute(name: str) -> None:
+    motion = json.loads((GENERATED / name / f"{name}_report.json").read_text("utf-8"))["motion"]
+    if motion is not None:
+        assert 0 < motion["operations_in_long_floats"] < MOST
 
 
 @pytest.mark.long

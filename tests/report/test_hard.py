@@ -5,6 +5,7 @@ from derive.report.hard import EASY, HardCase, cases_of
 from derive.report.states import fastest
 from derive.report.wishes import in_other_form
 from derive.scene import parse_scene
+from tests.made import library_of
 
 BODY = """
 wanted = ["moment"]
@@ -99,3 +100,9 @@ def test_a_body_in_gimbals_that_merge_is_told_its_pole_and_has_a_sensible_rate()
     assert abs(found.values["theta"]) > 1.5
     speed = 10 * 3**0.5  # of three components within 10 rad/s, where nothing is said of them
     assert 1 < fastest(made) < 2 * speed
+
+
+def test_a_rate_is_that_of_what_swings_slowly_about_a_fast_turn() -> None:
+    earth = library_of("chandler_rigid_earth")
+    wobble = 7.3e-5 * (0.804 - 0.801) / 0.801  # rate (C - A) / A, from the middle of its ranges
+    assert 0.8 * wobble < fastest(earth) < 1.25 * wobble

@@ -32,7 +32,7 @@ def made(others: str, *names: str) -> Library:
 
 def counted(own: Library, folder: Path) -> list[float]:
     (driver,) = drivers(own, (F64,), folder)
-    found = instructions(driver, "fast", own.functions, None, 0.0, folder)
+    found = instructions(driver, "fast", own.functions, None, {}, folder)
     return [one.count for one in found]
 
 
@@ -56,7 +56,7 @@ def test_without_valgrind_nothing_is_counted_and_it_is_said_once(
     own = made("", "A", "A")
     (driver,) = drivers(own, (F64,), tmp_path)
     monkeypatch.setattr("derive.report.instructions.is_there", lambda: False)
-    assert instructions(driver, "fast", own.functions, None, 0.0, tmp_path) == []
+    assert instructions(driver, "fast", own.functions, None, {}, tmp_path) == []
     times = [Nanoseconds("kinetic_energy", "fast", "f64", 1.0, 1.0, 1.0)]
     assert sum("no valgrind" in said for said in without(times, [])) == 1
     assert not any("valgrind" in said for said in without(times, [COUNT]))

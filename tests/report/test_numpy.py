@@ -36,7 +36,7 @@ def test_without_a_compiler_motions_end_where_those_of_c_do(
     for by_c, by_numpy in zip(compiled, plain, strict=True):
         assert by_c.shared is not None
         assert by_numpy.shared is None
-        assert nanoseconds(by_numpy, "fast", library.functions, None, 0.0) == []
+        assert nanoseconds(by_numpy, "fast", library.functions, None, {}) == []
         for step in steps:
             found, should = (_end(by, step, start) for by in (by_numpy, by_c))
             largest = np.max(np.abs(should), axis=1, keepdims=True)
