@@ -106,7 +106,7 @@ def rows_at(driver: Driver) -> Storage:
 
 
 def _quartiles(batch: Callable[[int], None], calls: int, most: int) -> tuple[float, float, float]:
-    """Return the quartiles of the ns that a call takes in many batches, less what empty ones take."""
+    """Return the quartiles of the ns that a call takes in batches, less what empty ones take."""
     rounds = 1
     while (took := min(_timed(batch, rounds) for _ in range(TRIED))) < LASTS and rounds < most:
         rounds = min(most, rounds * max(2, int(1.2 * LASTS / max(took, 1e-7))))

@@ -111,7 +111,7 @@ def _posed(
     start = None if motion is None else motion.start.at([-1])
     programs = (*(own.library[name] for name in own.steps), *functions_of(own.library))
     every: list[Posed] = [
-        (driver, form, programs, start, _lengths_of_use(motion, driver.precision.name))
+        (driver, form, programs, start, lengths_of_use(motion, driver.precision.name))
         for driver in by
     ]
     if other is not None and by[0].shared is not None:
@@ -120,7 +120,7 @@ def _posed(
     return every
 
 
-def _lengths_of_use(motion: StepErrors | None, precision: str) -> dict[str, float]:
+def lengths_of_use(motion: StepErrors | None, precision: str) -> dict[str, float]:
     """Return the length, s, at which each step is timed: the one that it would be used at.
 
     It is the one that keeps to the error that the report states, as far as the motion has steps
