@@ -11,16 +11,16 @@ from derive.check.description import CYCLE, TURN, Description
 from derive.check.turned import turned_axes
 from derive.library.library import Library, library
 from derive.program.precision import F64
-from derive.scene import catalogue, load, parse_scene
+from derive.scene import load, parse_scene
 from derive.verify.sample import samples
 from tests.check.mutants import first_sign_flipped
 from tests.check.replayed import Replayed
-from tests.made import library_of, scene_of
+from tests.made import library_of, scene_of, thinned
 
 LONG_FORM = Path(__file__).parents[1] / "data" / "long_form"
-SCENES = [n for n in catalogue() if n != "attitude"]
 BODIES = sorted(path.stem for path in LONG_FORM.glob("*.toml"))
-AT_ONCE = ("edge_runner_flat", "skewed_disc", "free_body_principal")
+SCENES = ("edge_runner_flat", "skewed_disc", "free_body_principal")
+"""`derive check` turns all of the catalogue."""
 
 
 def outcomes(made: Library, emitted: Library) -> dict[tuple[str, str], str]:
@@ -29,18 +29,14 @@ def outcomes(made: Library, emitted: Library) -> dict[tuple[str, str], str]:
     return {(row.check, row.function): row.outcome for row in found}
 
 
-def quick(names: list[str]) -> list[Any]:
-    return [n if n in AT_ONCE else pytest.param(n, marks=pytest.mark.long) for n in names]
-
-
-@pytest.mark.parametrize("name", quick(SCENES))
+@pytest.mark.parametrize("name", SCENES)
 def test_a_scene_of_the_catalogue_is_the_same_along_other_axes(name: str) -> None:
     found = outcomes(library_of(name), library_of(name))
     assert set(found.values()) <= {"holds", "skipped"}
     assert {check for check, _ in found} == {"cyclic relabelling", "rotation of axes"}
 
 
-@pytest.mark.parametrize("name", quick(BODIES))
+@pytest.mark.parametrize("name", thinned(BODIES, len(BODIES)))
 def test_a_body_in_long_form_is_the_same_along_other_axes(name: str) -> None:
     made = library(load(LONG_FORM / f"{name}.toml"))
     assert "FAILS" not in outcomes(made, made).values()
