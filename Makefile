@@ -1,15 +1,12 @@
 BIN ?= .venv/bin
 
-.PHONY: generate test whole lint check bench report
+.PHONY: generate test lint check bench report
 
 generate:
 	$(BIN)/derive generate
 
 test:
 	$(BIN)/python -m pytest -q -n auto
-
-whole:
-	$(BIN)/python -m pytest -q -n auto -m 'long or not long'
 
 lint:
 	$(BIN)/ruff check

@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from derive.library.library import library
+from derive.library.library import Library, library
 from derive.motion.runge_kutta import step
 from derive.program.arithmetic import working
 from derive.program.program import Op, Program
@@ -127,12 +127,12 @@ def test_it_costs_less_than_the_step_that_normalises() -> None:
         assert unit.flops() <= plain.flops()
 
 
-def wanting(scene: str, name: str) -> None:
-    """Read a scene of the catalogue that wants ``name`` alone, and make its programs."""
+def wanting(scene: str, name: str) -> Library:
+    """Return the programs of a scene of the catalogue that wants ``name`` alone."""
     text = (CATALOGUE / f"{scene}.toml").read_text(encoding="utf-8")
     start = text.index("wanted")
     end = text.index("]", start) + 1
-    library(parse_scene(f'{text[:start]}wanted = ["{name}"]{text[end:]}', scene))
+    return library(parse_scene(f'{text[:start]}wanted = ["{name}"]{text[end:]}', scene))
 
 
 @pytest.mark.parametrize(
@@ -154,4 +154,5 @@ def test_a_rate_that_rests_on_the_attitude_has_no_such_step() -> None:
 
 
 def test_bodies_in_space_have_it_with_their_places() -> None:
-    wanting("rigid_body", "step_rk4_unit_jacobian")
+    made = wanting("rigid_body", "step_rk4_unit_jacobian")["step_rk4_unit_jacobian"]
+    assert "position_next" in {q.name for q in made.outputs}
