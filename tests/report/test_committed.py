@@ -24,6 +24,18 @@ def test_a_committed_report_is_of_the_scenes_present_programs(name: str) -> None
     assert (GENERATED / name / f"{name}_report.html").is_file()
 
 
+def test_a_committed_page_says_by_which_command_it_is_made() -> None:
+    made = {name: json.loads((GENERATED / name / f"{name}_report.json").read_text(encoding="utf-8"))
+            for name in NAMES}  # fmt: skip
+    moved = {name: said["motion"] or {} for name, said in made.items()}
+    told = [name for name in NAMES if moved[name].get("time_is") == "given"]
+    assert 0 < len(told) < len(NAMES)
+    for name in NAMES:
+        asked = f" --until {moved[name]['time']}" if name in told else ""
+        page = (GENERATED / name / f"{name}_report.html").read_text(encoding="utf-8")
+        assert f"Made by <code>derive report {name}{asked}</code>" in page
+
+
 def test_the_true_motions_of_a_report_take_their_part_of_a_minute() -> None:
     found = {}
     for name in NAMES:
