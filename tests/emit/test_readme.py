@@ -6,6 +6,7 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from shutil import copy
 
 import pytest
 
@@ -80,6 +81,8 @@ def test_the_first_screen_says_for_whom_it_is_and_shows_a_picture_and_an_answer(
 )
 def test_a_command_prints_what_the_readme_shows(command: list[str], tmp_path: Path) -> None:
     (tmp_path / "brick.toml").write_text(of("toml")[0].text, encoding="utf-8")
+    (tmp_path / "generated").mkdir()
+    copy(ROOT / "generated" / "lecture.html", tmp_path / "generated")  # by the README's command
     (shown,) = [b.shown for b in of("sh") if shlex.split(b.text) == command]
     assert told(command, tmp_path) == shown
 
