@@ -47,7 +47,7 @@ WORDS = {
     "table": ("of a scene file", "scene"),
     "point": ("a place in space", "mechanics", "scene"),
     "frame": ("axes", "mechanics", "scene"),
-    "block": ("of a matrix", "library", "lower", "verify"),
+    "block": ("of a matrix", "emit", "library", "lower", "motion", "verify"),
     "known": ("what the scene states of a body's motion and loads", "scene"),
     "traced": ("nothing",),
     "series": ("of powers of time", "motion", "verify"),

@@ -31,6 +31,7 @@ from derive.check.emitted import (
     verdict,
 )
 from derive.check.energy import emitted_balance, energy_balance
+from derive.check.external import compiled_steps
 from derive.check.fresh import fresh
 from derive.check.inlined import inlined
 from derive.check.motion import orders_hold, step_slopes_hold
@@ -168,6 +169,9 @@ def _checks(one: Emitted, found: Files, workshop: Path, ordinary: int) -> Iterat
         yield from derivatives(one.library, module, each)
         if one.library.constants:
             yield casadi_status(one, module)
+        if f"{one.library.scene.name}_external.c" in found.texts:
+            at = (workshop, find_compiler())
+            yield compiled_steps(one.library, found, module, each, at)
         plain = [s for s in each if s.kind == "ordinary"][: FEW * FEW]
         yield from clouds(one.library, plain[:FEW])
         yield from energy_balance(one.library, plain[:TWO])

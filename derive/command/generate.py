@@ -13,7 +13,7 @@ from derive.command.costs import full, print_costs, usual
 from derive.command.scenes import samples_argument, scene_argument
 from derive.command.terminal import OUT, complain, console, error_console, progress
 from derive.scene.escape import visible
-from derive.solve.generation import STATED
+from derive.solve.generation import CASADI, STATED
 
 VIEWS = {"costs": usual, "savings": full}
 MEASURING = "deriving, proving and measuring"
@@ -51,6 +51,14 @@ def options(command: argparse.ArgumentParser) -> None:
         default="costs",
         help="show errors at hard samples too, and what each answer was found not to need",
     )
+    command.add_argument(
+        f"--{CASADI}",
+        action="store_const",
+        dest="parts",
+        const=CASADI,
+        default="usual",
+        help="write C, too, by which CasADi takes all steps of a horizon in one call",
+    )
     samples_argument(command, STATED, "samples that each stated error is looked for at")
     command.set_defaults(run=generate)
 
@@ -62,7 +70,9 @@ def generate(given: argparse.Namespace) -> int:
     scenes = [derive.load(source) for source in given.scenes]
     with progress() as shown:
         told = telling(shown)
-        made = derive.generate(scenes, given.out, given.samples, given.figures, given.tell, told)
+        made = derive.generate(
+            scenes, given.out, given.samples, given.figures, given.tell, told, given.parts
+        )
     warn(made.warnings)
     if made.stopped:
         complain(mended(made), "yellow")
@@ -96,7 +106,9 @@ def _compare(given: argparse.Namespace) -> int:
     """Print how the files differ from what scenes become, and the commands that mend it."""
     scenes = [derive.load(source) for source in given.scenes]
     with progress() as shown:
-        made = derive.compare(scenes, given.out, given.samples, given.figures, telling(shown))
+        made = derive.compare(
+            scenes, given.out, given.samples, given.figures, telling(shown), given.parts
+        )
     warn(made.warnings)
     if not made.differences:
         console.print(f"{made.files} files in {given.out}/ are what `derive generate` makes")
@@ -118,6 +130,7 @@ def _mending(given: argparse.Namespace, found: Sequence[derive.Difference]) -> l
         out = [] if given.out == OUT else ["--out", str(given.out)]
         few = given.samples != STATED
         samples = ["--samples", str(given.samples)] if few else []
-        commands.append(shlex.join(["derive", "generate", *given.scenes, *samples, *out]))
+        wider = [f"--{CASADI}"] if given.parts != "usual" else []
+        commands.append(shlex.join(["derive", "generate", *given.scenes, *samples, *out, *wider]))
     left = [str(given.out / difference.name) for difference in found if difference.left_over]
     return [*commands, *([shlex.join(["rm", *left])] if left else [])]

@@ -6,6 +6,7 @@ from fractions import Fraction
 import numpy as np
 
 from derive.emit.c.comment import singular_clause
+from derive.emit.c.external import OPTION, described
 from derive.emit.c.scope import declared_in_python, require_free
 from derive.emit.c.source import first_line
 from derive.emit.c.text import pair_functions
@@ -33,14 +34,19 @@ KEPT = "_kept("
 BROKEN = {"finite": "_endless({})", "positive": "{} <= 0.0", "not negative": "{} < 0.0"}
 
 
-def casadi_file(library: Library, figures: Sequence[Measurement] = ()) -> str:
-    """Return the text of ``<scene>_casadi.py``."""
+def casadi_file(
+    library: Library, figures: Sequence[Measurement] = (), second: Program | None = None
+) -> str:
+    """Return the text of ``<scene>_casadi.py``.
+
+    second : the second derivatives for which C lies beside it; the module then loads that C
+    """
     name = library.scene.name
     has_setup = bool(library.constants)
     in_pairs = [p for p in library.emitted() if p.arithmetic == "pairs"]
     functions = [_function(p, name) for p in library.printed()]
     return TEMPLATES.get_template("casadi.py.jinja").render(
-        first_line=first_line(library, figures),
+        first_line=first_line(library, figures, () if second is None else (OPTION,)),
         title=library.scene.title,
         scene=name,
         setup=_setup(library.setup, name) if has_setup else None,
@@ -53,6 +59,7 @@ def casadi_file(library: Library, figures: Sequence[Measurement] = ()) -> str:
         functions=functions,
         sloped=any(p.free or p.slopes for p in library.printed()),
         free=any(p.free for p in library.printed()),
+        external=None if second is None else described(library),
     )
 
 

@@ -13,13 +13,14 @@ from dataclasses import dataclass
 from difflib import unified_diff
 from pathlib import Path
 
+from derive.emit.c.external import external_file
 from derive.emit.c.source import c_files
 from derive.emit.casadi_text import casadi_file
 from derive.emit.manifest import manifest
 from derive.emit.page.scene import scene_page
 from derive.emit.reported import NOTHING_BESIDE, Beside
 from derive.library.library import Library
-from derive.program.program import Measurement
+from derive.program.program import Measurement, Program
 from derive.scene.declaration import DeriveError
 
 REPORTS = ("_report.html", "_report.json")
@@ -45,18 +46,25 @@ class Difference:
 
 
 def scene_files(
-    library: Library, figures: Sequence[Measurement], digest: str = "", by: Beside = NOTHING_BESIDE
+    library: Library,
+    figures: Sequence[Measurement],
+    digest: str = "",
+    by: Beside = NOTHING_BESIDE,
+    second: Program | None = None,
 ) -> dict[str, str]:
     """Return the path below the output folder and the text of every file of a scene.
 
     digest : of all that the figures depend on        by : what the page can lead to
+    second : the second derivatives of a step, where C for CasADi is to lie beside the rest
     """
     name = library.scene.name
     texts = c_files(library, figures) | {
-        f"{name}_casadi.py": casadi_file(library, figures),
+        f"{name}_casadi.py": casadi_file(library, figures, second),
         f"{name}.json": manifest(library, figures, digest),
         f"{name}.html": scene_page(library, figures, by),
     }
+    if second is not None:
+        texts |= dict([external_file(library, second, figures)])
     return {f"{name}/{file}": text for file, text in texts.items()}
 
 

@@ -13,6 +13,8 @@ from derive.emit.gallery.card import Card, card, gallery
 from derive.emit.page.lecture import lecture_page
 from derive.emit.page.scene import scene_page
 from derive.emit.reported import NOTHING_BESIDE, lying_beside, reports_in
+from derive.library.external import CASADI as CASADI
+from derive.library.external import second_of_step
 from derive.library.library import Library
 from derive.library.saving import Saving, savings
 from derive.program.precision import PRECISIONS
@@ -27,6 +29,8 @@ from derive.verify.search import SAMPLING, sampled_at
 
 FigureSource = Literal["kept", "anew"]
 """Whether stated errors are taken over from before, where nothing has changed."""
+Extent = Literal["usual", "casadi-external"]
+"""Which files a scene becomes: the usual ones, or these and C that CasADi calls."""
 Telling = Literal["costs", "savings"]
 """What is said of functions beside their errors: what was found not to matter to answers, too."""
 NUMBERS = SAMPLES
@@ -129,21 +133,27 @@ def page_anew(programs: Library, folder: Path) -> dict[str, str]:
     return {page: scene_page(programs, figures, lying_beside(programs, folder))}
 
 
-def made_and_told(programs: Library, by: Measuring, tell: Telling, reports: Path) -> Made:
+def made_and_told(
+    programs: Library, by: Measuring, tell: Telling, reports: Path, parts: Extent = "usual"
+) -> Made:
     """Return everything that a scene becomes, with what its answers were spared if asked to.
 
     reports : the folder below which the scene's report may lie, whose sentence pages show
     """
     spared = tuple(savings(programs)) if tell == "savings" else ()
-    return replace(made(programs, by, reports), savings=spared)
+    return replace(made(programs, by, reports, parts), savings=spared)
 
 
-def made(programs: Library, by: Measuring, reports: Path | None = None) -> Made:
+def made(
+    programs: Library, by: Measuring, reports: Path | None = None, parts: Extent = "usual"
+) -> Made:
     """Return everything that a scene becomes; its programs are proved before they are printed.
 
     Raises SceneError for formulas without a value in the ranges, ProofError for a wrong program.
     """
     scene = programs.scene
+    wider = one_of(parts, "parts", get_args(Extent)) == CASADI
+    second = second_of_step(programs) if wider else None
     try:
         prove(programs)
         measured = figures_of(programs, by)
@@ -155,7 +165,7 @@ def made(programs: Library, by: Measuring, reports: Path | None = None) -> Made:
     doubts = (*programs.mechanism.doubts(), *few_digits(measured.each))
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in doubts)
     lies = NOTHING_BESIDE if reports is None else lying_beside(programs, reports)
-    texts = scene_files(programs, measured.each, measured.digest, lies)
+    texts = scene_files(programs, measured.each, measured.digest, lies, second)
     return Made(texts, warnings, cost_rows(programs, measured.each), card=card(programs, lies.best))
 
 

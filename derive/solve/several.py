@@ -13,6 +13,7 @@ from derive.scene import SceneError, catalogue
 from derive.scene.table import one_of
 from derive.solve.generation import (
     STATED,
+    Extent,
     FigureSource,
     Generation,
     Made,
@@ -46,6 +47,7 @@ def generate(
     figures: FigureSource = "kept",
     tell: Telling = "costs",
     told: Callable[[str], None] = silent,
+    parts: Extent = "usual",
 ) -> Generation:
     """Write the files of scenes below a folder, several processes at a time.
 
@@ -54,11 +56,12 @@ def generate(
     figures : "kept" takes over those in ``folder`` that nothing has changed, "anew" measures all
     tell    : "savings" also says what was found not to matter to each answer
     told    : hears how far it is
+    parts   : "casadi-external" adds C by which CasADi takes all steps of a horizon at once
     Raises DeriveError for scenes of one name, for any that can have no programs, before one of
     them is measured, and for a folder that cannot be written to. Files are replaced all or none.
     """
     into = path("folder", folder)
-    results = made_of(scenes, into, samples, figures, tell, told)
+    results = made_of(scenes, into, samples, figures, tell, told, parts)
     return stored(into, results, {} if scenes else gallery_of(results, into))
 
 
@@ -68,10 +71,11 @@ def compare(
     samples: int = STATED,
     figures: FigureSource = "kept",
     told: Callable[[str], None] = silent,
+    parts: Extent = "usual",
 ) -> Comparison:
     """Return how the files that lie below a folder differ from what ``generate`` would write."""
     into = path("folder", folder)
-    results = made_of(scenes, into, samples, figures, "costs", told)
+    results = made_of(scenes, into, samples, figures, "costs", told, parts)
     texts = {name: text for one in results for name, text in one.texts.items()}
     texts |= {} if scenes else gallery_of(results, into)
     found = list(differences(into, texts))
@@ -86,13 +90,16 @@ def made_of(
     figures: FigureSource = "kept",
     tell: Telling = "costs",
     told: Callable[[str], None] = silent,
+    parts: Extent = "usual",
 ) -> list[Made]:
     """Return what ``generate`` would write, with what each function costs; write nothing."""
     _require_scenes(scenes)
     into, hears = path("folder", folder), listener(told)
     by = measuring(into, samples, figures)
     costs: Telling = "savings" if one_of(tell, "tell", get_args(Telling)) == "savings" else "costs"
-    tasks: list[Callable[[], Made]] = [partial(_made, s, by, costs, into) for s in _every(scenes)]
+    tasks: list[Callable[[], Made]] = [
+        partial(_made, s, by, costs, into, parts) for s in _every(scenes)
+    ]
     return _of_all(scenes, into, tasks, hears)
 
 
@@ -110,8 +117,8 @@ def _every(scenes: Sequence[Handle]) -> tuple[Handle, ...]:
     return tuple(scenes) or tuple(map(load, catalogue()))
 
 
-def _made(scene: Handle, by: Measuring, tell: Telling, reports: Path) -> Made:
-    return made_and_told(scene.library, by, tell, reports)
+def _made(scene: Handle, by: Measuring, tell: Telling, reports: Path, parts: Extent) -> Made:
+    return made_and_told(scene.library, by, tell, reports, parts)
 
 
 def _posed(scene: Handle) -> None:

@@ -24,7 +24,7 @@ from derive.program.operations import sqrt
 from derive.program.tape import Tape
 
 
-def turn_of(system: System, at: Stages) -> tuple[slice, StageTurns]:
+def turn_kept(system: System, at: Stages) -> tuple[slice, StageTurns]:
     """Return where the attitude stands, and how it turns.
 
     Raises ValueError where a rate that turns the attitude rests on it, or there is none.
@@ -45,7 +45,7 @@ def unit_increment(turn: StageTurns) -> NumberRow:
 def after(tape: Tape, system: System) -> NumberRow:
     """Return the state after the step, the quaternion as long as it was."""
     at = stages(tape, system)
-    attitude, turn = turn_of(system, at)
+    attitude, turn = turn_kept(system, at)
     found = added(at.start, gains_of(system, at))
     found[attitude] = product(at.start[attitude], unit_increment(turn))
     return found
@@ -54,7 +54,7 @@ def after(tape: Tape, system: System) -> NumberRow:
 def step_slopes(tape: Tape, system: System) -> tuple[NumberRow, Matrix]:
     """Return the state after the step and its derivatives (n, n + m) by the state and the rest."""
     at, found = stages(tape, system), after(tape, system)
-    attitude, turn = turn_of(system, at)
+    attitude, turn = turn_kept(system, at)
     made, turned = sensitivity.unconstrained(at), sensitivity.turn_carried_back(system, at, turn)
     bent = tangent_matrix(found[attitude])
     made.rest[attitude] = matrix_product(bent, turned.rest)

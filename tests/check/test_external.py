@@ -1,0 +1,163 @@
+"""Compiled steps that CasADi calls: its own derivatives and patterns."""
+
+import re
+from contextlib import suppress
+from pathlib import Path
+from types import ModuleType
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from derive.check.compiler import CompilerError, find_compiler
+from derive.check.emitted import Files
+from derive.check.external import built, compiled_steps, of_module
+from derive.emit.c.external import OPTION
+from derive.emit.c.source import c_files
+from derive.emit.casadi_module import imported
+from derive.emit.casadi_text import casadi_file
+from derive.emit.files import scene_files
+from derive.library.external import second_of_step
+from derive.library.library import library
+from derive.scene import SceneError, parse_scene
+from tests.check.craft import LINES, OPERATIONS, UNIT, drawn, made, text_of, texts
+from tests.made import CATALOGUE
+
+
+def judged(kind: str, module: ModuleType, workshop: Path, found: dict[str, str]) -> str:
+    at = (workshop, find_compiler())
+    return compiled_steps(made(kind), Files(found, "memory"), module, drawn(kind), at).outcome
+
+
+def test_values_derivatives_and_patterns_are_those_of_casadi(
+    module: ModuleType, workshop: Path
+) -> None:
+    assert judged("principal", module, workshop, texts("principal")) == "holds"
+
+
+@pytest.mark.long
+def test_so_are_those_of_a_full_tensor(workshop: Path) -> None:
+    own = imported("craft_casadi", texts("general")["craft_casadi.py"], workshop)
+    assert judged("general", own, workshop, texts("general")) == "holds"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("hessian[44] = ", "hessian[44] = 1e-9 + "),
+        ("put(res[1], entries, x_u_takes", "put(res[1], entries, u_x_takes"),
+        ("return diagonal_xn_u();", "return diagonal_u_adj();"),
+        ("res[0] + NX * k", "res[0] + NX * (STEPS - 1 - k)"),
+    ],
+)
+def test_mutants_of_the_c_are_found(module: ModuleType, workshop: Path, old: str, new: str) -> None:
+    found = dict(texts("principal"))
+    assert old in found["craft_external.c"]
+    found["craft_external.c"] = found["craft_external.c"].replace(old, new)
+    with suppress(RuntimeError):  # CasADi refuses a pattern of another size
+        assert judged("principal", module, workshop, found) == "FAILS"
+
+
+def test_names_and_their_order_are_those_that_casadi_gives(
+    module: ModuleType, cache_of_three: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(cache_of_three))
+    own = module.external(3)
+    given = [ca.SX.sym(own.name_in(k), own.sparsity_in(k)) for k in range(4)]
+    results = of_module(made("principal"), module, 3).call(given)
+    twin = ca.Function("twin", given, results, own.name_in(), ["xn"])
+    pairs = [(own, twin), (own.jacobian(), twin.jacobian())]
+    pairs += [(own.reverse(1), twin.reverse(1))]
+    pairs += [(own.reverse(1).jacobian(), twin.reverse(1).jacobian())]
+    for ours, theirs in pairs:
+        assert ours.name_in() == theirs.name_in()
+        assert ours.name_out() == theirs.name_out()
+        assert [ours.size_in(k) for k in range(ours.n_in())] == [
+            theirs.size_in(k) for k in range(theirs.n_in())
+        ]
+
+
+def test_the_wrapper_is_short_and_the_second_derivatives_cost_little() -> None:
+    assert len(texts("principal")["craft_external.c"].splitlines()) < LINES
+    assert second_of_step(made("principal")).flops() < OPERATIONS
+    assert second_of_step(made("general")).flops() < OPERATIONS
+
+
+def test_without_the_option_files_are_what_they_were() -> None:
+    given = made("principal")
+    usual = scene_files(given, ())
+    wider = scene_files(given, (), second=second_of_step(given))
+    differ = {name for name in wider if wider[name] != usual.get(name)}
+    assert differ == {"craft/craft_external.c", "craft/craft_casadi.py"}
+    assert OPTION in wider["craft/craft_casadi.py"].splitlines()[0]
+    assert usual["craft/craft_casadi.py"] == casadi_file(given)
+    assert usual["craft/craft_f64.c"] == c_files(given, ())["craft_f64.c"]
+
+
+def test_many_threads_share_nothing(
+    module: ModuleType, cache_of_three: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(cache_of_three))
+    own, count = module.external(3), 64
+    dice = np.random.default_rng(1)
+    given = (dice.normal(size=(7, 3 * count)), dice.normal(size=(3, 3 * count)))
+    rest = (np.full((1, count), 0.01), np.tile([[1.4], [1.6], [1.8]], count))
+    jacobian = own.jacobian()
+    for function, more in ((own, ()), (jacobian, (ca.DM(7, 3 * count),))):
+        alone, threads = (
+            function.map(count, *how)(*given, *rest, *more) for how in ((), ("thread", 4))
+        )
+        first = (x if isinstance(x, tuple) else (x,) for x in (alone, threads))
+        for a, b in zip(*first, strict=True):
+            same = np.array_equal(np.array(ca.DM(a)), np.array(ca.DM(b)), equal_nan=True)
+            assert same
+
+
+def test_what_is_asked_by_parameters_or_the_step_is_nan_and_shows(
+    module: ModuleType, cache_of_three: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(cache_of_three))
+    own = module.external(3)
+    _, _, by_step, by_parameters = own.jacobian()(np.ones((7, 3)), 0, 0.1, [1.4, 1.6, 1.8], 0)
+    assert np.isnan(np.array(by_step)).all()
+    assert np.isnan(np.array(by_parameters)).all()
+    assert np.isnan(np.array(own(np.ones((7, 3)), 0, 0.1, [-1, 1, 1]))).all()
+
+
+def test_integers_of_32_bits_do_not_compile(workshop: Path) -> None:
+    found, old = dict(texts("principal")), "typedef long long int casadi_int"
+    assert old in found["craft_external.c"]
+    found["craft_external.c"] = found["craft_external.c"].replace(old, "typedef int casadi_int")
+    with pytest.raises(CompilerError, match="craft_steps_needs_long_integers"):
+        built("craft", found, 2, (workshop, find_compiler()))
+
+
+def test_neither_does_the_float_build_nor_a_double_that_is_none(workshop: Path) -> None:
+    found = dict(texts("principal"))
+    floats = found | {f"craft_f64.{end}": found[f"craft_f32.{end}"] for end in "ch"}
+    with pytest.raises(CompilerError, match="craft_constants_f64"):
+        built("craft", floats, 2, (workshop, find_compiler()))
+    found["craft_external.c"] = f"#define double float\n{found['craft_external.c']}"
+    with pytest.raises(CompilerError, match=r"float|craft_steps_needs_doubles"):
+        built("craft", found, 2, (workshop, find_compiler()))
+
+
+@pytest.mark.parametrize(
+    ("wanted", "says"),
+    [
+        ('["step_rk4"]', "needs 'step_rk4_unit' in wanted"),
+        ('["step_rk4_unit"]', "needs 'step_rk4_unit_jacobian' in wanted"),
+    ],
+)
+def test_a_scene_without_the_step_is_refused_by_a_sentence(wanted: str, says: str) -> None:
+    with pytest.raises(SceneError, match=says):
+        second_of_step(library(parse_scene(text_of("principal", wanted), "craft")))
+
+
+@pytest.mark.long
+def test_so_is_one_whose_rates_rest_on_the_attitude() -> None:
+    text = (CATALOGUE / "rigid_body.toml").read_text(encoding="utf-8")
+    text = re.sub(r"wanted = \[.*?\]", f"wanted = {UNIT}", text, count=1, flags=re.DOTALL)
+    with pytest.raises(SceneError, match="one rests on 'attitude_w'"):
+        second_of_step(library(parse_scene(text, "rigid_body")))
