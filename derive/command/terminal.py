@@ -43,6 +43,7 @@ def print_rows(table: Table, width: int | None = None) -> None:
 
 
 def progress() -> Progress:
-    """Return a progress line that vanishes when it is done."""
+    """Return a progress line that vanishes when it is done; none where nobody looks on."""
     columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
-    return Progress(*columns, console=error_console, transient=True)
+    hidden = not error_console.is_terminal
+    return Progress(*columns, console=error_console, transient=True, disable=hidden)

@@ -23,6 +23,7 @@ from derive.report.sentence import (
 )
 from derive.report.slim import SHAPES, STYLES, Slim, shared
 from derive.report.whole import SceneReport
+from derive.scene import argument
 
 MOST = len(COLOURS)
 PLACES = (
@@ -73,6 +74,7 @@ def report_page(found: SceneReport, pages: Mapping[str, str]) -> str:
         report=found,
         pages=pages,
         scene=found.library.scene,
+        argument=argument(found.library.scene),
         motion=motion,
         aside=[] if motion is None else left_aside(motion),
         target="" if motion is None else figure(said_of(motion).target),

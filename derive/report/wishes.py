@@ -78,7 +78,8 @@ def _admits(scene: Scene, name: str, refused: dict[str, str]) -> bool:
 def in_other_form(scene: Scene) -> Library | None:
     """Return the functions of a scene in its other form, None if there are none."""
     document = _document(scene)
-    own = [name for name in scene.wanted if not moves(name) and name not in ATTITUDES]
+    own = [entry for entry in document["wanted"]
+           if not moves(entry) and entry not in ATTITUDES]  # fmt: skip
     if not own:
         return None
     try:
@@ -90,7 +91,7 @@ def in_other_form(scene: Scene) -> Library | None:
 
 def _wanting(scene: Scene, names: Sequence[str]) -> Scene:
     document = _document(scene)
-    wanted = [*dict.fromkeys([*scene.wanted, *names])]
+    wanted = [*dict.fromkeys([*document["wanted"], *names])]  # a group as it is declared
     return read({**document, "wanted": wanted}, scene.name, scene.text)
 
 

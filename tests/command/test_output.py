@@ -77,3 +77,10 @@ def test_a_module_is_not_printed_in_another_encoding_than_its_own(monkeypatch, t
         assert main(["equations", "--sympy", str(own)]) == 2
     assert "set PYTHONIOENCODING=utf-8" in capsys.readouterr().err
     assert (tmp_path / "out").read_text(encoding="ascii") == ""
+
+
+@pytest.mark.long
+def test_what_succeeds_says_nothing_in_a_log(tmp_path):
+    command = [sys.executable, "-m", "derive", "generate", "attitude", "--samples", "256"]
+    done = subprocess.run([*command, "--out", tmp_path], capture_output=True, check=True)
+    assert done.stderr == b""

@@ -263,3 +263,10 @@ def test_a_law_is_told_with_the_number_that_it_has_on_the_page_of_the_lecture() 
 def test_a_form_that_does_not_exist_is_refused() -> None:
     with pytest.raises(SceneError, match="form must be one of text, ascii, latex, sympy, not"):
         equations(library_of("heavy_top"), "tex")
+
+
+def test_a_document_names_the_command_that_makes_it() -> None:
+    text = library_of("heavy_top").scene.text
+    for name, means in (("heavy_top", "heavy_top"), ("brick", "brick.toml")):
+        told = equations(library(parse_scene(text, name)), "latex")
+        assert f"`derive equations {means} --latex`" in told.splitlines()[0]

@@ -47,3 +47,15 @@ def test_no_step_of_a_body_of_numbers_makes_a_name_that_nothing_reads(kind: str)
     made = [(n, b) for b in bodies for n in re.findall(r"const double (\w+) =", b)]
     assert len(made) > 100
     assert [n for n, b in made if len(re.findall(rf"\b{n}\b", b)) < 2] == []
+
+
+@pytest.mark.parametrize("name", ["skewed_disc", "reaction_wheel_satellite"])
+def test_what_is_wanted_as_a_group_stays_one_in_the_other_form(name: str) -> None:
+    other = in_other_form(scene_of(name))
+    assert other is not None
+    assert [p.name for p in other.functions] == [p.name for p in library_of(name).functions]
+
+
+@pytest.mark.long
+def test_a_scene_that_wants_a_group_could_want_every_step_of_a_machine() -> None:
+    assert "step_taylor12" in wished(library_of("quadrotor")).steps

@@ -69,7 +69,7 @@ def good(folder: Path) -> dict[str, Any]:
     """Return for each name of an argument what makes sense."""
     return {
         "source": BALL, "name": "ball", "scenes": [derive.load(BALL, "ball")], "folder": folder,
-        "samples": 4, "figures": "kept", "tell": "costs", "told": lambda _: None,
+        "samples": 4, "figures": "kept", "tell": "costs", "parts": "usual", "told": lambda _: None,
         "tensor": np.eye(3), "parameters": {}, "precision": "double", "by": "any",
         "values": {}, "until": 0.01, "step": 1e-3, "plot": None, "form": "text",
         "omega": [1, 2, 3], "omega_dot": [1, 2, 3],

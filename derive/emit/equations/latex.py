@@ -16,6 +16,7 @@ from derive.emit.notation.latex import tex, tex_name, tex_text
 from derive.emit.notation.lines import width
 from derive.emit.notation.symbolic import symbolic_layout
 from derive.lecture.step import Step
+from derive.scene import argument
 
 LEFT, LINE = 9.0, 38.0
 """Width in em of left sides at most, and of lines: 17 cm in letters of 10 pt are 48."""
@@ -35,7 +36,7 @@ def latex_document(told: Account) -> str:
     """Return the whole document."""
     title = tex_text(told.scene.title)
     lines = [
-        f"% By derive {__version__}: `derive equations {told.scene.name} --latex`",
+        f"% By derive {__version__}: `derive equations {argument(told.scene)} --latex`",
         *_HEAD.strip().splitlines(),
         rf"\title{{{title}}}",
         r"\author{}",
