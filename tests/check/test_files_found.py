@@ -54,6 +54,7 @@ def test_a_scene_of_which_nothing_lies_there_is_skipped(found: Files) -> None:
     assert as_made(library_of(NAME), found, NAME).outcome == "skipped"
 
 
+@pytest.mark.long
 def test_the_command_that_mends_names_the_scene_as_it_was_given(folder: Path) -> None:
     (folder / NAME / f"{NAME}_f32.h").unlink()
     again = files(library_of(NAME), folder, sampling_of(folder, NAME))

@@ -29,12 +29,14 @@ def rows(scene: str, workshop: Path) -> tuple[Verdict, ...]:
     return tuple(check_library(made, texts, workshop, find_compiler(), FEW))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scene", thinned(["attitude", "eulers_disk", "heavy_top"], 3))
 def test_a_row_that_holds_has_compared_something(scene: str, workshop: Path) -> None:
     held = [v for v in rows(scene, workshop) if v.outcome == "holds"]
     assert [v for v in held if v.says.startswith("0 ")] == []
 
 
+@pytest.mark.long
 def test_a_row_with_nothing_to_compare_says_why(workshop: Path) -> None:
     skipped = {(v.function, v.check): v.says for v in rows("attitude", workshop)
                if v.outcome == "skipped"}  # fmt: skip

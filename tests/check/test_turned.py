@@ -29,6 +29,7 @@ def outcomes(made: Library, emitted: Library) -> dict[tuple[str, str], str]:
     return {(row.check, row.function): row.outcome for row in found}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SCENES)
 def test_a_scene_of_the_catalogue_is_the_same_along_other_axes(name: str) -> None:
     found = outcomes(library_of(name), library_of(name))

@@ -98,6 +98,7 @@ def ran(code: str, folder: Path) -> str:
     return done.stdout
 
 
+@pytest.mark.long
 def test_a_run_that_is_killed_at_any_call_is_mended_by_the_next(tmp_path: Path) -> None:
     count, *states = ran(KILLED, tmp_path).split()
     assert int(count) > 20

@@ -90,6 +90,7 @@ def test_every_link_leads_to_a_place_that_is_there(name: str) -> None:
             assert place in (lecture if file else own)
 
 
+@pytest.mark.long
 def test_every_page_of_the_catalogue_leads_to_all_others() -> None:
     first, *_, last = catalogue()
     step = {name: re.findall('rel="next" href="../([a-z0-9_]+)/', page(name)) for name in (first,)}
@@ -139,6 +140,7 @@ def test_a_scene_page_says_all_that_a_reader_needs(name: str) -> None:
     )
 
 
+@pytest.mark.long
 def test_no_heading_of_a_page_stands_over_nothing() -> None:
     empty = re.compile(r"<h([23])[^>]*>([^<]*)</h[23]>\s*(?=<h[1-3]|</section)")
     pages = {name: page(name) for name in ("heavy_top", "sleeping_top", "rigid_body_steps")}

@@ -76,6 +76,7 @@ SPOILT = (
 )  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("row", thinned(SPOILT, 4), ids=[row[0] for row in SPOILT])
 def test_an_energy_of_other_loads_is_noticed(row: tuple[str, str, str, str]) -> None:
     _, name, old, new = row

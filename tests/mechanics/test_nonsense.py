@@ -184,6 +184,7 @@ bodies.b = { frame = "base", mass = "m", shape = "box", lengths = [1, 2, 3], cen
 """
 
 
+@pytest.mark.long
 def test_a_body_that_floats_freely_with_its_centre_aside_has_accelerations() -> None:
     made = library(parse_scene(FLOATING, "floating"))
     (program,) = made.functions

@@ -57,6 +57,7 @@ def inputs(of: Library) -> list[object]:
     return [(f.name, [q.name for q in f.inputs], len(f.ops)) for f in of.functions]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "sizes",
     [
@@ -70,6 +71,7 @@ def test_a_body_of_any_size_has_the_functions_of_one_of_size_1(sizes: dict[str, 
     assert inputs(made(BODY, **sizes)) == inputs(made(BODY))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "sizes",
     [{"m": 30}, {"m": -30}, {"l": -20, "r": -20}, {"l": -30}, {"l": 20}, {"r": -30}, {"r": 20}],

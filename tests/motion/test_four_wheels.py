@@ -28,6 +28,7 @@ def stepped(made: Library, name: str, values: dict[str, arb]) -> dict[str, arb]:
     return known
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", thinned(STEPS, 4))
 def test_motors_that_cancel_speed_up_their_wheels_and_turn_nothing(name: str) -> None:
     text = QUADROTOR.read_text(encoding="utf-8").replace("step_rk4", name)

@@ -55,6 +55,7 @@ def length_after(program: Program, values: Values, steps: int) -> tuple[float, f
     return float(one), float(tenth)
 
 
+@pytest.mark.long
 def test_the_length_is_kept_over_ten_thousand_steps() -> None:
     given, values = case("principal")
     still = dict(values) | {f"moment_{axis}": mpf(0) for axis in "xyz"}
@@ -153,6 +154,7 @@ def test_a_rate_that_rests_on_the_attitude_has_no_such_step() -> None:
         step(case("hung")[0], "step_rk4_unit")
 
 
+@pytest.mark.long
 def test_bodies_in_space_have_it_with_their_places() -> None:
     made = wanting("rigid_body", "step_rk4_unit_jacobian")["step_rk4_unit_jacobian"]
     assert "position_next" in {q.name for q in made.outputs}

@@ -99,6 +99,7 @@ def ran(folder: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.long
 def test_a_row_a_room_is_all_that_a_new_operator_takes(tmp_path: Path) -> None:
     spread(tmp_path, ROWS)
     done = ran(tmp_path)
@@ -115,6 +116,7 @@ def test_a_row_a_room_is_all_that_a_new_operator_takes(tmp_path: Path) -> None:
         assert found["jacobian"] == pytest.approx([slope], rel=room)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("file", thinned(ROWS, len(ROWS)))
 def test_without_one_of_the_rows_it_does_not_work(file: str, tmp_path: Path) -> None:
     spread(tmp_path, {name: row for name, row in ROWS.items() if name != file})

@@ -80,6 +80,7 @@ def test_a_motion_is_infinite_where_it_is_by_its_equation(tmp_path: Path) -> Non
     assert {*found.each} == {INFINITE, ENDS}
 
 
+@pytest.mark.long
 def test_a_motion_that_grows_and_turns_is_not_said_to_become_infinite(tmp_path: Path) -> None:
     driver, start = of(UNSTABLE, tmp_path)
     assert {*fates(driver, start, 10.0, 10.0).each} <= {GROWS, ENDS}

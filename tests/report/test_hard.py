@@ -1,5 +1,7 @@
 """What is said to make a sample hard is what was put into the scene to make it so."""
 
+import pytest
+
 from derive.library.library import library
 from derive.report.hard import EASY, HardCase, cases_of
 from derive.report.states import fastest
@@ -38,6 +40,7 @@ phi = { unit = "rad", range = [-1, 1], meaning = "angle" }
 """
 
 
+@pytest.mark.long
 def test_a_pole_is_told_by_the_angle_that_it_stands_at() -> None:
     made = library(parse_scene(POLE, "pole"))
     found, *_ = cases_of(made, made.functions[0], in_other_form(made.scene))

@@ -34,6 +34,7 @@ def values_of(library: Library, place: int) -> dict[str, float]:
     return begun(library, "test", 4).values(place)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scene", ["rigid_body_steps", "sleeping_top"])
 def test_the_rates_are_those_that_orders_are_measured_by(scene: str) -> None:
     own = library_of(scene)

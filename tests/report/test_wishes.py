@@ -49,6 +49,7 @@ def test_no_step_of_a_body_of_numbers_makes_a_name_that_nothing_reads(kind: str)
     assert [n for n, b in made if len(re.findall(rf"\b{n}\b", b)) < 2] == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["skewed_disc", "reaction_wheel_satellite"])
 def test_what_is_wanted_as_a_group_stays_one_in_the_other_form(name: str) -> None:
     other = in_other_form(scene_of(name))

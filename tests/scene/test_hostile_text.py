@@ -224,6 +224,7 @@ def require_harmless(scene: Scene, folder: Path) -> None:
     assert tree.findtext(".//{*}h1") == scene.title
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("text", [BODY, MACHINE], ids=["body", "machine"])
 def test_text_that_is_allowed_comes_out_as_text(
     text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -234,6 +235,7 @@ def test_text_that_is_allowed_comes_out_as_text(
     require_harmless(scene, tmp_path)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "hostile", thinned([ENDS[0], "int bad; \\", "int bad; ??/", 'x""" + bad + """'], 2)
 )

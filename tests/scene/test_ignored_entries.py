@@ -95,6 +95,7 @@ SHORT = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", thinned(SHORT, 4))
 def test_nothing_in_a_short_scene_is_ignored(name: str) -> None:
     assert ignored(SHORT[name], name) == []
@@ -118,6 +119,7 @@ def test_an_inertia_that_is_left_out_is_noticed(monkeypatch: Any) -> None:
     assert "body.moment" in ignored(TURNED)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", thinned(sorted(TEXTS), 20))
 def test_nothing_in_a_scene_is_left_unread(name: str) -> None:
     assert unread(TEXTS[name], name) == []

@@ -21,6 +21,7 @@ ABSURD = 300.0
 """In u: ten times what is stated within the ranges of any function of the catalogue."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", TRIALS, ids=lambda p: p.stem)
 def test_no_error_of_a_trial_is_absurd(path: Path) -> None:
     try:

@@ -178,6 +178,7 @@ FRESH = 1.5
 """Bodies of a kind differ: the worst motion of some others errs by so much more than was found."""
 
 
+@pytest.mark.long
 def test_the_worst_motion_of_a_hard_body_is_searched_for() -> None:
     made = library_of(ROTOR)
     searched, not_searched = (

@@ -106,6 +106,7 @@ def _without_slope(program: Program, place: int) -> Program:
     return replace(broken, results=results)
 
 
+@pytest.mark.long
 def test_an_answer_of_the_cloud_without_a_value_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     def spoilt_answers(machine: Scene, given: Mapping[str, float]) -> CloudAnswers:
         found = answers(machine, given)
@@ -142,6 +143,7 @@ def answering(one: Emitted, name: str) -> Emitted:
     return replace(one, functions={**one.functions, name: function})
 
 
+@pytest.mark.long
 def test_a_rate_without_a_value_breaks_the_laws(tmp_path: Path) -> None:
     one, each = emitted("free_body", tmp_path), drawn("free_body")
     wrong = answering(one, "acceleration")

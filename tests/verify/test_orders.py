@@ -130,6 +130,7 @@ time_step = { range = [0, 0.02] }
 """
 
 
+@pytest.mark.long
 def test_only_what_is_in_closed_form_may_be_without_an_order() -> None:
     sphere = library(parse_scene(SPHERE, "sphere"))
     steps = ("step_dmv", "step_split", "step_lie")

@@ -91,6 +91,7 @@ def alone(made: Library, program: Program) -> Library:
     return replace(made, functions=(program,), problems={base: made.problems[base]})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SMALL_SET_UPS)
 def test_no_mutant_of_any_set_up_is_proved(name: str) -> None:
     made = library_of(name)

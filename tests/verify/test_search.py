@@ -107,6 +107,7 @@ def test_functions_of_columns_are_rounded_correctly(name: str, dtype: type) -> N
     assert found.tolist() == working(dtype)[name](*given).tolist()
 
 
+@pytest.mark.long
 def test_figures_are_kept_while_nothing_changes_and_measured_when_something_does(tmp_path):
     import json
 

@@ -105,6 +105,7 @@ def before() -> frozenset[str]:
     return frozenset(contradictions(json.loads(few())))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "spoilt",
     thinned([a_verdict, those_that_any_serves, another_case_is_missed, a_longer_step, a_lower_cost,
