@@ -26,6 +26,7 @@ from derive.command import (
     schema,
     solve,
 )
+from derive.command.parsed import Parser, parsed
 from derive.command.terminal import complain, console, error_console
 from derive.verify.prove import ProofError
 
@@ -138,7 +139,7 @@ def _parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
     helps = StringIO()
     try:
         with redirect_stdout(helps):
-            return parser().parse_args(arguments)
+            return parsed(parser(), COMMANDS, sys.argv[1:] if arguments is None else arguments)
     finally:
         sys.stdout.write(helps.getvalue())
         sys.stdout.flush()
@@ -152,9 +153,9 @@ def _forget_output() -> None:
             pass
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """Return the parser of the command line."""
-    top = argparse.ArgumentParser(
+    top = Parser(
         prog="derive",
         description="Equations of rotating rigid bodies: derived from particles, printed as"
         " checked C and CasADi.",
@@ -174,13 +175,13 @@ exit code: 0 done, 1 something differs or fails its check, 2 the input is bad, 1
     top.set_defaults(parser=top)
     commands = top.add_subparsers(required=True, metavar="COMMAND")
     for name, (options, says, examples) in COMMANDS.items():
-        options(
-            commands.add_parser(
-                name,
-                help=says,
-                description=f"{says[0].upper()}{says[1:]}.",
-                epilog="\n".join(["examples:", *(f"  {example}" for example in examples)]),
-                formatter_class=argparse.RawDescriptionHelpFormatter,
-            )
+        command = commands.add_parser(
+            name,
+            help=says,
+            description=f"{says[0].upper()}{says[1:]}.",
+            epilog="\n".join(["examples:", *(f"  {example}" for example in examples)]),
+            formatter_class=argparse.RawDescriptionHelpFormatter,
         )
+        command.set_defaults(parser_of=command)
+        options(command)
     return top

@@ -26,8 +26,8 @@ OUTERMOST = ("command", "__main__", "cli")
 """Rooms and modules that may use the interface of Python: all others are below it."""
 SPOKEN = {"derive", "derive.command", "derive.solve", "derive.scene.escape"}
 """What commands use of the package: its interface, each other, and what a terminal may show."""
-OF_THEIR_OWN = {"lecture", "costs", "schema", "new", "completion"}
-"""Commands without a counterpart in Python: the lecture, costs, and what editors and shells ask."""
+OF_THEIR_OWN = {"lecture", "costs", "schema", "new", "completion", "parsed"}
+"""What has no counterpart in Python: the lecture, costs, editors, shells, what is typed."""
 WITHOUT_SYMPY = (
     *("scene", "program", "motion", "emit/c", "emit/lines"),
     *("emit/casadi_text", "emit/casadi_module"),

@@ -129,7 +129,7 @@ def _accurate(
     holds = middle <= half and most <= allowed
     says = (
         f"{found.output}: median {middle:.2g} u, largest {most:.2g} u at sample {sample.number} "
-        f"({sample.kind}) of {len(each)}; the header as made says "
+        f"({sample.kind}), the worst of {len(each)} tried; the header as made says "
     )
     says += "nothing" if stated is None else f"{stated:.2g} u"
     says += "" if holds else f"; allowed {half:.2g} u and {allowed:.2g} u"

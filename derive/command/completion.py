@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import shtab
 
+from derive.command.parsed import word_of
 from derive.scene import catalogue
 
 SHELLS = ("bash", "zsh", "tcsh")
@@ -27,7 +28,9 @@ SCENES = {"bash": "_derive_scenes", "zsh": "_derive_scenes", "tcsh": "f:*.toml"}
 
 def options(command: argparse.ArgumentParser) -> None:
     """Declare the options of ``derive completion``."""
-    command.add_argument("shell", choices=SHELLS, help="whose completion is printed")
+    command.add_argument(
+        "shell", type=word_of(SHELLS), choices=SHELLS, help="whose completion is printed"
+    )
     command.set_defaults(run=print_completion)
 
 

@@ -4,12 +4,12 @@ import argparse
 import shlex
 import sys
 from collections.abc import Callable, Sequence
-from pathlib import Path
 
 from rich.progress import Progress
 
 import derive
 from derive.command.costs import full, print_costs, usual
+from derive.command.parsed import location
 from derive.command.scenes import samples_argument, scene_argument
 from derive.command.terminal import OUT, complain, console, error_console, progress
 from derive.scene.escape import visible
@@ -24,7 +24,7 @@ def options(command: argparse.ArgumentParser) -> None:
     scene_argument(command)
     command.add_argument(
         "--out",
-        type=Path,
+        type=location,
         default=OUT,
         metavar="DIR",
         help="folder to write to (default: generated)",

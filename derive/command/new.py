@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from derive.command.parsed import word_of
 from derive.command.terminal import console
 from derive.scene import SceneError
 from derive.scene.names import file_name
@@ -14,7 +15,10 @@ SCHEMA = Path("scene.schema.json")
 
 def options(command: argparse.ArgumentParser) -> None:
     """Declare the options of ``derive new``."""
-    command.add_argument("what", choices=("body", "machine"), help="a single body, or a machine")
+    words = ("body", "machine")
+    command.add_argument(
+        "what", type=word_of(words), choices=words, help="a single body, or a machine"
+    )
     command.add_argument("name", metavar="NAME", help="what it is called: NAME.toml is written")
     command.set_defaults(run=begin)
 

@@ -1,11 +1,11 @@
 """``derive report``: how fast and how wrong a scene's steps and functions are, as page and JSON."""
 
 import argparse
-from pathlib import Path
 
 from rich.progress import Progress, TaskID
 
 import derive
+from derive.command.parsed import location, seconds
 from derive.command.scenes import scene_argument
 from derive.command.terminal import OUT, console, progress
 from derive.solve.several import require_posed
@@ -16,13 +16,13 @@ def options(command: argparse.ArgumentParser) -> None:
     scene_argument(command)
     command.add_argument(
         "--until",
-        type=float,
+        type=seconds,
         metavar="SECONDS",
         help="the end at which errors of motion are taken (default: about ten turns of the scene)",
     )
     command.add_argument(
         "--out",
-        type=Path,
+        type=location,
         default=OUT,
         metavar="DIR",
         help="folder to write to (default: generated)",

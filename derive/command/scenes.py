@@ -5,8 +5,8 @@ import argparse
 from rich.table import Table
 
 import derive
+from derive.command.parsed import typed
 from derive.command.terminal import print_rows
-from derive.scene.escape import brief, visible
 from derive.solve.generation import NUMBERS
 
 
@@ -46,5 +46,5 @@ def _samples(text: str) -> int:
     digits = len(str(NUMBERS[-1]))
     if not text.isdecimal() or len(text) > digits or int(text) not in NUMBERS:
         rule = f"must be a whole number above zero, up to {NUMBERS[-1]}"
-        raise argparse.ArgumentTypeError(f"{rule}, not '{brief(visible(text))}'")
+        raise argparse.ArgumentTypeError(f"{rule}, not {typed(text)}")
     return int(text)

@@ -2,11 +2,11 @@
 
 import argparse
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 from rich.table import Table
 
 import derive
+from derive.command.parsed import location, seconds, typed
 from derive.command.terminal import complain, print_rows
 from derive.solve.handle import STEP
 
@@ -34,16 +34,16 @@ def options(command: argparse.ArgumentParser) -> None:
         help="find the values of NAME, in its range, at which stability changes",
     )
     command.add_argument(
-        "--until", type=float, metavar="SECONDS", help="move in time by the scene's step_rk4"
+        "--until", type=seconds, metavar="SECONDS", help="move in time by the scene's step_rk4"
     )
     command.add_argument(
         "--step",
-        type=float,
+        type=seconds,
         metavar="SECONDS",
         help=f"longest step, of which --until is a multiple ({STEP:g})",
     )
     command.add_argument(
-        "--plot", type=Path, metavar="FILE", help="write the motion as SVG (with --until)"
+        "--plot", type=location, metavar="FILE", help="write the motion as SVG (with --until)"
     )
     command.set_defaults(run=solve)
 
@@ -81,11 +81,13 @@ def _print(rows: Sequence[Printed] | None, doubts: Sequence[str]) -> None:
 def named(texts: Sequence[str]) -> dict[str, str]:
     """Return the texts of values by name, of a list such as ``m=1200 skew=3deg``.
 
-    Raises DeriveError for a name that is set twice.
+    Raises DeriveError for what is not of this form, and for a name that is set twice.
     """
     values: dict[str, str] = {}
     for text in texts:
-        name, _, value = text.partition("=")
+        name, equals, value = text.partition("=")
+        if not (equals and name.strip()):
+            raise derive.DeriveError(f"--set takes NAME=VALUE, as m=1200, not {typed(text)}")
         if name.strip() in values:
             raise derive.DeriveError(f"--set {text[:60]}: '{name.strip()}' is set twice")
         values[name.strip()] = value
@@ -111,7 +113,7 @@ def _simulated(
     step = STEP if given.step is None else given.step
     motion = scene.simulate(values, given.until, step, given.plot)
     at = f"at {motion.times[-1]:.6g} s"
-    rows = [(at, n, f"{v[-1]:.12g}", motion.units[n]) for n, v in motion.states.items()]
+    rows = [(at, n, f"{v[-1]:z.12g}", motion.units[n]) for n, v in motion.states.items()]
     return rows, motion.doubts
 
 
@@ -121,6 +123,6 @@ def _limits(
     unit = {c: q.unit for q in scene.quantities for c in q.components}
     rows: list[Printed] = []
     for name in given.limit:
-        each = [f"{v:.12g}" for v in scene.limits(values, name)]
+        each = [f"{v:z.12g}" for v in scene.limits(values, name)]
         rows += [("limit of stability", name, v, unit.get(name, "")) for v in each or [NOWHERE]]
     return rows, ()

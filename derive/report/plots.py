@@ -8,6 +8,7 @@ import io
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import count
 from typing import Any
 
 from derive.report.slim import Slim, slim
@@ -28,6 +29,8 @@ PAINT = {day: f"--c{n}" for n, day in enumerate(SHADES)} | {
 MARKERS = "osD^vPX*"
 SIZE = (5.0, 4.1)  # inch: letters of 10 px on a page of 390
 LEAST_MARGIN, WIDE = 122, 6.1  # points: to the right of the axes, and of a letter there
+FEWEST = 2  # marks along a side, without which nobody can read it
+SLACK = 1e-9  # of what rounds
 GAP = 0.062  # between names, of the height of the axes
 STYLE: Mapping[str, Any] = {
     "svg.fonttype": "none",
@@ -89,6 +92,7 @@ def svg(plot: Plot) -> Slim:
         ax = figure.subplots()
         _axes(ax, plot)
         _curves(ax, plot)
+        _few_decades(ax)
         _names(ax, plot)
         out = io.StringIO()
         nothing = {"Date": None, "Creator": None, "Format": None, "Type": None}
@@ -113,6 +117,35 @@ def _axes(ax: Any, plot: Plot) -> None:
     ax.set_ylabel(plot.up)
     if plot.floor:
         ax.axhline(plot.floor[1], color=FLOOR, linewidth=1.2, linestyle="--", zorder=1)
+
+
+def _few_decades(ax: Any) -> None:
+    """Put marks between the powers of ten along a side that holds less than two of these."""
+    from matplotlib.ticker import FixedLocator
+
+    for axis in (ax.xaxis, ax.yaxis):
+        low, high = axis.get_view_interval()
+        if sum(low <= x <= high for x in axis.get_ticklocs()) < FEWEST:
+            axis.set_major_locator(FixedLocator(between(low, high)))
+
+
+def between(low: float, high: float) -> list[float]:
+    """Return at least two round numbers in a range of less than two powers of ten.
+
+    >>> between(12.0, 70.0), between(4.1, 4.4)
+    ([20.0, 50.0], [4.2, 4.4])
+    """
+    decade = math.floor(math.log10(low))
+    ends = (low - SLACK * low, high + SLACK * high)
+    found = [float(f"{k}e{decade + n}") for n in (0, 1, 2) for k in (1, 2, 5)]
+    found = [x for x in found if ends[0] <= x <= ends[1]]
+    steps = ((m, math.floor(math.log10(high - low)) - n) for n in count() for m in (5, 2, 1))
+    while len(found) < FEWEST:
+        factor, ten = next(steps)
+        first, last = (x * 10.0**-ten / factor for x in ends)
+        each = range(math.ceil(first), math.floor(last) + 1)
+        found = [float(f"{k * factor}e{ten}") for k in each]
+    return found
 
 
 def _curves(ax: Any, plot: Plot) -> None:
@@ -142,13 +175,16 @@ def _names(ax: Any, plot: Plot) -> None:
 
 
 def power(x: float, _: int = 0) -> str:
-    """Return a power of ten as text: plain characters, which are quick to draw and to search.
+    """Return a number of a scale as text: plain characters, quick to draw and to search.
 
-    >>> power(1e-12), power(1.0)
-    ('10⁻¹²', '1')
+    >>> power(1e-12), power(1.0), power(20.0), power(2.5e-7)
+    ('10⁻¹²', '1', '20', '2.5·10⁻⁷')
     """
     digits = "⁰¹²³⁴⁵⁶⁷⁸⁹"
-    exponent = round(math.log10(x))
+    exponent = math.floor(math.log10(x * (1 + SLACK)))
+    if (factor := f"{x / 10.0**exponent:.6g}") != "1":
+        small = 1e-2 <= x < 1e5
+        return f"{x:.6g}" if small else f"{factor}·{power(10.0**exponent)}"
     raised = "".join(digits[int(d)] for d in str(abs(exponent)))
     return f"10{'⁻' if exponent < 0 else ''}{raised}" if exponent else "1"
 

@@ -3,13 +3,14 @@
 What the user does not know stays None; whether an answer needs it is found later.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import chain
 from typing import Any, Literal, cast
 
 from derive.scene.declaration import AXES, Axis, SceneError, Sextuple, Triple
-from derive.scene.entries import AXIS, KINDS, MASS, MEMBER, SAID, WHOLE_MASS, round_entries
+from derive.scene.entries import AXIS, KINDS, MASS, MEMBER, SAID, shape_entries
 from derive.scene.entry import Entry, Reading, entries_of
 from derive.scene.formula import ZERO, Formula, number
 from derive.scene.machine import Entries, Frame, Member
@@ -28,9 +29,11 @@ from derive.scene.shape import (
     moment,
     round_part,
 )
-from derive.scene.table import Table, formulas, one_of
+from derive.scene.table import Table, formulas, keys, one_of
 from derive.scene.unit import LENGTH
 
+CHOSEN = ("kind", "shape")
+"""What says how a body's moments of inertia are known."""
 InertiaKind = Literal["general", "principal", "axisymmetric", "spherical", "rod"]
 
 
@@ -62,7 +65,7 @@ class Substance:
 def read_member(name: str, given: Table, frames: tuple[Frame, ...], scalars: Scalars) -> Member:
     """Return a body of the machine, its inertia about its mass centre."""
     if "frame" not in given.entries:
-        raise SceneError(f"{given.label} needs 'frame'")
+        keys(given, ("frame",), every_key(MEMBER))
     one_of(given.entries["frame"], given.of("frame"), [f.name for f in frames])
     names = {"frame": tuple(f.name for f in frames)}
     made = _substance(given, Reading(scalars.scopes, names, scalars.parameters))
@@ -109,6 +112,13 @@ def _about(label: str, made: Substance) -> tuple[Triple, Substance]:
     return (x, y, z), made
 
 
+def every_key(more: Iterable[Entry]) -> tuple[str, ...]:
+    """Return what any kind or shape of body may say, and what each says besides."""
+    shapes = map(shape_entries, (*ROUND, *SAID))
+    rows = (MASS, *more, *chain(*KINDS.values(), *shapes))
+    return tuple(dict.fromkeys((*CHOSEN, *(row.key for row in rows))))
+
+
 def _substance(given: Table, by: Reading) -> Substance:
     """Return what a machine's body is made of, as far as it is known."""
     if "shape" in given.entries and "kind" in given.entries:
@@ -117,7 +127,10 @@ def _substance(given: Table, by: Reading) -> Substance:
         return of_shape(given, (*ROUND, *SAID), MEMBER, by)
     if "kind" in given.entries:
         return of_kind(given, MEMBER, by)
-    said = entries_of(given, (replace(AXIS, default=None), MASS, *MEMBER), by)
+    rows = (replace(AXIS, default=None), MASS, *MEMBER)
+    keys(given, (), every_key(MEMBER))
+    keys(given, (), (*CHOSEN, *(row.key for row in rows)))
+    said = entries_of(given, rows, by)
     products: Entries = (None, None, None) if said["axis"] is None else (ZERO, ZERO, ZERO)
     return Substance("", said["mass"], (None, None, None, *products), said["axis"], said)
 
@@ -151,10 +164,10 @@ def of_shape(
     """Return a body of a named shape and of uniform density, and what else its table says."""
     shape = one_of(given.entries["shape"], given.of("shape"), shapes)
     row = ROUND.get(shape)
-    own = SAID[shape] if row is None else round_entries(shape)
+    own = shape_entries(shape)
     taken = {entry.key for entry in own}
     more = tuple(entry for entry in more if entry.key not in taken)
-    said = entries_of(given, (Entry("shape", "text", ""), WHOLE_MASS, *own, *more), by)
+    said = entries_of(given, (Entry("shape", "text", ""), *own, *more), by)
     mass, axis = said["mass"], said.get("axis")
     lengths = {e.key: said[e.key] for e in own if e.kind == "formula above 0" and e.unit == "m"}
     if row is not None:

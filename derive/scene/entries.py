@@ -81,6 +81,7 @@ KINDS: Mapping[str, tuple[Entry, ...]] = {
 }
 """What each kind of body must say."""
 MASS = Entry("mass", "formula above 0", "if it is known", "kg")
+POINT_MASS = Entry("mass", "formula above 0", "of the point", "kg", default=REQUIRED)
 WHOLE_MASS = Entry("mass", "formula above 0", "of uniform density", "kg", default=REQUIRED)
 SAID: Mapping[str, tuple[Entry, ...]] = {
     "box": (Entry("lengths", "any", "three edges", "m", default=REQUIRED),),
@@ -219,8 +220,13 @@ FILE = (
 """What a file says above its first table."""
 
 
-def round_entries(shape: str) -> tuple[Entry, ...]:
-    """Return what a round shape must say besides its mass."""
+def shape_entries(shape: str) -> tuple[Entry, ...]:
+    """Return what a shape must say, its mass first."""
+    mass = POINT_MASS if shape == "point" else WHOLE_MASS
+    return (mass, *(_round_entries(shape) if shape in ROUND else SAID[shape]))
+
+
+def _round_entries(shape: str) -> tuple[Entry, ...]:
     lengths = tuple(
         Entry(name, "formula above 0", "", "m", default=REQUIRED) for name in ROUND[shape].lengths
     )

@@ -1,5 +1,6 @@
 """The frames of a machine: a tree of axes, each read by what turns it and what carries it."""
 
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from derive.scene.declaration import SceneError
@@ -35,16 +36,28 @@ def read_frames(given: Table, scalars: Scalars, bodies: tuple[str, ...]) -> tupl
             found[name] = _frame(name, waiting.pop(name), by)
         ready = sorted((n for r in ready for n in carried.get(r, ())), key=place.__getitem__)
     if waiting:
-        name, entry = next(iter(waiting.items()))
-        parent = str(entry.entries.get("parent"))
-        hint = "" if parent in waiting else nearest(parent, [*found, *waiting])
-        rule = "which no chain of frames carries"
-        raise SceneError(f"frame '{name}' has the parent '{brief(parent)}', {rule}{hint}")
+        raise SceneError(_uncarried({n: _parent(entry) for n, entry in waiting.items()}, found))
     return tuple(found.values())
 
 
 def _parent(given: Table) -> str:
     return text(given.entries.get("parent", INERTIAL), f"{given.label}.parent")
+
+
+def _uncarried(parents: Mapping[str, str], found: Iterable[str]) -> str:
+    """Return why no chain of frames leads to those left: one of another name, or a circle."""
+    chain = [next(iter(parents))]
+    while (parent := parents[chain[-1]]) in parents and parent not in chain:
+        chain.append(parent)
+    name, known = chain[-1], (*found, *parents)
+    if parent not in parents:
+        says = f"frame '{name}' has the parent '{brief(parent)}', and no frame is called so"
+        return says + nearest(parent, [n for n in known if n != name])
+    if parent == name:
+        return f"frame '{name}' has itself as its parent; the first of a chain is '{INERTIAL}'"
+    circle = [*chain[chain.index(parent) :], parent]
+    says = f"frames carry each other in a circle: {', '.join(map(brief, circle))}"
+    return f"{says}; the first of a chain is '{INERTIAL}'"
 
 
 def _frame(name: str, given: Table, by: Reading) -> Frame:

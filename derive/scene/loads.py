@@ -11,7 +11,7 @@ from derive.scene.machine import Force, Frame, Gradient, Load, Member, Spring, U
 from derive.scene.names import identifier, label
 from derive.scene.numbers import check_unit, ends_of, middle
 from derive.scene.scalars import Scalars
-from derive.scene.table import Scope, Table, table, triple
+from derive.scene.table import Scope, Table, keys, table, triple
 from derive.scene.unit import Dimension, dimension
 
 MARK = re.compile(r"\?([A-Za-z][A-Za-z0-9_]*)")
@@ -79,6 +79,7 @@ def _note_unknowns(reader: _Reader, name: str, entry: Table, key: str) -> None:
 def _load(reader: _Reader, name: str, given: Table) -> Load:
     rows = next((rows for key, rows in MAIN.items() if key in given.entries), None)
     if rows is None:
+        keys(given, (), dict.fromkeys(row.key for rows in MAIN.values() for row in rows))
         raise SceneError(f"{given.label} needs one of {', '.join(MAIN)}")
     on = given.entries.get("on")
     if isinstance(on, str) and on == given.entries.get("against"):

@@ -18,7 +18,6 @@ together is told in [scenes.md](scenes.md). Formulas are of
 is *known* (and inputs, given accelerations), or *loads* (and the state). What has no default may be
 left out, unless it is required.
 """
-MASS = entries.WHOLE_MASS
 COLUMNS = "| entry | holds | unit | default | meaning |\n|---|---|---|---|---|"
 
 
@@ -38,8 +37,7 @@ TABLES: Mapping[str, tuple[Entry, ...]] = {
     "`rolls` of a frame": entries.ROLLS,
     "`[bodies.NAME]`, besides a kind or a shape": entries.MEMBER,
     **{f'`kind = "{kind}"` of a body': rows for kind, rows in entries.KINDS.items()},
-    **{f"{_shape(shape)}, with `mass`": entries.round_entries(shape) for shape in ROUND},
-    **{_shape(shape): (MASS, *rows) for shape, rows in entries.SAID.items()},
+    **{_shape(shape): entries.shape_entries(shape) for shape in (*ROUND, *entries.SAID)},
     "`[loads.NAME]`, force and couple": entries.FORCE,
     "`[loads.NAME]`, weight": entries.WEIGHT,
     "`[loads.NAME]`, spring and damper": entries.SPRING,

@@ -178,11 +178,7 @@ def _body() -> dict[str, Any]:
 
 def _shapes(names: Iterable[str]) -> dict[tuple[str, str], tuple[Entry, ...]]:
     return {
-        ("shape", name): (
-            entries.WHOLE_MASS,
-            *(entries.round_entries(name) if name in ROUND else entries.SAID[name]),
-        )
-        for name in names
+        ("shape", name): entries.shape_entries(name) for name in names
     }
 
 

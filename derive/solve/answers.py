@@ -88,7 +88,7 @@ def _rows(found: Instrument, name: str, values: Mapping[str, float]) -> Iterator
         unit = {c: q.unit for q in found.quantities() for c in q.components}
         for number, root in enumerate(roots(found, values), 1):
             for unknown, value in root.items():
-                yield AnswerRow(f"steady motion {number}", unknown, value, unit[unknown])
+                yield AnswerRow(f"steady motion {number}", unknown, value + 0.0, unit[unknown])
         return
     units = {c: q.unit for q in found.library[name].outputs for c in q.components}
     for component, value in found.answer(name, values).items():
@@ -98,7 +98,7 @@ def _rows(found: Instrument, name: str, values: Mapping[str, float]) -> Iterator
                 f"{component} is {value}"
             )
         shown = f"{component}, {LEFT_OVER}" if name == "steady" else component
-        yield AnswerRow(name, shown, value, units[component])
+        yield AnswerRow(name, shown, value + 0.0, units[component])  # no -0
     if name == "linearised":
         small = small_motion(found, values)
         for number, value in enumerate(small.frequencies, 1):

@@ -51,7 +51,7 @@ def path(what: str, value: object) -> Path:
         written = os.fsencode(text)
     except UnicodeEncodeError:
         written = b"\0"
-    if b"\0" in written or max(map(len, written.split(b"/"))) > LONGEST_NAME:
+    if not text.strip() or b"\0" in written or max(map(len, written.split(b"/"))) > LONGEST_NAME:
         raise SceneError(f"{what} must be a path that can exist, not {shown(text)}")
     return Path(text)
 

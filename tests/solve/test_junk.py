@@ -44,7 +44,7 @@ JUNK: Mapping[str, Any] = {
     "whole": np.int64(3), "no number": np.array(np.nan), "date": np.datetime64("2020"),
     "zero byte": "a\0b", "half a pair": "\ud800", "long": "x" * 5000,
 }  # fmt: skip
-PATHS = {"text", "unit", "empty"}
+PATHS = {"text", "unit"}
 NUMBERS = {"nan", "inf", "minus", "zero", "whole", "no number"}
 TAKEN: Mapping[str, set[str]] = {
     "source": set(), "scenes": {"list"}, "folder": PATHS, "plot": PATHS | {"none"},

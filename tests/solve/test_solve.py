@@ -64,8 +64,8 @@ REFUSED = {
     "--step 0.1: a step is of a motion and needs --until": ["--step=0.1"],
     "m=1deg: the value is in kg, not in deg": ["--set", "m=1deg"],
     "alpha=1rpm: the value is in rad, not in rpm": ["--set", "alpha=1rpm"],
-    "m=nan: a value is a number": ["--set", "m=nan"],
-    "m=-infdeg: a value is a number": ["--set", "m=-infdeg"],
+    "m=nan: a value is a plain number": ["--set", "m=nan"],
+    "m=-infdeg: a value is a plain number": ["--set", "m=-infdeg"],
     "body 'disc'.mass must be positive, and is not so at m = 0": ["--set", "m=0"],
 }
 
@@ -89,7 +89,7 @@ def test_a_limit_needs_small_motion(capsys: pytest.CaptureFixture[str]) -> None:
 def test_a_name_that_the_scene_does_not_have_is_refused_with_a_hint() -> None:
     with pytest.raises(SceneError, match=r"has no 'alhpa' to set \(did you mean 'alpha'"):
         top().solve({"alhpa": 1})
-    with pytest.raises(SceneError, match="a value is a number"):
+    with pytest.raises(SceneError, match="a value is a plain number"):
         top().solve({"alpha": "much"})
 
 
@@ -218,3 +218,13 @@ def test_what_only_machines_have_is_not_advised_to_one_body() -> None:
     for ask in (ball.frequencies, ball.roots):
         with pytest.raises(SceneError, match="is of machines, and this scene is not written as"):
             ask({})
+
+
+def test_no_answer_is_a_zero_with_a_sign(capsys: pytest.CaptureFixture[str]) -> None:
+    still = dict.fromkeys(("x", "x_dot", "theta", "theta_dot", "F"), 0.0)
+    cart = {"M": 0.5, "m": 0.2, "l": 0.3, "I": 0.006, "b": 0.1, "g": 9.8} | still
+    assert not [row for row in load("cart_pendulum").solve(cart).rows if str(row.value) == "-0.0"]
+    data = [f"{name}={value}" for name, value in (cart | {"theta": -0.0}).items()]
+    for more in (["--limit=b"], ["--until=0.01"]):
+        assert main(["solve", "cart_pendulum", "--set", *data, *more]) == 0
+        assert " -0 " not in capsys.readouterr().out

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import cast
 
-from derive.scene.bodies import InertiaKind, Substance, of_kind, of_shape
+from derive.scene.bodies import CHOSEN, InertiaKind, Substance, every_key, of_kind, of_shape
 from derive.scene.declaration import AXES, SceneError, Sextuple, Triple, Turning
 from derive.scene.entries import BODY
 from derive.scene.entry import Reading
@@ -12,7 +12,7 @@ from derive.scene.formula import ZERO
 from derive.scene.scalars import Scalars
 from derive.scene.shape import SHAPES, by_parallel_axes
 from derive.scene.short_form.declared import Body
-from derive.scene.table import Table, nearest
+from derive.scene.table import Table, keys, nearest
 
 
 def read_body(given: Table, point: str, scalars: Scalars) -> Body:
@@ -20,7 +20,9 @@ def read_body(given: Table, point: str, scalars: Scalars) -> Body:
 
     point : the kind of the scene's point; a shape is moved to it unless it is the mass centre
     """
-    said = [key for key in ("kind", "shape") if key in given.entries]
+    said = [key for key in CHOSEN if key in given.entries]
+    if not said:
+        keys(given, (), every_key(BODY))
     if len(said) != 1:
         found = "both" if said else "neither"
         raise SceneError(f"body needs either a kind or a shape, and has {found}")

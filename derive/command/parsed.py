@@ -1,0 +1,71 @@
+"""How commands are told what to do: bad arguments are refused by one sentence."""
+
+import argparse
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import NoReturn
+
+from derive.scene.declaration import SceneError
+from derive.scene.escape import brief, visible
+from derive.scene.table import nearest
+
+COMMAND = "a command is missing"
+MISSING = "the following arguments are required: "
+
+
+class Parser(argparse.ArgumentParser):
+    """The parser of the standard library, which else prints its usage above the sentence."""
+
+    def error(self, message: str) -> NoReturn:
+        """Refuse arguments. Raises SceneError with a sentence that begins at the command."""
+        if message.startswith(MISSING):
+            message = f"{message.removeprefix(MISSING)} is missing"
+        raise SceneError(f"{self.prog.removeprefix('derive').strip()}: {message}".lstrip(": "))
+
+
+def parsed(top: Parser, commands: Iterable[str], arguments: Sequence[str]) -> argparse.Namespace:
+    """Return what a command is told. Raises SceneError for what none knows."""
+    first = arguments[0] if arguments else ""
+    if not first.startswith("-") and first not in commands:
+        hint = nearest(first, commands)
+        raise SceneError(f"{f'there is no command {typed(first)}' if first else COMMAND}{hint}")
+    told, more = top.parse_known_args(arguments)
+    if more:
+        known = vars(told.parser_of)["_option_string_actions"]
+        option = more[0].partition("=")[0]
+        one = "no option" if option.startswith("-") else "one argument too many"
+        hint = nearest(option, known) if option.startswith("-") else ""
+        raise SceneError(f"{told.parser_of.prog[7:]}: {typed(option)} is {one}{hint}")
+    return told
+
+
+def typed(text: str) -> str:
+    """Return what was typed as a sentence shows it."""
+    return f"'{brief(visible(text))}'"
+
+
+def word_of(words: Iterable[str]) -> Callable[[str], str]:
+    """Return what reads one of a few words."""
+
+    def read(text: str) -> str:
+        if text in (known := tuple(words)):
+            return text
+        raise argparse.ArgumentTypeError(f"must be one of {', '.join(known)}, not {typed(text)}")
+
+    return read
+
+
+def seconds(text: str) -> float:
+    """Return a time."""
+    try:
+        return float(text)
+    except ValueError:
+        rule = "must be a number of seconds, as 0.5"
+        raise argparse.ArgumentTypeError(f"{rule}, not {typed(text)}") from None
+
+
+def location(text: str) -> Path:
+    """Return where a file or folder is."""
+    if not text.strip():
+        raise argparse.ArgumentTypeError(f"must be a path, not {typed(text)}")
+    return Path(text)

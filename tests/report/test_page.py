@@ -1,0 +1,50 @@
+"""A report's page: marks along both sides of every plot, and footnotes of what stands there."""
+
+import re
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from derive.emit.templates import TEMPLATES
+from derive.report.plots import Curve, Plot, between, svg
+
+NUMBER = r">(10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|[\d.]+(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?)<"
+
+
+@pytest.mark.parametrize(
+    ("x", "y"),
+    [((12, 30), (3.1, 3.9)), ((12,), (4.3e-7,)), ((3, 20), (0.5, 2)), ((5, 40), (1e-9, 1e-3))],
+)
+def test_both_sides_of_a_plot_have_marks_even_within_one_decade(x, y) -> None:
+    plot = svg(Plot([Curve("moment", x, y, 0)], "operations", "error", "words"))
+    marks = re.findall(NUMBER, plot.text)
+    assert len(marks) >= 4, marks
+
+
+@given(st.floats(1e-17, 1e9), st.floats(1e-3, 1.9))
+def test_marks_lie_in_the_range_in_order(low: float, decades: float) -> None:
+    high = low * 10**decades
+    marks = between(low, high)
+    assert 2 <= len(marks) <= 12
+    assert marks == sorted(set(marks))
+    assert low * (1 - 1e-8) <= marks[0]
+    assert marks[-1] <= high * (1 + 1e-8)
+
+
+def motion_section(*stars: str) -> str:
+    steps = [SimpleNamespace(name="step_rk4", wanted=not star, operations=9, lengths={"f64": "1"},
+                             spent={"f64": "1"}, least={"f64": "1"}, times={}, instructions={})
+             for star in stars]  # fmt: skip
+    motion = SimpleNamespace(time=1.0, given=True, fast=1.0, start=[], hard=0, tried=0)
+    report = SimpleNamespace(instructions=())
+    return TEMPLATES.get_template("scene_report_motion.html.jinja").render(
+        motion=motion, aside=[], figure=str, plots=[], floors={"f32": "1", "f64": "1"},
+        says={"f64": "double"}, target="1e-6", steps=steps, report=report, refused={},
+    )  # fmt: skip
+
+
+def test_the_footnote_on_a_star_stands_where_a_star_does() -> None:
+    assert "* the scene does not want it" in motion_section("", "*")
+    assert "the scene does not want it" not in motion_section("", "")
