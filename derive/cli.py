@@ -48,10 +48,11 @@ COMMANDS: Mapping[str, tuple[Callable[[argparse.ArgumentParser], None], str, tup
     ),
     "check": (
         check.options,
-        "compile what was emitted and compare it with ball arithmetic",
+        "compile what was emitted and compare it with ball arithmetic, or run it on a core",
         (
             "derive check heavy_top",
             "derive check brick.toml --samples 1000000",
+            "derive check heavy_top --target m4f",
         ),
     ),
     "solve": (

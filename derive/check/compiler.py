@@ -68,7 +68,7 @@ def compiled(texts: Mapping[str, str], source: str, folder: Path, with_: Compile
         place.mkdir(parents=True, exist_ok=True)
         for name, text in texts.items():
             (place / name).write_text(text, encoding="utf-8")
-        _run((*with_.command, *FLAGS, source, "-o", library.name, "-lm"), place)
+        answer_of((*with_.command, *FLAGS, source, "-o", library.name, "-lm"), place)
     if not library.exists():
         raise CompilerError(f"`{' '.join(with_.command)}` made no library, and did not say why")
     return library
@@ -82,7 +82,7 @@ def program_made(text: str, source: str, folder: Path, with_: Compiler) -> Path:
     program = folder / Path(source).stem
     if not program.exists():
         (folder / source).write_text(text, encoding="utf-8")
-        _run((*with_.command, *OPTIMISED, source, "-o", program.name, "-ldl"), folder)
+        answer_of((*with_.command, *OPTIMISED, source, "-o", program.name, "-ldl"), folder)
     return program
 
 
@@ -100,8 +100,10 @@ def callable_library(library: Path) -> ctypes.CDLL:
         ) from None
 
 
-def _run(command: tuple[str, ...], folder: Path) -> None:
+def answer_of(command: tuple[str, ...], folder: Path) -> str:
+    """Return what a command prints. Raises CompilerError with its complaint."""
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode:
         said = done.stderr.strip()[-2000:] or f"nothing, and ended with code {done.returncode}"
         raise CompilerError(f"`{' '.join(command)}` said: {said}")
+    return done.stdout

@@ -48,6 +48,19 @@ def print_costs(results: Sequence[Made], view: View) -> None:
     print_rows(said, width)
 
 
+def print_stale(results: Sequence[Made]) -> None:
+    """Say of which scenes figures of cores are no longer stated, and how to measure them anew."""
+    for result in results:
+        for core in result.stale:
+            scene = result.costs[0].scene
+            console.print(
+                f"{scene}: what is kept of {core} is of other C and not stated;"
+                f" `derive check --target {core} --keep {scene}` measures it anew",
+                highlight=False,
+                soft_wrap=True,
+            )
+
+
 def usual(results: Sequence[Made]) -> tuple[Table, Mapping[str, str]]:
     """Return operations and errors on the declared ranges."""
     table = _columns("median", "largest")

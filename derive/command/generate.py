@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from rich.progress import Progress
 
 import derive
-from derive.command.costs import full, print_costs, usual
+from derive.command.costs import full, print_costs, print_stale, usual
 from derive.command.parsed import location
 from derive.command.scenes import samples_argument, scene_argument
 from derive.command.terminal import OUT, complain, console, error_console, progress
@@ -77,6 +77,8 @@ def generate(given: argparse.Namespace) -> int:
     if made.stopped:
         complain(mended(made), "yellow")
     print_costs(made.made, VIEWS[given.tell])
+    if given.tell == "savings":
+        print_stale(made.made)
     console.print(f"{len(made.files)} files in {given.out}/")
     return 0
 

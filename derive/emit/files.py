@@ -17,14 +17,15 @@ from derive.emit.c.external import external_file
 from derive.emit.c.source import c_files
 from derive.emit.casadi_text import casadi_file
 from derive.emit.manifest import manifest
+from derive.emit.on_target import ENDING
 from derive.emit.page.scene import scene_page
 from derive.emit.reported import NOTHING_BESIDE, Beside
 from derive.library.library import Library
 from derive.program.program import Measurement, Program
 from derive.scene.declaration import DeriveError
 
-REPORTS = ("_report.html", "_report.json")
-"""How files end that `derive report` makes beside those of a scene: measured, not generated."""
+MEASURED = ("_report.html", "_report.json", ENDING)
+"""How files end that lie beside those of a scene and are measured, not generated."""
 UNFINISHED = ".derive-unfinished"
 """Lists the files that a run is about to replace; it lies there until all of them are."""
 
@@ -54,13 +55,13 @@ def scene_files(
 ) -> dict[str, str]:
     """Return the path below the output folder and the text of every file of a scene.
 
-    digest : of all that the figures depend on        by : what the page can lead to
+    digest : of all that the figures depend on        by : what lies beside them
     second : the second derivatives of a step, where C for CasADi is to lie beside the rest
     """
     name = library.scene.name
-    texts = c_files(library, figures) | {
+    texts = c_files(library, figures, by.on_target) | {
         f"{name}_casadi.py": casadi_file(library, figures, second),
-        f"{name}.json": manifest(library, figures, digest),
+        f"{name}.json": manifest(library, figures, digest, by.on_target),
         f"{name}.html": scene_page(library, figures, by),
     }
     if second is not None:
@@ -234,7 +235,7 @@ def folders_left_over(folder: Path, texts: Mapping[str, str]) -> Iterator[Differ
 
 def _left_over(folder: Path, name: str, texts: Mapping[str, str]) -> Iterator[Difference]:
     made = any(file.startswith(f"{name}/") for file in texts)
-    own = {f"{name}{ending}" for ending in REPORTS if made}
+    own = {f"{name}{ending}" for ending in MEASURED if made}
     for path in sorted((folder / name).glob("*")):
         file = f"{name}/{path.name}"
         if file not in texts and path.is_file() and path.name not in own:

@@ -11,6 +11,7 @@ from derive.emit.c.signature import CNames, dense
 from derive.emit.c.source import JACOBIAN_DENSE, command
 from derive.emit.c.text import pair_functions
 from derive.emit.notation import equation_text
+from derive.emit.on_target import UNKNOWN, OnTarget, by_core
 from derive.lecture.chapters import LECTURE
 from derive.library.library import Library
 from derive.program.precision import F32, F64, PRECISIONS
@@ -19,8 +20,16 @@ from derive.program.status import possible
 from derive.scene.wanted import JACOBIAN
 
 
-def manifest(library: Library, figures: Sequence[Measurement], digest: str = "") -> str:
-    """Return the text of ``<scene>.json``; ``digest`` is of all that the figures depend on."""
+def manifest(
+    library: Library,
+    figures: Sequence[Measurement],
+    digest: str = "",
+    costs: OnTarget = UNKNOWN,
+) -> str:
+    """Return the text of ``<scene>.json``.
+
+    digest : of all that the figures depend on        costs : what functions cost on cores
+    """
     scene = library.scene
     whole = {
         "scene": scene.name,
@@ -41,11 +50,17 @@ def manifest(library: Library, figures: Sequence[Measurement], digest: str = "")
         },
         "parameters": [_quantity(q) for q in library.vocabulary.parameters],
         "constants": [{"name": c, "formula": f} for c, f in library.constants.items()],
-        "functions": _functions(library, figures),
+        "functions": [f | _on_cores(f["name"], costs) for f in _functions(library, figures)],
         "warnings": list(library.mechanism.doubts()),
         "measured": {"digest": digest},
     }
     return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
+
+
+def _on_cores(function: str, costs: OnTarget) -> dict[str, Any]:
+    """Return what a function costs on the cores that it was run on, nothing if on none."""
+    own = costs.of(function)
+    return {"targets": by_core(own)} if own else {}
 
 
 def _files(name: str) -> dict[str, Any]:

@@ -7,6 +7,8 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
+from derive.emit.c.source import sources_of
+from derive.emit.on_target import UNKNOWN, OnTarget, kept, lies
 from derive.library.digest import digest_of_programs
 from derive.library.library import Library
 
@@ -16,14 +18,16 @@ REPORT_PAGE = "report.html"
 
 @dataclass(frozen=True)
 class Beside:
-    """What a page can lead to.
+    """What files of a scene can lead to or state.
 
     best    : the sentence of the scene's own report, "" where there is none
     reports : where the report of many cases lies, as seen from the output folder; none or one
+    on_target : what functions cost on cores
     """
 
     best: str = ""
     reports: tuple[str, ...] = ()
+    on_target: OnTarget = UNKNOWN
 
 
 NOTHING_BESIDE = Beside()
@@ -31,7 +35,9 @@ NOTHING_BESIDE = Beside()
 
 def lying_beside(library: Library, folder: Path) -> Beside:
     """Return what lies below ``folder`` beside a scene's page."""
-    return Beside(reported(library, folder), reports_in(folder))
+    name = library.scene.name
+    costs = kept(folder, name, sources_of(library)) if lies(folder, name) else UNKNOWN
+    return Beside(reported(library, folder), reports_in(folder), costs)
 
 
 def reports_in(folder: Path) -> tuple[str, ...]:

@@ -177,9 +177,7 @@ def _body() -> dict[str, Any]:
 
 
 def _shapes(names: Iterable[str]) -> dict[tuple[str, str], tuple[Entry, ...]]:
-    return {
-        ("shape", name): entries.shape_entries(name) for name in names
-    }
+    return {("shape", name): entries.shape_entries(name) for name in names}
 
 
 def _chosen(

@@ -61,13 +61,17 @@ class CostRow:
 
 @dataclass(frozen=True)
 class Made:
-    """The texts of a scene's files, what its reader should be told, and its costs."""
+    """The texts of a scene's files, what its reader should be told, and its costs.
+
+    stale : cores whose kept figures are not of the C that is made now
+    """
 
     texts: dict[str, str] = field(repr=False)
     warnings: tuple[str, ...]
     costs: tuple[CostRow, ...]
     savings: tuple[Saving, ...] = ()
     card: Card | None = field(default=None, repr=False)
+    stale: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -166,7 +170,8 @@ def made(
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in doubts)
     lies = NOTHING_BESIDE if reports is None else lying_beside(programs, reports)
     texts = scene_files(programs, measured.each, measured.digest, lies, second)
-    return Made(texts, warnings, cost_rows(programs, measured.each), card=card(programs, lies.best))
+    costs, shown = cost_rows(programs, measured.each), card(programs, lies.best)
+    return Made(texts, warnings, costs, card=shown, stale=lies.on_target.stale)
 
 
 def _poles(programs: Library) -> str:

@@ -98,7 +98,7 @@ def made_of(
     by = measuring(into, samples, figures)
     costs: Telling = "savings" if one_of(tell, "tell", get_args(Telling)) == "savings" else "costs"
     tasks: list[Callable[[], Made]] = [
-        partial(_made, s, by, costs, into, parts) for s in _every(scenes)
+        partial(_made, s, by, costs, into, parts) for s in every(scenes)
     ]
     return _of_all(scenes, into, tasks, hears)
 
@@ -113,7 +113,8 @@ def _require_scenes(scenes: object) -> None:
         raise SceneError(f"a scene is what derive.load returns, not {met(strange[0])}")
 
 
-def _every(scenes: Sequence[Handle]) -> tuple[Handle, ...]:
+def every(scenes: Sequence[Handle]) -> tuple[Handle, ...]:
+    """Return scenes, none meaning all of the catalogue."""
     return tuple(scenes) or tuple(map(load, catalogue()))
 
 
@@ -154,7 +155,7 @@ def checked(
     Raises DeriveError for any that can have no programs, before one is begun.
     """
     require_posed(scenes)
-    for scene in _every(scenes):
+    for scene in every(scenes):
         yield from scene.check(folder, samples, told)
 
 

@@ -57,6 +57,8 @@ WHOLE = {
     "bench/truth.py: _add": "balls",
     "check/admission.py: _joined": "entries counted",
     "check/derivatives.py: _differentiated": "whole numbers",
+    "check/target/build.py: _taken": "bytes",
+    "check/target/harness.py: count_of": "values counted",
     "check/external.py: of_module": "components counted",
     "command/lecture.py: _verified": "seconds of this run",
     "lower/expand.py: degree": "powers",

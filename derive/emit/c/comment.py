@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from textwrap import wrap
 
 from derive.emit.notation import equation_text
+from derive.emit.on_target import OPTIMISED, Cost
 from derive.lecture.chapters import LECTURE
 from derive.motion.runge_kutta.system import FLOW, NEXT
 from derive.program.program import Measurement, Program, Quantity, Singular
@@ -26,13 +27,19 @@ MOMENTS = {
 WIDTH = 96
 
 
-def comment(program: Program, figures: Sequence[Measurement], bodies: int) -> str:
-    """Return the comment block of ``program`` of a scene of so many bodies, as C text."""
+def comment(
+    program: Program, figures: Sequence[Measurement], bodies: int, costs: Sequence[Cost] = ()
+) -> str:
+    """Return the comment block of ``program`` of a scene of so many bodies, as C text.
+
+    costs : what it costs on cores, as far as is known
+    """
     lines = [program.says, *_arguments(program), *_postconditions(program, bodies)]
     if program.makes("constants"):
         says = "; ".join(f"{number} {words}" for number, words in possible(program).items())
         lines += _labelled("Returns:", f"{says}.") + _labelled("Error:", f"{SETUP_ERROR}.")
         lines += _labelled("Cost:", f"once; {program.flops()} operations on pairs.")
+        lines += _on_cores(costs)
     else:
         lines += _labelled("Error:", _error(program, figures))
         pairs = " (on pairs of floats)" if program.arithmetic == "pairs" else ""
@@ -41,11 +48,29 @@ def comment(program: Program, figures: Sequence[Measurement], bodies: int) -> st
             for s in program.singular
             for line in _labelled("Singular:", f"{singular_clause(s)}.")
         ]
-        lines += _labelled("Cost:", cost_line(program) + pairs + ".")
+        lines += _labelled("Cost:", cost_line(program) + pairs + ".") + _on_cores(costs)
         if program.assumptions:
             lines += _labelled("Rests on:", ", ".join(program.assumptions) + ".")
+    return _block(lines)
+
+
+def dense_comment(entries: int, costs: Sequence[Cost]) -> str:
+    """Return the comment of a function that fills the whole matrix."""
+    says = f"The same, the whole matrix: {entries} entries."
+    return _block([says, *_on_cores(costs)]) if costs else f"/* {says} */"
+
+
+def _block(lines: Sequence[str]) -> str:
     text = "\n".join(f" * {in_comment(line)}".rstrip() for line in lines)
-    return f"/*{text[2:]}\n */" if text.startswith(" *") else text
+    return f"/*{text[2:]}\n */"
+
+
+def _on_cores(costs: Sequence[Cost]) -> list[str]:
+    return [
+        line
+        for cost in costs
+        for line in _labelled(f"On {cost.title}, {OPTIMISED}:", f"{cost.says}.")
+    ]
 
 
 def wrapped(sentence: str) -> list[str]:

@@ -5,11 +5,12 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from derive import __version__
-from derive.emit.c.comment import comment, wrapped
+from derive.emit.c.comment import comment, dense_comment, wrapped
 from derive.emit.c.example import example
 from derive.emit.c.scope import declared_in_c, require_free, require_no_symbol
 from derive.emit.c.signature import CNames, dense, dense_size, prototype
 from derive.emit.c.text import constant_array, function_body, pair_body, pair_functions
+from derive.emit.on_target import UNKNOWN, OnTarget
 from derive.emit.operators import literal
 from derive.emit.templates import TEMPLATES
 from derive.library.library import Library
@@ -24,23 +25,33 @@ from derive.verify.search import SAMPLING
 JACOBIAN_DENSE = "The whole matrix, column by column."
 
 
-def c_files(library: Library, figures: Sequence[Measurement]) -> dict[str, str]:
-    """Return name and text of the scene's C files, both precisions."""
+def c_files(
+    library: Library, figures: Sequence[Measurement], costs: OnTarget = UNKNOWN
+) -> dict[str, str]:
+    """Return name and text of the scene's C files, both precisions.
+
+    costs : what functions cost on cores, if it is known
+    """
     files: dict[str, str] = {}
     for precision in PRECISIONS:
         own = [m for m in figures if m.precision == precision.name]
-        files |= _pair_of_files(library, precision, own)
+        files |= _pair_of_files(library, precision, own, costs)
     return files
 
 
+def sources_of(library: Library) -> dict[str, str]:
+    """Return the texts of a scene's C sources by precision, without headers."""
+    names = CNames(library.scene.name)
+    return {p.name: _source(library, names, p, ()) for p in PRECISIONS}
+
+
 def _pair_of_files(
-    library: Library, precision: Precision, figures: Sequence[Measurement]
+    library: Library, precision: Precision, figures: Sequence[Measurement], costs: OnTarget
 ) -> dict[str, str]:
     names = CNames(library.scene.name)
     source = _source(library, names, precision, figures)
-    header = _header(
-        library, names, precision, figures, hashlib.sha256(source.encode()).hexdigest()[:16]
-    )
+    digest = hashlib.sha256(source.encode()).hexdigest()[:16]
+    header = _header(library, names, precision, figures, costs, digest)
     every = [q for p in (library.setup, *library.printed()) for q in (*p.inputs, *p.outputs)]
     given = [name for q in every for name in (q.name, *q.components)]
     require_no_symbol(names.scene, given, header + source)
@@ -76,14 +87,18 @@ def _header(
     names: CNames,
     precision: Precision,
     figures: Sequence[Measurement],
+    costs: OnTarget,
     digest: str,
 ) -> str:
     described, bodies = [], len(library.scene.bodies)
     for program in library.emitted():
-        described.append((comment(program, figures, bodies), prototype(program, names, precision)))
+        own = costs.of(program.name, precision.name)
+        says = comment(program, figures, bodies, own)
+        described.append((says, prototype(program, names, precision)))
         if program.sparsity:
-            says = f"/* The same, the whole matrix: {dense_size(program)} entries. */"
-            described.append((says, prototype(dense(program), names, precision)))
+            whole = dense(program)
+            says = dense_comment(dense_size(program), costs.of(whole.name, precision.name))
+            described.append((says, prototype(whole, names, precision)))
     return TEMPLATES.get_template("header.h.jinja").render(
         first_line=f"/* {first_line(library, figures)}",
         title=library.scene.title,

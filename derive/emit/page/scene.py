@@ -9,6 +9,7 @@ from derive.emit.c.comment import SETUP_ERROR, cost_line, of_what
 from derive.emit.c.source import first_line
 from derive.emit.drawing.drawing import drawing
 from derive.emit.notation import name_mathml
+from derive.emit.on_target import OnTarget
 from derive.emit.page.answer import answer_lines
 from derive.emit.page.code import listing
 from derive.emit.page.equation import letter, notes, passages, taken_names, written_names
@@ -55,7 +56,7 @@ def scene_page(
         range_of=_range,
         cost=cost_line,
         of_what=of_what,
-        sections=_sections(library, figures),
+        sections=_sections(library, figures, by.on_target),
         files=_files(scene.name),
     )
 
@@ -65,12 +66,14 @@ def _files(name: str) -> list[str]:
     return [*sources, f"{name}_casadi.py", f"{name}.json"]
 
 
-def _sections(library: Library, figures: Sequence[Measurement]) -> list[dict[str, object]]:
+def _sections(
+    library: Library, figures: Sequence[Measurement], costs: OnTarget
+) -> list[dict[str, object]]:
     """Return the functions in order; equations stand where they are first needed."""
     owners: dict[str, str] = {}
     return [
         _section(library, program, owners.setdefault(_base(program), program.name))
-        | {"errors": _errors(program, figures)}
+        | {"errors": _errors(program, figures), "costs": costs.of(program.name)}
         for program in library.printed()
     ]
 

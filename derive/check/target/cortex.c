@@ -1,11 +1,14 @@
-/* Start-up of a Cortex-M with semihosting: vector table, data and bss, floating-point unit. */
+/* Start-up of a Cortex-M with semihosting: vector table, data and bss, floating-point unit, and a
+ * timer of 32 bits of the board, which counts instructions where an emulator's clock does. */
 #include <stdint.h>
 
-extern uint32_t stack_top, data_load, data_start, data_end, bss_start, bss_end;
-int main(void);
+#include "board.h"
+
+extern uint32_t stack_top, data_load, data_start, data_end, bss_start;
 void reset(void);
 void fault(void);
-void say(const char *text);
+
+#define AT(address) (*(volatile uint32_t *)(address))
 
 __attribute__((section(".vectors"), used)) static const void *const vectors[16] = {
     &stack_top, (void *)reset, (void *)fault, (void *)fault, (void *)fault,
@@ -34,6 +37,30 @@ void fault(void)
     leave();
 }
 
+#if defined(MICROBIT) /* TIMER0 of the nRF51, at 16 MHz */
+static void start(void)
+{
+    AT(0x40008508) = 3; /* 32 bits */
+    AT(0x40008510) = 0; /* no prescaler */
+    AT(0x40008000) = 1;
+}
+
+uint32_t ticks(void)
+{
+    AT(0x40008040) = 1;
+    return AT(0x40008540);
+}
+#else /* timer 0 of the MPS2 boards, at 25 MHz, counts down */
+static void start(void)
+{
+    AT(0x40000008) = 0xFFFFFFFFu;
+    AT(0x40000004) = 0xFFFFFFFFu;
+    AT(0x40000000) = 1;
+}
+
+uint32_t ticks(void) { return ~AT(0x40000004); }
+#endif
+
 void reset(void)
 {
     const uint32_t *from = &data_load;
@@ -44,9 +71,10 @@ void reset(void)
         *to = 0;
     }
 #if defined(__ARM_FP)
-    *(volatile uint32_t *)0xE000ED88 |= 0xFu << 20; /* CPACR: full access to the FPU */
+    AT(0xE000ED88) |= 0xFu << 20; /* CPACR: full access to the FPU */
     __asm__ volatile("dsb\n isb");
 #endif
+    start();
     main();
     leave();
 }

@@ -1,0 +1,73 @@
+"""Programs of a core run on its emulated board, and what they say, read."""
+
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+from derive.check.target.core import Core
+from derive.scene.declaration import DeriveError
+
+NOPS = 1000
+"""Instructions of the harness's first function."""
+PATIENCE = 600  # seconds; the longest of the catalogue takes a few
+_ICOUNT = ("-icount", "shift=7,align=off,sleep=off")
+_SEMIHOSTING = ("-semihosting-config", "enable=on,target=native")
+_QUIET = ("-nographic", "-monitor", "none", "-serial", "none")
+
+
+class RunError(DeriveError, RuntimeError):
+    """A program that did not say what it should; the sentence has what it said."""
+
+
+@dataclass(frozen=True)
+class Heard:
+    """What the harness says of one function; ticks are of the board's counter."""
+
+    bits: str
+    values: int
+    least: int
+    most: int
+    stack: int
+
+
+def on_board(core: Core, program: Path) -> list[Heard]:
+    """Return what a program says on a core's emulated board, its functions in order.
+
+    Raises RunError if it ends otherwise, or if the function of known length has another.
+    """
+    command = (core.tools.emulator, *core.machine, *_QUIET, *_SEMIHOSTING, *_ICOUNT)
+    first, *found = _said((*command, "-kernel", str(program)))
+    if {counted(core, first.least), counted(core, first.most)} != {NOPS}:
+        raise RunError(
+            f"{core.name}: {NOPS} instructions must be counted as such, but "
+            f"{first.least} to {first.most} ticks are {counted(core, first.least)}"
+        )
+    return found
+
+
+def here(program: Path) -> list[Heard]:
+    """Return what the program of this machine says."""
+    return _said((str(program),))[1:]
+
+
+def counted(core: Core, ticks: int) -> int:
+    """Return how many instructions a core has done in so many ticks."""
+    return round(ticks / core.ticks)
+
+
+def _said(command: tuple[str, ...]) -> list[Heard]:
+    try:
+        done = subprocess.run(command, capture_output=True, check=False, timeout=PATIENCE)
+    except subprocess.TimeoutExpired:
+        raise RunError(f"{command[0]}: the program must end, but ran {PATIENCE} s") from None
+    text = (done.stdout + done.stderr).decode(errors="replace")
+    try:
+        return [_line(line.split()) for line in text.splitlines()]
+    except (ValueError, IndexError):
+        raise RunError(f"{command[0]}: a row of figures must come, but: {text[-300:]!r}") from None
+
+
+def _line(words: list[str]) -> Heard:
+    first, second, *rest = words
+    values, least, most, stack = (int(word, 16) for word in rest)
+    return Heard(first + second, values, least, most, stack)
