@@ -51,6 +51,7 @@ def manifest(
         "parameters": [_quantity(q) for q in library.vocabulary.parameters],
         "constants": [{"name": c, "formula": f} for c, f in library.constants.items()],
         "functions": [f | _on_cores(f["name"], costs) for f in _functions(library, figures)],
+        "taken": list(library.mechanism.signs),
         "warnings": list(library.mechanism.doubts()),
         "measured": {"digest": digest},
     }

@@ -82,14 +82,15 @@ def _same(first: list[Any] | None, second: list[Any] | None) -> bool:
 def without_factors(problem: Problem, words: Words, sought: AbstractSet[Symbol]) -> Problem:
     """Return a problem of what vanishes without the parameters that only multiply it.
 
-    sought : what it vanishes at, which is kept; so is a state: sines of angles have roots too
+    sought : what it vanishes at, which is kept; so is a state: sines of angles have roots too; and
+             so is a parameter that may be 0, where everything vanishes
 
     A factor moves no root: with it and without it the answers at two points are in one ratio.
     """
     taken: dict[Symbol, Expr] = {}
     fixed = words.vocabulary.fixed()
     for symbol in sorted((problem.arguments() & fixed) - sought, key=str):
-        if _is_factor(problem, words, symbol):
+        if symbol.is_positive and _is_factor(problem, words, symbol):
             taken[symbol] = Integer(1)
     return substituted(problem, taken)
 

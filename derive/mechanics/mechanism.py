@@ -18,6 +18,7 @@ from derive.mechanics.matter import Lean, lean
 from derive.mechanics.problem import Problem, substituted
 from derive.mechanics.rotation import FreeRotation, free_rotation
 from derive.mechanics.sheet import below
+from derive.mechanics.signs import signs_taken
 from derive.mechanics.sweep import ranges, regular, weakest
 from derive.mechanics.vocabulary import Vocabulary
 from derive.mechanics.words import Words, words
@@ -90,6 +91,16 @@ class Mechanism:
     def rotation(self) -> FreeRotation | None:
         """Return the rotation of the only body that turns freely, None if there is none."""
         return free_rotation(self.answers.frames)
+
+    @cached_property
+    def said(self) -> tuple[str, ...]:
+        """Return what a scene is made of, and whose signs its equations rest on."""
+        return (*self.scene.told, *self.signs)
+
+    @cached_property
+    def signs(self) -> tuple[str, ...]:
+        """Return a sentence for each root of a square that is taken as what is squared."""
+        return tuple(dict.fromkeys(signs_taken(self.answers.frames)))
 
     def doubts(self) -> tuple[str, ...]:
         """Return the warnings of a scene, and those that take its equations to be found."""

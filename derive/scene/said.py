@@ -97,13 +97,26 @@ def _load(load: Load) -> str:
     if isinstance(load, Force):
         return f"Load {load.name}: {_force(load)}."
     if isinstance(load, Spring):
-        return (
-            f"Load {load.name}: a spring {load.stiffness} with damper {load.damping} on {load.on}."
-        )
+        return f"Load {load.name}: {_spring(load)}."
     if isinstance(load, Gradient):
-        return f"Load {load.name}: the gravity gradient {load.strength} on {', '.join(load.on)}."
+        towards = f"towards {_column(load.towards)} along {load.along}"
+        on = ", ".join(load.on)
+        return f"Load {load.name}: the gravity gradient {load.strength} {towards}, on {on}."
     where = f"along {load.along}, on {', '.join(load.on)}"
     return f"Load {load.name}: gravity {_column(load.gravity)} {where}."
+
+
+def _spring(load: Spring) -> str:
+    """Return how stiff a spring is, how long at rest, and between which points."""
+    parts = [f"a spring of stiffness {load.stiffness}"] if load.stiffness != ZERO else []
+    parts += [f"length {load.length} at rest"] if parts and load.length != ZERO else []
+    parts += [f"a damper {load.damping}"] if load.damping != ZERO else []
+    ends = f"from {_column(load.at)} of {load.frame} to {_column(load.to)} of {load.to_frame}"
+    return f"{' and '.join(parts)}, {ends}, on {load.on}{_against(load)}"
+
+
+def _against(load: Spring | Force) -> str:
+    return f", and the opposite on {load.against}" if load.against else ""
 
 
 def _force(load: Force) -> str:
@@ -115,5 +128,4 @@ def _force(load: Force) -> str:
         parts[-1] += f" along {load.along} at {_column(load.at)} of {load.frame}"
     if any(without_hidden(value) != tuple(value) for _, value in values):
         parts.append("what else acts there and is not asked about")
-    against = f", and the opposite on {load.against}" if load.against else ""
-    return f"{' and '.join(parts)}, on {load.on}{against}"
+    return f"{' and '.join(parts)}, on {load.on}{_against(load)}"

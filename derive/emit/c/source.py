@@ -102,7 +102,7 @@ def _header(
     return TEMPLATES.get_template("header.h.jinja").render(
         first_line=f"/* {first_line(library, figures)}",
         title=library.scene.title,
-        declared=[line for each in library.scene.told for line in wrapped(each)],
+        declared=[line for each in library.mechanism.said for line in wrapped(each)],
         example=example(library, names, precision),
         digest=digest,
         guard=names.file(precision, "h").upper().replace(".", "_"),

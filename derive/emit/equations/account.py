@@ -24,6 +24,7 @@ STEP_NUMBERS: Mapping[str, int] = {step.name: n for n, step in enumerate(LECTURE
 class Account:
     """A scene's equations with the table of their symbols, and what they rest on.
 
+    said      : what the scene is made of, in sentences
     symbols   : every symbol of the equations, once, but those of the lecture's laws
     of_laws   : those of the laws
     constants : values of parameters that are letters here, by identifier
@@ -32,6 +33,7 @@ class Account:
     """
 
     scene: Scene
+    said: tuple[str, ...]
     sections: tuple[Section, ...]
     symbols: tuple[Listed, ...]
     of_laws: tuple[Listed, ...]
@@ -60,6 +62,7 @@ def _account(library: Library, known: Library) -> Account:
     names = [program.name for program in library.functions]
     return Account(
         library.scene,
+        library.mechanism.said,
         sections,
         rows,
         tuple(lecture_symbols(steps.values())),

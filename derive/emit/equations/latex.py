@@ -43,7 +43,7 @@ def latex_document(told: Account) -> str:
         r"\date{}",
         r"\begin{document}",
         r"\maketitle",
-        *(tex_text(sentence) + r"\par" for sentence in told.scene.told),
+        *(tex_text(sentence) + r"\par" for sentence in told.said),
         *(line for section in told.sections for line in _section(section)),
         *_more(told),
         *_symbols(told),

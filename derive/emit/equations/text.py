@@ -39,7 +39,7 @@ def ascii_text(told: Account) -> str:
 
 def _page(told: Account, letters: str) -> str:
     lines = [visible(told.scene.title), "=" * len(told.scene.title), ""]
-    lines += [line for sentence in told.scene.told for line in _wrapped(sentence, "")]
+    lines += [line for sentence in told.said for line in _wrapped(sentence, "")]
     lines += [line for section in told.sections for line in _section(section, letters)]
     if told.slopes:
         lines += [*_wrapped(f"With derivatives of these: {', '.join(told.slopes)}.", ""), ""]

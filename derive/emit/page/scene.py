@@ -41,7 +41,8 @@ def scene_page(
         scene=scene,
         by=by,
         prose=prose,
-        given=scene.told,
+        given=library.mechanism.said,
+        signs=library.mechanism.signs,
         around=neighbours(scene),
         drawing=Markup(drawing(scene)),  # noqa: S704 (numbers and checked names)
         answers=answer_lines(library),

@@ -73,14 +73,16 @@ def shortened(problem: Problem, constant: AbstractSet[Symbol]) -> Problem:
 def primitive(problem: Problem, row: Split, constant: AbstractSet[Symbol]) -> Split:
     """Return a balance without the powers of parameters that all its terms have in common.
 
-    They stay where a term is too long to be looked into, or where there are none.
+    They stay where a term is too long to be looked into, where there are none, and where the
+    range of a parameter holds 0, at which the balance would say nothing.
     """
     parts = [in_what_is_given(problem, e, constant) for e in (row[0], *row[1].values())]
     terms = [term for e in parts if e is not None for term in Add.make_args(e) if term != 0]
     if None in parts or not terms:
         return row
     powers = [term.as_powers_dict() for term in terms]
-    common = {s: min(own[s] for own in powers) for s in constant & powers[0].keys()}
+    above = (s for s in constant & powers[0].keys() if s.is_positive)
+    common = {s: min(own[s] for own in powers) for s in above}
     shared = Mul(*(s**p for s, p in common.items() if p > 0))
     if shared == 1:
         return row

@@ -1,0 +1,72 @@
+"""Roots of squares that are taken as what is squared: said wherever equations stand or are used."""
+
+import json
+
+import pytest
+from sympy import Symbol
+
+from derive.emit.c.source import c_files
+from derive.emit.equations import equations
+from derive.emit.manifest import manifest
+from derive.emit.page.scene import scene_page
+from derive.library.library import Library, library
+from derive.lower.arrange.tidy import primitive
+from derive.mechanics.problem import Problem
+from derive.scene import parse_scene
+
+BEAD = """
+wanted = ["state_rate", "energy"]
+[parameters]
+k = {{ unit = "N/m", range = [10, 50] }}
+l = {{ unit = "m", range = [0.1, 0.2], meaning = "offset" }}
+[coordinates]
+x = {{ unit = "m", range = [{low}, 0.5] }}
+[frames]
+bead = {{ origin = ["{place}", "0", "0"] }}
+[bodies]
+bead = {{ frame = "bead", shape = "point", mass = 1 }}
+[loads]
+spring = {{ on = "bead", spring = "k", length = 0.2, at = [0, 0, 0] }}
+rail = {{ on = "bead", force = [0, "?y", "?z"], couple = "?guide" }}
+"""
+TAKEN = "Taken: the length of spring is x, while x > 0 as in the declared range."
+
+
+def bead(low: float, place: str = "x") -> Library:
+    return library(parse_scene(BEAD.format(low=low, place=place), "bead"))
+
+
+def test_a_length_taken_without_its_sign_is_said_in_the_header_json_page_and_equations() -> None:
+    made = bead(0.1)
+    headers = [text for name, text in c_files(made, []).items() if name.endswith(".h")]
+    for text in (*headers, equations(made, "text")):
+        assert TAKEN in " ".join(text.replace("\n *", " ").split())
+    assert json.loads(manifest(made, []))["taken"] == [TAKEN]
+    assert scene_page(made, []).count("the length of spring is") == 2
+
+
+@pytest.mark.parametrize(
+    ("low", "place", "says"),
+    [
+        (-0.1, "x + l", ()),
+        (0.1, "sqrt(x^2)", (TAKEN, "Taken: sqrt(x^2) is x, while x > 0 as in the declared range.")),
+        (0.1, "x + l", ()),
+    ],
+)  # fmt: skip
+def test_signs_are_said_where_they_are_taken_and_nowhere_else(low, place, says) -> None:
+    assert bead(low, place).mechanism.signs == says
+
+
+def test_a_spring_is_told_with_its_ends_and_its_length_at_rest() -> None:
+    assert (
+        "Load spring: a spring of stiffness k and length 1/5 at rest, from (0, 0, 0) of bead to"
+        " (0, 0, 0) of inertial, on bead."
+    ) in bead(0.1).mechanism.said
+
+
+@pytest.mark.parametrize("above", [True, None])
+def test_only_what_cannot_be_zero_is_divided_out_of_a_balance(above) -> None:
+    s, u, y = Symbol("s", positive=above), Symbol("u"), Symbol("y")
+    problem = Problem("a", "", (), {}, {}, (s * u - s * y,), (u,), (), ())
+    rest, slopes = primitive(problem, problem.parts[0], frozenset({s}))
+    assert (rest, slopes[u]) == ((-y, 1) if above else (-s * y, s))
