@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
+from random import Random
 from typing import Any
 
 import networkx as nx
@@ -15,6 +16,7 @@ from derive.mechanics.probe import (
     DIGITS,
     NOTHING,
     PROBES,
+    SEED,
     Probe,
     independent,
     independent_at_all,
@@ -28,6 +30,7 @@ FLOORS = (0.1, 0.02, 0.004)  # of a row of size one: what must be left of it bes
 MOST_EXTRA = 5  # unknowns that are solved along without being asked for, before all are
 MOST_SETS = 20_000
 MOST_TOLD = 2  # balances that a sentence names
+AT_ONCE = 32  # balances that are looked at together: a chance combination vanishes if each does
 CLEAR = mpf(10) ** -1000  # of a row of size one: elimination of 1500 digits leaves far less
 
 Chosen = tuple[tuple[ValuedBalance, ...], frozenset[int]]
@@ -277,21 +280,30 @@ def _contradicted(rows: Sequence[ValuedBalance], point: int) -> list[ValuedBalan
 
     Nothing comes back if all balances can be satisfied.
     """
-    kept: list[tuple[int, list[Any]]] = []
+    kept: list[tuple[int, NDArray[Any]]] = []
     before: list[ValuedBalance] = []
+    random = Random(SEED)  # noqa: S311 (weights, no secret)
     with mp.workdps(DIGITS):
-        for row in rows:
-            values = list(row.values[point])
-            size = max(map(abs, values))
-            left = [v / size for v in values]
-            for pivot, other in kept:
-                factor = left[pivot]
-                if factor:
-                    left = [v - factor * w for v, w in zip(left, other, strict=True)]
-            free = max(range(1, len(left)), key=lambda k: abs(left[k]), default=0)
-            if free and abs(left[free]) > CLEAR:
-                kept.append((free, [v / left[free] for v in left]))
-                before.append(row)
-            elif abs(left[0]) > CLEAR:
-                return [*before, row]
+        scaled = [row.values[point] * (1 / max(map(abs, row.values[point]))) for row in rows]
+        for first in range(0, len(rows), AT_ONCE):
+            some = range(first, min(first + AT_ONCE, len(rows)))
+            together = sum(random.uniform(1, 2) * scaled[n] for n in some)
+            if max(map(abs, _beside(together, kept))) <= CLEAR:
+                continue
+            for n in some:
+                left = _beside(scaled[n], kept)
+                free = max(range(1, len(left)), key=lambda k: abs(left[k]), default=0)
+                if free and abs(left[free]) > CLEAR:
+                    kept.append((free, left / left[free]))
+                    before.append(rows[n])
+                elif abs(left[0]) > CLEAR:
+                    return [*before, rows[n]]
     return []
+
+
+def _beside(row: NDArray[Any], kept: Sequence[tuple[int, NDArray[Any]]]) -> NDArray[Any]:
+    """Return what is left of a row where others, each by its pivot, are taken out of it."""
+    for pivot, other in kept:
+        if row[pivot]:
+            row = row - other * row[pivot]
+    return row

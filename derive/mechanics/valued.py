@@ -57,8 +57,7 @@ class Valued:
     def __post_init__(self) -> None:
         """Begin with nothing remembered."""
         self._turned: dict[str, NDArray[Any]] = {}
-        self._wrenches: dict[int, tuple[NDArray[Any], NDArray[Any]]] = {}
-        self._efforts: dict[str, tuple[NDArray[Any], NDArray[Any]]] = {}
+        self._bodies: dict[str, tuple[NDArray[Any], NDArray[Any]]] = {}
 
     def rotation(self, name: str) -> NDArray[Any]:
         """Return R from a frame to the topmost one that it is linked with."""
@@ -119,44 +118,28 @@ class Valued:
 
     def force(self, bodies: tuple[str, ...]) -> NDArray[Any]:
         """Return mass times acceleration less the forces."""
-        total = self.linear(ZERO, INERTIAL)
-        for n in bodies:
-            total = total + self._effort(n)[0]
-        for k in self._on(bodies):
-            total = total - self._acting(k)[0]
-        return total
+        return np.asarray(sum(self._left(name)[0] for name in bodies))
 
     def moment(self, bodies: tuple[str, ...], place: Located) -> NDArray[Any]:
         """Return the rate of angular momentum less the moments, about a point."""
-        b, here = self.sides, self.place(place)
-        total = self.linear(ZERO, INERTIAL)
-        for n in bodies:
-            force, moment = self._effort(n)
-            arm = self.place(b.efforts[n].centre) - here
-            total = total + moment + _crossed(arm, force)
-        for k in self._on(bodies):
-            force, couple = self._acting(k)
-            total = total - couple - self._crossed_at(k, here, force)
-        return total
+        about_origin = sum(self._left(name)[1] for name in bodies)
+        return np.asarray(about_origin - _crossed(self.place(place), self.force(bodies)))
 
-    def _crossed_at(self, k: int, here: NDArray[Any], force: NDArray[Any]) -> NDArray[Any]:
-        w = self.sides.wrenches[k]
-        return 0 * force if w.force == ZERO else _crossed(self.place(w.point) - here, force)
-
-    def _on(self, bodies: tuple[str, ...]) -> list[int]:
-        return [k for k, w in enumerate(self.sides.wrenches) if w.body in bodies]
-
-    def _effort(self, n: str) -> tuple[NDArray[Any], NDArray[Any]]:
-        if n not in self._efforts:
-            own = self.sides.efforts[n]
-            self._efforts[n] = (self.parts(own.force), self.linear(own.moment, own.frame))
-        return self._efforts[n]
-
-    def _acting(self, k: int) -> tuple[NDArray[Any], NDArray[Any]]:
-        if k not in self._wrenches:
-            w = self.sides.wrenches[k]
-            self._wrenches[k] = (self.linear(w.force, w.along), self.linear(w.couple, w.along))
-        return self._wrenches[k]
+    def _left(self, body: str) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Return what forces leave of a body's effort, and of its moment about the origin."""
+        if body not in self._bodies:
+            own = self.sides.efforts[body]
+            force, moment = self.parts(own.force), self.linear(own.moment, own.frame)
+            moment = moment + _crossed(self.place(own.centre), force)
+            for w in self.sides.wrenches:
+                if w.body == body:
+                    acting = self.linear(w.force, w.along)
+                    force = force - acting
+                    moment = moment - self.linear(w.couple, w.along)
+                    if w.force != ZERO:
+                        moment = moment - _crossed(self.place(w.point), acting)
+            self._bodies[body] = (force, moment)
+        return self._bodies[body]
 
 
 def _crossed(arm: NDArray[Any], columns: NDArray[Any]) -> NDArray[Any]:

@@ -108,7 +108,7 @@ class Followed:
 def step_errors(of: Wished, by: Sequence[Driver], until: float | None, tell: Tell) -> StepErrors:
     """Return what a scene's steps cost and how wrong they are at the end of a time.
 
-    until : s, None for what suits the scene
+    until : s, None for the scene's horizon, or for what suits it
     Raises SceneError where no motion can be followed to its end.
     """
     library, double = of.library, next(d for d in by if d.precision is F64)
@@ -136,6 +136,9 @@ def step_errors(of: Wished, by: Sequence[Driver], until: float | None, tell: Tel
 def time_of(library: Library, until: float | None, fast: float) -> float:
     """Return the time to the end: a float, so that its halves are floats as well."""
     name = library.scene.name
+    said = "horizon" if until is None else "until"
+    if until is None and library.scene.horizon is not None:
+        until = float(library.scene.horizon)
     if until is None:
         return float(np.float32(horizon(fast)))
     if not (isfinite(until) and until > 0):
@@ -144,7 +147,7 @@ def time_of(library: Library, until: float | None, fast: float) -> float:
     turn = 2 * np.pi / fast if fast > 0 else 1.0
     least, most = (float(f"{turns * turn:.3g}") for turns in (LEAST_TURNS, MOST_TURNS))
     if not least <= until <= most:
-        rule = f"until must be from {least:g} s to {most:g} s, at a rate of {fast:.3g} rad/s"
+        rule = f"{said} must be from {least:g} s to {most:g} s, at a rate of {fast:.3g} rad/s"
         raise SceneError(f"scene '{name}': {rule}, not {until:g}")
     return float(np.float32(until))
 

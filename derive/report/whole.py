@@ -70,14 +70,15 @@ def silent(_: str) -> None:
 def report(library: Library, until: float | None = None, tell: Tell = silent) -> SceneReport:
     """Return the report of a scene: its steps and functions, their errors and what they cost.
 
-    until : s, the end at which errors of motion are taken; None for what suits the scene
+    until : s, the end at which errors of motion are taken; None for its horizon or what suits it
     tell  : hears what is being done
     Raises SceneError for a time that has no sense or a motion that cannot be followed.
     """
     tell("what else the scene could want")
     own = wished(library)
-    if until is not None and not own.steps:
-        raise SceneError(f"scene '{library.scene.name}': until is of motion, but {NO_MOTION}")
+    said = "horizon" if until is None else "until"
+    if (until or library.scene.horizon) is not None and not own.steps:
+        raise SceneError(f"scene '{library.scene.name}': {said} is of motion, but {NO_MOTION}")
     other = in_other_form(library.scene)
     with TemporaryDirectory(prefix="derive-") as folder:
         tell("compiling")

@@ -216,6 +216,7 @@ FILE = (
           words=("fast", "accurate")),
     Entry("emission", "word", "whether steps are short loops", default="fast",
           words=("fast", "compact")),
+    Entry("horizon", "number above 0", "s, end of the report's motions; else about ten turns"),
 )  # fmt: skip
 """What a file says above its first table."""
 

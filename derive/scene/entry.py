@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Any
 
 from derive.scene.declaration import AXES, Given, Parameter, SceneError, Turning
@@ -109,6 +110,13 @@ def _turning(entry: object, label: str, scope: Scope) -> Turning:
     return Turning(axis, formula(angle.strip(), label, scope, NONE))
 
 
+def _positive(one: _One) -> Fraction:
+    number = rational(one.value, one.label)
+    if number <= 0:
+        raise SceneError(f"{one.label} must be above 0, not {shown(one.value)}")
+    return number
+
+
 def _count(one: _One) -> int:
     count = one.value
     if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= MOST:
@@ -155,6 +163,7 @@ READERS: Mapping[str, Callable[[_One], Any]] = {
     "turns through coordinates": _turns,
     "range": lambda one: interval(one.value, one.label),
     "number": lambda one: rational(one.value, one.label),
+    "number above 0": _positive,
     "count": _count,
     "names": _names,
     "text": lambda one: text(one.value, one.label),

@@ -268,6 +268,7 @@ class Scene:
     time_step: Given
     time: Given
     emission: Literal["fast", "compact"]
+    horizon: Fraction | None
     warnings: tuple[str, ...]
     demands: tuple[Demand, ...]
     merging: str = ""

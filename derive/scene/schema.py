@@ -48,6 +48,7 @@ OF_KIND: Mapping[str, Schema] = {
     "turns through coordinates": _TURNS,
     "range": _RANGE,
     "number": {"type": "number"},
+    "number above 0": {"type": "number", "exclusiveMinimum": 0},
     "count": {"type": "integer", "minimum": 1, "maximum": MOST},
     "names": {**_NAMES, "minItems": 2},
     "text": _NAME,

@@ -197,7 +197,8 @@ class Handle:
 
         The scene's own page, if it lies there, is made anew: it shows the sentence of the report.
 
-        until : s, the end at which errors of motion are taken; about ten turns if it is None
+        until : s, the end at which errors of motion are taken; None for the scene's horizon, or
+                about ten turns
         told  : hears what is being done
         Raises DeriveError for a time that has no sense, and for a motion without an end.
         """

@@ -7,7 +7,7 @@ import pytest
 
 from derive.emit.reported import reported
 from derive.scene import catalogue
-from tests.made import library_of, thinned
+from tests.made import library_of, scene_of, thinned
 
 GENERATED = Path(__file__).parents[2] / "generated"
 MOST = 3e9
@@ -24,16 +24,16 @@ def test_a_committed_report_is_of_the_scenes_present_programs(name: str) -> None
     assert (GENERATED / name / f"{name}_report.html").is_file()
 
 
-def test_a_committed_page_says_by_which_command_it_is_made() -> None:
-    made = {name: json.loads((GENERATED / name / f"{name}_report.json").read_text(encoding="utf-8"))
-            for name in NAMES}  # fmt: skip
-    moved = {name: said["motion"] or {} for name, said in made.items()}
-    told = [name for name in NAMES if moved[name].get("time_is") == "given"]
-    assert 0 < len(told) < len(NAMES)
-    for name in NAMES:
-        asked = f" --until {moved[name]['time']}" if name in told else ""
+def test_a_committed_page_is_made_by_the_command_without_a_time() -> None:
+    horizons = {name: scene_of(name).horizon for name in NAMES}
+    assert any(horizons.values())
+    for name, horizon in horizons.items():
+        text = (GENERATED / name / f"{name}_report.json").read_text(encoding="utf-8")
+        motion = json.loads(text)["motion"] or {"time_is": "of the scene", "time": 0.0}
+        assert motion["time_is"] == "of the scene"
+        assert horizon is None or motion["time"] == float(horizon)
         page = (GENERATED / name / f"{name}_report.html").read_text(encoding="utf-8")
-        assert f"Made by <code>derive report {name}{asked}</code>" in page
+        assert f"Made by <code>derive report {name}</code>" in page
 
 
 def test_the_true_motions_of_a_report_take_their_part_of_a_minute() -> None:

@@ -17,9 +17,10 @@ from derive.report.hardest import hardest
 from derive.report.march import ended
 from derive.report.sentence import cheapest, choice, least, motion_sentence
 from derive.report.states import Begun, begun, nearby
+from derive.report.whole import report
 from derive.report.wishes import wished
 from derive.scene import SceneError, parse_scene
-from tests.made import library_of
+from tests.made import library_of, text_of
 
 REPORTS = Path(__file__).parents[2] / "generated"
 NOBODY = Begun((), np.zeros((0, 1)))
@@ -107,6 +108,22 @@ def test_a_time_that_is_out_of_all_bounds_is_refused_in_one_sentence() -> None:
             time_of(own, until, 10.0)
     for until in (1e-5, 0.5, 60000.0):
         assert time_of(own, until, 10.0) == pytest.approx(until)
+
+
+def test_the_scene_says_to_what_time_unless_the_command_does() -> None:
+    text = text_of("tumbling_disc")
+    own = library(parse_scene(f"horizon = 0.25\n{text}", "tumbling_disc"))
+    assert time_of(own, None, 10.0) == 0.25
+    assert time_of(own, 0.5, 10.0) == 0.5
+    for said in ("-1", "0", "0.0"):
+        with pytest.raises(SceneError, match=rf"horizon must be above 0, not {said}$"):
+            parse_scene(f"horizon = {said}\n{text}", "tumbling_disc")
+    long = library(parse_scene(f"horizon = 1e9\n{text}", "tumbling_disc"))
+    with pytest.raises(SceneError, match=r"^scene 'tumbling_disc': horizon must be from .* s to "):
+        time_of(long, None, 10.0)
+    still = library(parse_scene(f"horizon = 1\n{text_of('top_steady_precession')}", "still"))
+    with pytest.raises(SceneError, match=r"^scene 'still': horizon is of motion, but "):
+        report(still)
 
 
 def test_states_of_a_motion_hold_what_moves_it_and_nothing_else() -> None:
