@@ -18,7 +18,7 @@ from derive.mechanics.bodies import (
     mass,
     momentum,
 )
-from derive.mechanics.choice import unbalanced
+from derive.mechanics.contradiction import unbalanced
 from derive.mechanics.frames import ZERO, Frames
 from derive.mechanics.linearised import Linearised, linearised, require_nothing_prescribed
 from derive.mechanics.loads import potential_energy

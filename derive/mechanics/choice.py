@@ -2,21 +2,17 @@
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from random import Random
 from typing import Any
 
 import networkx as nx
 import numpy as np
-from mpmath import mp, mpf
+from mpmath import mp
 from numpy.typing import NDArray
 
 from derive.mechanics.balance import ValuedBalance
 from derive.mechanics.balances import Balances
 from derive.mechanics.probe import (
     DIGITS,
-    NOTHING,
-    PROBES,
-    SEED,
     Probe,
     independent,
     independent_at_all,
@@ -30,8 +26,6 @@ FLOORS = (0.1, 0.02, 0.004)  # of a row of size one: what must be left of it bes
 MOST_EXTRA = 5  # unknowns that are solved along without being asked for, before all are
 MOST_SETS = 20_000
 MOST_TOLD = 2  # balances that a sentence names
-AT_ONCE = 32  # balances that are looked at together: a chance combination vanishes if each does
-CLEAR = mpf(10) ** -1000  # of a row of size one: elimination of 1500 digits leaves far less
 
 Chosen = tuple[tuple[ValuedBalance, ...], frozenset[int]]
 
@@ -227,83 +221,3 @@ def _joint(balances: Balances, k: int) -> list[int]:
                 if len(independent(fewer, count)) > len(independent(rest, count)):
                     return list(left)
     return []
-
-
-def unbalanced(
-    balances: Balances, still: frozenset[int] = frozenset()
-) -> tuple[ValuedBalance, ...]:
-    """Return the balances that hold no unknown but ``still`` ones and yet do not vanish."""
-    found = [row for row in balances.rows if row.holds <= still and _leaves_something(row)]
-    return tuple(
-        sorted(
-            found,
-            key=lambda row: (
-                len(row.balance.bodies),
-                len(row.holds),
-                balances.carried_vectors(row.balance),
-            ),
-        )
-    )
-
-
-def _leaves_something(row: ValuedBalance) -> bool:
-    return all(abs(values[0]) > NOTHING * max(map(abs, values)) for values in row.values[:PROBES])
-
-
-def contradiction(balances: Balances) -> str:
-    """Return a sentence on balances that nothing can satisfy, or nothing if there are none."""
-    rows = unbalanced(balances)
-    if rows:
-        return (f"the {rows[0].balance} does not vanish and holds no unknown: "
-                "declare a load with an unknown there, or leave a motion free")  # fmt: skip
-    against = [_contradicted(balances.rows, point) for point in range(PROBES)]
-    if not all(against):
-        return ""
-    together = _least(against[0], 0)
-    told = " and ".join(f"the {row.balance}" for row in together[:MOST_TOLD])
-    more = f" and {len(together) - MOST_TOLD} more" if len(together) > MOST_TOLD else ""
-    return (f"{told}{more} contradict each other, whatever their unknowns are: "
-            "declare a load with an unknown more, or leave a motion free")  # fmt: skip
-
-
-def _least(rows: Sequence[ValuedBalance], point: int) -> Sequence[ValuedBalance]:
-    """Return those of contradictory balances without any of which the others can be satisfied."""
-    for row in rows:
-        fewer = [other for other in rows if other is not row]
-        if _contradicted(fewer, point):
-            rows = fewer
-    return rows
-
-
-def _contradicted(rows: Sequence[ValuedBalance], point: int) -> list[ValuedBalance]:
-    """Return the first balance that those before it leave no solution for, and those, at a point.
-
-    Nothing comes back if all balances can be satisfied.
-    """
-    kept: list[tuple[int, NDArray[Any]]] = []
-    before: list[ValuedBalance] = []
-    random = Random(SEED)  # noqa: S311 (weights, no secret)
-    with mp.workdps(DIGITS):
-        scaled = [row.values[point] * (1 / max(map(abs, row.values[point]))) for row in rows]
-        for first in range(0, len(rows), AT_ONCE):
-            some = range(first, min(first + AT_ONCE, len(rows)))
-            together = sum(random.uniform(1, 2) * scaled[n] for n in some)
-            if max(map(abs, _beside(together, kept))) <= CLEAR:
-                continue
-            for n in some:
-                left = _beside(scaled[n], kept)
-                free = max(range(1, len(left)), key=lambda k: abs(left[k]), default=0)
-                if free and abs(left[free]) > CLEAR:
-                    kept.append((free, left / left[free]))
-                    before.append(rows[n])
-                elif abs(left[0]) > CLEAR:
-                    return [*before, rows[n]]
-    return []
-
-
-def _beside(row: NDArray[Any], kept: Sequence[tuple[int, NDArray[Any]]]) -> NDArray[Any]:
-    """Return what is left of a row where others, each by its pivot, are taken out of it."""
-    for pivot, other in kept:
-        if row[pivot]:
-            row = row - other * row[pivot]
-    return row

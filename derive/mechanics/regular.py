@@ -8,7 +8,8 @@ from sympy import Expr, Integer, Symbol
 
 from derive.mechanics.balance import ValuedBalance
 from derive.mechanics.balances import Balances
-from derive.mechanics.choice import chosen, clearly_told, contradiction, require_no_ring
+from derive.mechanics.choice import chosen, clearly_told, require_no_ring
+from derive.mechanics.contradiction import contradiction
 from derive.mechanics.frames import Frames
 from derive.mechanics.inertia import require_held, vanishing
 from derive.mechanics.probe import Probe

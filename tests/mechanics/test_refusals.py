@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from derive.library.library import library
-from derive.mechanics.choice import _contradicted as contradicted
-from derive.mechanics.choice import _least as least
-from derive.mechanics.choice import contradiction
+from derive.mechanics.contradiction import _contradicted as contradicted
+from derive.mechanics.contradiction import _least as least
+from derive.mechanics.contradiction import contradiction
 from derive.mechanics.mechanism import mechanism
 from derive.scene import CATALOGUE, SceneError, parse_scene
 
