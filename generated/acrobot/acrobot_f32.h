@@ -24,7 +24,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 559ab861569c302b.
+ * Body of these files: sha256 3ccb996066332039.
  */
 #ifndef ACROBOT_F32_H
 #define ACROBOT_F32_H

@@ -28,13 +28,22 @@ typedef struct {
     float low;
 } cart_pendulum_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static cart_pendulum_pair_f32 cart_pendulum_neg_f32(cart_pendulum_pair_f32 a)
 {
     return (cart_pendulum_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static cart_pendulum_pair_f32 cart_pendulum_add_f32(cart_pendulum_pair_f32 a, cart_pendulum_pair_f32 b)
+DERIVE_APART static cart_pendulum_pair_f32 cart_pendulum_add_f32(cart_pendulum_pair_f32 a, cart_pendulum_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -49,7 +58,7 @@ static cart_pendulum_pair_f32 cart_pendulum_add_f32(cart_pendulum_pair_f32 a, ca
     return (cart_pendulum_pair_f32){high, y - (high - x)};
 }
 
-static cart_pendulum_pair_f32 cart_pendulum_sub_f32(cart_pendulum_pair_f32 a, cart_pendulum_pair_f32 b)
+DERIVE_APART static cart_pendulum_pair_f32 cart_pendulum_sub_f32(cart_pendulum_pair_f32 a, cart_pendulum_pair_f32 b)
 {
     return cart_pendulum_add_f32(a, cart_pendulum_neg_f32(b));
 }
@@ -67,7 +76,7 @@ static cart_pendulum_pair_f32 cart_pendulum_two_product_f32(float a, float b)
     return (cart_pendulum_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static cart_pendulum_pair_f32 cart_pendulum_mul_f32(cart_pendulum_pair_f32 a, cart_pendulum_pair_f32 b)
+DERIVE_APART static cart_pendulum_pair_f32 cart_pendulum_mul_f32(cart_pendulum_pair_f32 a, cart_pendulum_pair_f32 b)
 {
     const cart_pendulum_pair_f32 p = cart_pendulum_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);

@@ -24,7 +24,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 78886ff320bf1a3e.
+ * Body of these files: sha256 5b2ccf75ff713155.
  */
 #ifndef CART_PENDULUM_F32_H
 #define CART_PENDULUM_F32_H

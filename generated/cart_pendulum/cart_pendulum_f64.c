@@ -28,13 +28,22 @@ typedef struct {
     double low;
 } cart_pendulum_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static cart_pendulum_pair_f64 cart_pendulum_neg_f64(cart_pendulum_pair_f64 a)
 {
     return (cart_pendulum_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static cart_pendulum_pair_f64 cart_pendulum_add_f64(cart_pendulum_pair_f64 a, cart_pendulum_pair_f64 b)
+DERIVE_APART static cart_pendulum_pair_f64 cart_pendulum_add_f64(cart_pendulum_pair_f64 a, cart_pendulum_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -49,7 +58,7 @@ static cart_pendulum_pair_f64 cart_pendulum_add_f64(cart_pendulum_pair_f64 a, ca
     return (cart_pendulum_pair_f64){high, y - (high - x)};
 }
 
-static cart_pendulum_pair_f64 cart_pendulum_sub_f64(cart_pendulum_pair_f64 a, cart_pendulum_pair_f64 b)
+DERIVE_APART static cart_pendulum_pair_f64 cart_pendulum_sub_f64(cart_pendulum_pair_f64 a, cart_pendulum_pair_f64 b)
 {
     return cart_pendulum_add_f64(a, cart_pendulum_neg_f64(b));
 }
@@ -67,7 +76,7 @@ static cart_pendulum_pair_f64 cart_pendulum_two_product_f64(double a, double b)
     return (cart_pendulum_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static cart_pendulum_pair_f64 cart_pendulum_mul_f64(cart_pendulum_pair_f64 a, cart_pendulum_pair_f64 b)
+DERIVE_APART static cart_pendulum_pair_f64 cart_pendulum_mul_f64(cart_pendulum_pair_f64 a, cart_pendulum_pair_f64 b)
 {
     const cart_pendulum_pair_f64 p = cart_pendulum_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);

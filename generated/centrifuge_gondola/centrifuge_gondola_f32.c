@@ -27,13 +27,22 @@ typedef struct {
     float low;
 } centrifuge_gondola_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static centrifuge_gondola_pair_f32 centrifuge_gondola_neg_f32(centrifuge_gondola_pair_f32 a)
 {
     return (centrifuge_gondola_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static centrifuge_gondola_pair_f32 centrifuge_gondola_add_f32(centrifuge_gondola_pair_f32 a, centrifuge_gondola_pair_f32 b)
+DERIVE_APART static centrifuge_gondola_pair_f32 centrifuge_gondola_add_f32(centrifuge_gondola_pair_f32 a, centrifuge_gondola_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -48,7 +57,7 @@ static centrifuge_gondola_pair_f32 centrifuge_gondola_add_f32(centrifuge_gondola
     return (centrifuge_gondola_pair_f32){high, y - (high - x)};
 }
 
-static centrifuge_gondola_pair_f32 centrifuge_gondola_sub_f32(centrifuge_gondola_pair_f32 a, centrifuge_gondola_pair_f32 b)
+DERIVE_APART static centrifuge_gondola_pair_f32 centrifuge_gondola_sub_f32(centrifuge_gondola_pair_f32 a, centrifuge_gondola_pair_f32 b)
 {
     return centrifuge_gondola_add_f32(a, centrifuge_gondola_neg_f32(b));
 }
@@ -66,7 +75,7 @@ static centrifuge_gondola_pair_f32 centrifuge_gondola_two_product_f32(float a, f
     return (centrifuge_gondola_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static centrifuge_gondola_pair_f32 centrifuge_gondola_mul_f32(centrifuge_gondola_pair_f32 a, centrifuge_gondola_pair_f32 b)
+DERIVE_APART static centrifuge_gondola_pair_f32 centrifuge_gondola_mul_f32(centrifuge_gondola_pair_f32 a, centrifuge_gondola_pair_f32 b)
 {
     const centrifuge_gondola_pair_f32 p = centrifuge_gondola_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);

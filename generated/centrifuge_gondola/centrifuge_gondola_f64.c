@@ -27,13 +27,22 @@ typedef struct {
     double low;
 } centrifuge_gondola_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static centrifuge_gondola_pair_f64 centrifuge_gondola_neg_f64(centrifuge_gondola_pair_f64 a)
 {
     return (centrifuge_gondola_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static centrifuge_gondola_pair_f64 centrifuge_gondola_add_f64(centrifuge_gondola_pair_f64 a, centrifuge_gondola_pair_f64 b)
+DERIVE_APART static centrifuge_gondola_pair_f64 centrifuge_gondola_add_f64(centrifuge_gondola_pair_f64 a, centrifuge_gondola_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -48,7 +57,7 @@ static centrifuge_gondola_pair_f64 centrifuge_gondola_add_f64(centrifuge_gondola
     return (centrifuge_gondola_pair_f64){high, y - (high - x)};
 }
 
-static centrifuge_gondola_pair_f64 centrifuge_gondola_sub_f64(centrifuge_gondola_pair_f64 a, centrifuge_gondola_pair_f64 b)
+DERIVE_APART static centrifuge_gondola_pair_f64 centrifuge_gondola_sub_f64(centrifuge_gondola_pair_f64 a, centrifuge_gondola_pair_f64 b)
 {
     return centrifuge_gondola_add_f64(a, centrifuge_gondola_neg_f64(b));
 }
@@ -66,7 +75,7 @@ static centrifuge_gondola_pair_f64 centrifuge_gondola_two_product_f64(double a, 
     return (centrifuge_gondola_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static centrifuge_gondola_pair_f64 centrifuge_gondola_mul_f64(centrifuge_gondola_pair_f64 a, centrifuge_gondola_pair_f64 b)
+DERIVE_APART static centrifuge_gondola_pair_f64 centrifuge_gondola_mul_f64(centrifuge_gondola_pair_f64 a, centrifuge_gondola_pair_f64 b)
 {
     const centrifuge_gondola_pair_f64 p = centrifuge_gondola_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);

@@ -25,13 +25,22 @@ typedef struct {
     float low;
 } chandler_rigid_earth_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static chandler_rigid_earth_pair_f32 chandler_rigid_earth_neg_f32(chandler_rigid_earth_pair_f32 a)
 {
     return (chandler_rigid_earth_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static chandler_rigid_earth_pair_f32 chandler_rigid_earth_add_f32(chandler_rigid_earth_pair_f32 a, chandler_rigid_earth_pair_f32 b)
+DERIVE_APART static chandler_rigid_earth_pair_f32 chandler_rigid_earth_add_f32(chandler_rigid_earth_pair_f32 a, chandler_rigid_earth_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -64,7 +73,7 @@ static chandler_rigid_earth_pair_f32 chandler_rigid_earth_two_product_f32(float 
     return (chandler_rigid_earth_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static chandler_rigid_earth_pair_f32 chandler_rigid_earth_mul_f32(chandler_rigid_earth_pair_f32 a, chandler_rigid_earth_pair_f32 b)
+DERIVE_APART static chandler_rigid_earth_pair_f32 chandler_rigid_earth_mul_f32(chandler_rigid_earth_pair_f32 a, chandler_rigid_earth_pair_f32 b)
 {
     const chandler_rigid_earth_pair_f32 p = chandler_rigid_earth_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);
@@ -73,7 +82,7 @@ static chandler_rigid_earth_pair_f32 chandler_rigid_earth_mul_f32(chandler_rigid
 }
 
 /* Long division, three digits of working precision each. */
-static chandler_rigid_earth_pair_f32 chandler_rigid_earth_div_f32(chandler_rigid_earth_pair_f32 a, chandler_rigid_earth_pair_f32 b)
+DERIVE_APART static chandler_rigid_earth_pair_f32 chandler_rigid_earth_div_f32(chandler_rigid_earth_pair_f32 a, chandler_rigid_earth_pair_f32 b)
 {
     const chandler_rigid_earth_pair_f32 q1 = {a.high / b.high, 0.0F};
     const chandler_rigid_earth_pair_f32 r1 = chandler_rigid_earth_add_f32(a, chandler_rigid_earth_neg_f32(chandler_rigid_earth_mul_f32(q1, b)));

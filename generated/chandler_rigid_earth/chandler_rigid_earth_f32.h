@@ -16,7 +16,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 60fd02749573ad7e.
+ * Body of these files: sha256 3645d955a6337859.
  */
 #ifndef CHANDLER_RIGID_EARTH_F32_H
 #define CHANDLER_RIGID_EARTH_F32_H

@@ -25,13 +25,22 @@ typedef struct {
     double low;
 } chandler_rigid_earth_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static chandler_rigid_earth_pair_f64 chandler_rigid_earth_neg_f64(chandler_rigid_earth_pair_f64 a)
 {
     return (chandler_rigid_earth_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static chandler_rigid_earth_pair_f64 chandler_rigid_earth_add_f64(chandler_rigid_earth_pair_f64 a, chandler_rigid_earth_pair_f64 b)
+DERIVE_APART static chandler_rigid_earth_pair_f64 chandler_rigid_earth_add_f64(chandler_rigid_earth_pair_f64 a, chandler_rigid_earth_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -64,7 +73,7 @@ static chandler_rigid_earth_pair_f64 chandler_rigid_earth_two_product_f64(double
     return (chandler_rigid_earth_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static chandler_rigid_earth_pair_f64 chandler_rigid_earth_mul_f64(chandler_rigid_earth_pair_f64 a, chandler_rigid_earth_pair_f64 b)
+DERIVE_APART static chandler_rigid_earth_pair_f64 chandler_rigid_earth_mul_f64(chandler_rigid_earth_pair_f64 a, chandler_rigid_earth_pair_f64 b)
 {
     const chandler_rigid_earth_pair_f64 p = chandler_rigid_earth_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -73,7 +82,7 @@ static chandler_rigid_earth_pair_f64 chandler_rigid_earth_mul_f64(chandler_rigid
 }
 
 /* Long division, three digits of working precision each. */
-static chandler_rigid_earth_pair_f64 chandler_rigid_earth_div_f64(chandler_rigid_earth_pair_f64 a, chandler_rigid_earth_pair_f64 b)
+DERIVE_APART static chandler_rigid_earth_pair_f64 chandler_rigid_earth_div_f64(chandler_rigid_earth_pair_f64 a, chandler_rigid_earth_pair_f64 b)
 {
     const chandler_rigid_earth_pair_f64 q1 = {a.high / b.high, 0.0};
     const chandler_rigid_earth_pair_f64 r1 = chandler_rigid_earth_add_f64(a, chandler_rigid_earth_neg_f64(chandler_rigid_earth_mul_f64(q1, b)));

@@ -25,13 +25,22 @@ typedef struct {
     double low;
 } disc_two_bearings_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static disc_two_bearings_pair_f64 disc_two_bearings_neg_f64(disc_two_bearings_pair_f64 a)
 {
     return (disc_two_bearings_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static disc_two_bearings_pair_f64 disc_two_bearings_add_f64(disc_two_bearings_pair_f64 a, disc_two_bearings_pair_f64 b)
+DERIVE_APART static disc_two_bearings_pair_f64 disc_two_bearings_add_f64(disc_two_bearings_pair_f64 a, disc_two_bearings_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -64,7 +73,7 @@ static disc_two_bearings_pair_f64 disc_two_bearings_two_product_f64(double a, do
     return (disc_two_bearings_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static disc_two_bearings_pair_f64 disc_two_bearings_mul_f64(disc_two_bearings_pair_f64 a, disc_two_bearings_pair_f64 b)
+DERIVE_APART static disc_two_bearings_pair_f64 disc_two_bearings_mul_f64(disc_two_bearings_pair_f64 a, disc_two_bearings_pair_f64 b)
 {
     const disc_two_bearings_pair_f64 p = disc_two_bearings_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);

@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 fe2b6d1282391490.
+ * Body of these files: sha256 f4b92e637f0b8824.
  */
 #ifndef DISC_TWO_BEARINGS_F64_H
 #define DISC_TWO_BEARINGS_F64_H

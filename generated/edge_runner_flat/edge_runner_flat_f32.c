@@ -25,13 +25,22 @@ typedef struct {
     float low;
 } edge_runner_flat_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static edge_runner_flat_pair_f32 edge_runner_flat_neg_f32(edge_runner_flat_pair_f32 a)
 {
     return (edge_runner_flat_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static edge_runner_flat_pair_f32 edge_runner_flat_add_f32(edge_runner_flat_pair_f32 a, edge_runner_flat_pair_f32 b)
+DERIVE_APART static edge_runner_flat_pair_f32 edge_runner_flat_add_f32(edge_runner_flat_pair_f32 a, edge_runner_flat_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -59,7 +68,7 @@ static edge_runner_flat_pair_f32 edge_runner_flat_two_product_f32(float a, float
     return (edge_runner_flat_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static edge_runner_flat_pair_f32 edge_runner_flat_mul_f32(edge_runner_flat_pair_f32 a, edge_runner_flat_pair_f32 b)
+DERIVE_APART static edge_runner_flat_pair_f32 edge_runner_flat_mul_f32(edge_runner_flat_pair_f32 a, edge_runner_flat_pair_f32 b)
 {
     const edge_runner_flat_pair_f32 p = edge_runner_flat_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);
@@ -68,7 +77,7 @@ static edge_runner_flat_pair_f32 edge_runner_flat_mul_f32(edge_runner_flat_pair_
 }
 
 /* Long division, three digits of working precision each. */
-static edge_runner_flat_pair_f32 edge_runner_flat_div_f32(edge_runner_flat_pair_f32 a, edge_runner_flat_pair_f32 b)
+DERIVE_APART static edge_runner_flat_pair_f32 edge_runner_flat_div_f32(edge_runner_flat_pair_f32 a, edge_runner_flat_pair_f32 b)
 {
     const edge_runner_flat_pair_f32 q1 = {a.high / b.high, 0.0F};
     const edge_runner_flat_pair_f32 r1 = edge_runner_flat_add_f32(a, edge_runner_flat_neg_f32(edge_runner_flat_mul_f32(q1, b)));

@@ -25,13 +25,22 @@ typedef struct {
     double low;
 } edge_runner_flat_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static edge_runner_flat_pair_f64 edge_runner_flat_neg_f64(edge_runner_flat_pair_f64 a)
 {
     return (edge_runner_flat_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static edge_runner_flat_pair_f64 edge_runner_flat_add_f64(edge_runner_flat_pair_f64 a, edge_runner_flat_pair_f64 b)
+DERIVE_APART static edge_runner_flat_pair_f64 edge_runner_flat_add_f64(edge_runner_flat_pair_f64 a, edge_runner_flat_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -59,7 +68,7 @@ static edge_runner_flat_pair_f64 edge_runner_flat_two_product_f64(double a, doub
     return (edge_runner_flat_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static edge_runner_flat_pair_f64 edge_runner_flat_mul_f64(edge_runner_flat_pair_f64 a, edge_runner_flat_pair_f64 b)
+DERIVE_APART static edge_runner_flat_pair_f64 edge_runner_flat_mul_f64(edge_runner_flat_pair_f64 a, edge_runner_flat_pair_f64 b)
 {
     const edge_runner_flat_pair_f64 p = edge_runner_flat_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -68,7 +77,7 @@ static edge_runner_flat_pair_f64 edge_runner_flat_mul_f64(edge_runner_flat_pair_
 }
 
 /* Long division, three digits of working precision each. */
-static edge_runner_flat_pair_f64 edge_runner_flat_div_f64(edge_runner_flat_pair_f64 a, edge_runner_flat_pair_f64 b)
+DERIVE_APART static edge_runner_flat_pair_f64 edge_runner_flat_div_f64(edge_runner_flat_pair_f64 a, edge_runner_flat_pair_f64 b)
 {
     const edge_runner_flat_pair_f64 q1 = {a.high / b.high, 0.0};
     const edge_runner_flat_pair_f64 r1 = edge_runner_flat_add_f64(a, edge_runner_flat_neg_f64(edge_runner_flat_mul_f64(q1, b)));

@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 c657dc1fe48610cc.
+ * Body of these files: sha256 31917caa3f6cf750.
  */
 #ifndef EULERS_DISK_F32_H
 #define EULERS_DISK_F32_H

@@ -27,13 +27,22 @@ typedef struct {
     double low;
 } eulers_disk_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static eulers_disk_pair_f64 eulers_disk_neg_f64(eulers_disk_pair_f64 a)
 {
     return (eulers_disk_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static eulers_disk_pair_f64 eulers_disk_add_f64(eulers_disk_pair_f64 a, eulers_disk_pair_f64 b)
+DERIVE_APART static eulers_disk_pair_f64 eulers_disk_add_f64(eulers_disk_pair_f64 a, eulers_disk_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -49,7 +58,7 @@ static eulers_disk_pair_f64 eulers_disk_add_f64(eulers_disk_pair_f64 a, eulers_d
 }
 
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
-static eulers_disk_pair_f64 eulers_disk_two_product_f64(double a, double b)
+DERIVE_APART static eulers_disk_pair_f64 eulers_disk_two_product_f64(double a, double b)
 {
     const double p = a * b;
     const double ca = 134217729.0 * a;
@@ -61,7 +70,7 @@ static eulers_disk_pair_f64 eulers_disk_two_product_f64(double a, double b)
     return (eulers_disk_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static eulers_disk_pair_f64 eulers_disk_mul_f64(eulers_disk_pair_f64 a, eulers_disk_pair_f64 b)
+DERIVE_APART static eulers_disk_pair_f64 eulers_disk_mul_f64(eulers_disk_pair_f64 a, eulers_disk_pair_f64 b)
 {
     const eulers_disk_pair_f64 p = eulers_disk_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -70,7 +79,7 @@ static eulers_disk_pair_f64 eulers_disk_mul_f64(eulers_disk_pair_f64 a, eulers_d
 }
 
 /* The sine of an angle and so many quarter turns: these taken off, then a series. */
-static eulers_disk_pair_f64 eulers_disk_sine_f64(eulers_disk_pair_f64 a, double quarters)
+DERIVE_APART static eulers_disk_pair_f64 eulers_disk_sine_f64(eulers_disk_pair_f64 a, double quarters)
 {
     static const eulers_disk_pair_f64 odd[14] = {
         {1.0, 0.0},
@@ -115,10 +124,14 @@ static eulers_disk_pair_f64 eulers_disk_sine_f64(eulers_disk_pair_f64 a, double 
     const double all = k + quarters;
     const double turn = all - 4.0 * floor(all * 0.25);
     const int across = (turn > 0.5 && turn < 1.5) || turn > 2.5;
+    const eulers_disk_pair_f64 *const factors = across ? even : odd;
     eulers_disk_pair_f64 sum = { 0.0, 0.0 };
     int n;
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
+#pragma GCC unroll 1
+#endif
     for (n = 14 - 1; n >= 0; --n) {
-        sum = eulers_disk_add_f64(eulers_disk_mul_f64(sum, square), across ? even[n] : odd[n]);
+        sum = eulers_disk_add_f64(eulers_disk_mul_f64(sum, square), factors[n]);
     }
     if (!across) { sum = eulers_disk_mul_f64(sum, r); }
     return turn > 1.5 ? eulers_disk_neg_f64(sum) : sum;

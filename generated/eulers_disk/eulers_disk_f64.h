@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 3ad7c1857d3d81e1.
+ * Body of these files: sha256 31d315968a136da1.
  */
 #ifndef EULERS_DISK_F64_H
 #define EULERS_DISK_F64_H

@@ -25,13 +25,22 @@ typedef struct {
     float low;
 } free_body_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static free_body_pair_f32 free_body_neg_f32(free_body_pair_f32 a)
 {
     return (free_body_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static free_body_pair_f32 free_body_add_f32(free_body_pair_f32 a, free_body_pair_f32 b)
+DERIVE_APART static free_body_pair_f32 free_body_add_f32(free_body_pair_f32 a, free_body_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -46,7 +55,7 @@ static free_body_pair_f32 free_body_add_f32(free_body_pair_f32 a, free_body_pair
     return (free_body_pair_f32){high, y - (high - x)};
 }
 
-static free_body_pair_f32 free_body_sub_f32(free_body_pair_f32 a, free_body_pair_f32 b)
+DERIVE_APART static free_body_pair_f32 free_body_sub_f32(free_body_pair_f32 a, free_body_pair_f32 b)
 {
     return free_body_add_f32(a, free_body_neg_f32(b));
 }
@@ -64,7 +73,7 @@ static free_body_pair_f32 free_body_two_product_f32(float a, float b)
     return (free_body_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static free_body_pair_f32 free_body_mul_f32(free_body_pair_f32 a, free_body_pair_f32 b)
+DERIVE_APART static free_body_pair_f32 free_body_mul_f32(free_body_pair_f32 a, free_body_pair_f32 b)
 {
     const free_body_pair_f32 p = free_body_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);
@@ -73,7 +82,7 @@ static free_body_pair_f32 free_body_mul_f32(free_body_pair_f32 a, free_body_pair
 }
 
 /* Long division, three digits of working precision each. */
-static free_body_pair_f32 free_body_div_f32(free_body_pair_f32 a, free_body_pair_f32 b)
+DERIVE_APART static free_body_pair_f32 free_body_div_f32(free_body_pair_f32 a, free_body_pair_f32 b)
 {
     const free_body_pair_f32 q1 = {a.high / b.high, 0.0F};
     const free_body_pair_f32 r1 = free_body_add_f32(a, free_body_neg_f32(free_body_mul_f32(q1, b)));

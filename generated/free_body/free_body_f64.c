@@ -25,13 +25,22 @@ typedef struct {
     double low;
 } free_body_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static free_body_pair_f64 free_body_neg_f64(free_body_pair_f64 a)
 {
     return (free_body_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static free_body_pair_f64 free_body_add_f64(free_body_pair_f64 a, free_body_pair_f64 b)
+DERIVE_APART static free_body_pair_f64 free_body_add_f64(free_body_pair_f64 a, free_body_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -46,7 +55,7 @@ static free_body_pair_f64 free_body_add_f64(free_body_pair_f64 a, free_body_pair
     return (free_body_pair_f64){high, y - (high - x)};
 }
 
-static free_body_pair_f64 free_body_sub_f64(free_body_pair_f64 a, free_body_pair_f64 b)
+DERIVE_APART static free_body_pair_f64 free_body_sub_f64(free_body_pair_f64 a, free_body_pair_f64 b)
 {
     return free_body_add_f64(a, free_body_neg_f64(b));
 }
@@ -64,7 +73,7 @@ static free_body_pair_f64 free_body_two_product_f64(double a, double b)
     return (free_body_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static free_body_pair_f64 free_body_mul_f64(free_body_pair_f64 a, free_body_pair_f64 b)
+DERIVE_APART static free_body_pair_f64 free_body_mul_f64(free_body_pair_f64 a, free_body_pair_f64 b)
 {
     const free_body_pair_f64 p = free_body_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -73,7 +82,7 @@ static free_body_pair_f64 free_body_mul_f64(free_body_pair_f64 a, free_body_pair
 }
 
 /* Long division, three digits of working precision each. */
-static free_body_pair_f64 free_body_div_f64(free_body_pair_f64 a, free_body_pair_f64 b)
+DERIVE_APART static free_body_pair_f64 free_body_div_f64(free_body_pair_f64 a, free_body_pair_f64 b)
 {
     const free_body_pair_f64 q1 = {a.high / b.high, 0.0};
     const free_body_pair_f64 r1 = free_body_add_f64(a, free_body_neg_f64(free_body_mul_f64(q1, b)));

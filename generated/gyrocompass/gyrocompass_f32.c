@@ -27,13 +27,22 @@ typedef struct {
     float low;
 } gyrocompass_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static gyrocompass_pair_f32 gyrocompass_neg_f32(gyrocompass_pair_f32 a)
 {
     return (gyrocompass_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static gyrocompass_pair_f32 gyrocompass_add_f32(gyrocompass_pair_f32 a, gyrocompass_pair_f32 b)
+DERIVE_APART static gyrocompass_pair_f32 gyrocompass_add_f32(gyrocompass_pair_f32 a, gyrocompass_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -48,13 +57,13 @@ static gyrocompass_pair_f32 gyrocompass_add_f32(gyrocompass_pair_f32 a, gyrocomp
     return (gyrocompass_pair_f32){high, y - (high - x)};
 }
 
-static gyrocompass_pair_f32 gyrocompass_sub_f32(gyrocompass_pair_f32 a, gyrocompass_pair_f32 b)
+DERIVE_APART static gyrocompass_pair_f32 gyrocompass_sub_f32(gyrocompass_pair_f32 a, gyrocompass_pair_f32 b)
 {
     return gyrocompass_add_f32(a, gyrocompass_neg_f32(b));
 }
 
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
-static gyrocompass_pair_f32 gyrocompass_two_product_f32(float a, float b)
+DERIVE_APART static gyrocompass_pair_f32 gyrocompass_two_product_f32(float a, float b)
 {
     const float p = a * b;
     const float ca = 4097.0F * a;
@@ -66,7 +75,7 @@ static gyrocompass_pair_f32 gyrocompass_two_product_f32(float a, float b)
     return (gyrocompass_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static gyrocompass_pair_f32 gyrocompass_mul_f32(gyrocompass_pair_f32 a, gyrocompass_pair_f32 b)
+DERIVE_APART static gyrocompass_pair_f32 gyrocompass_mul_f32(gyrocompass_pair_f32 a, gyrocompass_pair_f32 b)
 {
     const gyrocompass_pair_f32 p = gyrocompass_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static gyrocompass_pair_f32 gyrocompass_mul_f32(gyrocompass_pair_f32 a, gyrocomp
 }
 
 /* Long division, three digits of working precision each. */
-static gyrocompass_pair_f32 gyrocompass_div_f32(gyrocompass_pair_f32 a, gyrocompass_pair_f32 b)
+DERIVE_APART static gyrocompass_pair_f32 gyrocompass_div_f32(gyrocompass_pair_f32 a, gyrocompass_pair_f32 b)
 {
     const gyrocompass_pair_f32 q1 = {a.high / b.high, 0.0F};
     const gyrocompass_pair_f32 r1 = gyrocompass_add_f32(a, gyrocompass_neg_f32(gyrocompass_mul_f32(q1, b)));
@@ -85,7 +94,7 @@ static gyrocompass_pair_f32 gyrocompass_div_f32(gyrocompass_pair_f32 a, gyrocomp
     return gyrocompass_add_f32(gyrocompass_add_f32(q1, q2), q3);
 }
 
-static gyrocompass_pair_f32 gyrocompass_sqrt_f32(gyrocompass_pair_f32 a)
+DERIVE_APART static gyrocompass_pair_f32 gyrocompass_sqrt_f32(gyrocompass_pair_f32 a)
 {
     const float s = sqrtf(a.high);
     const gyrocompass_pair_f32 r = gyrocompass_add_f32(a, gyrocompass_neg_f32(gyrocompass_two_product_f32(s, s)));
@@ -128,10 +137,14 @@ static gyrocompass_pair_f32 gyrocompass_sine_f32(gyrocompass_pair_f32 a, float q
     const float all = k + quarters;
     const float turn = all - 4.0F * floorf(all * 0.25F);
     const int across = (turn > 0.5F && turn < 1.5F) || turn > 2.5F;
+    const gyrocompass_pair_f32 *const factors = across ? even : odd;
     gyrocompass_pair_f32 sum = { 0.0F, 0.0F };
     int n;
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
+#pragma GCC unroll 1
+#endif
     for (n = 8 - 1; n >= 0; --n) {
-        sum = gyrocompass_add_f32(gyrocompass_mul_f32(sum, square), across ? even[n] : odd[n]);
+        sum = gyrocompass_add_f32(gyrocompass_mul_f32(sum, square), factors[n]);
     }
     if (!across) { sum = gyrocompass_mul_f32(sum, r); }
     return turn > 1.5F ? gyrocompass_neg_f32(sum) : sum;

@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 9e76c54fc1d722c2.
+ * Body of these files: sha256 a97a5914c693d575.
  */
 #ifndef GYROCOMPASS_F32_H
 #define GYROCOMPASS_F32_H

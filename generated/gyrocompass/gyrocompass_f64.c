@@ -27,13 +27,22 @@ typedef struct {
     double low;
 } gyrocompass_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static gyrocompass_pair_f64 gyrocompass_neg_f64(gyrocompass_pair_f64 a)
 {
     return (gyrocompass_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static gyrocompass_pair_f64 gyrocompass_add_f64(gyrocompass_pair_f64 a, gyrocompass_pair_f64 b)
+DERIVE_APART static gyrocompass_pair_f64 gyrocompass_add_f64(gyrocompass_pair_f64 a, gyrocompass_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -48,13 +57,13 @@ static gyrocompass_pair_f64 gyrocompass_add_f64(gyrocompass_pair_f64 a, gyrocomp
     return (gyrocompass_pair_f64){high, y - (high - x)};
 }
 
-static gyrocompass_pair_f64 gyrocompass_sub_f64(gyrocompass_pair_f64 a, gyrocompass_pair_f64 b)
+DERIVE_APART static gyrocompass_pair_f64 gyrocompass_sub_f64(gyrocompass_pair_f64 a, gyrocompass_pair_f64 b)
 {
     return gyrocompass_add_f64(a, gyrocompass_neg_f64(b));
 }
 
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
-static gyrocompass_pair_f64 gyrocompass_two_product_f64(double a, double b)
+DERIVE_APART static gyrocompass_pair_f64 gyrocompass_two_product_f64(double a, double b)
 {
     const double p = a * b;
     const double ca = 134217729.0 * a;
@@ -66,7 +75,7 @@ static gyrocompass_pair_f64 gyrocompass_two_product_f64(double a, double b)
     return (gyrocompass_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static gyrocompass_pair_f64 gyrocompass_mul_f64(gyrocompass_pair_f64 a, gyrocompass_pair_f64 b)
+DERIVE_APART static gyrocompass_pair_f64 gyrocompass_mul_f64(gyrocompass_pair_f64 a, gyrocompass_pair_f64 b)
 {
     const gyrocompass_pair_f64 p = gyrocompass_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static gyrocompass_pair_f64 gyrocompass_mul_f64(gyrocompass_pair_f64 a, gyrocomp
 }
 
 /* Long division, three digits of working precision each. */
-static gyrocompass_pair_f64 gyrocompass_div_f64(gyrocompass_pair_f64 a, gyrocompass_pair_f64 b)
+DERIVE_APART static gyrocompass_pair_f64 gyrocompass_div_f64(gyrocompass_pair_f64 a, gyrocompass_pair_f64 b)
 {
     const gyrocompass_pair_f64 q1 = {a.high / b.high, 0.0};
     const gyrocompass_pair_f64 r1 = gyrocompass_add_f64(a, gyrocompass_neg_f64(gyrocompass_mul_f64(q1, b)));
@@ -85,7 +94,7 @@ static gyrocompass_pair_f64 gyrocompass_div_f64(gyrocompass_pair_f64 a, gyrocomp
     return gyrocompass_add_f64(gyrocompass_add_f64(q1, q2), q3);
 }
 
-static gyrocompass_pair_f64 gyrocompass_sqrt_f64(gyrocompass_pair_f64 a)
+DERIVE_APART static gyrocompass_pair_f64 gyrocompass_sqrt_f64(gyrocompass_pair_f64 a)
 {
     const double s = sqrt(a.high);
     const gyrocompass_pair_f64 r = gyrocompass_add_f64(a, gyrocompass_neg_f64(gyrocompass_two_product_f64(s, s)));
@@ -140,10 +149,14 @@ static gyrocompass_pair_f64 gyrocompass_sine_f64(gyrocompass_pair_f64 a, double 
     const double all = k + quarters;
     const double turn = all - 4.0 * floor(all * 0.25);
     const int across = (turn > 0.5 && turn < 1.5) || turn > 2.5;
+    const gyrocompass_pair_f64 *const factors = across ? even : odd;
     gyrocompass_pair_f64 sum = { 0.0, 0.0 };
     int n;
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
+#pragma GCC unroll 1
+#endif
     for (n = 14 - 1; n >= 0; --n) {
-        sum = gyrocompass_add_f64(gyrocompass_mul_f64(sum, square), across ? even[n] : odd[n]);
+        sum = gyrocompass_add_f64(gyrocompass_mul_f64(sum, square), factors[n]);
     }
     if (!across) { sum = gyrocompass_mul_f64(sum, r); }
     return turn > 1.5 ? gyrocompass_neg_f64(sum) : sum;

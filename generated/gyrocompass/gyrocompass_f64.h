@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 4d751adc8c992eea.
+ * Body of these files: sha256 07182f4e0cb18025.
  */
 #ifndef GYROCOMPASS_F64_H
 #define GYROCOMPASS_F64_H

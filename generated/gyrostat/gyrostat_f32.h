@@ -25,7 +25,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 d356b2e8b3834a7f.
+ * Body of these files: sha256 4a9562542cef842e.
  */
 #ifndef GYROSTAT_F32_H
 #define GYROSTAT_F32_H

@@ -27,13 +27,22 @@ typedef struct {
     double low;
 } gyrostat_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static gyrostat_pair_f64 gyrostat_neg_f64(gyrostat_pair_f64 a)
 {
     return (gyrostat_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static gyrostat_pair_f64 gyrostat_add_f64(gyrostat_pair_f64 a, gyrostat_pair_f64 b)
+DERIVE_APART static gyrostat_pair_f64 gyrostat_add_f64(gyrostat_pair_f64 a, gyrostat_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -48,7 +57,7 @@ static gyrostat_pair_f64 gyrostat_add_f64(gyrostat_pair_f64 a, gyrostat_pair_f64
     return (gyrostat_pair_f64){high, y - (high - x)};
 }
 
-static gyrostat_pair_f64 gyrostat_sub_f64(gyrostat_pair_f64 a, gyrostat_pair_f64 b)
+DERIVE_APART static gyrostat_pair_f64 gyrostat_sub_f64(gyrostat_pair_f64 a, gyrostat_pair_f64 b)
 {
     return gyrostat_add_f64(a, gyrostat_neg_f64(b));
 }
@@ -66,7 +75,7 @@ static gyrostat_pair_f64 gyrostat_two_product_f64(double a, double b)
     return (gyrostat_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static gyrostat_pair_f64 gyrostat_mul_f64(gyrostat_pair_f64 a, gyrostat_pair_f64 b)
+DERIVE_APART static gyrostat_pair_f64 gyrostat_mul_f64(gyrostat_pair_f64 a, gyrostat_pair_f64 b)
 {
     const gyrostat_pair_f64 p = gyrostat_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static gyrostat_pair_f64 gyrostat_mul_f64(gyrostat_pair_f64 a, gyrostat_pair_f64
 }
 
 /* Long division, three digits of working precision each. */
-static gyrostat_pair_f64 gyrostat_div_f64(gyrostat_pair_f64 a, gyrostat_pair_f64 b)
+DERIVE_APART static gyrostat_pair_f64 gyrostat_div_f64(gyrostat_pair_f64 a, gyrostat_pair_f64 b)
 {
     const gyrostat_pair_f64 q1 = {a.high / b.high, 0.0};
     const gyrostat_pair_f64 r1 = gyrostat_add_f64(a, gyrostat_neg_f64(gyrostat_mul_f64(q1, b)));

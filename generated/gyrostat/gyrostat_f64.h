@@ -25,7 +25,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 aa3847b8d9b05652.
+ * Body of these files: sha256 b6f4c1dd49825e4f.
  */
 #ifndef GYROSTAT_F64_H
 #define GYROSTAT_F64_H

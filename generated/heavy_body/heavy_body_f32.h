@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 69abdd024dc1cab8.
+ * Body of these files: sha256 88b8cfef4689698f.
  */
 #ifndef HEAVY_BODY_F32_H
 #define HEAVY_BODY_F32_H

@@ -27,13 +27,22 @@ typedef struct {
     double low;
 } heavy_body_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static heavy_body_pair_f64 heavy_body_neg_f64(heavy_body_pair_f64 a)
 {
     return (heavy_body_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static heavy_body_pair_f64 heavy_body_add_f64(heavy_body_pair_f64 a, heavy_body_pair_f64 b)
+DERIVE_APART static heavy_body_pair_f64 heavy_body_add_f64(heavy_body_pair_f64 a, heavy_body_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -48,7 +57,7 @@ static heavy_body_pair_f64 heavy_body_add_f64(heavy_body_pair_f64 a, heavy_body_
     return (heavy_body_pair_f64){high, y - (high - x)};
 }
 
-static heavy_body_pair_f64 heavy_body_sub_f64(heavy_body_pair_f64 a, heavy_body_pair_f64 b)
+DERIVE_APART static heavy_body_pair_f64 heavy_body_sub_f64(heavy_body_pair_f64 a, heavy_body_pair_f64 b)
 {
     return heavy_body_add_f64(a, heavy_body_neg_f64(b));
 }
@@ -66,7 +75,7 @@ static heavy_body_pair_f64 heavy_body_two_product_f64(double a, double b)
     return (heavy_body_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static heavy_body_pair_f64 heavy_body_mul_f64(heavy_body_pair_f64 a, heavy_body_pair_f64 b)
+DERIVE_APART static heavy_body_pair_f64 heavy_body_mul_f64(heavy_body_pair_f64 a, heavy_body_pair_f64 b)
 {
     const heavy_body_pair_f64 p = heavy_body_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static heavy_body_pair_f64 heavy_body_mul_f64(heavy_body_pair_f64 a, heavy_body_
 }
 
 /* Long division, three digits of working precision each. */
-static heavy_body_pair_f64 heavy_body_div_f64(heavy_body_pair_f64 a, heavy_body_pair_f64 b)
+DERIVE_APART static heavy_body_pair_f64 heavy_body_div_f64(heavy_body_pair_f64 a, heavy_body_pair_f64 b)
 {
     const heavy_body_pair_f64 q1 = {a.high / b.high, 0.0};
     const heavy_body_pair_f64 r1 = heavy_body_add_f64(a, heavy_body_neg_f64(heavy_body_mul_f64(q1, b)));

@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 44f27afcd1762e61.
+ * Body of these files: sha256 ddb18317535d2c23.
  */
 #ifndef HEAVY_BODY_F64_H
 #define HEAVY_BODY_F64_H

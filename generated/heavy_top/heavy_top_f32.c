@@ -27,13 +27,22 @@ typedef struct {
     float low;
 } heavy_top_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static heavy_top_pair_f32 heavy_top_neg_f32(heavy_top_pair_f32 a)
 {
     return (heavy_top_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static heavy_top_pair_f32 heavy_top_add_f32(heavy_top_pair_f32 a, heavy_top_pair_f32 b)
+DERIVE_APART static heavy_top_pair_f32 heavy_top_add_f32(heavy_top_pair_f32 a, heavy_top_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -61,7 +70,7 @@ static heavy_top_pair_f32 heavy_top_two_product_f32(float a, float b)
     return (heavy_top_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static heavy_top_pair_f32 heavy_top_mul_f32(heavy_top_pair_f32 a, heavy_top_pair_f32 b)
+DERIVE_APART static heavy_top_pair_f32 heavy_top_mul_f32(heavy_top_pair_f32 a, heavy_top_pair_f32 b)
 {
     const heavy_top_pair_f32 p = heavy_top_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);

@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 c9e7b03acb3b13bc.
+ * Body of these files: sha256 8d2e2874f6071a3b.
  */
 #ifndef HEAVY_TOP_F32_H
 #define HEAVY_TOP_F32_H

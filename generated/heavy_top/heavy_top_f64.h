@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 00abf580121bdeba.
+ * Body of these files: sha256 566085f9ad9a4b9d.
  */
 #ifndef HEAVY_TOP_F64_H
 #define HEAVY_TOP_F64_H

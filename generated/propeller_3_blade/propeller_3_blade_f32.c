@@ -25,6 +25,15 @@ typedef struct {
     float low;
 } propeller_3_blade_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
 static propeller_3_blade_pair_f32 propeller_3_blade_two_product_f32(float a, float b)
 {
@@ -38,7 +47,7 @@ static propeller_3_blade_pair_f32 propeller_3_blade_two_product_f32(float a, flo
     return (propeller_3_blade_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static propeller_3_blade_pair_f32 propeller_3_blade_mul_f32(propeller_3_blade_pair_f32 a, propeller_3_blade_pair_f32 b)
+DERIVE_APART static propeller_3_blade_pair_f32 propeller_3_blade_mul_f32(propeller_3_blade_pair_f32 a, propeller_3_blade_pair_f32 b)
 {
     const propeller_3_blade_pair_f32 p = propeller_3_blade_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);

@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 d282fc9e682ca0e2.
+ * Body of these files: sha256 ffb4fbe4cf8ff3ae.
  */
 #ifndef PROPELLER_3_BLADE_F32_H
 #define PROPELLER_3_BLADE_F32_H

@@ -27,13 +27,22 @@ typedef struct {
     float low;
 } quadrotor_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static quadrotor_pair_f32 quadrotor_neg_f32(quadrotor_pair_f32 a)
 {
     return (quadrotor_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static quadrotor_pair_f32 quadrotor_add_f32(quadrotor_pair_f32 a, quadrotor_pair_f32 b)
+DERIVE_APART static quadrotor_pair_f32 quadrotor_add_f32(quadrotor_pair_f32 a, quadrotor_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -48,7 +57,7 @@ static quadrotor_pair_f32 quadrotor_add_f32(quadrotor_pair_f32 a, quadrotor_pair
     return (quadrotor_pair_f32){high, y - (high - x)};
 }
 
-static quadrotor_pair_f32 quadrotor_sub_f32(quadrotor_pair_f32 a, quadrotor_pair_f32 b)
+DERIVE_APART static quadrotor_pair_f32 quadrotor_sub_f32(quadrotor_pair_f32 a, quadrotor_pair_f32 b)
 {
     return quadrotor_add_f32(a, quadrotor_neg_f32(b));
 }
@@ -66,7 +75,7 @@ static quadrotor_pair_f32 quadrotor_two_product_f32(float a, float b)
     return (quadrotor_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static quadrotor_pair_f32 quadrotor_mul_f32(quadrotor_pair_f32 a, quadrotor_pair_f32 b)
+DERIVE_APART static quadrotor_pair_f32 quadrotor_mul_f32(quadrotor_pair_f32 a, quadrotor_pair_f32 b)
 {
     const quadrotor_pair_f32 p = quadrotor_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static quadrotor_pair_f32 quadrotor_mul_f32(quadrotor_pair_f32 a, quadrotor_pair
 }
 
 /* Long division, three digits of working precision each. */
-static quadrotor_pair_f32 quadrotor_div_f32(quadrotor_pair_f32 a, quadrotor_pair_f32 b)
+DERIVE_APART static quadrotor_pair_f32 quadrotor_div_f32(quadrotor_pair_f32 a, quadrotor_pair_f32 b)
 {
     const quadrotor_pair_f32 q1 = {a.high / b.high, 0.0F};
     const quadrotor_pair_f32 r1 = quadrotor_add_f32(a, quadrotor_neg_f32(quadrotor_mul_f32(q1, b)));

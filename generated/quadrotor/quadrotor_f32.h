@@ -44,7 +44,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 834a3281d8a388fb.
+ * Body of these files: sha256 a4c0d1d2eef4424e.
  */
 #ifndef QUADROTOR_F32_H
 #define QUADROTOR_F32_H

@@ -27,13 +27,22 @@ typedef struct {
     double low;
 } quadrotor_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static quadrotor_pair_f64 quadrotor_neg_f64(quadrotor_pair_f64 a)
 {
     return (quadrotor_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static quadrotor_pair_f64 quadrotor_add_f64(quadrotor_pair_f64 a, quadrotor_pair_f64 b)
+DERIVE_APART static quadrotor_pair_f64 quadrotor_add_f64(quadrotor_pair_f64 a, quadrotor_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -48,7 +57,7 @@ static quadrotor_pair_f64 quadrotor_add_f64(quadrotor_pair_f64 a, quadrotor_pair
     return (quadrotor_pair_f64){high, y - (high - x)};
 }
 
-static quadrotor_pair_f64 quadrotor_sub_f64(quadrotor_pair_f64 a, quadrotor_pair_f64 b)
+DERIVE_APART static quadrotor_pair_f64 quadrotor_sub_f64(quadrotor_pair_f64 a, quadrotor_pair_f64 b)
 {
     return quadrotor_add_f64(a, quadrotor_neg_f64(b));
 }
@@ -66,7 +75,7 @@ static quadrotor_pair_f64 quadrotor_two_product_f64(double a, double b)
     return (quadrotor_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static quadrotor_pair_f64 quadrotor_mul_f64(quadrotor_pair_f64 a, quadrotor_pair_f64 b)
+DERIVE_APART static quadrotor_pair_f64 quadrotor_mul_f64(quadrotor_pair_f64 a, quadrotor_pair_f64 b)
 {
     const quadrotor_pair_f64 p = quadrotor_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static quadrotor_pair_f64 quadrotor_mul_f64(quadrotor_pair_f64 a, quadrotor_pair
 }
 
 /* Long division, three digits of working precision each. */
-static quadrotor_pair_f64 quadrotor_div_f64(quadrotor_pair_f64 a, quadrotor_pair_f64 b)
+DERIVE_APART static quadrotor_pair_f64 quadrotor_div_f64(quadrotor_pair_f64 a, quadrotor_pair_f64 b)
 {
     const quadrotor_pair_f64 q1 = {a.high / b.high, 0.0};
     const quadrotor_pair_f64 r1 = quadrotor_add_f64(a, quadrotor_neg_f64(quadrotor_mul_f64(q1, b)));

@@ -27,13 +27,22 @@ typedef struct {
     float low;
 } rattleback_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static rattleback_pair_f32 rattleback_neg_f32(rattleback_pair_f32 a)
 {
     return (rattleback_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static rattleback_pair_f32 rattleback_add_f32(rattleback_pair_f32 a, rattleback_pair_f32 b)
+DERIVE_APART static rattleback_pair_f32 rattleback_add_f32(rattleback_pair_f32 a, rattleback_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -48,7 +57,7 @@ static rattleback_pair_f32 rattleback_add_f32(rattleback_pair_f32 a, rattleback_
     return (rattleback_pair_f32){high, y - (high - x)};
 }
 
-static rattleback_pair_f32 rattleback_sub_f32(rattleback_pair_f32 a, rattleback_pair_f32 b)
+DERIVE_APART static rattleback_pair_f32 rattleback_sub_f32(rattleback_pair_f32 a, rattleback_pair_f32 b)
 {
     return rattleback_add_f32(a, rattleback_neg_f32(b));
 }
@@ -66,7 +75,7 @@ static rattleback_pair_f32 rattleback_two_product_f32(float a, float b)
     return (rattleback_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static rattleback_pair_f32 rattleback_mul_f32(rattleback_pair_f32 a, rattleback_pair_f32 b)
+DERIVE_APART static rattleback_pair_f32 rattleback_mul_f32(rattleback_pair_f32 a, rattleback_pair_f32 b)
 {
     const rattleback_pair_f32 p = rattleback_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static rattleback_pair_f32 rattleback_mul_f32(rattleback_pair_f32 a, rattleback_
 }
 
 /* Long division, three digits of working precision each. */
-static rattleback_pair_f32 rattleback_div_f32(rattleback_pair_f32 a, rattleback_pair_f32 b)
+DERIVE_APART static rattleback_pair_f32 rattleback_div_f32(rattleback_pair_f32 a, rattleback_pair_f32 b)
 {
     const rattleback_pair_f32 q1 = {a.high / b.high, 0.0F};
     const rattleback_pair_f32 r1 = rattleback_add_f32(a, rattleback_neg_f32(rattleback_mul_f32(q1, b)));

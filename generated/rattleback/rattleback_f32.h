@@ -30,7 +30,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 a4fef6069c76e7c8.
+ * Body of these files: sha256 9fe66fc0c15590c3.
  */
 #ifndef RATTLEBACK_F32_H
 #define RATTLEBACK_F32_H

@@ -25,13 +25,22 @@ typedef struct {
     float low;
 } reaction_wheel_satellite_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static reaction_wheel_satellite_pair_f32 reaction_wheel_satellite_neg_f32(reaction_wheel_satellite_pair_f32 a)
 {
     return (reaction_wheel_satellite_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static reaction_wheel_satellite_pair_f32 reaction_wheel_satellite_add_f32(reaction_wheel_satellite_pair_f32 a, reaction_wheel_satellite_pair_f32 b)
+DERIVE_APART static reaction_wheel_satellite_pair_f32 reaction_wheel_satellite_add_f32(reaction_wheel_satellite_pair_f32 a, reaction_wheel_satellite_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -46,7 +55,7 @@ static reaction_wheel_satellite_pair_f32 reaction_wheel_satellite_add_f32(reacti
     return (reaction_wheel_satellite_pair_f32){high, y - (high - x)};
 }
 
-static reaction_wheel_satellite_pair_f32 reaction_wheel_satellite_sub_f32(reaction_wheel_satellite_pair_f32 a, reaction_wheel_satellite_pair_f32 b)
+DERIVE_APART static reaction_wheel_satellite_pair_f32 reaction_wheel_satellite_sub_f32(reaction_wheel_satellite_pair_f32 a, reaction_wheel_satellite_pair_f32 b)
 {
     return reaction_wheel_satellite_add_f32(a, reaction_wheel_satellite_neg_f32(b));
 }
@@ -64,7 +73,7 @@ static reaction_wheel_satellite_pair_f32 reaction_wheel_satellite_two_product_f3
     return (reaction_wheel_satellite_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static reaction_wheel_satellite_pair_f32 reaction_wheel_satellite_mul_f32(reaction_wheel_satellite_pair_f32 a, reaction_wheel_satellite_pair_f32 b)
+DERIVE_APART static reaction_wheel_satellite_pair_f32 reaction_wheel_satellite_mul_f32(reaction_wheel_satellite_pair_f32 a, reaction_wheel_satellite_pair_f32 b)
 {
     const reaction_wheel_satellite_pair_f32 p = reaction_wheel_satellite_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);
@@ -73,7 +82,7 @@ static reaction_wheel_satellite_pair_f32 reaction_wheel_satellite_mul_f32(reacti
 }
 
 /* Long division, three digits of working precision each. */
-static reaction_wheel_satellite_pair_f32 reaction_wheel_satellite_div_f32(reaction_wheel_satellite_pair_f32 a, reaction_wheel_satellite_pair_f32 b)
+DERIVE_APART static reaction_wheel_satellite_pair_f32 reaction_wheel_satellite_div_f32(reaction_wheel_satellite_pair_f32 a, reaction_wheel_satellite_pair_f32 b)
 {
     const reaction_wheel_satellite_pair_f32 q1 = {a.high / b.high, 0.0F};
     const reaction_wheel_satellite_pair_f32 r1 = reaction_wheel_satellite_add_f32(a, reaction_wheel_satellite_neg_f32(reaction_wheel_satellite_mul_f32(q1, b)));

@@ -25,13 +25,22 @@ typedef struct {
     double low;
 } reaction_wheel_satellite_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static reaction_wheel_satellite_pair_f64 reaction_wheel_satellite_neg_f64(reaction_wheel_satellite_pair_f64 a)
 {
     return (reaction_wheel_satellite_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static reaction_wheel_satellite_pair_f64 reaction_wheel_satellite_add_f64(reaction_wheel_satellite_pair_f64 a, reaction_wheel_satellite_pair_f64 b)
+DERIVE_APART static reaction_wheel_satellite_pair_f64 reaction_wheel_satellite_add_f64(reaction_wheel_satellite_pair_f64 a, reaction_wheel_satellite_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -46,7 +55,7 @@ static reaction_wheel_satellite_pair_f64 reaction_wheel_satellite_add_f64(reacti
     return (reaction_wheel_satellite_pair_f64){high, y - (high - x)};
 }
 
-static reaction_wheel_satellite_pair_f64 reaction_wheel_satellite_sub_f64(reaction_wheel_satellite_pair_f64 a, reaction_wheel_satellite_pair_f64 b)
+DERIVE_APART static reaction_wheel_satellite_pair_f64 reaction_wheel_satellite_sub_f64(reaction_wheel_satellite_pair_f64 a, reaction_wheel_satellite_pair_f64 b)
 {
     return reaction_wheel_satellite_add_f64(a, reaction_wheel_satellite_neg_f64(b));
 }
@@ -64,7 +73,7 @@ static reaction_wheel_satellite_pair_f64 reaction_wheel_satellite_two_product_f6
     return (reaction_wheel_satellite_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static reaction_wheel_satellite_pair_f64 reaction_wheel_satellite_mul_f64(reaction_wheel_satellite_pair_f64 a, reaction_wheel_satellite_pair_f64 b)
+DERIVE_APART static reaction_wheel_satellite_pair_f64 reaction_wheel_satellite_mul_f64(reaction_wheel_satellite_pair_f64 a, reaction_wheel_satellite_pair_f64 b)
 {
     const reaction_wheel_satellite_pair_f64 p = reaction_wheel_satellite_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -73,7 +82,7 @@ static reaction_wheel_satellite_pair_f64 reaction_wheel_satellite_mul_f64(reacti
 }
 
 /* Long division, three digits of working precision each. */
-static reaction_wheel_satellite_pair_f64 reaction_wheel_satellite_div_f64(reaction_wheel_satellite_pair_f64 a, reaction_wheel_satellite_pair_f64 b)
+DERIVE_APART static reaction_wheel_satellite_pair_f64 reaction_wheel_satellite_div_f64(reaction_wheel_satellite_pair_f64 a, reaction_wheel_satellite_pair_f64 b)
 {
     const reaction_wheel_satellite_pair_f64 q1 = {a.high / b.high, 0.0};
     const reaction_wheel_satellite_pair_f64 r1 = reaction_wheel_satellite_add_f64(a, reaction_wheel_satellite_neg_f64(reaction_wheel_satellite_mul_f64(q1, b)));

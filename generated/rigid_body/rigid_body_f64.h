@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 7c2a4603d20953f1.
+ * Body of these files: sha256 5cd647f9097b9d4e.
  */
 #ifndef RIGID_BODY_F64_H
 #define RIGID_BODY_F64_H

@@ -27,13 +27,22 @@ typedef struct {
     double low;
 } rigid_body_steps_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static rigid_body_steps_pair_f64 rigid_body_steps_neg_f64(rigid_body_steps_pair_f64 a)
 {
     return (rigid_body_steps_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static rigid_body_steps_pair_f64 rigid_body_steps_add_f64(rigid_body_steps_pair_f64 a, rigid_body_steps_pair_f64 b)
+DERIVE_APART static rigid_body_steps_pair_f64 rigid_body_steps_add_f64(rigid_body_steps_pair_f64 a, rigid_body_steps_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -48,7 +57,7 @@ static rigid_body_steps_pair_f64 rigid_body_steps_add_f64(rigid_body_steps_pair_
     return (rigid_body_steps_pair_f64){high, y - (high - x)};
 }
 
-static rigid_body_steps_pair_f64 rigid_body_steps_sub_f64(rigid_body_steps_pair_f64 a, rigid_body_steps_pair_f64 b)
+DERIVE_APART static rigid_body_steps_pair_f64 rigid_body_steps_sub_f64(rigid_body_steps_pair_f64 a, rigid_body_steps_pair_f64 b)
 {
     return rigid_body_steps_add_f64(a, rigid_body_steps_neg_f64(b));
 }
@@ -66,7 +75,7 @@ static rigid_body_steps_pair_f64 rigid_body_steps_two_product_f64(double a, doub
     return (rigid_body_steps_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static rigid_body_steps_pair_f64 rigid_body_steps_mul_f64(rigid_body_steps_pair_f64 a, rigid_body_steps_pair_f64 b)
+DERIVE_APART static rigid_body_steps_pair_f64 rigid_body_steps_mul_f64(rigid_body_steps_pair_f64 a, rigid_body_steps_pair_f64 b)
 {
     const rigid_body_steps_pair_f64 p = rigid_body_steps_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static rigid_body_steps_pair_f64 rigid_body_steps_mul_f64(rigid_body_steps_pair_
 }
 
 /* Long division, three digits of working precision each. */
-static rigid_body_steps_pair_f64 rigid_body_steps_div_f64(rigid_body_steps_pair_f64 a, rigid_body_steps_pair_f64 b)
+DERIVE_APART static rigid_body_steps_pair_f64 rigid_body_steps_div_f64(rigid_body_steps_pair_f64 a, rigid_body_steps_pair_f64 b)
 {
     const rigid_body_steps_pair_f64 q1 = {a.high / b.high, 0.0};
     const rigid_body_steps_pair_f64 r1 = rigid_body_steps_add_f64(a, rigid_body_steps_neg_f64(rigid_body_steps_mul_f64(q1, b)));

@@ -21,7 +21,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 3612e2aef4d7df87.
+ * Body of these files: sha256 602d006d7a94a7a0.
  */
 #ifndef ROD_WIRE_VERTICAL_SHAFT_F32_H
 #define ROD_WIRE_VERTICAL_SHAFT_F32_H

@@ -27,13 +27,22 @@ typedef struct {
     double low;
 } rod_wire_vertical_shaft_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_neg_f64(rod_wire_vertical_shaft_pair_f64 a)
 {
     return (rod_wire_vertical_shaft_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_add_f64(rod_wire_vertical_shaft_pair_f64 a, rod_wire_vertical_shaft_pair_f64 b)
+DERIVE_APART static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_add_f64(rod_wire_vertical_shaft_pair_f64 a, rod_wire_vertical_shaft_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -54,7 +63,7 @@ static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_sub_f64(rod_wire
 }
 
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
-static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_two_product_f64(double a, double b)
+DERIVE_APART static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_two_product_f64(double a, double b)
 {
     const double p = a * b;
     const double ca = 134217729.0 * a;
@@ -66,7 +75,7 @@ static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_two_product_f64(
     return (rod_wire_vertical_shaft_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_mul_f64(rod_wire_vertical_shaft_pair_f64 a, rod_wire_vertical_shaft_pair_f64 b)
+DERIVE_APART static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_mul_f64(rod_wire_vertical_shaft_pair_f64 a, rod_wire_vertical_shaft_pair_f64 b)
 {
     const rod_wire_vertical_shaft_pair_f64 p = rod_wire_vertical_shaft_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_mul_f64(rod_wire
 }
 
 /* Long division, three digits of working precision each. */
-static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_div_f64(rod_wire_vertical_shaft_pair_f64 a, rod_wire_vertical_shaft_pair_f64 b)
+DERIVE_APART static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_div_f64(rod_wire_vertical_shaft_pair_f64 a, rod_wire_vertical_shaft_pair_f64 b)
 {
     const rod_wire_vertical_shaft_pair_f64 q1 = {a.high / b.high, 0.0};
     const rod_wire_vertical_shaft_pair_f64 r1 = rod_wire_vertical_shaft_add_f64(a, rod_wire_vertical_shaft_neg_f64(rod_wire_vertical_shaft_mul_f64(q1, b)));
@@ -86,7 +95,7 @@ static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_div_f64(rod_wire
 }
 
 /* The sine of an angle and so many quarter turns: these taken off, then a series. */
-static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_sine_f64(rod_wire_vertical_shaft_pair_f64 a, double quarters)
+DERIVE_APART static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_sine_f64(rod_wire_vertical_shaft_pair_f64 a, double quarters)
 {
     static const rod_wire_vertical_shaft_pair_f64 odd[14] = {
         {1.0, 0.0},
@@ -131,10 +140,14 @@ static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_sine_f64(rod_wir
     const double all = k + quarters;
     const double turn = all - 4.0 * floor(all * 0.25);
     const int across = (turn > 0.5 && turn < 1.5) || turn > 2.5;
+    const rod_wire_vertical_shaft_pair_f64 *const factors = across ? even : odd;
     rod_wire_vertical_shaft_pair_f64 sum = { 0.0, 0.0 };
     int n;
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
+#pragma GCC unroll 1
+#endif
     for (n = 14 - 1; n >= 0; --n) {
-        sum = rod_wire_vertical_shaft_add_f64(rod_wire_vertical_shaft_mul_f64(sum, square), across ? even[n] : odd[n]);
+        sum = rod_wire_vertical_shaft_add_f64(rod_wire_vertical_shaft_mul_f64(sum, square), factors[n]);
     }
     if (!across) { sum = rod_wire_vertical_shaft_mul_f64(sum, r); }
     return turn > 1.5 ? rod_wire_vertical_shaft_neg_f64(sum) : sum;

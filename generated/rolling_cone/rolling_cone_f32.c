@@ -27,13 +27,22 @@ typedef struct {
     float low;
 } rolling_cone_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static rolling_cone_pair_f32 rolling_cone_neg_f32(rolling_cone_pair_f32 a)
 {
     return (rolling_cone_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static rolling_cone_pair_f32 rolling_cone_add_f32(rolling_cone_pair_f32 a, rolling_cone_pair_f32 b)
+DERIVE_APART static rolling_cone_pair_f32 rolling_cone_add_f32(rolling_cone_pair_f32 a, rolling_cone_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -48,13 +57,13 @@ static rolling_cone_pair_f32 rolling_cone_add_f32(rolling_cone_pair_f32 a, rolli
     return (rolling_cone_pair_f32){high, y - (high - x)};
 }
 
-static rolling_cone_pair_f32 rolling_cone_sub_f32(rolling_cone_pair_f32 a, rolling_cone_pair_f32 b)
+DERIVE_APART static rolling_cone_pair_f32 rolling_cone_sub_f32(rolling_cone_pair_f32 a, rolling_cone_pair_f32 b)
 {
     return rolling_cone_add_f32(a, rolling_cone_neg_f32(b));
 }
 
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
-static rolling_cone_pair_f32 rolling_cone_two_product_f32(float a, float b)
+DERIVE_APART static rolling_cone_pair_f32 rolling_cone_two_product_f32(float a, float b)
 {
     const float p = a * b;
     const float ca = 4097.0F * a;
@@ -66,7 +75,7 @@ static rolling_cone_pair_f32 rolling_cone_two_product_f32(float a, float b)
     return (rolling_cone_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static rolling_cone_pair_f32 rolling_cone_mul_f32(rolling_cone_pair_f32 a, rolling_cone_pair_f32 b)
+DERIVE_APART static rolling_cone_pair_f32 rolling_cone_mul_f32(rolling_cone_pair_f32 a, rolling_cone_pair_f32 b)
 {
     const rolling_cone_pair_f32 p = rolling_cone_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static rolling_cone_pair_f32 rolling_cone_mul_f32(rolling_cone_pair_f32 a, rolli
 }
 
 /* Long division, three digits of working precision each. */
-static rolling_cone_pair_f32 rolling_cone_div_f32(rolling_cone_pair_f32 a, rolling_cone_pair_f32 b)
+DERIVE_APART static rolling_cone_pair_f32 rolling_cone_div_f32(rolling_cone_pair_f32 a, rolling_cone_pair_f32 b)
 {
     const rolling_cone_pair_f32 q1 = {a.high / b.high, 0.0F};
     const rolling_cone_pair_f32 r1 = rolling_cone_add_f32(a, rolling_cone_neg_f32(rolling_cone_mul_f32(q1, b)));
@@ -86,7 +95,7 @@ static rolling_cone_pair_f32 rolling_cone_div_f32(rolling_cone_pair_f32 a, rolli
 }
 
 /* The sine of an angle and so many quarter turns: these taken off, then a series. */
-static rolling_cone_pair_f32 rolling_cone_sine_f32(rolling_cone_pair_f32 a, float quarters)
+DERIVE_APART static rolling_cone_pair_f32 rolling_cone_sine_f32(rolling_cone_pair_f32 a, float quarters)
 {
     static const rolling_cone_pair_f32 odd[8] = {
         {1.0F, 0.0F},
@@ -119,10 +128,14 @@ static rolling_cone_pair_f32 rolling_cone_sine_f32(rolling_cone_pair_f32 a, floa
     const float all = k + quarters;
     const float turn = all - 4.0F * floorf(all * 0.25F);
     const int across = (turn > 0.5F && turn < 1.5F) || turn > 2.5F;
+    const rolling_cone_pair_f32 *const factors = across ? even : odd;
     rolling_cone_pair_f32 sum = { 0.0F, 0.0F };
     int n;
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
+#pragma GCC unroll 1
+#endif
     for (n = 8 - 1; n >= 0; --n) {
-        sum = rolling_cone_add_f32(rolling_cone_mul_f32(sum, square), across ? even[n] : odd[n]);
+        sum = rolling_cone_add_f32(rolling_cone_mul_f32(sum, square), factors[n]);
     }
     if (!across) { sum = rolling_cone_mul_f32(sum, r); }
     return turn > 1.5F ? rolling_cone_neg_f32(sum) : sum;

@@ -21,7 +21,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 952792391ad68f1f.
+ * Body of these files: sha256 75b10286f3450ad5.
  */
 #ifndef ROLLING_CONE_F32_H
 #define ROLLING_CONE_F32_H

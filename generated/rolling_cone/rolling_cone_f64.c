@@ -27,13 +27,22 @@ typedef struct {
     double low;
 } rolling_cone_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static rolling_cone_pair_f64 rolling_cone_neg_f64(rolling_cone_pair_f64 a)
 {
     return (rolling_cone_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static rolling_cone_pair_f64 rolling_cone_add_f64(rolling_cone_pair_f64 a, rolling_cone_pair_f64 b)
+DERIVE_APART static rolling_cone_pair_f64 rolling_cone_add_f64(rolling_cone_pair_f64 a, rolling_cone_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -48,13 +57,13 @@ static rolling_cone_pair_f64 rolling_cone_add_f64(rolling_cone_pair_f64 a, rolli
     return (rolling_cone_pair_f64){high, y - (high - x)};
 }
 
-static rolling_cone_pair_f64 rolling_cone_sub_f64(rolling_cone_pair_f64 a, rolling_cone_pair_f64 b)
+DERIVE_APART static rolling_cone_pair_f64 rolling_cone_sub_f64(rolling_cone_pair_f64 a, rolling_cone_pair_f64 b)
 {
     return rolling_cone_add_f64(a, rolling_cone_neg_f64(b));
 }
 
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
-static rolling_cone_pair_f64 rolling_cone_two_product_f64(double a, double b)
+DERIVE_APART static rolling_cone_pair_f64 rolling_cone_two_product_f64(double a, double b)
 {
     const double p = a * b;
     const double ca = 134217729.0 * a;
@@ -66,7 +75,7 @@ static rolling_cone_pair_f64 rolling_cone_two_product_f64(double a, double b)
     return (rolling_cone_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static rolling_cone_pair_f64 rolling_cone_mul_f64(rolling_cone_pair_f64 a, rolling_cone_pair_f64 b)
+DERIVE_APART static rolling_cone_pair_f64 rolling_cone_mul_f64(rolling_cone_pair_f64 a, rolling_cone_pair_f64 b)
 {
     const rolling_cone_pair_f64 p = rolling_cone_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static rolling_cone_pair_f64 rolling_cone_mul_f64(rolling_cone_pair_f64 a, rolli
 }
 
 /* Long division, three digits of working precision each. */
-static rolling_cone_pair_f64 rolling_cone_div_f64(rolling_cone_pair_f64 a, rolling_cone_pair_f64 b)
+DERIVE_APART static rolling_cone_pair_f64 rolling_cone_div_f64(rolling_cone_pair_f64 a, rolling_cone_pair_f64 b)
 {
     const rolling_cone_pair_f64 q1 = {a.high / b.high, 0.0};
     const rolling_cone_pair_f64 r1 = rolling_cone_add_f64(a, rolling_cone_neg_f64(rolling_cone_mul_f64(q1, b)));
@@ -86,7 +95,7 @@ static rolling_cone_pair_f64 rolling_cone_div_f64(rolling_cone_pair_f64 a, rolli
 }
 
 /* The sine of an angle and so many quarter turns: these taken off, then a series. */
-static rolling_cone_pair_f64 rolling_cone_sine_f64(rolling_cone_pair_f64 a, double quarters)
+DERIVE_APART static rolling_cone_pair_f64 rolling_cone_sine_f64(rolling_cone_pair_f64 a, double quarters)
 {
     static const rolling_cone_pair_f64 odd[14] = {
         {1.0, 0.0},
@@ -131,10 +140,14 @@ static rolling_cone_pair_f64 rolling_cone_sine_f64(rolling_cone_pair_f64 a, doub
     const double all = k + quarters;
     const double turn = all - 4.0 * floor(all * 0.25);
     const int across = (turn > 0.5 && turn < 1.5) || turn > 2.5;
+    const rolling_cone_pair_f64 *const factors = across ? even : odd;
     rolling_cone_pair_f64 sum = { 0.0, 0.0 };
     int n;
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
+#pragma GCC unroll 1
+#endif
     for (n = 14 - 1; n >= 0; --n) {
-        sum = rolling_cone_add_f64(rolling_cone_mul_f64(sum, square), across ? even[n] : odd[n]);
+        sum = rolling_cone_add_f64(rolling_cone_mul_f64(sum, square), factors[n]);
     }
     if (!across) { sum = rolling_cone_mul_f64(sum, r); }
     return turn > 1.5 ? rolling_cone_neg_f64(sum) : sum;

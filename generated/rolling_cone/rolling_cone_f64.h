@@ -21,7 +21,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 25d2f152d66723df.
+ * Body of these files: sha256 984169ac2805bd63.
  */
 #ifndef ROLLING_CONE_F64_H
 #define ROLLING_CONE_F64_H

@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 fd08f46385b555b7.
+ * Body of these files: sha256 5dd44cde4de8f774.
  */
 #ifndef ROLLING_DISC_F64_H
 #define ROLLING_DISC_F64_H

@@ -25,6 +25,15 @@ typedef struct {
     float low;
 } rotor_on_turning_axes_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static rotor_on_turning_axes_pair_f32 rotor_on_turning_axes_neg_f32(rotor_on_turning_axes_pair_f32 a)
 {
     return (rotor_on_turning_axes_pair_f32){-a.high, 0.0F - a.low};
@@ -64,7 +73,7 @@ static rotor_on_turning_axes_pair_f32 rotor_on_turning_axes_two_product_f32(floa
     return (rotor_on_turning_axes_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static rotor_on_turning_axes_pair_f32 rotor_on_turning_axes_mul_f32(rotor_on_turning_axes_pair_f32 a, rotor_on_turning_axes_pair_f32 b)
+DERIVE_APART static rotor_on_turning_axes_pair_f32 rotor_on_turning_axes_mul_f32(rotor_on_turning_axes_pair_f32 a, rotor_on_turning_axes_pair_f32 b)
 {
     const rotor_on_turning_axes_pair_f32 p = rotor_on_turning_axes_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);

@@ -25,6 +25,15 @@ typedef struct {
     double low;
 } rotor_on_turning_axes_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static rotor_on_turning_axes_pair_f64 rotor_on_turning_axes_neg_f64(rotor_on_turning_axes_pair_f64 a)
 {
     return (rotor_on_turning_axes_pair_f64){-a.high, 0.0 - a.low};
@@ -64,7 +73,7 @@ static rotor_on_turning_axes_pair_f64 rotor_on_turning_axes_two_product_f64(doub
     return (rotor_on_turning_axes_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static rotor_on_turning_axes_pair_f64 rotor_on_turning_axes_mul_f64(rotor_on_turning_axes_pair_f64 a, rotor_on_turning_axes_pair_f64 b)
+DERIVE_APART static rotor_on_turning_axes_pair_f64 rotor_on_turning_axes_mul_f64(rotor_on_turning_axes_pair_f64 a, rotor_on_turning_axes_pair_f64 b)
 {
     const rotor_on_turning_axes_pair_f64 p = rotor_on_turning_axes_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);

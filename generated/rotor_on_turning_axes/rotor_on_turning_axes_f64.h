@@ -17,7 +17,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 219617511ad30a24.
+ * Body of these files: sha256 b3bfe9162feb8532.
  */
 #ifndef ROTOR_ON_TURNING_AXES_F64_H
 #define ROTOR_ON_TURNING_AXES_F64_H

@@ -25,13 +25,22 @@ typedef struct {
     float low;
 } ship_turbine_three_motions_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static ship_turbine_three_motions_pair_f32 ship_turbine_three_motions_neg_f32(ship_turbine_three_motions_pair_f32 a)
 {
     return (ship_turbine_three_motions_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static ship_turbine_three_motions_pair_f32 ship_turbine_three_motions_add_f32(ship_turbine_three_motions_pair_f32 a, ship_turbine_three_motions_pair_f32 b)
+DERIVE_APART static ship_turbine_three_motions_pair_f32 ship_turbine_three_motions_add_f32(ship_turbine_three_motions_pair_f32 a, ship_turbine_three_motions_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -64,7 +73,7 @@ static ship_turbine_three_motions_pair_f32 ship_turbine_three_motions_two_produc
     return (ship_turbine_three_motions_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static ship_turbine_three_motions_pair_f32 ship_turbine_three_motions_mul_f32(ship_turbine_three_motions_pair_f32 a, ship_turbine_three_motions_pair_f32 b)
+DERIVE_APART static ship_turbine_three_motions_pair_f32 ship_turbine_three_motions_mul_f32(ship_turbine_three_motions_pair_f32 a, ship_turbine_three_motions_pair_f32 b)
 {
     const ship_turbine_three_motions_pair_f32 p = ship_turbine_three_motions_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);

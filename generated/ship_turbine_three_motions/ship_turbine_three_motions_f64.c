@@ -25,13 +25,22 @@ typedef struct {
     double low;
 } ship_turbine_three_motions_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static ship_turbine_three_motions_pair_f64 ship_turbine_three_motions_neg_f64(ship_turbine_three_motions_pair_f64 a)
 {
     return (ship_turbine_three_motions_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static ship_turbine_three_motions_pair_f64 ship_turbine_three_motions_add_f64(ship_turbine_three_motions_pair_f64 a, ship_turbine_three_motions_pair_f64 b)
+DERIVE_APART static ship_turbine_three_motions_pair_f64 ship_turbine_three_motions_add_f64(ship_turbine_three_motions_pair_f64 a, ship_turbine_three_motions_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -64,7 +73,7 @@ static ship_turbine_three_motions_pair_f64 ship_turbine_three_motions_two_produc
     return (ship_turbine_three_motions_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static ship_turbine_three_motions_pair_f64 ship_turbine_three_motions_mul_f64(ship_turbine_three_motions_pair_f64 a, ship_turbine_three_motions_pair_f64 b)
+DERIVE_APART static ship_turbine_three_motions_pair_f64 ship_turbine_three_motions_mul_f64(ship_turbine_three_motions_pair_f64 a, ship_turbine_three_motions_pair_f64 b)
 {
     const ship_turbine_three_motions_pair_f64 p = ship_turbine_three_motions_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);

@@ -27,13 +27,22 @@ typedef struct {
     float low;
 } skewed_disc_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static skewed_disc_pair_f32 skewed_disc_neg_f32(skewed_disc_pair_f32 a)
 {
     return (skewed_disc_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static skewed_disc_pair_f32 skewed_disc_add_f32(skewed_disc_pair_f32 a, skewed_disc_pair_f32 b)
+DERIVE_APART static skewed_disc_pair_f32 skewed_disc_add_f32(skewed_disc_pair_f32 a, skewed_disc_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -49,7 +58,7 @@ static skewed_disc_pair_f32 skewed_disc_add_f32(skewed_disc_pair_f32 a, skewed_d
 }
 
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
-static skewed_disc_pair_f32 skewed_disc_two_product_f32(float a, float b)
+DERIVE_APART static skewed_disc_pair_f32 skewed_disc_two_product_f32(float a, float b)
 {
     const float p = a * b;
     const float ca = 4097.0F * a;
@@ -61,7 +70,7 @@ static skewed_disc_pair_f32 skewed_disc_two_product_f32(float a, float b)
     return (skewed_disc_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static skewed_disc_pair_f32 skewed_disc_mul_f32(skewed_disc_pair_f32 a, skewed_disc_pair_f32 b)
+DERIVE_APART static skewed_disc_pair_f32 skewed_disc_mul_f32(skewed_disc_pair_f32 a, skewed_disc_pair_f32 b)
 {
     const skewed_disc_pair_f32 p = skewed_disc_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);
@@ -81,7 +90,7 @@ static skewed_disc_pair_f32 skewed_disc_div_f32(skewed_disc_pair_f32 a, skewed_d
 }
 
 /* The sine of an angle and so many quarter turns: these taken off, then a series. */
-static skewed_disc_pair_f32 skewed_disc_sine_f32(skewed_disc_pair_f32 a, float quarters)
+DERIVE_APART static skewed_disc_pair_f32 skewed_disc_sine_f32(skewed_disc_pair_f32 a, float quarters)
 {
     static const skewed_disc_pair_f32 odd[8] = {
         {1.0F, 0.0F},
@@ -114,10 +123,14 @@ static skewed_disc_pair_f32 skewed_disc_sine_f32(skewed_disc_pair_f32 a, float q
     const float all = k + quarters;
     const float turn = all - 4.0F * floorf(all * 0.25F);
     const int across = (turn > 0.5F && turn < 1.5F) || turn > 2.5F;
+    const skewed_disc_pair_f32 *const factors = across ? even : odd;
     skewed_disc_pair_f32 sum = { 0.0F, 0.0F };
     int n;
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
+#pragma GCC unroll 1
+#endif
     for (n = 8 - 1; n >= 0; --n) {
-        sum = skewed_disc_add_f32(skewed_disc_mul_f32(sum, square), across ? even[n] : odd[n]);
+        sum = skewed_disc_add_f32(skewed_disc_mul_f32(sum, square), factors[n]);
     }
     if (!across) { sum = skewed_disc_mul_f32(sum, r); }
     return turn > 1.5F ? skewed_disc_neg_f32(sum) : sum;

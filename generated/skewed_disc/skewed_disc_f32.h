@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 51af00ede74f9936.
+ * Body of these files: sha256 c4d88a0686d01239.
  */
 #ifndef SKEWED_DISC_F32_H
 #define SKEWED_DISC_F32_H

@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 4b71701791661bae.
+ * Body of these files: sha256 e4e7a5951d3119e3.
  */
 #ifndef SKEWED_DISC_F64_H
 #define SKEWED_DISC_F64_H

@@ -27,13 +27,22 @@ typedef struct {
     double low;
 } sleeping_top_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static sleeping_top_pair_f64 sleeping_top_neg_f64(sleeping_top_pair_f64 a)
 {
     return (sleeping_top_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static sleeping_top_pair_f64 sleeping_top_add_f64(sleeping_top_pair_f64 a, sleeping_top_pair_f64 b)
+DERIVE_APART static sleeping_top_pair_f64 sleeping_top_add_f64(sleeping_top_pair_f64 a, sleeping_top_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -61,7 +70,7 @@ static sleeping_top_pair_f64 sleeping_top_two_product_f64(double a, double b)
     return (sleeping_top_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static sleeping_top_pair_f64 sleeping_top_mul_f64(sleeping_top_pair_f64 a, sleeping_top_pair_f64 b)
+DERIVE_APART static sleeping_top_pair_f64 sleeping_top_mul_f64(sleeping_top_pair_f64 a, sleeping_top_pair_f64 b)
 {
     const sleeping_top_pair_f64 p = sleeping_top_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);

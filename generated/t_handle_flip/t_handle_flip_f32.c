@@ -27,13 +27,22 @@ typedef struct {
     float low;
 } t_handle_flip_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static t_handle_flip_pair_f32 t_handle_flip_neg_f32(t_handle_flip_pair_f32 a)
 {
     return (t_handle_flip_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static t_handle_flip_pair_f32 t_handle_flip_add_f32(t_handle_flip_pair_f32 a, t_handle_flip_pair_f32 b)
+DERIVE_APART static t_handle_flip_pair_f32 t_handle_flip_add_f32(t_handle_flip_pair_f32 a, t_handle_flip_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -48,13 +57,13 @@ static t_handle_flip_pair_f32 t_handle_flip_add_f32(t_handle_flip_pair_f32 a, t_
     return (t_handle_flip_pair_f32){high, y - (high - x)};
 }
 
-static t_handle_flip_pair_f32 t_handle_flip_sub_f32(t_handle_flip_pair_f32 a, t_handle_flip_pair_f32 b)
+DERIVE_APART static t_handle_flip_pair_f32 t_handle_flip_sub_f32(t_handle_flip_pair_f32 a, t_handle_flip_pair_f32 b)
 {
     return t_handle_flip_add_f32(a, t_handle_flip_neg_f32(b));
 }
 
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
-static t_handle_flip_pair_f32 t_handle_flip_two_product_f32(float a, float b)
+DERIVE_APART static t_handle_flip_pair_f32 t_handle_flip_two_product_f32(float a, float b)
 {
     const float p = a * b;
     const float ca = 4097.0F * a;
@@ -66,7 +75,7 @@ static t_handle_flip_pair_f32 t_handle_flip_two_product_f32(float a, float b)
     return (t_handle_flip_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static t_handle_flip_pair_f32 t_handle_flip_mul_f32(t_handle_flip_pair_f32 a, t_handle_flip_pair_f32 b)
+DERIVE_APART static t_handle_flip_pair_f32 t_handle_flip_mul_f32(t_handle_flip_pair_f32 a, t_handle_flip_pair_f32 b)
 {
     const t_handle_flip_pair_f32 p = t_handle_flip_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static t_handle_flip_pair_f32 t_handle_flip_mul_f32(t_handle_flip_pair_f32 a, t_
 }
 
 /* Long division, three digits of working precision each. */
-static t_handle_flip_pair_f32 t_handle_flip_div_f32(t_handle_flip_pair_f32 a, t_handle_flip_pair_f32 b)
+DERIVE_APART static t_handle_flip_pair_f32 t_handle_flip_div_f32(t_handle_flip_pair_f32 a, t_handle_flip_pair_f32 b)
 {
     const t_handle_flip_pair_f32 q1 = {a.high / b.high, 0.0F};
     const t_handle_flip_pair_f32 r1 = t_handle_flip_add_f32(a, t_handle_flip_neg_f32(t_handle_flip_mul_f32(q1, b)));
@@ -85,7 +94,7 @@ static t_handle_flip_pair_f32 t_handle_flip_div_f32(t_handle_flip_pair_f32 a, t_
     return t_handle_flip_add_f32(t_handle_flip_add_f32(q1, q2), q3);
 }
 
-static t_handle_flip_pair_f32 t_handle_flip_sqrt_f32(t_handle_flip_pair_f32 a)
+DERIVE_APART static t_handle_flip_pair_f32 t_handle_flip_sqrt_f32(t_handle_flip_pair_f32 a)
 {
     const float s = sqrtf(a.high);
     const t_handle_flip_pair_f32 r = t_handle_flip_add_f32(a, t_handle_flip_neg_f32(t_handle_flip_two_product_f32(s, s)));

@@ -27,13 +27,22 @@ typedef struct {
     double low;
 } t_handle_flip_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static t_handle_flip_pair_f64 t_handle_flip_neg_f64(t_handle_flip_pair_f64 a)
 {
     return (t_handle_flip_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static t_handle_flip_pair_f64 t_handle_flip_add_f64(t_handle_flip_pair_f64 a, t_handle_flip_pair_f64 b)
+DERIVE_APART static t_handle_flip_pair_f64 t_handle_flip_add_f64(t_handle_flip_pair_f64 a, t_handle_flip_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -48,13 +57,13 @@ static t_handle_flip_pair_f64 t_handle_flip_add_f64(t_handle_flip_pair_f64 a, t_
     return (t_handle_flip_pair_f64){high, y - (high - x)};
 }
 
-static t_handle_flip_pair_f64 t_handle_flip_sub_f64(t_handle_flip_pair_f64 a, t_handle_flip_pair_f64 b)
+DERIVE_APART static t_handle_flip_pair_f64 t_handle_flip_sub_f64(t_handle_flip_pair_f64 a, t_handle_flip_pair_f64 b)
 {
     return t_handle_flip_add_f64(a, t_handle_flip_neg_f64(b));
 }
 
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
-static t_handle_flip_pair_f64 t_handle_flip_two_product_f64(double a, double b)
+DERIVE_APART static t_handle_flip_pair_f64 t_handle_flip_two_product_f64(double a, double b)
 {
     const double p = a * b;
     const double ca = 134217729.0 * a;
@@ -66,7 +75,7 @@ static t_handle_flip_pair_f64 t_handle_flip_two_product_f64(double a, double b)
     return (t_handle_flip_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static t_handle_flip_pair_f64 t_handle_flip_mul_f64(t_handle_flip_pair_f64 a, t_handle_flip_pair_f64 b)
+DERIVE_APART static t_handle_flip_pair_f64 t_handle_flip_mul_f64(t_handle_flip_pair_f64 a, t_handle_flip_pair_f64 b)
 {
     const t_handle_flip_pair_f64 p = t_handle_flip_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static t_handle_flip_pair_f64 t_handle_flip_mul_f64(t_handle_flip_pair_f64 a, t_
 }
 
 /* Long division, three digits of working precision each. */
-static t_handle_flip_pair_f64 t_handle_flip_div_f64(t_handle_flip_pair_f64 a, t_handle_flip_pair_f64 b)
+DERIVE_APART static t_handle_flip_pair_f64 t_handle_flip_div_f64(t_handle_flip_pair_f64 a, t_handle_flip_pair_f64 b)
 {
     const t_handle_flip_pair_f64 q1 = {a.high / b.high, 0.0};
     const t_handle_flip_pair_f64 r1 = t_handle_flip_add_f64(a, t_handle_flip_neg_f64(t_handle_flip_mul_f64(q1, b)));
@@ -85,7 +94,7 @@ static t_handle_flip_pair_f64 t_handle_flip_div_f64(t_handle_flip_pair_f64 a, t_
     return t_handle_flip_add_f64(t_handle_flip_add_f64(q1, q2), q3);
 }
 
-static t_handle_flip_pair_f64 t_handle_flip_sqrt_f64(t_handle_flip_pair_f64 a)
+DERIVE_APART static t_handle_flip_pair_f64 t_handle_flip_sqrt_f64(t_handle_flip_pair_f64 a)
 {
     const double s = sqrt(a.high);
     const t_handle_flip_pair_f64 r = t_handle_flip_add_f64(a, t_handle_flip_neg_f64(t_handle_flip_two_product_f64(s, s)));

@@ -27,13 +27,22 @@ typedef struct {
     float low;
 } top_steady_precession_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static top_steady_precession_pair_f32 top_steady_precession_neg_f32(top_steady_precession_pair_f32 a)
 {
     return (top_steady_precession_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static top_steady_precession_pair_f32 top_steady_precession_add_f32(top_steady_precession_pair_f32 a, top_steady_precession_pair_f32 b)
+DERIVE_APART static top_steady_precession_pair_f32 top_steady_precession_add_f32(top_steady_precession_pair_f32 a, top_steady_precession_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -49,7 +58,7 @@ static top_steady_precession_pair_f32 top_steady_precession_add_f32(top_steady_p
 }
 
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
-static top_steady_precession_pair_f32 top_steady_precession_two_product_f32(float a, float b)
+DERIVE_APART static top_steady_precession_pair_f32 top_steady_precession_two_product_f32(float a, float b)
 {
     const float p = a * b;
     const float ca = 4097.0F * a;
@@ -61,7 +70,7 @@ static top_steady_precession_pair_f32 top_steady_precession_two_product_f32(floa
     return (top_steady_precession_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static top_steady_precession_pair_f32 top_steady_precession_mul_f32(top_steady_precession_pair_f32 a, top_steady_precession_pair_f32 b)
+DERIVE_APART static top_steady_precession_pair_f32 top_steady_precession_mul_f32(top_steady_precession_pair_f32 a, top_steady_precession_pair_f32 b)
 {
     const top_steady_precession_pair_f32 p = top_steady_precession_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);
@@ -70,7 +79,7 @@ static top_steady_precession_pair_f32 top_steady_precession_mul_f32(top_steady_p
 }
 
 /* The sine of an angle and so many quarter turns: these taken off, then a series. */
-static top_steady_precession_pair_f32 top_steady_precession_sine_f32(top_steady_precession_pair_f32 a, float quarters)
+DERIVE_APART static top_steady_precession_pair_f32 top_steady_precession_sine_f32(top_steady_precession_pair_f32 a, float quarters)
 {
     static const top_steady_precession_pair_f32 odd[8] = {
         {1.0F, 0.0F},
@@ -103,10 +112,14 @@ static top_steady_precession_pair_f32 top_steady_precession_sine_f32(top_steady_
     const float all = k + quarters;
     const float turn = all - 4.0F * floorf(all * 0.25F);
     const int across = (turn > 0.5F && turn < 1.5F) || turn > 2.5F;
+    const top_steady_precession_pair_f32 *const factors = across ? even : odd;
     top_steady_precession_pair_f32 sum = { 0.0F, 0.0F };
     int n;
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
+#pragma GCC unroll 1
+#endif
     for (n = 8 - 1; n >= 0; --n) {
-        sum = top_steady_precession_add_f32(top_steady_precession_mul_f32(sum, square), across ? even[n] : odd[n]);
+        sum = top_steady_precession_add_f32(top_steady_precession_mul_f32(sum, square), factors[n]);
     }
     if (!across) { sum = top_steady_precession_mul_f32(sum, r); }
     return turn > 1.5F ? top_steady_precession_neg_f32(sum) : sum;

@@ -27,13 +27,22 @@ typedef struct {
     double low;
 } top_steady_precession_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static top_steady_precession_pair_f64 top_steady_precession_neg_f64(top_steady_precession_pair_f64 a)
 {
     return (top_steady_precession_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static top_steady_precession_pair_f64 top_steady_precession_add_f64(top_steady_precession_pair_f64 a, top_steady_precession_pair_f64 b)
+DERIVE_APART static top_steady_precession_pair_f64 top_steady_precession_add_f64(top_steady_precession_pair_f64 a, top_steady_precession_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -49,7 +58,7 @@ static top_steady_precession_pair_f64 top_steady_precession_add_f64(top_steady_p
 }
 
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
-static top_steady_precession_pair_f64 top_steady_precession_two_product_f64(double a, double b)
+DERIVE_APART static top_steady_precession_pair_f64 top_steady_precession_two_product_f64(double a, double b)
 {
     const double p = a * b;
     const double ca = 134217729.0 * a;
@@ -61,7 +70,7 @@ static top_steady_precession_pair_f64 top_steady_precession_two_product_f64(doub
     return (top_steady_precession_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static top_steady_precession_pair_f64 top_steady_precession_mul_f64(top_steady_precession_pair_f64 a, top_steady_precession_pair_f64 b)
+DERIVE_APART static top_steady_precession_pair_f64 top_steady_precession_mul_f64(top_steady_precession_pair_f64 a, top_steady_precession_pair_f64 b)
 {
     const top_steady_precession_pair_f64 p = top_steady_precession_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -70,7 +79,7 @@ static top_steady_precession_pair_f64 top_steady_precession_mul_f64(top_steady_p
 }
 
 /* The sine of an angle and so many quarter turns: these taken off, then a series. */
-static top_steady_precession_pair_f64 top_steady_precession_sine_f64(top_steady_precession_pair_f64 a, double quarters)
+DERIVE_APART static top_steady_precession_pair_f64 top_steady_precession_sine_f64(top_steady_precession_pair_f64 a, double quarters)
 {
     static const top_steady_precession_pair_f64 odd[14] = {
         {1.0, 0.0},
@@ -115,10 +124,14 @@ static top_steady_precession_pair_f64 top_steady_precession_sine_f64(top_steady_
     const double all = k + quarters;
     const double turn = all - 4.0 * floor(all * 0.25);
     const int across = (turn > 0.5 && turn < 1.5) || turn > 2.5;
+    const top_steady_precession_pair_f64 *const factors = across ? even : odd;
     top_steady_precession_pair_f64 sum = { 0.0, 0.0 };
     int n;
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
+#pragma GCC unroll 1
+#endif
     for (n = 14 - 1; n >= 0; --n) {
-        sum = top_steady_precession_add_f64(top_steady_precession_mul_f64(sum, square), across ? even[n] : odd[n]);
+        sum = top_steady_precession_add_f64(top_steady_precession_mul_f64(sum, square), factors[n]);
     }
     if (!across) { sum = top_steady_precession_mul_f64(sum, r); }
     return turn > 1.5 ? top_steady_precession_neg_f64(sum) : sum;

@@ -27,13 +27,22 @@ typedef struct {
     float low;
 } torque_free_axisymmetric_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static torque_free_axisymmetric_pair_f32 torque_free_axisymmetric_neg_f32(torque_free_axisymmetric_pair_f32 a)
 {
     return (torque_free_axisymmetric_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static torque_free_axisymmetric_pair_f32 torque_free_axisymmetric_add_f32(torque_free_axisymmetric_pair_f32 a, torque_free_axisymmetric_pair_f32 b)
+DERIVE_APART static torque_free_axisymmetric_pair_f32 torque_free_axisymmetric_add_f32(torque_free_axisymmetric_pair_f32 a, torque_free_axisymmetric_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -66,7 +75,7 @@ static torque_free_axisymmetric_pair_f32 torque_free_axisymmetric_two_product_f3
     return (torque_free_axisymmetric_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static torque_free_axisymmetric_pair_f32 torque_free_axisymmetric_mul_f32(torque_free_axisymmetric_pair_f32 a, torque_free_axisymmetric_pair_f32 b)
+DERIVE_APART static torque_free_axisymmetric_pair_f32 torque_free_axisymmetric_mul_f32(torque_free_axisymmetric_pair_f32 a, torque_free_axisymmetric_pair_f32 b)
 {
     const torque_free_axisymmetric_pair_f32 p = torque_free_axisymmetric_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);

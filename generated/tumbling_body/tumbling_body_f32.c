@@ -27,13 +27,22 @@ typedef struct {
     float low;
 } tumbling_body_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static tumbling_body_pair_f32 tumbling_body_neg_f32(tumbling_body_pair_f32 a)
 {
     return (tumbling_body_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static tumbling_body_pair_f32 tumbling_body_add_f32(tumbling_body_pair_f32 a, tumbling_body_pair_f32 b)
+DERIVE_APART static tumbling_body_pair_f32 tumbling_body_add_f32(tumbling_body_pair_f32 a, tumbling_body_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -48,13 +57,13 @@ static tumbling_body_pair_f32 tumbling_body_add_f32(tumbling_body_pair_f32 a, tu
     return (tumbling_body_pair_f32){high, y - (high - x)};
 }
 
-static tumbling_body_pair_f32 tumbling_body_sub_f32(tumbling_body_pair_f32 a, tumbling_body_pair_f32 b)
+DERIVE_APART static tumbling_body_pair_f32 tumbling_body_sub_f32(tumbling_body_pair_f32 a, tumbling_body_pair_f32 b)
 {
     return tumbling_body_add_f32(a, tumbling_body_neg_f32(b));
 }
 
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
-static tumbling_body_pair_f32 tumbling_body_two_product_f32(float a, float b)
+DERIVE_APART static tumbling_body_pair_f32 tumbling_body_two_product_f32(float a, float b)
 {
     const float p = a * b;
     const float ca = 4097.0F * a;
@@ -66,7 +75,7 @@ static tumbling_body_pair_f32 tumbling_body_two_product_f32(float a, float b)
     return (tumbling_body_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static tumbling_body_pair_f32 tumbling_body_mul_f32(tumbling_body_pair_f32 a, tumbling_body_pair_f32 b)
+DERIVE_APART static tumbling_body_pair_f32 tumbling_body_mul_f32(tumbling_body_pair_f32 a, tumbling_body_pair_f32 b)
 {
     const tumbling_body_pair_f32 p = tumbling_body_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static tumbling_body_pair_f32 tumbling_body_mul_f32(tumbling_body_pair_f32 a, tu
 }
 
 /* Long division, three digits of working precision each. */
-static tumbling_body_pair_f32 tumbling_body_div_f32(tumbling_body_pair_f32 a, tumbling_body_pair_f32 b)
+DERIVE_APART static tumbling_body_pair_f32 tumbling_body_div_f32(tumbling_body_pair_f32 a, tumbling_body_pair_f32 b)
 {
     const tumbling_body_pair_f32 q1 = {a.high / b.high, 0.0F};
     const tumbling_body_pair_f32 r1 = tumbling_body_add_f32(a, tumbling_body_neg_f32(tumbling_body_mul_f32(q1, b)));
@@ -85,7 +94,7 @@ static tumbling_body_pair_f32 tumbling_body_div_f32(tumbling_body_pair_f32 a, tu
     return tumbling_body_add_f32(tumbling_body_add_f32(q1, q2), q3);
 }
 
-static tumbling_body_pair_f32 tumbling_body_sqrt_f32(tumbling_body_pair_f32 a)
+DERIVE_APART static tumbling_body_pair_f32 tumbling_body_sqrt_f32(tumbling_body_pair_f32 a)
 {
     const float s = sqrtf(a.high);
     const tumbling_body_pair_f32 r = tumbling_body_add_f32(a, tumbling_body_neg_f32(tumbling_body_two_product_f32(s, s)));

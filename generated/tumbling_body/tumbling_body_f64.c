@@ -27,13 +27,22 @@ typedef struct {
     double low;
 } tumbling_body_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static tumbling_body_pair_f64 tumbling_body_neg_f64(tumbling_body_pair_f64 a)
 {
     return (tumbling_body_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static tumbling_body_pair_f64 tumbling_body_add_f64(tumbling_body_pair_f64 a, tumbling_body_pair_f64 b)
+DERIVE_APART static tumbling_body_pair_f64 tumbling_body_add_f64(tumbling_body_pair_f64 a, tumbling_body_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -48,13 +57,13 @@ static tumbling_body_pair_f64 tumbling_body_add_f64(tumbling_body_pair_f64 a, tu
     return (tumbling_body_pair_f64){high, y - (high - x)};
 }
 
-static tumbling_body_pair_f64 tumbling_body_sub_f64(tumbling_body_pair_f64 a, tumbling_body_pair_f64 b)
+DERIVE_APART static tumbling_body_pair_f64 tumbling_body_sub_f64(tumbling_body_pair_f64 a, tumbling_body_pair_f64 b)
 {
     return tumbling_body_add_f64(a, tumbling_body_neg_f64(b));
 }
 
 /* The product and its rounding error, exact (Veltkamp and Dekker). */
-static tumbling_body_pair_f64 tumbling_body_two_product_f64(double a, double b)
+DERIVE_APART static tumbling_body_pair_f64 tumbling_body_two_product_f64(double a, double b)
 {
     const double p = a * b;
     const double ca = 134217729.0 * a;
@@ -66,7 +75,7 @@ static tumbling_body_pair_f64 tumbling_body_two_product_f64(double a, double b)
     return (tumbling_body_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static tumbling_body_pair_f64 tumbling_body_mul_f64(tumbling_body_pair_f64 a, tumbling_body_pair_f64 b)
+DERIVE_APART static tumbling_body_pair_f64 tumbling_body_mul_f64(tumbling_body_pair_f64 a, tumbling_body_pair_f64 b)
 {
     const tumbling_body_pair_f64 p = tumbling_body_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static tumbling_body_pair_f64 tumbling_body_mul_f64(tumbling_body_pair_f64 a, tu
 }
 
 /* Long division, three digits of working precision each. */
-static tumbling_body_pair_f64 tumbling_body_div_f64(tumbling_body_pair_f64 a, tumbling_body_pair_f64 b)
+DERIVE_APART static tumbling_body_pair_f64 tumbling_body_div_f64(tumbling_body_pair_f64 a, tumbling_body_pair_f64 b)
 {
     const tumbling_body_pair_f64 q1 = {a.high / b.high, 0.0};
     const tumbling_body_pair_f64 r1 = tumbling_body_add_f64(a, tumbling_body_neg_f64(tumbling_body_mul_f64(q1, b)));
@@ -85,7 +94,7 @@ static tumbling_body_pair_f64 tumbling_body_div_f64(tumbling_body_pair_f64 a, tu
     return tumbling_body_add_f64(tumbling_body_add_f64(q1, q2), q3);
 }
 
-static tumbling_body_pair_f64 tumbling_body_sqrt_f64(tumbling_body_pair_f64 a)
+DERIVE_APART static tumbling_body_pair_f64 tumbling_body_sqrt_f64(tumbling_body_pair_f64 a)
 {
     const double s = sqrt(a.high);
     const tumbling_body_pair_f64 r = tumbling_body_add_f64(a, tumbling_body_neg_f64(tumbling_body_two_product_f64(s, s)));

@@ -27,13 +27,22 @@ typedef struct {
     double low;
 } tumbling_disc_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static tumbling_disc_pair_f64 tumbling_disc_neg_f64(tumbling_disc_pair_f64 a)
 {
     return (tumbling_disc_pair_f64){-a.high, 0.0 - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static tumbling_disc_pair_f64 tumbling_disc_add_f64(tumbling_disc_pair_f64 a, tumbling_disc_pair_f64 b)
+DERIVE_APART static tumbling_disc_pair_f64 tumbling_disc_add_f64(tumbling_disc_pair_f64 a, tumbling_disc_pair_f64 b)
 {
     const double s = a.high + b.high;
     const double v = s - a.high;
@@ -48,7 +57,7 @@ static tumbling_disc_pair_f64 tumbling_disc_add_f64(tumbling_disc_pair_f64 a, tu
     return (tumbling_disc_pair_f64){high, y - (high - x)};
 }
 
-static tumbling_disc_pair_f64 tumbling_disc_sub_f64(tumbling_disc_pair_f64 a, tumbling_disc_pair_f64 b)
+DERIVE_APART static tumbling_disc_pair_f64 tumbling_disc_sub_f64(tumbling_disc_pair_f64 a, tumbling_disc_pair_f64 b)
 {
     return tumbling_disc_add_f64(a, tumbling_disc_neg_f64(b));
 }
@@ -66,7 +75,7 @@ static tumbling_disc_pair_f64 tumbling_disc_two_product_f64(double a, double b)
     return (tumbling_disc_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static tumbling_disc_pair_f64 tumbling_disc_mul_f64(tumbling_disc_pair_f64 a, tumbling_disc_pair_f64 b)
+DERIVE_APART static tumbling_disc_pair_f64 tumbling_disc_mul_f64(tumbling_disc_pair_f64 a, tumbling_disc_pair_f64 b)
 {
     const tumbling_disc_pair_f64 p = tumbling_disc_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);
@@ -75,7 +84,7 @@ static tumbling_disc_pair_f64 tumbling_disc_mul_f64(tumbling_disc_pair_f64 a, tu
 }
 
 /* Long division, three digits of working precision each. */
-static tumbling_disc_pair_f64 tumbling_disc_div_f64(tumbling_disc_pair_f64 a, tumbling_disc_pair_f64 b)
+DERIVE_APART static tumbling_disc_pair_f64 tumbling_disc_div_f64(tumbling_disc_pair_f64 a, tumbling_disc_pair_f64 b)
 {
     const tumbling_disc_pair_f64 q1 = {a.high / b.high, 0.0};
     const tumbling_disc_pair_f64 r1 = tumbling_disc_add_f64(a, tumbling_disc_neg_f64(tumbling_disc_mul_f64(q1, b)));

@@ -27,6 +27,15 @@ typedef struct {
     float low;
 } unsymmetrical_rotor_in_carrier_axes_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static unsymmetrical_rotor_in_carrier_axes_pair_f32 unsymmetrical_rotor_in_carrier_axes_neg_f32(unsymmetrical_rotor_in_carrier_axes_pair_f32 a)
 {
     return (unsymmetrical_rotor_in_carrier_axes_pair_f32){-a.high, 0.0F - a.low};
@@ -48,7 +57,7 @@ static unsymmetrical_rotor_in_carrier_axes_pair_f32 unsymmetrical_rotor_in_carri
     return (unsymmetrical_rotor_in_carrier_axes_pair_f32){high, y - (high - x)};
 }
 
-static unsymmetrical_rotor_in_carrier_axes_pair_f32 unsymmetrical_rotor_in_carrier_axes_sub_f32(unsymmetrical_rotor_in_carrier_axes_pair_f32 a, unsymmetrical_rotor_in_carrier_axes_pair_f32 b)
+DERIVE_APART static unsymmetrical_rotor_in_carrier_axes_pair_f32 unsymmetrical_rotor_in_carrier_axes_sub_f32(unsymmetrical_rotor_in_carrier_axes_pair_f32 a, unsymmetrical_rotor_in_carrier_axes_pair_f32 b)
 {
     return unsymmetrical_rotor_in_carrier_axes_add_f32(a, unsymmetrical_rotor_in_carrier_axes_neg_f32(b));
 }
@@ -66,7 +75,7 @@ static unsymmetrical_rotor_in_carrier_axes_pair_f32 unsymmetrical_rotor_in_carri
     return (unsymmetrical_rotor_in_carrier_axes_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static unsymmetrical_rotor_in_carrier_axes_pair_f32 unsymmetrical_rotor_in_carrier_axes_mul_f32(unsymmetrical_rotor_in_carrier_axes_pair_f32 a, unsymmetrical_rotor_in_carrier_axes_pair_f32 b)
+DERIVE_APART static unsymmetrical_rotor_in_carrier_axes_pair_f32 unsymmetrical_rotor_in_carrier_axes_mul_f32(unsymmetrical_rotor_in_carrier_axes_pair_f32 a, unsymmetrical_rotor_in_carrier_axes_pair_f32 b)
 {
     const unsymmetrical_rotor_in_carrier_axes_pair_f32 p = unsymmetrical_rotor_in_carrier_axes_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);

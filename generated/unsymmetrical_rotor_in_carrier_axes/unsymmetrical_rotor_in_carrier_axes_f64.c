@@ -27,6 +27,15 @@ typedef struct {
     double low;
 } unsymmetrical_rotor_in_carrier_axes_pair_f64;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static unsymmetrical_rotor_in_carrier_axes_pair_f64 unsymmetrical_rotor_in_carrier_axes_neg_f64(unsymmetrical_rotor_in_carrier_axes_pair_f64 a)
 {
     return (unsymmetrical_rotor_in_carrier_axes_pair_f64){-a.high, 0.0 - a.low};
@@ -48,7 +57,7 @@ static unsymmetrical_rotor_in_carrier_axes_pair_f64 unsymmetrical_rotor_in_carri
     return (unsymmetrical_rotor_in_carrier_axes_pair_f64){high, y - (high - x)};
 }
 
-static unsymmetrical_rotor_in_carrier_axes_pair_f64 unsymmetrical_rotor_in_carrier_axes_sub_f64(unsymmetrical_rotor_in_carrier_axes_pair_f64 a, unsymmetrical_rotor_in_carrier_axes_pair_f64 b)
+DERIVE_APART static unsymmetrical_rotor_in_carrier_axes_pair_f64 unsymmetrical_rotor_in_carrier_axes_sub_f64(unsymmetrical_rotor_in_carrier_axes_pair_f64 a, unsymmetrical_rotor_in_carrier_axes_pair_f64 b)
 {
     return unsymmetrical_rotor_in_carrier_axes_add_f64(a, unsymmetrical_rotor_in_carrier_axes_neg_f64(b));
 }
@@ -66,7 +75,7 @@ static unsymmetrical_rotor_in_carrier_axes_pair_f64 unsymmetrical_rotor_in_carri
     return (unsymmetrical_rotor_in_carrier_axes_pair_f64){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static unsymmetrical_rotor_in_carrier_axes_pair_f64 unsymmetrical_rotor_in_carrier_axes_mul_f64(unsymmetrical_rotor_in_carrier_axes_pair_f64 a, unsymmetrical_rotor_in_carrier_axes_pair_f64 b)
+DERIVE_APART static unsymmetrical_rotor_in_carrier_axes_pair_f64 unsymmetrical_rotor_in_carrier_axes_mul_f64(unsymmetrical_rotor_in_carrier_axes_pair_f64 a, unsymmetrical_rotor_in_carrier_axes_pair_f64 b)
 {
     const unsymmetrical_rotor_in_carrier_axes_pair_f64 p = unsymmetrical_rotor_in_carrier_axes_two_product_f64(a.high, b.high);
     const double e = p.low + (a.high * b.low + a.low * b.high);

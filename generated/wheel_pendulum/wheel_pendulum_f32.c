@@ -27,13 +27,22 @@ typedef struct {
     float low;
 } wheel_pendulum_pair_f32;
 
+/* Set-up runs once: what it calls from several places is not copied to each. */
+#if defined(__clang__)
+#define DERIVE_APART __attribute__((noinline))
+#elif defined(__GNUC__)
+#define DERIVE_APART __attribute__((noinline, noclone))
+#else
+#define DERIVE_APART
+#endif
+
 static wheel_pendulum_pair_f32 wheel_pendulum_neg_f32(wheel_pendulum_pair_f32 a)
 {
     return (wheel_pendulum_pair_f32){-a.high, 0.0F - a.low};
 }
 
 /* Within 3 u^2 whatever cancels (Joldes, Muller and Popescu 2017, algorithm 6). */
-static wheel_pendulum_pair_f32 wheel_pendulum_add_f32(wheel_pendulum_pair_f32 a, wheel_pendulum_pair_f32 b)
+DERIVE_APART static wheel_pendulum_pair_f32 wheel_pendulum_add_f32(wheel_pendulum_pair_f32 a, wheel_pendulum_pair_f32 b)
 {
     const float s = a.high + b.high;
     const float v = s - a.high;
@@ -61,7 +70,7 @@ static wheel_pendulum_pair_f32 wheel_pendulum_two_product_f32(float a, float b)
     return (wheel_pendulum_pair_f32){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-static wheel_pendulum_pair_f32 wheel_pendulum_mul_f32(wheel_pendulum_pair_f32 a, wheel_pendulum_pair_f32 b)
+DERIVE_APART static wheel_pendulum_pair_f32 wheel_pendulum_mul_f32(wheel_pendulum_pair_f32 a, wheel_pendulum_pair_f32 b)
 {
     const wheel_pendulum_pair_f32 p = wheel_pendulum_two_product_f32(a.high, b.high);
     const float e = p.low + (a.high * b.low + a.low * b.high);

@@ -23,7 +23,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 e066d19647466070.
+ * Body of these files: sha256 59d0e04513f241e4.
  */
 #ifndef WHEEL_PENDULUM_F32_H
 #define WHEEL_PENDULUM_F32_H

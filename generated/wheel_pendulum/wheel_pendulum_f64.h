@@ -23,7 +23,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 988b31d0f0f1d53f.
+ * Body of these files: sha256 50d51af57bef802f.
  */
 #ifndef WHEEL_PENDULUM_F64_H
 #define WHEEL_PENDULUM_F64_H

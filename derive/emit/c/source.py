@@ -1,6 +1,7 @@
 """From a library to the text of its C files. Templates hold layout, never arithmetic."""
 
 import hashlib
+import re
 from collections.abc import Sequence
 from fractions import Fraction
 
@@ -22,6 +23,8 @@ from derive.program.program import Measurement, Program
 from derive.scene import argument
 from derive.verify.search import SAMPLING
 
+APART = "DERIVE_APART"
+"""The mark of a function that is called and never copied."""
 JACOBIAN_DENSE = "The whole matrix, column by column."
 
 
@@ -127,17 +130,20 @@ def _source(
 ) -> str:
     programs = library.emitted()
     pairs = pair_functions(p for p in programs if p.arithmetic == "pairs")
+    made = _setup_definition(library.setup, names, precision) if library.constants else ""
+    operations = [_pair_function(name, names, precision) for name in pairs]
+    if all(p.arithmetic != "pairs" for p in library.printed()):
+        operations = apart(operations, made)
     return TEMPLATES.get_template("source.c.jinja").render(
         first_line=f"/* {first_line(library, figures)}",
         header=names.file(precision, "h"),
         uses_math=any(kind in MATH for p in programs for kind in p.count),
         aside=any("I" in names_in(p) for p in programs),
-        pair_functions=[_pair_function(name, names, precision) for name in pairs],
+        pair_functions=operations,
+        apart=any(APART in text for text in operations),
         scalar=precision.scalar,
         pair=f"{names.scene}_pair_{precision.name}",
-        setup={"definition": _setup_definition(library.setup, names, precision)}
-        if library.constants
-        else None,
+        setup={"definition": made} if made else None,
         functions=_definitions(library, names, precision),
     )
 
@@ -154,6 +160,21 @@ def _definitions(library: Library, names: CNames, precision: Precision) -> list[
         if program.sparsity:
             text = _dense_definition(program, names, precision)
             found.append({"says": f"{program.says} Dense.", "definition": text})
+    return found
+
+
+def apart(operations: Sequence[str], setup: str) -> list[str]:
+    """Return operations on pairs, those marked that are called from several places.
+
+    What is a sign or two when it is copied is left to the compiler.
+    """
+    whole = "\n".join([*operations, setup])
+    found = []
+    for text in operations:
+        head, name = re.findall(r"^(static \w+ (\w+)\()", text, re.MULTILINE)[0]
+        more = text.count(";") > 1 or text.count("(a, ") > 0
+        many = whole.count(f"{name}(") > 2  # its own head is one
+        found.append(text.replace(head, f"{APART} {head}", 1) if more and many else text)
     return found
 
 
