@@ -51,7 +51,8 @@ def check(given: argparse.Namespace) -> int:
 
         for v in checked(scenes, OUT, given.samples, told):
             found.append(v.outcome)
-            told(f"{v.scene}: {v.function} ({len(found)} checks)")
+            if len(scenes) == 1:
+                told(f"{v.scene}: {v.function} ({len(found)} checks)")
             table.add_row(v.scene, v.function, v.precision, v.check, v.outcome, v.says)
     print_rows(table)
     return _counted(found)

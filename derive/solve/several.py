@@ -150,13 +150,25 @@ def checked(
     samples: int = FRESH,
     told: Callable[[str], None] = silent,
 ) -> Iterator[Verdict]:
-    """Yield the verdicts on the files of scenes, none meaning all of the catalogue.
+    """Yield the verdicts on the files of scenes in their order, none meaning all of the catalogue.
 
     Raises DeriveError for any that can have no programs, before one is begun.
     """
     require_posed(scenes)
-    for scene in every(scenes):
-        yield from scene.check(folder, samples, told)
+    if len(scenes) == 1:
+        yield from scenes[0].check(folder, samples, told)
+        return
+    tasks = [partial(_checked, scene, folder, samples) for scene in every(scenes)]
+    found: dict[int, list[Verdict]] = {}
+    for place, verdicts in all_made(tasks):
+        found[place] = verdicts
+        told(f"{len(found)} of {len(tasks)} scenes")
+    for place in range(len(tasks)):
+        yield from found[place]
+
+
+def _checked(scene: Handle, folder: str | Path, samples: int) -> list[Verdict]:
+    return list(scene.check(folder, samples))
 
 
 def require_posed(scenes: Sequence[Handle]) -> None:
