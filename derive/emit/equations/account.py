@@ -11,6 +11,7 @@ from derive.emit.equations.lettered import decimal_value, lettered, names_shown
 from derive.emit.equations.listed import Listed, listed
 from derive.emit.equations.naming import Book, with_names
 from derive.emit.equations.section import Paragraph, Section, section
+from derive.emit.page.equation import notes
 from derive.lecture.chapters import LECTURE
 from derive.lecture.step import Step
 from derive.library.library import Library
@@ -53,7 +54,10 @@ def account(library: Library) -> Account:
 
 def _account(library: Library, known: Library) -> Account:
     book = Book()
-    found = [with_names(section(known, base), book) for base in library.problems]
+    found = [
+        with_names(replace(section(known, base), notes=tuple(notes(library.mechanism, base))), book)
+        for base in library.problems
+    ]
     sections = tuple(_without_repeats(_shown(known.scene, found)))
     values = {p.name: p.value for p in library.scene.parameters if p.value}
     rows = tuple(listed(known, sections, values))

@@ -9,9 +9,9 @@ from sympy import Add, Expr, Symbol
 from derive.emit.equations.dimensions import dimension_made, dimension_said
 from derive.emit.equations.fitted import TwoSides, fitted
 from derive.emit.equations.solved import resolved
-from derive.emit.equations.tidied import neatened
 from derive.emit.page.equation import notes, written_equations, written_names
 from derive.emit.page.readable import Readable
+from derive.emit.page.tidied import neatened
 from derive.lecture.chapters import LECTURE
 from derive.lecture.step import Step
 from derive.library.library import Library

@@ -89,16 +89,17 @@ def _infix(layout: Layout) -> list[str]:
 
 
 def _product(layout: Layout) -> list[str]:
-    """Return factors, as many in a piece as it holds."""
+    """Return factors, as many in a piece as it holds; a dot says that a piece is one more."""
     found, room = pieces(layout.parts[0]), WIDEST - width(layout.parts[0])
     for before, factor in pairwise(layout.parts):
-        first, *rest = _led(space_between(before, factor), factor)
+        first, *rest = pieces(factor)
         room -= width(factor) + _SMALL
-        if (room < 0 or rest) and not is_number(before):
-            found.append(first)
+        if room < 0 and not rest and not is_number(before):
+            found.append(f"{_sign('·')}{first}")
             room = WIDEST - width(factor)
         else:
-            found[-1] += first
+            found[-1] += f"{space_between(before, factor)}{first}"
+            room = WIDEST - width(factor) / len(pieces(factor)) if rest else room
         found += rest
     return found
 

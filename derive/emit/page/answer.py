@@ -1,4 +1,4 @@
-"""What a function answers, told in one line: a closed form where that is short, and figures.
+"""What a function answers, told in a few lines: closed forms where these are short, and figures.
 
 Figures are results of the function at seven tenths of all declared ranges.
 """
@@ -9,13 +9,11 @@ from math import sqrt
 
 import numpy as np
 from markupsafe import Markup
-from sympy import Expr
 
-from derive.emit.notation import equation_mathml, name_mathml, sympy_equation_mathml
-from derive.emit.page.equation import is_short, letter, taken_names, written_names
-from derive.lecture.chapters import LECTURE
+from derive.emit.notation import name_mathml
+from derive.emit.page.equation import letter, taken_names, written_names
+from derive.emit.page.glance import at_a_glance
 from derive.library.library import Library
-from derive.lower.arrange.plan import plain_arrangement
 from derive.program.arithmetic import extended, paired, working
 from derive.program.program import Program, Quantity
 from derive.program.run import run
@@ -23,17 +21,17 @@ from derive.scene.machine import LEFT_OVER
 from derive.scene.unit import behind
 from derive.scene.wanted import JACOBIAN
 
-_SHOWN = 3  # components of a function's results
+_SHOWN = 6  # components of a function's results
 _PARTS = ("_w", "_x", "_y", "_z")
 
 
 @dataclass(frozen=True)
 class AnswerLine:
-    """A function, what it is for, the equation that it comes from, and its results as a line."""
+    """A function, what it is for, equations that tell its answers, and its results as a line."""
 
     function: str
     says: str
-    equation: Markup
+    equations: tuple[Markup, ...]
     figures: Markup
 
 
@@ -42,30 +40,17 @@ def answer_lines(library: Library) -> tuple[AnswerLine, ...]:
     asked = [p for p in library.functions if not p.name.endswith(JACOBIAN)]
     middle = _middle(library)
     return tuple(
-        AnswerLine(p.name, p.says, closed_form(library, p), results_line(library, p, middle))
+        AnswerLine(p.name, p.says, closed_forms(library, p), results_line(library, p, middle))
         for p in asked
     )
 
 
-def closed_form(library: Library, program: Program) -> Markup:
-    """Return the closed form of a function's first answer, or the lecture step it comes from."""
-    problem = library.problems.get(program.name.removesuffix(JACOBIAN))
-    if problem is None:
-        return Markup("")  # a step is no equation of the lecture
-    mechanism = library.mechanism.posed(problem.name)
-    way = plain_arrangement(mechanism, mechanism.lean(problem.name).problem)
-    values: dict[Expr, Expr] = {}
-    for definition in way.definitions:
-        values[definition.symbol] = definition.value.xreplace(values)
-    whole = mechanism.whole(problem.name)
-    each = [e.xreplace(values) for e in way.outputs]
-    place = next((k for k, e in enumerate(each) if e.count_ops()), 0)  # no name alone, no zero
-    symbol, answer = list(whole.answers)[place], each[place]
-    step = next(iter(whole.steps), "")
-    text = equation_mathml(LECTURE[step]) if step else ""
-    if is_short(answer):
-        text = sympy_equation_mathml(symbol, answer, written_names(mechanism))
-    return Markup(text)  # noqa: S704 (MathML of checked names)
+def closed_forms(library: Library, program: Program) -> tuple[Markup, ...]:
+    """Return the closed forms of a function's answers, or the law that they come from."""
+    base = program.name.removesuffix(JACOBIAN)
+    if base not in library.problems:
+        return ()  # a step is no equation of the lecture
+    return tuple(map(Markup, at_a_glance(library, base)))  # (MathML of checked names)
 
 
 def _middle(library: Library) -> dict[str, float]:
@@ -86,13 +71,15 @@ def results_line(library: Library, program: Program, middle: Mapping[str, float]
     known = {**own, **middle}
     results = run(program, working(np.float64),
                   [known[c] for q in program.inputs for c in q.components])  # fmt: skip
-    outputs = [(q, c) for q in program.outputs for c in q.components][:_SHOWN]
-    each = [
+    outputs = [(q, c) for q in program.outputs for c in q.components]
+    every = [
         f"{_name(library, q, c)} = {_four_digits(float(r))}{behind(q.unit).replace('^2', '²')}"
-        for (q, c), r in zip(outputs, results, strict=False)
+        for place, ((q, c), r) in enumerate(zip(outputs, results, strict=True))
+        if program.results[place] not in (*own, 0)  # which say nothing: given, or none
     ]
     left = [LEFT_OVER] if program.name == "steady" else []
-    return Markup(", ".join([*each, *left]))  # noqa: S704 (numbers, units and checked names)
+    rest = [f"and {len(every) - _SHOWN} more"] * (len(every) > _SHOWN)
+    return Markup(", ".join([*every[:_SHOWN], *rest, *left]))  # noqa: S704 (numbers, units and checked names)
 
 
 def _four_digits(value: float) -> str:
@@ -132,5 +119,5 @@ def _within(q: Quantity) -> Sequence[float]:
 def first_answer(library: Library) -> AnswerLine:
     """Return the first answer of a scene, or what its first step gives if there is none."""
     program = (*library.functions, *library.motions)[0]
-    return AnswerLine(program.name, program.says, closed_form(library, program),
+    return AnswerLine(program.name, program.says, closed_forms(library, program),
                   results_line(library, program, _middle(library)))  # fmt: skip

@@ -8,6 +8,7 @@ from sympy import Expr, Symbol
 from derive.emit.notation import equation_mathml, sympy_equation_mathml
 from derive.emit.notation.glyph import Glyph, glyph
 from derive.emit.page.readable import LONGEST, Determined, Readable, readable
+from derive.emit.page.tidied import neatened
 from derive.lecture.chapters import LECTURE
 from derive.lecture.step import Step
 from derive.mechanics.mechanism import Mechanism
@@ -187,7 +188,7 @@ def _passage(
         PageEquation(
             f"{base}.{label(s)}".replace(" ", "_"),
             label(s),
-            sympy_equation_mathml(left, right, names),
+            sympy_equation_mathml(neatened(left), neatened(right), names),
         )
         for s, left, right in equations
     )

@@ -9,6 +9,7 @@ from derive.emit.c.comment import SETUP_ERROR, cost_line, of_what
 from derive.emit.c.source import first_line
 from derive.emit.drawing.drawing import drawing
 from derive.emit.notation import name_mathml
+from derive.emit.notation.glyph import glyph, slanted
 from derive.emit.on_target import OnTarget
 from derive.emit.page.answer import answer_lines
 from derive.emit.page.code import listing
@@ -24,6 +25,7 @@ from derive.library.library import Library
 from derive.program.program import Measurement, Program, Quantity
 from derive.scene.wanted import JACOBIAN
 
+LONGEST_SYMBOL = 12
 _PRECISIONS = ("f32", "f64")
 
 
@@ -46,7 +48,7 @@ def scene_page(
         around=neighbours(scene),
         drawing=Markup(drawing(scene)),  # noqa: S704 (numbers and checked names)
         answers=answer_lines(library),
-        moves=[p.name for p in library.motions],
+        moves=library.motions,
         assumptions=[step for step in LECTURE.steps if step.name in rests_on],
         constants=library.constants,
         parameters=library.vocabulary.parameters,
@@ -113,10 +115,15 @@ def _noted(library: Library, note: str) -> Markup:
 
 
 def _symbol(library: Library, q: Quantity) -> Markup:
-    """Return the letter of a quantity; of one whose components have names of their own, none."""
+    """Return the letter of a quantity; none of a long word, which is no shorter than the name.
+
+    There is none for one whose components have names of their own.
+    """
     if q.shape and not q.components[0].startswith(q.name):
         return Markup("")
     name = letter(q.name, taken_names(library.mechanism))
+    if len(name) > LONGEST_SYMBOL and name == q.name and not slanted(glyph(name).base):
+        return Markup("")
     return Markup(name_mathml(name, "vector" if q.shape else "scalar"))  # noqa: S704 (MathML of a checked name)
 
 

@@ -96,6 +96,23 @@
       return some(found);
     },
 
+    torn() {  // cells of tables: parts of names that a line's end cuts, symbols beyond their cell
+      const found = [], range = document.createRange();
+      for (const cell of document.querySelectorAll('td')) {
+        const texts = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT);
+        for (let text = texts.nextNode(); text; text = texts.nextNode())
+          for (const part of text.data.matchAll(/[A-Za-z0-9]+/g)) {
+            range.setStart(text, part.index);
+            range.setEnd(text, part.index + part[0].length);
+            const boxes = [...range.getClientRects()];
+            if (new Set(boxes.map(box => box.top)).size > 1) found.push(says(cell, 'is torn'));
+            if (boxes.some(box => box.right > cell.getBoundingClientRect().right + SLACK))
+              found.push(says(cell, 'is cut'));
+          }
+      }
+      return some(found);
+    },
+
     faint() {
       grounds.clear();
       veils.clear();

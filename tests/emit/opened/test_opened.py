@@ -66,3 +66,33 @@ def test_a_picture_of_each_kind_of_page_is_kept(kind: str, shown: Any) -> None:
         assert len(np.unique(grey)) > TONES
         low, high = PAPER[picture.stem.rpartition("_")[2]]
         assert low <= np.median(grey) <= high, picture.name
+
+
+LONG = """\
+wanted = ["state_rate"]
+[parameters]
+m_of_the_bead_that_slides_on_the_rail = { unit = "kg", range = [1, 2] }
+[coordinates]
+x = { unit = "m", range = [0, 1], rate = { range = [-1, 1] } }
+[inputs]
+torque_of_the_motor_at_the_far_end = { unit = "N", range = [-1, 1], meaning = "PUSH" }
+torq = { unit = "N", range = [-1, 1], meaning = "PUSH" }
+[frames]
+bead = { origin = ["x", "0", "0"] }
+[bodies]
+bead = { frame = "bead", shape = "point", mass = "m_of_the_bead_that_slides_on_the_rail" }
+[loads]
+push = { on = "bead", force = ["torque_of_the_motor_at_the_far_end + torq", "?y", "?z"] }
+held = { on = "bead", couple = "?c" }
+""".replace("PUSH", "push that the motor at the far end exerts by its belt, positive along x")
+
+
+def test_long_names_are_neither_cut_nor_torn_nor_too_wide_for_the_page(
+    shown: Any, tmp_path: Path
+) -> None:
+    (tmp_path / "lengthy.toml").write_text(LONG)
+    derive.generate([derive.load(tmp_path / "lengthy.toml")], tmp_path, 256)
+    page = tmp_path / "lengthy" / "lengthy.html"
+    assert [says for says in amiss(page, shown) if "leads" not in says] == []
+    loaded(page, shown)
+    assert not asked("torn", shown)

@@ -1,0 +1,48 @@
+"""What a function answers, at a glance: the closed forms of a terminal, where these are short."""
+
+from collections.abc import Mapping
+
+from sympy import Symbol
+
+from derive.emit.equations.fitted import TwoSides
+from derive.emit.equations.naming import Book, with_names
+from derive.emit.equations.section import section
+from derive.emit.notation import equation_mathml, sympy_equation_mathml
+from derive.emit.page.equation import is_short
+from derive.library.library import Library
+
+MOST = 4
+"""Lines that are taken in at a glance."""
+
+
+def at_a_glance(library: Library, base: str) -> list[str]:
+    """Return the closed forms of a function's answers, or the law that they come from.
+
+    An answer that is given or zero says nothing; what it is made of stands before it.
+    """
+    one = with_names(section(library, base), Book())
+    defined = {left: (left, right) for left, right in one.equations if one.assigns((left, right))}
+    shown: dict[TwoSides, None] = {}
+    for symbol in one.answers.values():
+        chain = _chain(symbol, defined, ())
+        whole = {**shown, **dict.fromkeys(chain)}
+        if len(whole) <= MOST and all(is_short(right) for _, right in chain):
+            shown = whole
+    if shown:
+        return [sympy_equation_mathml(left, right, one.names) for left, right in shown]
+    ends = [defined[s] for s in one.answers.values() if s in defined]
+    sums = [e for e in ends if e[1].is_Add and all(term.is_Symbol for term in e[1].args)]
+    parts = sorted(one.parts, key=lambda part: part.kind != "balance")
+    laws = [step for part in parts for step in part.steps][:1]
+    return [sympy_equation_mathml(*e, one.names) for e in sums] + [*map(equation_mathml, laws)]
+
+
+def _chain(
+    symbol: Symbol, defined: Mapping[Symbol, TwoSides], above: tuple[Symbol, ...]
+) -> list[TwoSides]:
+    """Return the equations that a symbol stands on, its own last; none if it is zero or given."""
+    if symbol not in defined or symbol in above or defined[symbol][1] == 0:
+        return []
+    sides = defined[symbol]
+    below = sorted(sides[1].free_symbols & defined.keys(), key=str)
+    return [*(line for s in below for line in _chain(s, defined, (*above, symbol))), sides]
