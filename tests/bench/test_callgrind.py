@@ -50,6 +50,7 @@ def chain(divisions: int) -> Candidate:
     return Candidate("chain", FREE_BODY, (Source("f.c", text),), glue, ("f.c", ("f",)))
 
 
+@pytest.mark.long
 @pytest.mark.skipif(
     not (shutil.which("gcc") and shutil.which("valgrind")), reason="needs gcc and valgrind"
 )

@@ -176,11 +176,13 @@ def inlined_rows(name: str, old: str, new: str) -> list[str]:
     return [v.outcome for v in inlined(found, module(text.replace(old, new), name), given)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", thinned(["free_body", "steps", "attitude", "tumbling_disc"], 2))
 def test_every_function_is_the_same_where_it_is_called_with_sx(name: str) -> None:
     assert set(inlined_rows(name, "", "")) == {"holds"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["free_body", "steps"])
 def test_pairs_that_casadi_sees_through_are_noticed(name: str) -> None:
     rows = inlined_rows(name, 'return ca.remainder(x, float("inf"))', "return x")

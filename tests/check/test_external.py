@@ -29,6 +29,7 @@ def judged(kind: str, module: ModuleType, workshop: Path, found: dict[str, str])
     return compiled_steps(made(kind), Files(found, "memory"), module, drawn(kind), at).outcome
 
 
+@pytest.mark.long
 def test_values_derivatives_and_patterns_are_those_of_casadi(
     module: ModuleType, workshop: Path
 ) -> None:

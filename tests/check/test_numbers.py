@@ -132,6 +132,7 @@ def test_the_sleeping_top_wakes_at_the_expected_spin() -> None:
     assert close(found, SLEEP.expected("n_crit"), DOUBLE)
 
 
+@pytest.mark.long
 def test_the_sleeping_top_wobbles_at_the_expected_frequencies(emitted: Built) -> None:
     expected = [SLEEP.expected(name) for name in ("f_slow", "f_fast")]
     assert np.allclose(frequencies(instrument("sleeping_top"), SLEEP.values), expected, DOUBLE)

@@ -74,6 +74,7 @@ WRONG: Mapping[str, Callable[[Any], Any]] = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "wrong"),
     [

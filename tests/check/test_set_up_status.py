@@ -116,6 +116,7 @@ def test_a_rule_that_refuses_too_much_is_caught() -> None:
     assert faults(lib, shifted, F64) != []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("values", "status"),
     [
@@ -222,6 +223,7 @@ def test_a_parameter_that_stands_in_formulas_only_is_not_tried(set_: dict[str, f
     assert "(status 4)" in why(setup, [*(middle | {"A": -1.0}).values()])
 
 
+@pytest.mark.long
 def test_numbers_of_springs_are_not_tried_and_masses_beside_them_are() -> None:
     trial = Path(__file__).parents[1] / "data" / "trials" / "spring_at_rest.toml"
     setup = library_of(str(trial)).setup

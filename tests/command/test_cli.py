@@ -221,6 +221,7 @@ def test_a_range_beyond_the_float_range_is_refused(tmp_path, capsys):
     assert "the range of 'B' must fit a float, up to 3.4e38" in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_a_broken_triangle_inequality_warns_and_does_not_stop(tmp_path, capsys):
     body = '[body]\nkind = "principal"\nmoments = ["1", "1", "3"]\n'
     source = scene(tmp_path, "flat", '"acceleration"', body)

@@ -69,6 +69,7 @@ def outcome(path: Path, *case: str) -> str:
     return ""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", [*thinned(MOTIONS, 15), *thinned(BODIES, 20)], ids=" ".join)
 def test_a_hostile_range_is_measured_or_refused_by_one_sentence(
     case: tuple[str, ...], tmp_path: Path

@@ -265,6 +265,7 @@ def test_a_form_that_does_not_exist_is_refused() -> None:
         equations(library_of("heavy_top"), "tex")
 
 
+@pytest.mark.long
 def test_a_document_names_the_command_that_makes_it() -> None:
     text = library_of("heavy_top").scene.text
     for name, means in (("heavy_top", "heavy_top"), ("brick", "brick.toml")):

@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 
+import pytest
 import sympy
 
 from derive.emit.equations import equations
@@ -33,6 +34,7 @@ hinge = { on = "rod", force = ["?rail", "?across", "?up"], couple = ["?a", "0", 
 """
 
 
+@pytest.mark.long
 def test_letters_are_those_of_a_paper_and_values_stand_in_the_list(tmp_path: Path) -> None:
     lib = library(parse_scene(PENDULUM, "pendulum"))
     told, tex = equations(lib, "text"), equations(lib, "latex")
@@ -46,6 +48,7 @@ def test_letters_are_those_of_a_paper_and_values_stand_in_the_list(tmp_path: Pat
     assert differences(lib, made) == residuals(lib, made) == []
 
 
+@pytest.mark.long
 def test_sums_are_tidied_and_what_stood_before_is_not_repeated() -> None:
     told = equations(library_of("cart_pendulum"), "text")
     assert told.count("F = m a_G") == 1

@@ -53,6 +53,7 @@ def said(known: Mechanism) -> Iterator[tuple[str, str]]:
         yield sentence, "".join(UNSAID.findall(sentence))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", thinned(SHORT, 3))
 def test_a_page_of_the_catalogue_names_nothing_that_its_file_does_not(name: str) -> None:
     known = mechanism(scene_of(name))
@@ -60,6 +61,7 @@ def test_a_page_of_the_catalogue_names_nothing_that_its_file_does_not(name: str)
     assert [text for text, wrong in said(known) if wrong] == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", thinned(unusual.SCENES, 4))
 def test_a_page_of_unusual_axes_names_nothing_that_its_file_does_not(name: str) -> None:
     found = said(mechanism(parse_scene(unusual.text_of(name), "unusual")))

@@ -130,6 +130,7 @@ OF_A_MACHINE = (
 )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", thinned(WANTED, 4))
 def test_whatever_is_wanted_is_in_pairs_or_refuses_the_accurate_form_by_its_name(name: str) -> None:
     try:

@@ -128,6 +128,7 @@ def test_a_step_brings_every_quaternion_back_to_length_one(name: str, precision:
             assert abs(fsum(x * x for x in parts) - 1) <= 2 * ON_SPHERE * u
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("wanted", "emission", "says"),
     [

@@ -27,6 +27,7 @@ EVERY = [
 """Functions of every fourth scene at once, of the others in the longer run."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("scene", "function"), TARGETS)
 def test_a_hot_function_costs_at_most_its_target(scene, function):
     program = library_of(scene)[function]

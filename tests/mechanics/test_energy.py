@@ -40,6 +40,7 @@ def outcomes(made: Library) -> set[str]:
     return {v.outcome for v in found}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", thinned(WITH_ENERGY, 7))
 def test_an_energy_changes_by_the_power_of_the_loads_that_are_not_in_it(name: str) -> None:
     assert outcomes(library(load(SCENES / f"{name}.toml"))) == {"holds"}
@@ -100,6 +101,7 @@ def test_a_prescribed_motion_changes_its_energy_by_the_power_of_what_it_needs(
     assert outcomes(replace(made, functions=(wrong,))) == {outcome}
 
 
+@pytest.mark.long
 def test_an_energy_that_leaves_out_a_part_of_what_springs_pull_with_is_noticed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -128,6 +130,7 @@ def test_the_energy_of_a_disc_whose_height_is_not_known_is_refused() -> None:
         library(parse_scene(ROLLING, "disc"))
 
 
+@pytest.mark.long
 def test_an_energy_without_the_height_of_a_rolling_disc_is_noticed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -33,6 +33,7 @@ def known(name: str) -> Mechanism:
     return mechanism(scene)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "function", "expected"), DEPENDS,
                          ids=[f"{row[0]}-{row[1]}" for row in DEPENDS])  # fmt: skip
 def test_an_answer_depends_on_what_the_data_file_says(

@@ -50,6 +50,7 @@ def test_nothing_is_lost_but_a_rounding_of_the_increment(x: float, d: float, lef
         assert abs(rest) <= 2 * u * (abs(after) + 1)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("dtype", PRECISIONS)
 def test_a_hundred_thousand_increments_add_up_and_plainly_do_not(dtype: type) -> None:
     step, count = dtype(1e-5) / dtype(3), 10**5

@@ -38,6 +38,7 @@ def every_state(scale: float, rate: float = 1.0) -> tuple[Rows, Rows]:
     return tensors, states
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("dtype", PRECISIONS)
 @pytest.mark.parametrize("kind", thinned(["general", "principal"], 2))
 def test_no_state_of_no_body_ends_in_nan(kind: str, dtype: type) -> None:

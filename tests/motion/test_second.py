@@ -56,6 +56,7 @@ def off_the_sphere() -> tuple[System, Mapping[str, Any]]:
     return given, dict(values) | {"attitude_x": values["attitude_x"] + mpf("0.3")}
 
 
+@pytest.mark.long
 def test_they_are_the_slopes_of_the_jacobian_on_the_sphere_and_off_it() -> None:
     given, off = off_the_sphere()
     made = second_derivatives(given)

@@ -78,6 +78,7 @@ def ended(case: Mapping[str, Any], found: Sequence[float]) -> tuple[float, float
     return own / math.hypot(*v) / U, 2 * math.hypot(*map(float, turn)) / U
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name",
     [

@@ -95,6 +95,7 @@ phi = { unit = "rad", range = [-1, 1], meaning = "angle" }
 """
 
 
+@pytest.mark.long
 def test_a_body_in_gimbals_that_merge_is_told_its_pole_and_has_a_sensible_rate() -> None:
     made = library(parse_scene(MERGING, "gimbals"))
     cases = cases_of(made, made.functions[0], in_other_form(made.scene))

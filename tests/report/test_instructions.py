@@ -36,6 +36,7 @@ def counted(own: Library, folder: Path) -> list[float]:
     return [one.count for one in found]
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not THERE, reason="needs gcc and valgrind")
 def test_a_function_takes_the_instructions_that_its_operations_and_arguments_need(
     tmp_path: Path,

@@ -23,6 +23,7 @@ def none() -> None:
     raise CompilerError("there is none")
 
 
+@pytest.mark.long
 def test_without_a_compiler_motions_end_where_those_of_c_do(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -18,6 +18,7 @@ def test_a_body_without_torque_could_want_every_step() -> None:
     assert all(found.library[name].name == name for name in found.steps)
 
 
+@pytest.mark.long
 def test_a_machine_has_the_steps_that_need_its_rate_alone() -> None:
     found = wished(library_of("sleeping_top"))
     assert found.steps == ("step_rk4", "step_taylor", "step_taylor12", "step_rk4_compensated")

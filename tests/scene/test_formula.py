@@ -83,6 +83,7 @@ def test_python_itself_reads_the_same_value_from_a_printed_polynomial(formula: F
     assert evaluate(formula, VALUES, EXACT) == found
 
 
+@pytest.mark.long
 @given(st.text())
 def test_any_text_is_a_formula_or_a_formula_error(text: str) -> None:
     with suppress(FormulaError):

@@ -96,6 +96,7 @@ def test_every_word_and_function_of_python_is_refused() -> None:
     assert {name for name in own | set(keyword.kwlist) if not owner(name)} == set()
 
 
+@pytest.mark.long
 def test_every_name_that_a_module_takes_from_outside_is_refused() -> None:
     outside: set[str] = set()
     for path in sorted(GENERATED.glob("*/*_casadi.py")):

@@ -62,6 +62,7 @@ def bits(found: Any) -> list[bytes]:
     return [(x + 0.0).tobytes() for x in each]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", thinned(CASES, 3))
 def test_compiled_and_by_casadi_a_batch_has_the_same_bits(case: tuple[str, str]) -> None:
     compiled, own = (function_of(*case, by) for by in ("compiler", "casadi"))

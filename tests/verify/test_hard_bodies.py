@@ -162,6 +162,7 @@ def is_of_kind(kind: str, tensor: np.ndarray) -> bool:
     raise AssertionError(kind)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("body", MADE)
 def test_what_parameters_can_make_of_a_machines_body_is_made(body: str) -> None:
     told, expected = MADE[body]

@@ -145,6 +145,7 @@ def test_only_what_is_in_closed_form_may_be_without_an_order() -> None:
     assert {v.outcome for v in orders_hold(sphere, each)} == {"holds"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("step", MUTATED)
 def test_a_sign_turned_in_a_step_is_noticed_unless_it_is_below_the_order(step: str) -> None:
     scene = "tumbling_body"

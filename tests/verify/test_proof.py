@@ -210,6 +210,7 @@ torque_range = [-0.2, 0.2]
 """
 
 
+@pytest.mark.long
 def test_a_scene_with_roots_is_proved_in_narrow_balls() -> None:
     made = library(parse_scene(PYRAMID, "pyramid"))
     prove(made)

@@ -124,6 +124,7 @@ def test_a_sum_that_is_larger_than_its_products_is_measured_by_itself() -> None:
     assert (float(one.value.mid()), one.scale) == (5.0, 5.0)
 
 
+@pytest.mark.long
 def test_an_exact_zero_is_told_from_a_tiny_number() -> None:
     rest = dict.fromkeys(("theta", "phi", "omega_x", "omega_y", "omega_z"), 0.0)
     rates = found("gyrostat", "state_rate", rest)

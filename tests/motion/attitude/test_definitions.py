@@ -30,6 +30,7 @@ def both(tmp_path_factory: pytest.TempPathFactory) -> list[Emitted]:
     return list(loaded(made, Files(texts, "made in memory"), folder, find_compiler()))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("place", thinned([0, 1], 2), ids=["f32", "f64"])
 def test_every_formula_is_what_its_name_means(both: list[Emitted], place: int) -> None:
     found = list(attitude_definitions(both[place]))
