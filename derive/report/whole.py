@@ -1,6 +1,7 @@
 """The report of a scene: all that is measured of it, and the sentence that says it."""
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -75,11 +76,12 @@ def report(library: Library, until: float | None = None, tell: Tell = silent) ->
     Raises SceneError for a time that has no sense or a motion that cannot be followed.
     """
     tell("what else the scene could want")
-    own = wished(library)
+    with ProcessPoolExecutor(1) as pool:
+        beside = pool.submit(in_other_form, library.scene)
+        own, other = wished(library), beside.result()
     said = "horizon" if until is None else "until"
     if (until or library.scene.horizon) is not None and not own.steps:
         raise SceneError(f"scene '{library.scene.name}': {said} is of motion, but {NO_MOTION}")
-    other = in_other_form(library.scene)
     with TemporaryDirectory(prefix="derive-") as folder:
         tell("compiling")
         by = drivers(own.library, PRECISIONS, Path(folder))

@@ -12,7 +12,6 @@ from tests.made import library_of, scene_of, thinned
 GENERATED = Path(__file__).parents[2] / "generated"
 MOST = 3e9
 """Operations in long floats of a report: 10 ns each in C, on two cores a quarter of a minute."""
-SLOWEST = ("acrobot", "rattleback")
 NAMES = sorted(path.parent.name for path in GENERATED.glob("*/*_report.json"))
 
 
@@ -37,12 +36,13 @@ def test_a_committed_page_is_made_by_the_command_without_a_time() -> None:
 
 
 def test_the_true_motions_of_a_report_take_their_part_of_a_minute() -> None:
-    found = {}
+    found = []
     for name in NAMES:
         text = (GENERATED / name / f"{name}_report.json").read_text(encoding="utf-8")
-        found[name] = (json.loads(text)["motion"] or {}).get("operations_in_long_floats", 0)
-    assert max(found.values()) < MOST
-    assert all(found[name] > 0 for name in SLOWEST)
+        motion = json.loads(text)["motion"]
+        found += [motion["operations_in_long_floats"]] if motion else []
+    assert len(found) > len(NAMES) / 2
+    assert 0 < min(found) <= max(found) < MOST
 
 
 @pytest.mark.long
