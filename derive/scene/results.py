@@ -6,7 +6,7 @@ from derive.scene.declaration import AXES, SceneError
 from derive.scene.entries import RESULT
 from derive.scene.entry import Reading, entries_of
 from derive.scene.escape import brief
-from derive.scene.formula import Formula, substitute
+from derive.scene.formula import Formula, substitute, symbols
 from derive.scene.loads import MARK, unknown_units
 from derive.scene.machine import Result, Unknown
 from derive.scene.names import identifier, refuse_taken_functions
@@ -33,7 +33,7 @@ def read_results(
 ) -> tuple[Result, ...]:
     """Return the results of a scene file; each may be made of those before it."""
     answers, found = answer_units(scalars, unknowns), list[Result]()
-    scope = scalars.known
+    scope, energies = scalars.known, {*ENERGIES}
     for key, value in given.entries.items():
         name, meaning, said = identifier(key, "a result"), "", value
         if isinstance(value, dict):
@@ -41,7 +41,9 @@ def read_results(
             said, meaning = entry["formula"], entry["meaning"] or ""
         both = Scope(dict(scope.dimensions) | answers, {}, "")
         read, unit = of_any_unit(said, f"result '{key}'", both)
-        spelling = spelled(unit)
+        energy = unit == dimension("J") and not energies.isdisjoint(symbols(read))
+        energies |= {name} if energy else set()
+        spelling = "J" if energy else spelled(unit)
         if isinstance(value, dict) and "unit" in value:
             spelling = _spelling(value["unit"], f"result '{key}'", unit)
             if spelling in BESIDE_SI:

@@ -7,6 +7,7 @@ from itertools import combinations
 
 import pytest
 
+from derive.command.new import STARTERS
 from derive.emit.drawing.drawing import HEIGHT, WIDTH, drawing, hull
 from derive.emit.drawing.label import Wanted, placed_labels
 from derive.emit.drawing.parts import solids
@@ -162,3 +163,46 @@ def test_gravity_points_downwards_in_every_drawing() -> None:
 def test_the_outline_of_points_is_convex() -> None:
     square = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
     assert sorted(hull((*square, (1.0, 1.0), (1.0, 0.0)))) == sorted(square)
+
+
+SPRUNG = """
+wanted = ["state_rate"]
+[coordinates]
+x = { unit = "m", range = [0.1, 0.5] }
+[frames.bead]
+origin = ["x", "0", "0"]
+[bodies.bead]
+frame = "bead"
+shape = "sphere"
+mass = 1
+radius = 0.05
+[loads]
+coil = { on = "bead", spring = 2 }
+rail = { on = "bead", force = ["0", "?y", "?z"], couple = "?c" }
+"""
+
+
+def test_force_and_couple_of_a_load_are_both_named_and_a_spring_is_one_line() -> None:
+    text = drawing(parse_scene(SPRUNG, "sprung"))
+    assert re.findall(r'<text class="(force|moment)"[^>]*>rail<', text) == ["force", "moment"]
+    (spring,) = re.findall(r'<path class="spring[^"]*" d="([^"]*)"', text)
+    assert spring.count("M") == 1
+
+
+@pytest.mark.parametrize("name", ["machine", "cart_pendulum", "disc_two_bearings"])
+def test_no_name_lies_over_an_arrow(name: str) -> None:
+    own = (STARTERS / "machine.toml").read_text() if name == "machine" else load(name).text
+    text = drawing(parse_scene(own, "own"))
+    arrows = [
+        [tuple(map(float, p.split(","))) for p in re.split("[ML]", d)[1:]]
+        for d in re.findall(r'<path class="(?:force|weight)" d="([^"]*)"', text)
+    ]
+    root = ET.fromstring(text)  # noqa: S314 (made here)
+    for one in root.iter("text"):
+        left, below = float(one.attrib["x"]), float(one.attrib["y"])
+        inside = [
+            p for (a, b), (c, d) in arrows for k in range(101)
+            if left < (p := (a + (c - a) * k / 100, b + (d - b) * k / 100))[0] < left + 8
+            and below - 7 < p[1] < below
+        ]  # fmt: skip
+        assert inside == [], one.text

@@ -7,6 +7,7 @@ import pytest
 import sympy
 
 from derive.emit.equations import equations
+from derive.emit.equations.account import account
 from derive.emit.equations.assumed import ALONE, alone
 from derive.lecture.chapters import LECTURE
 from derive.library.library import library
@@ -58,6 +59,27 @@ def test_sums_are_tidied_and_what_stood_before_is_not_repeated() -> None:
 
 def test_assumptions_stand_alone() -> None:
     every = [step for step in LECTURE.steps if step.kind == "assume"]
-    assert ALONE.keys() <= {step.name for step in every}
+    assert ALONE.keys() <= {step.name for step in LECTURE.steps}
     leaning = "First|Second|Third|There is no|This is|Other axes|Suppose, the|Let them|The first"
     assert [step.name for step in every if re.match(leaning, alone(step))] == []
+
+
+def test_laws_are_quoted_in_sentences_that_need_none_before_them() -> None:
+    scenes = map(library_of, ("acrobot", "satellite", "rolling_disc", "heavy_top"))
+    parts = [part for known in scenes for one in account(known).sections for part in one.parts]
+    quoted = {step.name: alone(step) for part in parts for step in part.steps}
+    begun = re.compile(r"(So|And|The same|Apply|Solve|For)\b")
+    assert len(quoted) > 5
+    assert [says for says in quoted.values() if begun.match(says)] == []
+
+
+def test_short_equations_stand_on_one_line_of_latex() -> None:
+    tex = equations(library_of("rolling_disc"), "latex")
+    rows = [row for part in re.findall(r"\\begin\{align\*\}\n(.*?)\n\\end", tex, re.DOTALL)
+            for row in part.split(" \\\\\n")]  # fmt: skip
+    assert [row for row in rows if row.startswith(r"&\quad =") and len(row) < 40] == []
+
+
+def test_an_energy_is_in_joule() -> None:
+    (result,) = (r for r in library_of("rolling_disc").scene.results if r.name == "energy_of_all")
+    assert result.unit == "J"

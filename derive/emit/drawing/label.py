@@ -14,6 +14,7 @@ _EM = {"narrow": 0.42, "usual": 0.68, "wide": 1.0}
 """Widths of letters of DejaVu Serif, the widest of the fonts that the style names, and more."""
 _GAPS = (3.0, 7.0, 12.0, 18.0, 26.0, 36.0, 50.0, 70.0)
 _CLOSE = 1.5  # px between two names
+COVERED = 8.0  # px that a name goes farther rather than over three px of a line
 
 Rectangle = tuple[float, float, float, float]
 
@@ -88,7 +89,7 @@ def placed_labels(
             if cost >= best[0]:
                 break
             if _free(box, found, size):
-                best = min(best, (cost + 3 * _hits(box, crowded), box))
+                best = min(best, (cost + COVERED * _hits(box, crowded), box))
         if isfinite(best[0]):
             found.append(_label(each, runs, best[1]))
     return found

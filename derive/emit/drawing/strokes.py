@@ -24,7 +24,7 @@ from derive.scene.machine import INERTIAL, Force, Gradient, Load, Spring, Weight
 from derive.scene.said import is_hidden, without_hidden
 
 ARROW, TURN, AXES = 0.3, 0.1, 0.42  # of the size of a drawing: forces, radius of moments, axes
-COILS = 9
+COILS, FEWEST_COILS, COIL = 9, 3, 0.04  # a coil is so long at least, of the size
 
 
 @dataclass(frozen=True)
@@ -80,12 +80,13 @@ def _reach(
 
 
 def load_strokes(found: Stance, by: Sight, size: float) -> Iterator[Stroke]:
-    """Yield what acts on the bodies; the first arrow of a load carries its name."""
+    """Yield what acts on the bodies; the first arrow and the first arc of a load carry its name."""
     for load in found.machine.loads:
-        named = False
+        named: set[bool] = set()
         for stroke in _of_load(found, load, by, size):
-            label = "" if named else _told(load, stroke.kind)
-            named = named or bool(label)
+            arc = stroke.kind == "moment"
+            label = "" if arc in named else _told(load, stroke.kind)
+            named |= {arc} if label else set()
             yield replace(stroke, label=label)
 
 
@@ -165,7 +166,8 @@ def _spring(found: Stance, load: Spring, by: Sight, size: float) -> Stroke:
         return Stroke("spring", (start, end), above=False)
     side = directed(shifted(by.right, directed(way), -inner_product(by.right, directed(way))))
     points = [start, shifted(start, way, 0.15)]
-    for k in range(COILS):
-        at = shifted(start, way, 0.15 + 0.7 * (k + 0.5) / COILS)
+    coils = max(FEWEST_COILS, min(COILS, round(extent(way) / (COIL * size))))
+    for k in range(coils):
+        at = shifted(start, way, 0.15 + 0.7 * (k + 0.5) / coils)
         points.append(shifted(at, side, 0.035 * size * (1 if k % 2 else -1)))
-    return Stroke("spring", (*points, shifted(start, way, 0.85), end), above=False)
+    return Stroke("spring", (*points, shifted(start, way, 0.85), end))

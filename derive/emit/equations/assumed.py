@@ -53,8 +53,27 @@ ALONE: Mapping[str, str] = {
     "simple_turn": "Axes turn by an angle about a unit vector e.",
     "fixed_axis": "The unit vector e that axes turn about keeps its place.",
     "no_gimbal_lock": "The pitch is not 90 degrees up or down, where yaw and roll are singular.",
+    "velocity_of_particle": "A particle of a rigid body moves at omega x rho, seen from A.",
+    "kinetic_energy_about_point": "The energy of a rigid body that turns about a fixed point.",
+    "koenig": "The energy of a free rigid body: that of its mass moving with G and that of its "
+    "turning about G.",
+    "transport_theorem": "The rate of the angular momentum seen from N is that seen from the axes, "
+    "and what their turning adds.",
+    "velocity_seen_from_axes": "The velocity of a particle is that seen from the axes, and what "
+    "their turning adds.",
+    "acceleration_seen_from_axes": "The acceleration of a particle is that seen from the axes, "
+    "with terms of their angular acceleration, of Coriolis, and of the centripetal acceleration.",
+    "general_form": "The moment balance of a body in its general form, about a fixed point or "
+    "about G, in any axes.",
+    "moving_point_form": "The moment balance about a point A that moves in any way.",
+    "angular_velocities_add": "Angular velocities of axes that carry each other add.",
+    "any_point_form": "A body, or several cut free together, can be balanced about any point.",
+    "quaternion_rate_scalar": "The scalar part of an attitude has the rate of the scalar part of "
+    "q (0, omega) / 2.",
+    "quaternion_rate_vector": "The vector part of an attitude has the rate of the vector part of "
+    "q (0, omega) / 2. No attitude is singular.",
 }
-"""Assumptions whose sentence in the lecture speaks of the sentences before it."""
+"""Steps whose sentence in the lecture speaks of the sentences before it."""
 STYLES: Mapping[tuple[int, ...], str] = {(): "scalar", (3,): "vector", (3, 3): "tensor"}
 OTHERS: Mapping[str, tuple[str, str]] = {
     "R_2": ("1", "turns components along further axes into components along xyz"),
@@ -100,7 +119,7 @@ OTHERS: Mapping[str, tuple[str, str]] = {
 
 
 def alone(step: Step) -> str:
-    """Return an assumption as a sentence that needs none before it."""
+    """Return a step as a sentence that needs none before it."""
     return ALONE.get(step.name, step.says)
 
 

@@ -72,7 +72,7 @@ def _part(section: Section, part: Paragraph) -> Iterator[str]:
         if step.name in part.again:
             yield rf"{place}, as above.\par"
             continue
-        yield f"{tex_text(step.says)} ({place}.)"
+        yield f"{tex_text(alone(step))} ({place}.)"
         yield from _display(
             rf"&{tex(left)} = {tex(right)}" for left, right in equation_layouts(step)
         )
@@ -83,23 +83,28 @@ def _part(section: Section, part: Paragraph) -> Iterator[str]:
         says = ", ".join([*each, *filter(None, [others])])
         yield rf"As in {_code(name)}: {says}."
     new = [equation for equation in part.equations if equation not in part.before]
-    yield from _display(_broken(section, e) for e in new) if new else [r"\par"]
+    flush = any(width(symbolic_layout(left, section.shown)) > LEFT for left, _ in new)
+    yield from _display(_broken(section, e, flush) for e in new) if new else [r"\par"]
 
 
 def _display(lines: Iterable[str]) -> list[str]:
     return [r"\begin{align*}", " \\\\\n".join(lines), r"\end{align*}"]
 
 
-def _broken(section: Section, equation: TwoSides) -> str:
+def _broken(section: Section, equation: TwoSides, flush: bool) -> str:  # noqa: FBT001
     """Return an equation, its sides broken before a sign where the line is full.
 
-    A left side that is wide has lines of its own, or all right sides would begin behind it.
+    flush : it begins at the left margin, since in its display a left side is wide; one that is
+            too wide for a line beside its right side has lines of its own
     """
     left, right = equation
     first, *rest = _rows(section, right)
-    if width(symbolic_layout(left, section.shown)) <= LEFT:
+    if not flush:
         return " \\\\\n".join([f"{_written(section, left)} &= {first}", *map(_led, rest)])
     start, *more = _rows(section, left)
+    wide = sum(width(symbolic_layout(side, section.shown)) for side in equation)
+    if not rest and wide + 1 <= LINE:
+        return f"&{start} = {first}"
     return " \\\\\n".join([f"&{start}", *map(_led, more), rf"&\quad = {first}", *map(_led, rest)])
 
 

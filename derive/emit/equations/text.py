@@ -61,7 +61,7 @@ def _section(section: Section, letters: str) -> Iterator[str]:
             if step.name in part.again:
                 yield f"{place}, as above."
                 continue
-            yield from _wrapped(f"{place}. {step.says}", "")
+            yield from _wrapped(f"{place}. {alone(step)}", "")
             yield from _wrapped(equation_text(step), INDENT)
         yield from _wrapped(part.says, "")
         yield _TITLES[part.kind]
