@@ -151,7 +151,7 @@ void rattleback_linearised_f64(const rattleback_constants_f64 *constants, double
  *            beta  rad  -0.05 .. 0.05  pitch, about the new y
  *            beta_dot  rad/s  -3 .. 3  rate of beta
  *            W  rad/s  -6 .. 6  spin: rate at which the heading turns
- * Returned:  energy_of_all  N m  energy; the floor has 0
+ * Returned:  energy_of_all  J  energy; the floor has 0
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]

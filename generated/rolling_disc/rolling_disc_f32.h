@@ -219,7 +219,7 @@ void rolling_disc_ground_f32(const rolling_disc_constants_f32 *constants, float 
  *            lean_dot  rad/s  -5 .. 5  rate of lean
  *            W  rad/s  -5 .. 5  rate at which the heading turns
  *            s  rad/s  -20 .. 20  spin, relative to the heading
- * Returned:  energy_of_all  N m  energy; the floor has 0
+ * Returned:  energy_of_all  J  energy; the floor has 0
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
