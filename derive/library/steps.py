@@ -27,7 +27,15 @@ from derive.program.recorded import called, needed
 from derive.program.tape import Number, Tape, number, seen_from
 from derive.scene import Scene, SceneError
 from derive.scene.declaration import Given
-from derive.scene.wanted import ATTITUDES, SPLITTINGS, STEP_DERIVATIVES, TAYLOR, moves, step_of
+from derive.scene.wanted import (
+    ATTITUDES,
+    SPLITTINGS,
+    STEP_DERIVATIVES,
+    TAYLOR,
+    moves,
+    step_of,
+    with_column,
+)
 
 LOOPED = ("step_rk4", "step_rk4_jacobian", "step_rk4_sensitivity")
 """Steps that may be printed as loops over their stages."""
@@ -95,7 +103,8 @@ def _runge_kutta(setting: Setting, name: str) -> Program:
     rates, step = setting.rates, _time_step(setting)
     slopes = rates[SLOPES[name.rpartition("_")[2]]] if name in STEP_DERIVATIVES else None
     states, taken = setting.terms.vocabulary.states, setting.terms.taken()
-    system = System(states, rates["state_rate"], slopes, step, taken)
+    column = setting.terms.scene.column is not None and with_column(name)
+    system = System(states, rates["state_rate"], slopes, step, taken, column)
     _check_quaternions(setting, name, len(system.quaternions))
     _check_free_turn(system, name)
     program = runge_kutta.step(system, name)

@@ -179,6 +179,8 @@ STEADY = (
 )
 TIME_STEP = Entry("time_step", "bounds", "of a step, s", default={"range": [0, Decimal("0.01")]})
 TIME = Entry("time", "bounds", "that a flow goes on for, s", default={"range": [0, 10]})
+COLUMN = Entry("column", "word", "a further one of `_jacobian` and `_tangent` of steps",
+               words=("time_step",))  # fmt: skip
 AXES_OF_ONE = (
     Entry("fixed_in", "word", "axes of the body", words=("body",)),
     Entry("attitude", "word", "free body axes: a state, scalar first", words=("quaternion",)),

@@ -237,6 +237,7 @@ SOUGHT = ("acceleration", "accelerations", "state_rate")
 class Scene:
     """Everything the user declared, checked; ``text`` is the file as it was read.
 
+    column  : by what Jacobians of steps have a further column, None if they have none
     merging : words on where two of three free angles merge in their ranges, "" if nowhere
     groups  : what its functions are given and answer
     inverse : the same bodies where their motion is given, and what moves them is sought
@@ -267,6 +268,7 @@ class Scene:
     form: Literal["fast", "accurate"]
     time_step: Given
     time: Given
+    column: Literal["time_step"] | None
     emission: Literal["fast", "compact"]
     horizon: Fraction | None
     warnings: tuple[str, ...]

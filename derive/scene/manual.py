@@ -45,7 +45,7 @@ TABLES: Mapping[str, tuple[Entry, ...]] = {
     "`[results]` NAME, a formula or": entries.RESULT,
     "`[angular_momentum]`": entries.MOMENTUM,
     "`[steady]`": entries.STEADY,
-    "`[motion]`": (entries.TIME_STEP, entries.TIME),
+    "`[motion]`": (entries.TIME_STEP, entries.TIME, entries.COLUMN),
     "`[axes]` of a single body": entries.AXES_OF_ONE,
     "`[body]`, besides a kind or a shape": entries.BODY,
     "`[point]` of a single body": entries.POINT,

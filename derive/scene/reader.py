@@ -11,7 +11,7 @@ from derive.scene.bodies import read_member
 from derive.scene.declaration import Input, SceneError
 from derive.scene.demands import of_bodies
 from derive.scene.doubtful import doubts, require_sizes
-from derive.scene.entries import FILE, MOMENTUM, STEADY, TIME, TIME_STEP
+from derive.scene.entries import COLUMN, FILE, MOMENTUM, STEADY, TIME, TIME_STEP
 from derive.scene.entry import REQUIRED, Entry, Reading, entries_of
 from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.frames import read_frames
@@ -52,7 +52,7 @@ MACHINE = Form(
     ("bodies", "frames", "loads", "results", "angular_momentum", "linearised", "steady", *SCALARS),
     ("body", "axes", "wheels", "point", "known", "position"),
     "is for a single body; with bodies and frames, use bodies, frames and loads",
-    (TIME_STEP,),
+    (TIME_STEP, COLUMN),
 )
 
 
@@ -72,7 +72,7 @@ def read_file(
     said = entries_of(Table(THE_FILE, document), (*FILE, *rows), Reading())
     own = {key: said.pop(key) for key in form.tables}
     part = {key: table(value, key) for key, value in own.items() if key != "wheels"}
-    times = entries_of(Table("motion", {}), (TIME_STEP, TIME), Reading())
+    times = entries_of(Table("motion", {}), (TIME_STEP, TIME, COLUMN), Reading())
     times |= entries_of(part["motion"], form.motion, Reading())
     head = {"name": name, "text": source, **said, **times}
     head |= {"title": said["title"] or name, "source": said["source"] or ""}

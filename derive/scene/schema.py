@@ -119,7 +119,7 @@ def _tables() -> dict[str, Any]:
         "linearised": _named(FORMULA, "values about which motion is small; 0 if not given"),
         "angular_momentum": _table(entries.MOMENTUM),
         "steady": _table(entries.STEADY),
-        "motion": _table((entries.TIME_STEP, entries.TIME)),
+        "motion": _table((entries.TIME_STEP, entries.TIME, entries.COLUMN)),
         "axes": _table(entries.AXES_OF_ONE),
         "body": _body(),
         "point": _table(entries.POINT),

@@ -143,11 +143,17 @@ def without_ending(name: str) -> str:
     return name.removesuffix(JACOBIAN).removesuffix(SENSITIVITY)
 
 
+def with_column(name: str) -> bool:
+    """Tell whether a wanted function may have a column by the step's length."""
+    return name in STEP_DERIVATIVES and not name.endswith(SENSITIVITY)
+
+
 def idle_times(motion: Iterable[str], wanted: Iterable[str]) -> Iterator[str]:
-    """Yield a sentence for each time of a scene's table ``motion`` that nothing wanted takes."""
+    """Yield a sentence for each entry of a scene's table ``motion`` that nothing wanted takes."""
     moving = [name for name in wanted if moves(name)]
     flows = [name for name in moving if name.startswith("flow_")]
     takers = {"time": flows, "time_step": [name for name in moving if name not in flows]}
-    for time in motion:
-        if not takers[time]:
-            yield f"motion.{time} is given, but nothing that is wanted takes it"
+    takers["column"] = list(filter(with_column, moving))
+    for entry in motion:
+        if not takers[entry]:
+            yield f"motion.{entry} is given, but nothing that is wanted takes it"

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 
 from derive.lower.order import with_values_read_soon
 from derive.lower.signs import with_signs_outside
@@ -99,7 +100,7 @@ def step(system: System, name: str) -> Program:
     sums carry a remainder from call to call; with _jacobian there are derivatives by the state and
     the inputs; with _tangent over three errors of attitude, delta in rad along body axes for
     q exp(delta / 2), before and after; with _sensitivity by what ``system.slopes`` has beside the
-    states
+    states. With ``system.column`` the last column is by the step's length
     Raises ValueError for a state, or a system without slopes, of which there is no such step.
     """
     named = name.removeprefix("step_")
@@ -143,6 +144,8 @@ def _with_slopes(how: Method, system: System, kind: str) -> Recorded:
     slopes_of(system)  # a step without derivatives would be recorded without them
     tape, n = tape_for(system), len(system.names)
     after, matrix = how.slopes[kind](tape, system)
+    if system.column:  # by h/2 until here
+        matrix = [[*row[:-1], row[-1] * Fraction(1, 2)] for row in matrix]
     rows, columns = system.names, system.columns
     if kind == "tangent":
         rows = _names_with_errors(system)

@@ -46,7 +46,7 @@ def compact(system: System, step: Program) -> Program:
     columns, rate = None, system.rate
     if step.sparsity:
         own = step.sparsity["jacobian"]
-        if not {*own.columns} <= {*system.columns}:
+        if not {*own.columns} <= {*pattern_of(system).columns}:
             return step
         columns = Carried(pattern_of(system), own, system.columns.index(own.columns[0]))
         rate = system.slopes or rate

@@ -110,12 +110,23 @@ def _gain(tape: Tape, system: System, start: Varying) -> Gain:
     states, rates = [start], [_rates(tape, system, start, half)]
     for part in (1, 1, 2):
         state = added(start, weighed([part], [rates[-1]]))
-        turns = [weighed([half], [one[omega]]) for one in states]
+        turns = [_turn(system, 1, half, one[omega]) for one in states]
         states.append(state.replaced(attitude, _stage(start[attitude], turns)))
         rates.append(_rates(tape, system, states[-1], half))
-    turns = [weighed([h], [state[omega]]) for state in states]
+    turns = [_turn(system, 2, h, state[omega]) for state in states]
     vectors = [weighed(weights, turns) for weights in (FIRST, FIRST[::-1])]
     return Gain(weighed([THIRD, 2 * THIRD, 2 * THIRD, THIRD], rates), vectors)
+
+
+def _turn(system: System, part: int, time: Number, omega: Varying) -> Varying:
+    """Return omega times a time of so many halves of the step: a column may be by h/2."""
+    found = weighed([time], [omega])
+    if not system.column:
+        return found
+    grown = [
+        [*row[:-1], row[-1] + part * w] for row, w in zip(found.slopes, omega.values, strict=True)
+    ]
+    return Varying(found.values, grown)
 
 
 def _start(tape: Tape, system: System) -> Varying:

@@ -6,7 +6,8 @@ derivatives that rests on the stages' states with C_i and on their g_i with w_i 
     m_i = w_i + (1, 1, 2, 0)_i n_(i+1),    n_i = C_i + m_i A_i,
 
 to sum n_i by the state and sum m_i B_i by the rest: whether these are inputs or parameters, they
-cost little beside the states.
+cost little beside the states. The step's length may be one of the rest, as h/2: by it
+g_i changes with the rates themselves.
 """
 
 from __future__ import annotations
@@ -164,11 +165,27 @@ def _on_the_sphere(q: NumberRow, rows: Matrix) -> Matrix:
 def turn_carried_back(system: System, stages: Stages, turn: StageTurns) -> Back:
     """Return the derivatives (3, n) and (3, m) of v, if the attitude q changes by q (0, v)."""
     n, omega = len(stages.start), free_omega(system) or slice(0)
-    scale = stages.time_step * Fraction(1, 12) / norm_squared(one_and(turn.increment))
     on_states = [zeros(3, n) for _ in turn.quarters]
-    for rows, part in zip(on_states, turn_slopes(turn, scale), strict=True):
+    parts, by_length = _on_omegas(system, stages, turn)
+    for rows, part in zip(on_states, parts, strict=True):
         put(rows, omega, part)
-    return carried_back(stages, on_states, [zeros(3, n)] * 4)
+    found = carried_back(stages, on_states, [zeros(3, n)] * 4)
+    if not by_length:
+        return found
+    last = [[*row[:-1], row[-1] + x] for row, x in zip(found.rest, by_length, strict=True)]
+    return Back(found.state, last)
+
+
+def _on_omegas(system: System, stages: Stages, turn: StageTurns) -> tuple[list[Matrix], NumberRow]:
+    """Return the derivatives of v by the angular velocities of the stages, and by h/2 if asked."""
+    squared = norm_squared(one_and(turn.increment))
+    if not system.column:
+        return turn_slopes(turn, stages.time_step * Fraction(1, 12) / squared), []
+    parts, omega = turn_slopes(turn, Fraction(1, 6) / squared), free_omega(system) or slice(0)
+    rates = [[w] for state in stages.states for w in state[omega]]
+    by_length = [x for (x,) in product(beside(*parts), rates)]
+    half = stages.time_step * Fraction(1, 2)
+    return [times(half, part) for part in parts], by_length
 
 
 def _attitude_by_itself(

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 
-from derive.motion.runge_kutta.matrices import Matrix, zeros
+from derive.motion.runge_kutta.matrices import Matrix, beside, zeros
 from derive.program.program import (
     Op,
     Operand,
@@ -41,6 +41,7 @@ class System:
              states and by whatever else, inputs or parameters, derivatives are wanted by
     step   : the length of the step
     taken  : further names of the scene, which no operation may have
+    column : whether the step's length is the last that derivatives are wanted by
     """
 
     states: tuple[Quantity, ...]
@@ -48,6 +49,7 @@ class System:
     slopes: Program | None = None
     step: Quantity = TIME_STEP
     taken: frozenset[str] = frozenset()
+    column: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -63,8 +65,9 @@ class System:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Return by what the Jacobian is taken: the states, then inputs or parameters."""
-        return pattern_of(self).columns
+        """Return by what the Jacobian is taken: states, inputs or parameters, the step's length."""
+        length = self.step.components if self.column else ()
+        return (*pattern_of(self).columns, *length)
 
     @property
     def quaternions(self) -> tuple[slice, ...]:
@@ -105,12 +108,17 @@ def rates_at(tape: Tape, system: System, state: Sequence[Number], factor: Number
 def slopes_at(
     tape: Tape, system: System, state: Sequence[Number], factor: Number
 ) -> tuple[list[Number], Matrix]:
-    """Return ``factor`` times the rates (n,) and their Jacobian (n, m) at ``state``."""
+    """Return ``factor`` times the rates (n,) and their Jacobian (n, m) at ``state``.
+
+    A column by the step's length, if there is one, is by ``factor``: it holds the rates themselves.
+    """
     pattern, n = pattern_of(system), len(state)
     found = _scaled(tape, slopes_of(system), _given(tape, system, state), factor)
     full = zeros(n, len(pattern.columns))
     for (row, column), entry in zip(pattern.places(), found[n:], strict=True):
         full[row][column] = entry
+    if system.column:
+        full = beside(full, [[x] for x in rates_at(tape, system, state, number(1))])
     return found[:n], full
 
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any, Literal
 
 from derive.scene.declaration import Input, SceneError
-from derive.scene.entries import AXES_OF_ONE, KNOWN, POINT, POSITION, TIME, TIME_STEP, WHEEL
+from derive.scene.entries import AXES_OF_ONE, COLUMN, KNOWN, POINT, POSITION, TIME, TIME_STEP, WHEEL
 from derive.scene.entry import Reading, entries_of
 from derive.scene.names import distinct
 from derive.scene.reader import SCALARS, Form, read_file
@@ -24,7 +24,7 @@ ONE_BODY = Form(
     ("body", "axes", "wheels", "point", "known", "position", *SCALARS),
     ("frames", "bodies", "loads"),
     "is for machines: a file that has it needs bodies, not a body",
-    (TIME_STEP, TIME),
+    (TIME_STEP, TIME, COLUMN),
 )
 
 
