@@ -1,6 +1,6 @@
 """What a scene's functions cost and how wrong they are, in both forms and both precisions."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from derive.library.library import Library
@@ -8,6 +8,7 @@ from derive.program.precision import PRECISIONS, Precision
 from derive.program.program import Program
 from derive.report.hard import HardCase, cases_of
 from derive.report.price import price_of
+from derive.report.wishes import OTHER_FORM
 from derive.scene.wanted import ATTITUDES
 from derive.verify.draw import Sampled
 from derive.verify.search import Sampling, sampled_at, worst
@@ -38,15 +39,32 @@ def functions_of(library: Library) -> tuple[Program, ...]:
     return (*library.functions, *(p for p in library.motions if p.name in ATTITUDES))
 
 
-def figures_in_form(
-    library: Library, form: str, tell: Callable[[str], None]
-) -> Iterator[FunctionFigures]:
+def found_of(
+    library: Library, other: Library | None
+) -> tuple[tuple[FunctionFigures, ...], tuple[HardCase, ...]]:
+    """Return figures of a scene's functions that move nothing, in both forms, and hard cases.
+
+    other : the library of the other form, None if there is none
+    """
+    form, own = library.scene.form, functions_of(library)
+    figures = [*figures_in_form(library, form)]
+    if other is not None:
+        figures += figures_in_form(other, OTHER_FORM[form])
+    only = _alone(library)
+    return tuple(figures), tuple(case for p in own for case in cases_of(only, p, other))
+
+
+def figures_in_form(library: Library, form: str) -> Iterator[FunctionFigures]:
     """Yield what the functions of a library cost and how wrong they are."""
     own = functions_of(library)
-    only = replace(library, motions=tuple(p for p in own if p not in library.functions))
     for precision in PRECISIONS if own else ():
-        tell(f"errors of functions, {form} form, {precision.scalar}")
-        yield from _figures(only, form, precision, own, LOOKED)
+        yield from _figures(_alone(library), form, precision, own, LOOKED)
+
+
+def _alone(library: Library) -> Library:
+    """Return a library without what moves something."""
+    own = functions_of(library)
+    return replace(library, motions=tuple(p for p in own if p not in library.functions))
 
 
 def _figures(
@@ -62,16 +80,3 @@ def _figures(
             program.name, form, precision.name, price_of(program),
             max(w.median for w in mine), max(errors),
         )  # fmt: skip
-
-
-def hard_cases(
-    library: Library, other: Library | None, tell: Callable[[str], None]
-) -> tuple[HardCase, ...]:
-    """Return the hardest cases of each function that moves nothing."""
-    own = functions_of(library)
-    only = replace(library, motions=tuple(p for p in own if p not in library.functions))
-    found = list[HardCase]()
-    for program in own:
-        tell(f"hard cases of {program.name}")
-        found += cases_of(only, program, other)
-    return tuple(found)

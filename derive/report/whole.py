@@ -1,9 +1,9 @@
 """The report of a scene: all that is measured of it, and the sentence that says it."""
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
+from multiprocessing import Pool
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -14,7 +14,7 @@ from derive.program.precision import PRECISIONS
 from derive.program.program import Program
 from derive.report.courses import StepErrors, Tell, step_errors
 from derive.report.driver import Driver, drivers
-from derive.report.found import FunctionFigures, figures_in_form, functions_of, hard_cases
+from derive.report.found import FunctionFigures, found_of, functions_of
 from derive.report.hard import HardCase
 from derive.report.instructions import WITHOUT, Instructions, instructions
 from derive.report.machine import Machine, machine_here
@@ -76,30 +76,35 @@ def report(library: Library, until: float | None = None, tell: Tell = silent) ->
     Raises SceneError for a time that has no sense or a motion that cannot be followed.
     """
     tell("what else the scene could want")
-    with ProcessPoolExecutor(1) as pool:
-        beside = pool.submit(in_other_form, library.scene)
-        own, other = wished(library), beside.result()
-    said = "horizon" if until is None else "until"
-    if (until or library.scene.horizon) is not None and not own.steps:
-        raise SceneError(f"scene '{library.scene.name}': {said} is of motion, but {NO_MOTION}")
-    with TemporaryDirectory(prefix="derive-") as folder:
-        tell("compiling")
-        by = drivers(own.library, PRECISIONS, Path(folder))
-        motion = step_errors(own, by, until, tell) if own.steps else None
-        form = library.scene.form
-        figures = list(figures_in_form(library, form, tell))
-        if other is not None:
-            figures += figures_in_form(other, OTHER_FORM[form], tell)
-        hard = hard_cases(library, other, tell)
+    with Pool(1) as beside, TemporaryDirectory(prefix="derive-") as folder:
+        awaited = beside.apply_async(in_other_form, (library.scene,))
+        own, other = wished(library), awaited.get()
+        functions = beside.apply_async(found_of, (library, other))
+        motion, by = _of_motion(own, until, Path(folder), tell)
+        tell("errors and hard cases of functions")
+        figures, hard = functions.get()
         every = _posed(own, other, by, motion, Path(folder))
         tell("timing")
         times = [t for one in every for t in nanoseconds(*one)]
         tell("counting instructions")
         counts = [c for one in every for c in instructions(*one, Path(folder))]
     return SceneReport(
-        library, digest_of_programs(library), own, motion, tuple(figures), hard, tuple(times),
+        library, digest_of_programs(library), own, motion, figures, hard, tuple(times),
         tuple(counts), without(times, counts), machine_here(),
     )  # fmt: skip
+
+
+def _of_motion(
+    own: Wished, until: float | None, folder: Path, tell: Tell
+) -> tuple[StepErrors | None, list[Driver]]:
+    """Return what is found of steps, None if there is none, and what runs them."""
+    scene = own.library.scene
+    said = "horizon" if until is None else "until"
+    if (until or scene.horizon) is not None and not own.steps:
+        raise SceneError(f"scene '{scene.name}': {said} is of motion, but {NO_MOTION}")
+    tell("compiling")
+    by = drivers(own.library, PRECISIONS, folder)
+    return (step_errors(own, by, until, tell) if own.steps else None), by
 
 
 def _posed(
