@@ -4,7 +4,17 @@ from collections.abc import Iterable, Sequence
 
 from derive.scene.declaration import Turning
 from derive.scene.formula import ZERO, Formula, substitute, symbols
-from derive.scene.machine import INERTIAL, Force, Frame, Gradient, Load, Member, Scene, Spring
+from derive.scene.machine import (
+    INERTIAL,
+    Force,
+    Frame,
+    Gradient,
+    Load,
+    Member,
+    Scene,
+    Spring,
+    Weight,
+)
 
 
 def said(machine: Scene) -> tuple[str, ...]:
@@ -13,6 +23,18 @@ def said(machine: Scene) -> tuple[str, ...]:
     found += [_body(b) for b in machine.bodies]
     found += [_load(load) for load in machine.loads]
     return (*found, *([f"Source: {machine.source}."] if machine.source else []))
+
+
+def potential_said(machine: Scene) -> str:
+    """Return how the potential energy is counted, and where it is zero; "" if there is none."""
+    weight = (
+        "-m g . r_G of each weight, r_G from the inertial origin to the mass centre (from that of "
+        "a frame which carries it, where of this only the motion is given)"
+    )
+    spring = "k (d - d_0)^2/2 of each spring, d the distance of its ends and d_0 that at rest"
+    kinds = ((Weight, weight), (Spring, spring))
+    parts = [says for kind, says in kinds if any(isinstance(load, kind) for load in machine.loads)]
+    return f"The potential energy is the sum of {', and of '.join(parts)}." if parts else ""
 
 
 def is_hidden(name: str) -> bool:

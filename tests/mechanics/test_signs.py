@@ -70,3 +70,11 @@ def test_only_what_cannot_be_zero_is_divided_out_of_a_balance(above) -> None:
     problem = Problem("a", "", (), {}, {}, (s * u - s * y,), (u,), (), ())
     rest, slopes = primitive(problem, problem.parts[0], frozenset({s}))
     assert (rest, slopes[u]) == ((-y, 1) if above else (-s * y, s))
+
+
+def test_the_header_of_an_energy_says_which_potential_it_holds_and_no_other_does() -> None:
+    (text,) = (t for name, t in c_files(bead(0.1), []).items() if name.endswith("f64.h"))
+    said = " ".join(text.replace("\n *", " ").split())
+    says = "Energy: The potential energy is the sum of k (d - d_0)^2/2 of each spring"
+    assert said.count(says) == 1
+    assert said.index(says) > said.index("* Energy. ")

@@ -24,17 +24,25 @@ MOMENTS = {
 }
 """About which points the moments of equations are."""
 
+WITH_POTENTIAL = ("energy", "potential_energy")
 WIDTH = 96
 
 
 def comment(
-    program: Program, figures: Sequence[Measurement], bodies: int, costs: Sequence[Cost] = ()
+    program: Program,
+    figures: Sequence[Measurement],
+    bodies: int,
+    costs: Sequence[Cost] = (),
+    potential: str = "",
 ) -> str:
     """Return the comment block of ``program`` of a scene of so many bodies, as C text.
 
     costs : what it costs on cores, as far as is known
+    potential : how the scene counts the potential energy, "" if it has none
     """
     lines = [program.says, *_arguments(program), *_postconditions(program, bodies)]
+    if potential and any(q.name in WITH_POTENTIAL for q in program.outputs):
+        lines += _labelled("Energy:", potential)
     if program.makes("constants"):
         says = "; ".join(f"{number} {words}" for number, words in possible(program).items())
         lines += _labelled("Returns:", f"{says}.") + _labelled("Error:", f"{SETUP_ERROR}.")

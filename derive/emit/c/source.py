@@ -21,6 +21,7 @@ from derive.program.pairs import splitter
 from derive.program.precision import MATH, PRECISIONS, Precision
 from derive.program.program import Measurement, Program
 from derive.scene import argument
+from derive.scene.said import potential_said
 from derive.verify.search import SAMPLING
 
 APART = "DERIVE_APART"
@@ -96,7 +97,7 @@ def _header(
     described, bodies = [], len(library.scene.bodies)
     for program in library.emitted():
         own = costs.of(program.name, precision.name)
-        says = comment(program, figures, bodies, own)
+        says = comment(program, figures, bodies, own, potential_said(library.scene))
         described.append((says, prototype(program, names, precision)))
         if program.sparsity:
             whole = dense(program)

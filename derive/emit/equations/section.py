@@ -16,8 +16,7 @@ from derive.lecture.chapters import LECTURE
 from derive.lecture.step import Step
 from derive.library.library import Library
 from derive.program.program import Quantity
-from derive.scene import Scene
-from derive.scene.machine import Spring, Weight
+from derive.scene.said import potential_said
 from derive.scene.unit import Dimension
 
 Standing = Literal["law", "balance", "solution", "definition"]
@@ -180,18 +179,9 @@ def _energies(library: Library, base: str) -> Iterator[Paragraph]:
     yield _paragraph("law", *kinetic.groups[2], {})
     stood = {left for _, left, _ in kinetic.groups[0][1]}
     rest = [line for line in _lines(potential) if line[0] not in stood]
-    yield replace(_paragraph("definition", (), rest, {}), says=_potential(own.scene))
+    yield replace(_paragraph("definition", (), rest, {}), says=potential_said(own.scene))
     yield Paragraph("definition", (), ((whole, Add(moving, resting)),))
 
 
 def _lines(written: Readable) -> Iterator[tuple[Symbol, Expr, Expr]]:
     return (line for _, lines in written.groups for line in lines)
-
-
-def _potential(scene: Scene) -> str:
-    """Return how the potential energy is counted."""
-    weight = "-m g . r_G of each weight, r_G from where heights count to the mass centre"
-    spring = "k (d - d_0)^2/2 of each spring, d the distance of its ends and d_0 that at rest"
-    kinds = ((Weight, weight), (Spring, spring))
-    parts = [says for kind, says in kinds if any(isinstance(load, kind) for load in scene.loads)]
-    return f"The potential energy is the sum of {', and of '.join(parts)}."
