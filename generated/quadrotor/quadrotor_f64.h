@@ -199,6 +199,9 @@ void quadrotor_state_rate_jacobian_dense_f64(const quadrotor_constants_f64 *cons
  * Returned:  energy  J  energy
  * Follows from, for each body: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Postcondition: rho_i_N_dot = rho_i_dot + Omega x rho_i   [lecture step velocity_seen_from_axes]
+ * Energy: The potential energy is the sum of -m g . r_G of each weight, r_G from the inertial
+ *            origin to the mass centre (from that of a frame which carries it, where of this only
+ *            the motion is given).
  * Error: median 0.83, largest 9.4 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
