@@ -18,7 +18,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 4f06cebcd2ee5b10.
+ * Body of these files: sha256 a32ca9aa208f0c04.
  */
 #ifndef SATELLITE_F32_H
 #define SATELLITE_F32_H

@@ -18,7 +18,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 463e66760b9cbf3d.
+ * Body of these files: sha256 339a1d16cd785046.
  */
 #ifndef SATELLITE_F64_H
 #define SATELLITE_F64_H

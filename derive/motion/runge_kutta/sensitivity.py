@@ -178,10 +178,11 @@ def turn_carried_back(system: System, stages: Stages, turn: StageTurns) -> Back:
 
 def _on_omegas(system: System, stages: Stages, turn: StageTurns) -> tuple[list[Matrix], NumberRow]:
     """Return the derivatives of v by the angular velocities of the stages, and by h/2 if asked."""
-    squared = norm_squared(one_and(turn.increment))
     if not system.column:
-        return turn_slopes(turn, stages.time_step * Fraction(1, 12) / squared), []
-    parts, omega = turn_slopes(turn, Fraction(1, 6) / squared), free_omega(system) or slice(0)
+        scale = stages.time_step * Fraction(1, 12) / norm_squared(one_and(turn.increment))
+        return turn_slopes(turn, scale), []
+    parts = turn_slopes(turn, Fraction(1, 6) / norm_squared(one_and(turn.increment)))
+    omega = free_omega(system) or slice(0)
     rates = [[w] for state in stages.states for w in state[omega]]
     by_length = [x for (x,) in product(beside(*parts), rates)]
     half = stages.time_step * Fraction(1, 2)
