@@ -52,7 +52,7 @@ def _drawn(dice: Random, name: str) -> NDArray[Any]:
             return _columns(unit)
         case "quaternion":
             return four
-        case "attitude" | "left" | "right":
+        case "attitude" | "left" | "right" | "target":
             return unit
         case _:
             three: NDArray[Any] = np.array([dice.uniform(-3, 3) for _ in range(3)])
@@ -104,6 +104,38 @@ def _of_mrp(mrp: NDArray[Any]) -> NDArray[Any]:
     return _rodrigues(mrp, 4 * atan(_size(mrp)), UNIT)
 
 
+def _between(target: NDArray[Any], q: NDArray[Any]) -> NDArray[Any]:
+    """Return the unit vectors turned by q, then back by the target: rows of a rotation matrix."""
+    return _turned_back(target, _turned(q))
+
+
+def _even_of_turn(target: NDArray[Any], q: NDArray[Any]) -> NDArray[Any]:
+    """Return what of the turn from the target to q is the same for the opposite turn."""
+    rows = _between(target, q)
+    found: NDArray[Any] = (rows + rows.T) / 2
+    return found
+
+
+def _even_of_error(e: NDArray[Any]) -> NDArray[Any]:
+    """Return the same for e = 2 sin(angle / 2) n: cos 1 + (1 - cos) n n, as e e = 2 (1 - cos)."""
+    found: NDArray[Any] = np.multiply.outer(e, e) / 2 + (1 - _size(e) ** 2 / 2) * UNIT
+    return found
+
+
+def _turn_of_slopes(slopes: NDArray[Any]) -> NDArray[Any]:
+    """Return the turn, rows as above, that slopes J belong to: J J + 1 - J J' (J = w 1 + [v]x)."""
+    rows = slopes.reshape(3, 3)
+    found: NDArray[Any] = rows @ rows + UNIT - rows @ rows.T
+    return found
+
+
+def _odd(found: NDArray[Any], target: NDArray[Any], q: NDArray[Any]) -> float:
+    """Return 0 if an error points along the axis about which q is turned from the target."""
+    rows = _between(target, q)
+    axis = np.array([rows[1, 2] - rows[2, 1], rows[2, 0] - rows[0, 2], rows[0, 1] - rows[1, 0]])
+    return _none_above(-float((axis * found).sum()), 0.0)
+
+
 def _in_turn(sequence: str, angles: NDArray[Any]) -> NDArray[Any]:
     """Return the unit vectors after turns about axes that the turns before have moved.
 
@@ -134,6 +166,8 @@ MEANT: Mapping[str, tuple[Callable[..., NDArray[Any]], Callable[..., NDArray[Any
     "log": (_of_vector, _turned),
     "rotate": (_as_it_is, _turned),
     "rotate_back": (_as_it_is, _turned_back),
+    "error": (_even_of_error, _even_of_turn),
+    "error_tangent": (_turn_of_slopes, _between),
     "to_matrix": (_as_it_is, _columns),
     "from_matrix": (_columns, _as_it_is),
     "to_mrp": (_of_mrp, _turned),
@@ -158,6 +192,8 @@ BESIDES: Mapping[str, Callable[..., float]] = {
     "product": lambda found, left, right: abs(_cosine(left, right) - found[0]),
     "exp": lambda found, v: abs(found[0] - cos(_size(v) / 2)),
     "log": lambda found, _: _none_above(_size(found), pi),
+    "error": _odd,
+    "error_tangent": lambda found, *_: _none_above(-float(found[0] + found[4] + found[8]), 0.0),
     "from_matrix": lambda found, _: _none_above(-found[0], 0.0),
     "to_mrp": lambda found, _: _none_above(_size(found), 1.0),
 }

@@ -68,6 +68,7 @@ SEQUENCES = tuple(
 
 ATTITUDES = (
     *(f"quaternion_{name}" for name in ("product", "exp", "log", "normalise")),
+    *("quaternion_error", "quaternion_error_tangent"),
     *("quaternion_rotate", "quaternion_rotate_back"),
     *(f"quaternion_{way}_{other}" for other in ("matrix", "mrp") for way in ("to", "from")),
     *(f"quaternion_{way}_euler_{s}" for s in SEQUENCES for way in ("to", "from")),

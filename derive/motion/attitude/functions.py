@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 
-from derive.motion.attitude import euler, matrix, quaternion, rodrigues
+from derive.motion.attitude import apart, euler, matrix, quaternion, rodrigues
 from derive.program.program import Program, Quantity, Role
 from derive.program.recorded import needed
 from derive.program.tape import Number, Tape
@@ -91,6 +91,24 @@ MATRIX = Quantity(
 
 LEFT = _quaternion("left", "N from A", "quaternion of the rotation that comes last")
 RIGHT = _quaternion("right", "A from B", "quaternion of the rotation that comes first")
+TARGET = _quaternion("target", "N from target", "attitude to be reached, |q| = 1", "attitude")
+ERROR = _vector(
+    "attitude_error",
+    "rad",
+    "B",
+    2,
+    "axis times 2 sin(angle / 2) of the turn from target to attitude",
+)
+SLOPES = Quantity(
+    "slopes",
+    tuple(f"slopes_{entry}" for entry in ENTRIES),
+    (9,),
+    "1",
+    "B",
+    Fraction(-1),
+    Fraction(1),
+    "derivatives of attitude_error by delta, attitude exp(delta / 2), column by column",
+)
 PRODUCT = _quaternion("attitude", "N from B", "left times right", "attitude")
 
 
@@ -129,6 +147,10 @@ FUNCTIONS: tuple[AttitudeFunction, ...] = (
         "components along N's axes of a vector given along B's"),
     _of(quaternion.rotate_back, "rotate_back", (ATTITUDE, VECTOR_N), VECTOR_B, 8,
         "components along B's axes of a vector given along N's"),
+    _of(apart.attitude_error, "error", (TARGET, ATTITUDE), ERROR, 4,
+        "error of an attitude along body axes; its sign jumps at half a turn"),
+    _of(apart.error_tangent, "error_tangent", (TARGET, ATTITUDE), SLOPES, 4,
+        "derivatives of quaternion_error over errors of the attitude, rad along body axes"),
     _of(matrix.from_quaternion, "to_matrix", (ATTITUDE,), MATRIX, 7,
         "rotation matrix of an attitude quaternion"),
     _of(matrix.to_quaternion, "from_matrix", (MATRIX,), ATTITUDE, 6,

@@ -69,6 +69,8 @@ SUBJECTS = {
     "normalise": Subject(unit_or_one, (some(UNITS, LENGTHS),)),
     "rotate": Subject(truth.rotate, (UNITS, VECTORS)),
     "rotate_back": Subject(truth.rotate_back, (UNITS, VECTORS)),
+    "error": Subject(truth.attitude_error, (UNITS, np.roll(UNITS, 1, axis=0))),
+    "error_tangent": Subject(truth.error_slopes, (UNITS, np.roll(UNITS, 1, axis=0))),
     "to_matrix": Subject(truth.by_column, (UNITS,)),
     "from_matrix": Subject(
         of_matrix,

@@ -78,6 +78,22 @@ def rotate_back(q: Sequence[flint.arb], v: Sequence[flint.arb]) -> Vector:
     return [sum((rows[i][k] * v[i] for i in range(3)), flint.arb(0)) for k in range(3)]
 
 
+def between(p: Sequence[flint.arb], q: Sequence[flint.arb]) -> Vector:
+    """Return the turn from p to q, of the two quaternions that say it the one nearer to 1."""
+    r = times([p[0], *(-c for c in p[1:])], q)
+    return [-c for c in r] if r[0] < 0 else r
+
+
+def attitude_error(p: Sequence[flint.arb], q: Sequence[flint.arb]) -> Vector:
+    return [2 * c for c in between(p, q)[1:]]
+
+
+def error_slopes(p: Sequence[flint.arb], q: Sequence[flint.arb]) -> Vector:
+    """Return the vector part of r (0, delta), column by column: an error is twice that of r."""
+    turn = left(between(p, q))
+    return [turn[i, k].mid() for k in (1, 2, 3) for i in (1, 2, 3)]
+
+
 def mrp(q: Sequence[flint.arb]) -> Vector:
     """Return the axis times the tangent of the half-turned quaternion's half angle."""
     q = unit(q)
