@@ -96,7 +96,8 @@ def _value(of: Language, value: IndexedOperand) -> str:
 
 
 def _bracketed(of: Language, term: Term) -> Iterator[str]:
-    """Yield operands, in parentheses where they bind less than the operator, or come second."""
+    """Yield operands, in parentheses but for a first one of the operator's own precedence."""
     for place, o in enumerate(term.operands):
-        sums = isinstance(o, Term) and o.operator in SUMS and (place or term.operator not in SUMS)
-        yield f"({_value(of, o)})" if sums or isinstance(o, Same) else _value(of, o)
+        alike = isinstance(o, Term) and (o.operator in SUMS) == (term.operator in SUMS)
+        inner = isinstance(o, Term | Same) and (place or not alike)
+        yield f"({_value(of, o)})" if inner else _value(of, o)

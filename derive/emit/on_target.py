@@ -70,8 +70,8 @@ UNKNOWN = OnTarget()
 
 
 def digest_of_source(text: str) -> str:
-    """Return a digest of a C file but for its first line, which says how it was made."""
-    return sha256(text.partition("\n")[2].encode()).hexdigest()[:16]
+    """Return a digest of a C file but for its first comment, which says how it was made."""
+    return sha256(text.partition("*/")[2].encode()).hexdigest()[:16]
 
 
 def path_of(folder: Path, scene: str) -> Path:

@@ -23,7 +23,7 @@ class Written:
     rests: tuple[str, ...] | None = None
 
 
-_TOP = "({top} * {0} + {0})"
+_TOP = "(({top} * {0}) + {0})"
 _TOP_PYTHON = "4503599627370497.0 * {0}"
 _WIDE = ("neg", "add", "two_product", "mul")
 WRITTEN: Mapping[str, Written] = {
@@ -40,7 +40,7 @@ WRITTEN: Mapping[str, Written] = {
     "cos": Written(rests=(*_WIDE, "sine")),
     # Every product is one with a power of two (Rump): fused operations give the same.
     "power_of_two": Written(
-        f"{_TOP} - ({_TOP} - {{u}} * {_TOP})",
+        f"{_TOP} - ({_TOP} - ({{u}} * {_TOP}))",
         casadi=f"{_TOP_PYTHON} - 0.9999999999999999 * ({_TOP_PYTHON})",
         rests=(),
     ),
@@ -51,8 +51,8 @@ WRITTEN: Mapping[str, Written] = {
     "abs": Written(casadi="ca.if_else({0} < 0.0, -1.0, 1.0) * {0}", rests=("neg",)),
     "less": Written("{0} < {1}", rests=()),
     "at_most": Written("{0} <= {1}", rests=()),
-    "both": Written("{0} & {1}", casadi="ca.logic_and({0}, {1})"),
-    "either": Written("{0} | {1}", casadi="ca.logic_or({0}, {1})"),
+    "both": Written("{0} & {1}", c="{0} && {1}", casadi="ca.logic_and({0}, {1})"),
+    "either": Written("{0} | {1}", c="{0} || {1}", casadi="ca.logic_or({0}, {1})"),
     "select": Written(c="{0} ? {1} : {2}", casadi="ca.if_else({0}, {1}, {2})"),
 }
 SUMS = ("add", "sub")

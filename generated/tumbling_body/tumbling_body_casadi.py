@@ -5813,10 +5813,10 @@ def _step_taylor():
             t24_products += omega_y_terms[j] * omega_z_terms[m]
             t26_products += omega_x_terms[j] * omega_z_terms[m]
             t28_products += omega_x_terms[j] * omega_y_terms[m]
-            t8_products -= attitude_x_terms[j] * t0_terms[m] + attitude_y_terms[j] * t2_terms[m] + attitude_z_terms[j] * t5_terms[m]
-            t13_products += t0_terms[j] * attitude_w_terms[m] + attitude_y_terms[j] * t5_terms[m] - t2_terms[j] * attitude_z_terms[m]
-            t18_products += t2_terms[j] * attitude_w_terms[m] + t0_terms[j] * attitude_z_terms[m] - attitude_x_terms[j] * t5_terms[m]
-            t23_products += t5_terms[j] * attitude_w_terms[m] + attitude_x_terms[j] * t2_terms[m] - t0_terms[j] * attitude_y_terms[m]
+            t8_products -= (attitude_x_terms[j] * t0_terms[m]) + (attitude_y_terms[j] * t2_terms[m]) + (attitude_z_terms[j] * t5_terms[m])
+            t13_products += (t0_terms[j] * attitude_w_terms[m]) + (attitude_y_terms[j] * t5_terms[m]) - (t2_terms[j] * attitude_z_terms[m])
+            t18_products += (t2_terms[j] * attitude_w_terms[m]) + (t0_terms[j] * attitude_z_terms[m]) - (attitude_x_terms[j] * t5_terms[m])
+            t23_products += (t5_terms[j] * attitude_w_terms[m]) + (attitude_x_terms[j] * t2_terms[m]) - (t0_terms[j] * attitude_y_terms[m])
         t0_k = omega_x_k * 0.5
         t2_k = omega_y_k * 0.5
         t5_k = omega_z_k * 0.5

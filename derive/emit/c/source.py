@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from derive import __version__
+from derive.emit.c.columns import within_columns
 from derive.emit.c.comment import comment, dense_comment, wrapped
 from derive.emit.c.example import example
 from derive.emit.c.scope import declared_in_c, require_free, require_no_symbol
@@ -46,16 +47,16 @@ def c_files(
 def sources_of(library: Library) -> dict[str, str]:
     """Return the texts of a scene's C sources by precision, without headers."""
     names = CNames(library.scene.name)
-    return {p.name: _source(library, names, p, ()) for p in PRECISIONS}
+    return {p.name: within_columns(_source(library, names, p, ())) for p in PRECISIONS}
 
 
 def _pair_of_files(
     library: Library, precision: Precision, figures: Sequence[Measurement], costs: OnTarget
 ) -> dict[str, str]:
     names = CNames(library.scene.name)
-    source = _source(library, names, precision, figures)
+    source = within_columns(_source(library, names, precision, figures))
     digest = hashlib.sha256(source.encode()).hexdigest()[:16]
-    header = _header(library, names, precision, figures, costs, digest)
+    header = within_columns(_header(library, names, precision, figures, costs, digest))
     every = [q for p in (library.setup, *library.printed()) for q in (*p.inputs, *p.outputs)]
     given = [name for q in every for name in (q.name, *q.components)]
     require_no_symbol(names.scene, given, header + source)

@@ -9,7 +9,11 @@ from derive.program.program import Operand, Program
 from derive.program.status import RIGHT, tried
 
 # What is infinite or no number fails x - x >= 0.
-BROKEN = {"finite": "!({0} - {0} >= {1})", "positive": "{0} <= {1}", "not negative": "{0} < {1}"}
+BROKEN = {
+    "finite": "!(({0} - {0}) >= {1})",
+    "positive": "({0} <= {1})",
+    "not negative": "({0} < {1})",
+}
 
 
 def status(program: Program, rounded: Callable[[Operand], str], zero: str) -> Iterator[str]:

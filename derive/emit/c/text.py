@@ -90,7 +90,7 @@ def _language(
     scalar = precision.scalar
 
     def line(op: Op, value: str) -> str:
-        return f"const {'int' if op.operator in TRUTHS else kind} {op.result} = {value};"
+        return f"const {'_Bool' if op.operator in TRUTHS else kind} {op.result} = {value};"
 
     def assign(line: Assign, value: str) -> str:
         makes = {"": "", "constant": f"const {scalar} ", "variable": f"{scalar} "}[line.makes]
@@ -144,7 +144,7 @@ def constant_array(name: str, values: Sequence[int]) -> list[str]:
 def _head(line: Loop | Even) -> list[str]:
     if isinstance(line, Even):
         i = line.counter
-        return [f"if ({i} % 2 == 0) {{", f"    const int {line.half} = {i} / 2;"]
+        return [f"if (({i} % 2) == 0) {{", f"    const int {line.half} = {i} / 2;"]
     i = line.counter or f"pass_{line.carried[0]}"
     sign, below = ("++", "<") if line.step > 0 else ("--", ">")
     if not line.mirror:
