@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 bc287965e76b4d75.
+ * Body of these files: sha256 eef946fcd9fad36b.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
@@ -51,6 +51,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
+ * On Cortex-M0+, -O2: 10316 to 10573 instructions, 952 B of code, 264 B of stack.
+ * On Cortex-M4F, -O2: 263 instructions, 612 B of code, 144 B of stack.
  */
 int unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float I_zz,
     unsymmetrical_rotor_in_carrier_axes_constants_f32 *constants);
@@ -69,6 +71,8 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float 
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            5.1e+05 u (of moment, thin rod).
  * Cost: 3 add, 2 sub, 14 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 5290 to 7776 instructions, 236 B of code, 160 B of stack.
+ * On Cortex-M4F, -O2: 104 to 257 instructions, 160 B of code, 72 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -91,6 +95,8 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f32(const unsymmetrical_rotor_in
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            5.3e+05 u (of moment, thin rod).
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 7414 to 9984 instructions, 488 B of code, 208 B of stack.
+ * On Cortex-M4F, -O2: 139 to 292 instructions, 296 B of code, 72 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -100,7 +106,10 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f32(
     float gamma, float gamma_dot, float gamma_ddot, float W, float W_dot, float moment[3],
     float jacobian[11]);
 
-/* The same, the whole matrix: 15 entries. */
+/* The same, the whole matrix: 15 entries.
+ * On Cortex-M0+, -O2: 7608 to 10133 instructions, 552 B of code, 11 B of tables, 288 B of stack.
+ * On Cortex-M4F, -O2: 280 to 433 instructions, 356 B of code, 11 B of tables, 128 B of stack.
+ */
 void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f32(
     const unsymmetrical_rotor_in_carrier_axes_constants_f32 *constants,
     float gamma, float gamma_dot, float gamma_ddot, float W, float W_dot, float moment[3],
@@ -118,6 +127,8 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f32(
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8342 hard samples 8.3e+05 u (of angular_momentum, thin rod).
  * Cost: 1 sub, 6 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 4042 to 6497 instructions, 124 B of code, 152 B of stack.
+ * On Cortex-M4F, -O2: 88 to 241 instructions, 96 B of code, 64 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */
@@ -142,6 +153,8 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f32(
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            1.1e+06 u (of rate_in_axes, thin rod).
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 5624 to 8095 instructions, 276 B of code, 176 B of stack.
+ * On Cortex-M4F, -O2: 110 to 263 instructions, 184 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rate_seen_from_N, rigid.
  */
@@ -162,6 +175,8 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f32(
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
  * Cost: 1 add, 1 sub, 7 mul, 1 cos.
+ * On Cortex-M0+, -O2: 2735 to 3928 instructions, 96 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 55 to 133 instructions, 76 B of code, 56 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

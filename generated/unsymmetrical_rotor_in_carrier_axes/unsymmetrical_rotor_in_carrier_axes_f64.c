@@ -14,8 +14,7 @@
 #endif
 #if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
 #error \
-    "unsymmetrical_rotor_in_carrier_axes_f64.h: needs arithmetic in the type's own precision (for x86:
-        -msse2 -mfpmath=sse)"
+"unsymmetrical_rotor_in_carrier_axes_f64.h: needs arithmetic in the type's own precision (for x86: -msse2 -mfpmath=sse)"
 #endif
 
 /* Keep every rounding where it is written, so that all targets return the same bits. */

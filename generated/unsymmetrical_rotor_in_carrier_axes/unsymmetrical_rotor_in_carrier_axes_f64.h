@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 f843818ffafb5f0d.
+ * Body of these files: sha256 6a5e5707bc2b8480.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
@@ -50,6 +50,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
+ * On Cortex-M0+, -O2: 20251 to 22247 instructions, 1516 B of code, 496 B of stack.
  */
 int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, double I_zz,
     unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants);
@@ -68,6 +69,7 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, doub
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            7.4e+05 u (of moment, thin rod).
  * Cost: 3 add, 2 sub, 14 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 12097 to 17367 instructions, 352 B of code, 256 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -90,6 +92,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            7.5e+05 u (of moment, thin rod).
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 17094 to 22456 instructions, 744 B of code, 352 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -99,7 +102,9 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f64(
     double gamma, double gamma_dot, double gamma_ddot, double W, double W_dot, double moment[3],
     double jacobian[11]);
 
-/* The same, the whole matrix: 15 entries. */
+/* The same, the whole matrix: 15 entries.
+ * On Cortex-M0+, -O2: 17362 to 22638 instructions, 836 B of code, 11 B of tables, 504 B of stack.
+ */
 void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(
     const unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants,
     double gamma, double gamma_dot, double gamma_ddot, double W, double W_dot, double moment[3],
@@ -117,6 +122,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8342 hard samples 9e+05 u (of angular_momentum, thin rod).
  * Cost: 1 sub, 6 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 9159 to 14341 instructions, 176 B of code, 240 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */
@@ -141,6 +147,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            1.3e+06 u (of rate_in_axes, thin rod).
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 12917 to 18109 instructions, 432 B of code, 296 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rate_seen_from_N, rigid.
  */
@@ -161,6 +168,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
  * Cost: 1 add, 1 sub, 7 mul, 1 cos.
+ * On Cortex-M0+, -O2: 6298 to 8764 instructions, 156 B of code, 232 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */
