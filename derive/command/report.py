@@ -18,7 +18,8 @@ def options(command: argparse.ArgumentParser) -> None:
         "--until",
         type=seconds,
         metavar="SECONDS",
-        help="the end at which errors of motion are taken (default: about ten turns of the scene)",
+        help="the end at which errors of motion are taken (default: the scene's horizon, or else "
+        "about ten turns)",
     )
     command.add_argument(
         "--out",

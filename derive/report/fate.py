@@ -30,7 +30,7 @@ ROUNDS = {"C": 6000, "NumPy": 200}
 SHORTEST = 1e-13
 """Of the whole time: below, a length is nothing."""
 VAST, ENDS = 1e100, ""
-PASSES = "needs much shorter steps on a part of its way, as beside a pole"
+PASSES = "needs much shorter steps on a part of its way, as in a sharp turn or beside a pole"
 EASY = 1 / 64
 """rad: a length that is usual among motions that equal steps follow."""
 MOST = 0.5

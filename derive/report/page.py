@@ -24,6 +24,7 @@ from derive.report.sentence import (
 from derive.report.slim import SHAPES, STYLES, Slim, shared
 from derive.report.whole import SceneReport
 from derive.scene import argument
+from derive.scene.declaration import Given
 
 MOST = len(COLOURS)
 PLACES = (
@@ -87,6 +88,7 @@ def report_page(found: SceneReport, pages: Mapping[str, str]) -> str:
         hard=[h for h in found.hard if h.why],
         easy=[h for h in found.hard if not h.why],
         refused=_refused(found),
+        outside=outside(found.motion, found.library.scene.time_step),
         figure=figure,
         drawing=lambda plot: Markup(plot.text),  # noqa: S704 (our own SVG, its words escaped)
         styles=Markup(STYLES),  # noqa: S704 (our own words)
@@ -202,11 +204,20 @@ def _instructions(found: SceneReport, function: str, form: str) -> dict[str, str
     return {c.precision: figure(c.count) for c in own}
 
 
+def outside(motion: StepErrors | None, time_step: Given) -> list[str]:
+    """Return the lengths that the sentence names outside the range of ``time_step``."""
+    low, high = float(time_step.low or 0), float(time_step.high or 0)
+    chosen = said_of(motion).choices.values() if motion else ()
+    lengths = [c.attempt.length for c in chosen if c and c.attempt.step != FLOW]
+    return [*dict.fromkeys(in_time(x) for x in lengths if not low <= x <= high)]
+
+
 def _refused(found: SceneReport) -> dict[str, list[str]]:
     """Return the steps that cannot be wanted, by the reason."""
     by: dict[str, list[str]] = {}
     for name, why in found.wished.refused.items():
         said = why.partition(" (did you mean")[0].replace(f"'{name}'", "it")
+        said = said.removeprefix("wanted has it, which is ")
         by.setdefault(said, []).append(name)
     return by
 

@@ -28,7 +28,7 @@ PAINT = {day: f"--c{n}" for n, day in enumerate(SHADES)} | {
 """The variable of the page that stands for each colour."""
 MARKERS = "osD^vPX*"
 SIZE = (5.0, 4.1)  # inch: letters of 10 px on a page of 390
-LEAST_MARGIN, WIDE = 122, 6.1  # points: to the right of the axes, and of a letter there
+LEAST_MARGIN, WIDE = 122, 6.6  # points: to the right of the axes, and of a letter there
 FEWEST = 2  # marks along a side, without which nobody can read it
 SLACK = 1e-9  # of what rounds
 GAP = 0.062  # between names, of the height of the axes

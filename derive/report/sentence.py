@@ -116,6 +116,8 @@ def _in_precision(
     found, name = said.choices[precision], TYPE_NAMES[precision]
     if found is None:
         low = least(of, precision, of.costs)
+        if 1 <= low < inf:
+            return f"in {name} no step tried ends near the true motion"
         reached = f"keeps below {rounded_down(low, 1)}" if isfinite(low) else "follows every motion"
         return f"in {name} no step tried {reached}"
     step, cost = found.attempt.step, of.costs[found.attempt.step]

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -111,10 +112,9 @@ def _turning(entry: object, label: str, scope: Scope) -> Turning:
 
 
 def _positive(one: _One) -> Fraction:
-    number = rational(one.value, one.label)
-    if number <= 0:
+    if not isinstance(one.value, bool) and isinstance(one.value, int | Decimal) and one.value <= 0:
         raise SceneError(f"{one.label} must be above 0, not {shown(one.value)}")
-    return number
+    return rational(one.value, one.label)
 
 
 def _count(one: _One) -> int:

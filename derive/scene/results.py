@@ -13,7 +13,7 @@ from derive.scene.names import identifier, refuse_taken_functions
 from derive.scene.scalars import Scalars, unknown_rates
 from derive.scene.table import Scope, Table, measured, shown, text
 from derive.scene.unit import BESIDE_SI, NONE, Dimension, UnitError, dimension, spelled
-from derive.scene.wanted import JACOBIAN, OF_MACHINES, resembling
+from derive.scene.wanted import JACOBIAN, OF_MACHINES, WANTED, resembling
 
 ENERGIES = ("kinetic_energy", "potential_energy", "energy")
 FUNCTIONS = (
@@ -130,7 +130,8 @@ def _entry(entry: object, known_: Sequence[str]) -> tuple[str, tuple[str, ...]]:
             rule = f"within '{brief(name)}', but what vanishes in a steady motion stands alone"
             raise SceneError(f"wanted has 'steady' {rule}")
         if answer not in known_ or (answer != name and answer in OF_MACHINES):
-            hint = resembling(answer, known_)
+            alien = answer in WANTED and answer not in OF_MACHINES
+            hint = " of a machine, but of a single body" if alien else resembling(answer, known_)
             shown_, base = answer if colon else name, answer.removesuffix(JACOBIAN)
             if colon and base != answer and base in known_:
                 hint = f"; derivatives are asked for by the name, '{brief(name)}{JACOBIAN}: {base}'"

@@ -63,6 +63,6 @@ def _number(label: str, text: str, unit: str) -> float:
         raise SceneError(f"{label[:60]}: the value is in {unit}, not in {found[2]}")
     number = float(found[1]) * FACTORS[found[2]] if found else nan
     if not isfinite(number):
-        rule = f"a value is a plain number in SI units (here {unit}), as m=1200, or as skew=3deg"
+        rule = f"a value is a finite number in SI units (here {unit}), as 0.5, an angle also 3deg"
         raise SceneError(f"{label[:60]}: {rule}, not {shown(text)}")
     return number

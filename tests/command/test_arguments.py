@@ -11,8 +11,8 @@ REFUSED = {
     "solve": "solve: SCENE is missing",
     "solve ball.toml --set m": "--set takes NAME=VALUE, as m=1200, not 'm'",
     "solve ball.toml --set =2": "--set takes NAME=VALUE, as m=1200, not '=2'",
-    "solve ball.toml --set omega_x=20cm": "omega_x=20cm: a value is a plain number in SI units"
-    " (here rad/s), as m=1200, or as skew=3deg, not '20cm'",
+    "solve ball.toml --set omega_x=20cm": "omega_x=20cm: a value is a finite number in SI units"
+    " (here rad/s), as 0.5, an angle also 3deg, not '20cm'",
     "solve ball.toml --untli=3": "solve: '--untli' is no option (did you mean '--until'?)",
     "solve ball.toml --until x": "solve: argument --until: must be a number of seconds, as 0.5",
     "solve ball.toml --until=1 --plot=": "solve: argument --plot: must be a path, not ''",

@@ -1,6 +1,7 @@
 """A report's page: marks along both sides of every plot, and footnotes of what stands there."""
 
 import re
+from fractions import Fraction
 from types import SimpleNamespace
 
 import pytest
@@ -8,7 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from derive.emit.templates import TEMPLATES
+from derive.report.page import outside
 from derive.report.plots import Curve, Plot, between, svg
+from derive.scene.declaration import Given
+from tests.made import scene_of
+from tests.report.test_sentence import made_up
 
 NUMBER = r">(10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|[\d.]+(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?)<"
 
@@ -33,7 +38,7 @@ def test_marks_lie_in_the_range_in_order(low: float, decades: float) -> None:
     assert marks[-1] <= high * (1 + 1e-8)
 
 
-def motion_section(*stars: str) -> str:
+def motion_section(*stars: str, told: list[str] | None = None) -> str:
     steps = [SimpleNamespace(name="step_rk4", wanted=not star, operations=9, lengths={"f64": "1"},
                              spent={"f64": "1"}, least={"f64": "1"}, times={}, instructions={})
              for star in stars]  # fmt: skip
@@ -42,9 +47,19 @@ def motion_section(*stars: str) -> str:
     return TEMPLATES.get_template("scene_report_motion.html.jinja").render(
         motion=motion, aside=[], figure=str, plots=[], floors={"f32": "1", "f64": "1"},
         says={"f64": "double"}, target="1e-6", steps=steps, report=report, refused={},
+        outside=told or [], scene=scene_of("heavy_top"),
     )  # fmt: skip
 
 
 def test_the_footnote_on_a_star_stands_where_a_star_does() -> None:
     assert "* the scene does not want it" in motion_section("", "*")
     assert "the scene does not want it" not in motion_section("", "")
+
+
+def test_a_length_outside_the_range_of_time_step_is_said_to_be() -> None:
+    motion = made_up(step_a=[1.0, 1e-9, 1e-9, 1e-9])  # of 1 s: 500 ms is taken
+    assert outside(motion, Given(Fraction(0), Fraction(1, 100), None)) == ["500 ms"]
+    assert outside(motion, Given(Fraction(0), Fraction(1), None)) == []
+    assert outside(None, Given(Fraction(0), Fraction(1), None)) == []
+    assert "500 ms lies outside the range of" in motion_section("", told=["500 ms"])
+    assert "lies outside the range of" not in motion_section("")

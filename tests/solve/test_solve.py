@@ -64,8 +64,8 @@ REFUSED = {
     "--step 0.1: a step is of a motion and needs --until": ["--step=0.1"],
     "m=1deg: the value is in kg, not in deg": ["--set", "m=1deg"],
     "alpha=1rpm: the value is in rad, not in rpm": ["--set", "alpha=1rpm"],
-    "m=nan: a value is a plain number": ["--set", "m=nan"],
-    "m=-infdeg: a value is a plain number": ["--set", "m=-infdeg"],
+    "m=nan: a value is a finite number": ["--set", "m=nan"],
+    "m=-infdeg: a value is a finite number": ["--set", "m=-infdeg"],
     "body 'disc'.mass must be positive, and is not so at m = 0": ["--set", "m=0"],
 }
 
@@ -89,7 +89,7 @@ def test_a_limit_needs_small_motion(capsys: pytest.CaptureFixture[str]) -> None:
 def test_a_name_that_the_scene_does_not_have_is_refused_with_a_hint() -> None:
     with pytest.raises(SceneError, match=r"has no 'alhpa' to set \(did you mean 'alpha'"):
         top().solve({"alhpa": 1})
-    with pytest.raises(SceneError, match="a value is a plain number"):
+    with pytest.raises(SceneError, match="a value is a finite number"):
         top().solve({"alpha": "much"})
 
 

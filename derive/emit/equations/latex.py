@@ -102,7 +102,7 @@ def _broken(section: Section, equation: TwoSides, flush: bool) -> str:  # noqa: 
     if not flush:
         return " \\\\\n".join([f"{_written(section, left)} &= {first}", *map(_led, rest)])
     start, *more = _rows(section, left)
-    wide = sum(width(symbolic_layout(side, section.shown)) for side in equation)
+    wide = fsum(width(symbolic_layout(side, section.shown)) for side in equation)
     if not rest and wide + 1 <= LINE:
         return f"&{start} = {first}"
     return " \\\\\n".join([f"&{start}", *map(_led, more), rf"&\quad = {first}", *map(_led, rest)])

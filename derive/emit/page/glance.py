@@ -33,7 +33,9 @@ def at_a_glance(library: Library, base: str) -> list[str]:
     ends = [defined[s] for s in one.answers.values() if s in defined]
     sums = [e for e in ends if e[1].is_Add and all(term.is_Symbol for term in e[1].args)]
     parts = sorted(one.parts, key=lambda part: part.kind != "balance")
-    laws = [step for part in parts for step in part.steps][:1]
+    steps = [step for part in parts for step in part.steps]
+    one_says_all = bool(parts) and parts[0].kind == "balance"
+    laws = [s for n, s in enumerate(steps) if s not in steps[:n]][: 1 if one_says_all else MOST]
     return [sympy_equation_mathml(*e, one.names) for e in sums] + [*map(equation_mathml, laws)]
 
 
