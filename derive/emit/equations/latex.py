@@ -1,6 +1,7 @@
 """An account of equations as a LaTeX document: one file, amsmath, long equations over lines."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from math import fsum
 
 from sympy import Add, Expr
 from sympy import latex as sympy_latex
