@@ -95,7 +95,9 @@ def test_an_equation_in_pieces_reads_as_the_whole() -> None:
     assert len(cut) > 20
     assert all(width(claim) > WIDEST for claim in cut)
     for claim in cut:
-        assert [s for piece in pieces(claim) for s in signs(piece)] == signs(row(claim))
+        whole, told = signs(row(claim)), [s for piece in pieces(claim) for s in signs(piece)]
+        assert [s for s in told if s != "·"] == [s for s in whole if s != "·"]
+        assert 0 <= told.count("·") - whole.count("·") < len(pieces(claim))  # where lines end
 
 
 def test_a_fraction_that_is_too_wide_is_written_on_one_line() -> None:

@@ -8,10 +8,12 @@ _PLACES = (re.compile(r", "), re.compile(r"(?<=[\w])\((?=\w)|[?:=] | [-+*/]=? ")
 
 
 def within_columns(text: str) -> str:
-    r"""Return a text of C with no line of more than COLUMNS, if words are shorter.
+    """Return a text of C with no line of more than COLUMNS, if words and commands are shorter.
 
-    >>> [len(line) for line in within_columns("x = f(" + "a, " * 40 + "b);").split("\\n")]
-    [118, 16]
+    >>> [len(line) for line in within_columns("x = f(" + "a, " * 40 + "b);").splitlines()]
+    [119, 13]
+    >>> within_columns(" * " + "a " * 50 + "`b" + " c" * 20 + "`.").splitlines()[1][:9]
+    ' *   `b c'
     """
     return "\n".join(part for line in text.split("\n") for part in _parts(line))
 
@@ -27,6 +29,7 @@ def _parts(line: str) -> list[str]:
     most = line[:COLUMNS]
     for place in _PLACES[2:] if remark else _PLACES:
         ends = [m.end() for m in place.finditer(most) if m.end() > len(head) + 20]
+        ends = [end for end in ends if not (remark and most[:end].count("`") % 2)]  # no command
         if ends:
             return [line[: ends[-1]].rstrip(), *_parts(head + line[ends[-1] :])]
     return [line]
