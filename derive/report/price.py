@@ -110,8 +110,13 @@ def _quartiles(batch: Callable[[int], None], calls: int, most: int) -> tuple[flo
     rounds = 1
     while (took := min(_timed(batch, rounds) for _ in range(TRIED))) < LASTS and rounds < most:
         rounds = min(most, rounds * max(2, int(1.2 * LASTS / max(took, 1e-7))))
-    idle = min(_timed(batch, 0) for _ in range(BATCHES))
-    whole = (max(_timed(batch, rounds) - idle, 0.0) for _ in range(BATCHES))
+    for _ in range(TRIED):
+        idle = min(_timed(batch, 0) for _ in range(BATCHES))
+        whole = [_timed(batch, rounds) - idle for _ in range(BATCHES)]
+        if min(whole) > 0:  # else the machine did something else meanwhile
+            break
+    else:
+        whole = [took + idle for took in whole]
     each = [took / (rounds * calls) * 1e9 for took in whole]
     low, middle, high = (float(x) for x in np.quantile(each, (0.25, 0.5, 0.75)))
     return low, middle, high

@@ -30,3 +30,14 @@ def test_steps_are_timed_at_the_length_that_they_are_used_at() -> None:
     none = made_up(step_a=[1.0, 1e-7, 1e-7, 1e-7, 1e-3])
     assert lengths_of_use(none, "f32") == {"step_a": 1 / STEPS}
     assert lengths_of_use(None, "f32") == {}
+
+
+def test_a_call_takes_time_though_other_work_comes_between(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def busy(_: object, rounds: int) -> float:
+        return 0.5 if rounds == 0 else 0.02
+
+    monkeypatch.setattr("derive.report.price._timed", busy)
+    low, middle, high = _quartiles(lambda _: None, 1, 1000)
+    assert 0 < low <= middle <= high

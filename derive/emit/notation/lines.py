@@ -94,12 +94,11 @@ def _product(layout: Layout) -> list[str]:
     for before, factor in pairwise(layout.parts):
         first, *rest = pieces(factor)
         room -= width(factor) + _SMALL
-        if room < 0 and not rest and not is_number(before):
+        if (room < 0 or rest) and not is_number(before):
             found.append(f"{_sign('·')}{first}")
             room = WIDEST - width(factor)
         else:
             found[-1] += f"{space_between(before, factor)}{first}"
-            room = WIDEST - width(factor) / len(pieces(factor)) if rest else room
         found += rest
     return found
 

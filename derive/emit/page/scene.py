@@ -10,6 +10,8 @@ from derive.emit.c.source import first_line
 from derive.emit.drawing.drawing import drawing
 from derive.emit.notation import name_mathml
 from derive.emit.notation.glyph import glyph, slanted
+from derive.emit.notation.layout import name as layout_of
+from derive.emit.notation.lines import width
 from derive.emit.on_target import OnTarget
 from derive.emit.page.answer import answer_lines
 from derive.emit.page.code import listing
@@ -25,6 +27,7 @@ from derive.library.library import Library
 from derive.program.program import Measurement, Program, Quantity
 from derive.scene.wanted import JACOBIAN
 
+WIDEST_SYMBOL = 10.0  # em
 LONGEST_SYMBOL = 12
 _PRECISIONS = ("f32", "f64")
 
@@ -115,7 +118,7 @@ def _noted(library: Library, note: str) -> Markup:
 
 
 def _symbol(library: Library, q: Quantity) -> Markup:
-    """Return the letter of a quantity; none of a long word, which is no shorter than the name.
+    """Return the letter of a quantity; none of a long word, or with long words for indices.
 
     There is none for one whose components have names of their own.
     """
@@ -123,6 +126,8 @@ def _symbol(library: Library, q: Quantity) -> Markup:
         return Markup("")
     name = letter(q.name, taken_names(library.mechanism))
     if len(name) > LONGEST_SYMBOL and name == q.name and not slanted(glyph(name).base):
+        return Markup("")
+    if width(layout_of(name, "scalar")) > WIDEST_SYMBOL:
         return Markup("")
     return Markup(name_mathml(name, "vector" if q.shape else "scalar"))  # noqa: S704 (MathML of a checked name)
 
