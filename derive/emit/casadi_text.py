@@ -12,6 +12,7 @@ from derive.emit.c.source import first_line
 from derive.emit.c.text import pair_functions
 from derive.emit.lines import SIGNS, Language, operation_text, written
 from derive.emit.operators import WRITTEN, patterns
+from derive.emit.packed import Packed, packed, range_of, scale_of
 from derive.emit.templates import TEMPLATES
 from derive.library.library import Library
 from derive.program.arithmetic import pair_of, rounded
@@ -43,8 +44,10 @@ def casadi_file(
     """
     name = library.scene.name
     has_setup = bool(library.constants)
-    in_pairs = [p for p in library.emitted() if p.arithmetic == "pairs"]
-    functions = [_function(p, name) for p in library.printed()]
+    motion = packed(library)
+    hidden = [motion.rate] if motion and motion.rate not in library.printed() else []
+    in_pairs = [p for p in (*library.emitted(), *hidden) if p.arithmetic == "pairs"]
+    functions = [_function(p, name) for p in (*library.printed(), *hidden)]
     return TEMPLATES.get_template("casadi.py.jinja").render(
         first_line=first_line(library, figures, () if second is None else (OPTION,)),
         title=library.scene.title,
@@ -59,6 +62,7 @@ def casadi_file(
         functions=functions,
         sloped=any(p.free or p.slopes for p in library.printed()),
         free=any(p.free for p in library.printed()),
+        packed=None if motion is None else _of_solvers(motion),
         external=None if second is None else described(library),
     )
 
@@ -172,6 +176,22 @@ def _status(program: Program, stored: Callable[[Operand], str]) -> Iterator[str]
     for number, kept in reversed(tried(program)):
         tests = (BROKEN[relation].format(stored(value)) for relation, value in kept)
         yield f"status = _refused(status, {number}, {', '.join(tests)})"
+
+
+def _of_solvers(motion: Packed) -> dict[str, object]:
+    each = [(c, q) for q in motion.given() for c in q.components]
+    whole = [q for q in motion.given() if q.components != (q.name,)]
+    return {
+        "states": _components(motion.states),
+        "inputs": _components(motion.inputs),
+        "units": {c: q.unit for c, q in each},
+        "ranges": {c: list(range_of(q)) for c, q in each},
+        "scales": {c: scale_of(q) for c, q in each},
+        "parts": {q.name: list(q.components) for q in whole},
+        "attitudes": motion.attitudes(),
+        "rate": motion.rate.name,
+        "step": motion.step.name if motion.step else None,
+    }
 
 
 def _components(quantities: tuple[Quantity, ...]) -> list[str]:

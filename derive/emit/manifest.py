@@ -12,6 +12,7 @@ from derive.emit.c.source import JACOBIAN_DENSE, command
 from derive.emit.c.text import pair_functions
 from derive.emit.notation import equation_text
 from derive.emit.on_target import UNKNOWN, OnTarget, by_core
+from derive.emit.packed import packed, scale_of
 from derive.lecture.chapters import LECTURE
 from derive.library.library import Library
 from derive.program.precision import F32, F64, PRECISIONS
@@ -49,6 +50,7 @@ def manifest(
             "units": "SI, angles in rad",
         },
         "parameters": [_quantity(q) for q in library.vocabulary.parameters],
+        "packed": _packed(library),
         "constants": [{"name": c, "formula": f} for c, f in library.constants.items()],
         "functions": [f | _on_cores(f["name"], costs) for f in _functions(library, figures)],
         "taken": list(library.mechanism.signs),
@@ -56,6 +58,16 @@ def manifest(
         "measured": {"digest": digest},
     }
     return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
+
+
+def _packed(library: Library) -> dict[str, Any] | None:
+    """Return what x and u of the CasADi module hold, and which step moves x; None if neither is."""
+    found = packed(library)
+    if found is None:
+        return None
+    x, u = ([_quantity(q) | {"scale": scale_of(q)} for q in each]
+            for each in (found.states, found.inputs))  # fmt: skip
+    return {"x": x, "u": u, "step": found.step.name if found.step else None}
 
 
 def _on_cores(function: str, costs: OnTarget) -> dict[str, Any]:

@@ -24,6 +24,10 @@ HELPERS: Mapping[str, str] = {
     ),
     "PARAMETERS": "the list of parameters in the CasADi module",
     "CONSTANTS": "the list of constants in the CasADi module",
+    **dict.fromkeys(("ode", "step", "error"), "a function of x and u in the CasADi module"),
+    **dict.fromkeys(
+        ("STATES", "INPUTS", "UNITS", "RANGES", "SCALES"), "what the CasADi module says of x and u"
+    ),
     "SETUP_STATUS": "the words of set-up's status in the CasADi module",
 }  # fmt: skip
 """What emitted files call by a function's name beside the functions that are wanted."""

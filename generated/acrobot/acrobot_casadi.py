@@ -887,3 +887,51 @@ def _step_rk4():
         ['q_1_next', 'q_1_dot_next', 'q_2_next', 'q_2_dot_next'],
         _missing(7),
     )
+
+
+STATES = ['q_1', 'q_1_dot', 'q_2', 'q_2_dot']
+INPUTS = ['T']
+"""What x and u hold, in this order; parameters are in the order of PARAMETERS."""
+UNITS = {'q_1': 'rad', 'q_1_dot': 'rad/s', 'q_2': 'rad', 'q_2_dot': 'rad/s', 'T': 'N m', 'm_1': 'kg', 'm_2': 'kg', 'l_1': 'm', 'c_1': 'm', 'c_2': 'm', 'I_1': 'kg m^2', 'I_2': 'kg m^2', 'g': 'm/s^2'}
+RANGES = {'q_1': [-3.14, 3.14], 'q_1_dot': [-8.0, 8.0], 'q_2': [-3.14, 3.14], 'q_2_dot': [-8.0, 8.0], 'T': [-25.0, 25.0], 'm_1': [0.5, 2.0], 'm_2': [0.5, 2.0], 'l_1': [0.5, 1.5], 'c_1': [0.25, 0.75], 'c_2': [0.5, 1.25], 'I_1': [0.05, 0.1], 'I_2': [0.1, 0.5], 'g': [9.7, 9.9]}
+SCALES = {'q_1': 3.14, 'q_1_dot': 8.0, 'q_2': 3.14, 'q_2_dot': 8.0, 'T': 25.0, 'm_1': 2.0, 'm_2': 2.0, 'l_1': 1.5, 'c_1': 0.75, 'c_2': 1.25, 'I_1': 0.1, 'I_2': 0.5, 'g': 9.9}
+"""Of each by its name; the largest size in a range is its scale."""
+_PARTS = {}
+
+
+def ode():
+    """Return the Function x, u, parameters -> xdot: the rate of the whole state."""
+    return _built(lambda: _packed(state_rate(), "acrobot_ode", "xdot"))
+
+
+def step():
+    """Return the Function x, u, time_step, parameters -> xn: the state a `step_rk4` later, u held."""
+    return _built(lambda: _packed(step_rk4(), "acrobot_step", "xn", ["time_step"]))
+
+
+def error():
+    """Return the Function x, target -> error: x less target, zero where both are one state.
+
+    A quaternion's four parts become three, 2 sign(r_w) (r_x, r_y, r_z) of r = target* q: q and -q
+    are one attitude, near which this is the rotation vector along body axes.
+    """
+    x, target = (ca.SX.sym(name, len(STATES)) for name in ("x", "target"))
+    rows = [x[i] - target[i] for i in range(len(STATES))]
+    for k in reversed([]):
+        q, p = x[k : k + 4], target[k : k + 4]
+        r_w = ca.dot(p, q)
+        r = p[0] * q[1:] - q[0] * p[1:] - ca.cross(p[1:], q[1:])
+        rows[k : k + 4] = ca.vertsplit(ca.if_else(r_w < 0, -2, 2) * r)
+    names = ["x", "target"]
+    return ca.Function("acrobot_error", [x, target], [ca.vertcat(*rows)], names, ["error"], _missing(2))
+
+
+def _packed(inner, name, result, more=()):
+    """Return a Function of quantities as one of x, u and parameters."""
+    held = {"x": STATES, "u": INPUTS, **{n: [n] for n in more}, "parameters": PARAMETERS}
+    given = {n: ca.SX.sym(n, len(parts)) for n, parts in held.items()}
+    rows = {c: given[n][i] for n in held if n != "parameters" for i, c in enumerate(held[n])}
+    rows["parameters"] = given["parameters"]
+    taken = [ca.vertcat(*(rows[c] for c in _PARTS.get(n, [n]))) for n in inner.name_in()]
+    found = ca.vertcat(*inner.call(taken))
+    return ca.Function(name, list(given.values()), [found], list(given), [result], _missing(len(given)))

@@ -635,3 +635,51 @@ def _step_rk4():
         ['x_next', 'x_dot_next', 'theta_next', 'theta_dot_next'],
         _missing(7),
     )
+
+
+STATES = ['x', 'x_dot', 'theta', 'theta_dot']
+INPUTS = ['F']
+"""What x and u hold, in this order; parameters are in the order of PARAMETERS."""
+UNITS = {'x': 'm', 'x_dot': 'm/s', 'theta': 'rad', 'theta_dot': 'rad/s', 'F': 'N', 'M': 'kg', 'm': 'kg', 'l': 'm', 'I': 'kg m^2', 'b': 'N s/m', 'g': 'm/s^2'}
+RANGES = {'x': [-2.0, 2.0], 'x_dot': [-3.0, 3.0], 'theta': [-3.14, 3.14], 'theta_dot': [-8.0, 8.0], 'F': [-10.0, 10.0], 'M': [0.4, 1.0], 'm': [0.1, 0.3], 'l': [0.2, 0.4], 'I': [0.004, 0.008], 'b': [0.05, 0.2], 'g': [9.7, 9.9]}
+SCALES = {'x': 2.0, 'x_dot': 3.0, 'theta': 3.14, 'theta_dot': 8.0, 'F': 10.0, 'M': 1.0, 'm': 0.3, 'l': 0.4, 'I': 0.008, 'b': 0.2, 'g': 9.9}
+"""Of each by its name; the largest size in a range is its scale."""
+_PARTS = {}
+
+
+def ode():
+    """Return the Function x, u, parameters -> xdot: the rate of the whole state."""
+    return _built(lambda: _packed(state_rate(), "cart_pendulum_ode", "xdot"))
+
+
+def step():
+    """Return the Function x, u, time_step, parameters -> xn: the state a `step_rk4` later, u held."""
+    return _built(lambda: _packed(step_rk4(), "cart_pendulum_step", "xn", ["time_step"]))
+
+
+def error():
+    """Return the Function x, target -> error: x less target, zero where both are one state.
+
+    A quaternion's four parts become three, 2 sign(r_w) (r_x, r_y, r_z) of r = target* q: q and -q
+    are one attitude, near which this is the rotation vector along body axes.
+    """
+    x, target = (ca.SX.sym(name, len(STATES)) for name in ("x", "target"))
+    rows = [x[i] - target[i] for i in range(len(STATES))]
+    for k in reversed([]):
+        q, p = x[k : k + 4], target[k : k + 4]
+        r_w = ca.dot(p, q)
+        r = p[0] * q[1:] - q[0] * p[1:] - ca.cross(p[1:], q[1:])
+        rows[k : k + 4] = ca.vertsplit(ca.if_else(r_w < 0, -2, 2) * r)
+    names = ["x", "target"]
+    return ca.Function("cart_pendulum_error", [x, target], [ca.vertcat(*rows)], names, ["error"], _missing(2))
+
+
+def _packed(inner, name, result, more=()):
+    """Return a Function of quantities as one of x, u and parameters."""
+    held = {"x": STATES, "u": INPUTS, **{n: [n] for n in more}, "parameters": PARAMETERS}
+    given = {n: ca.SX.sym(n, len(parts)) for n, parts in held.items()}
+    rows = {c: given[n][i] for n in held if n != "parameters" for i, c in enumerate(held[n])}
+    rows["parameters"] = given["parameters"]
+    taken = [ca.vertcat(*(rows[c] for c in _PARTS.get(n, [n]))) for n in inner.name_in()]
+    found = ca.vertcat(*inner.call(taken))
+    return ca.Function(name, list(given.values()), [found], list(given), [result], _missing(len(given)))

@@ -710,3 +710,46 @@ def _angular_momentum():
         ['angular_momentum'],
         _missing(3),
     )
+
+
+STATES = ['psi', 'theta', 'phi', 'omega_x', 'omega_y', 'omega_z', 's_1', 's_2', 's_3']
+INPUTS = ['moment_x', 'moment_y', 'moment_z', 'u_1', 'u_2', 'u_3']
+"""What x and u hold, in this order; parameters are in the order of PARAMETERS."""
+UNITS = {'psi': 'rad', 'theta': 'rad', 'phi': 'rad', 'omega_x': 'rad/s', 'omega_y': 'rad/s', 'omega_z': 'rad/s', 's_1': 'rad/s', 's_2': 'rad/s', 's_3': 'rad/s', 'moment_x': 'N m', 'moment_y': 'N m', 'moment_z': 'N m', 'u_1': 'N m', 'u_2': 'N m', 'u_3': 'N m', 'I_xx': 'kg m^2', 'I_yy': 'kg m^2', 'I_zz': 'kg m^2', 'I_xy': 'kg m^2', 'I_xz': 'kg m^2', 'I_yz': 'kg m^2', 'C_1': 'kg m^2', 'C_2': 'kg m^2', 'C_3': 'kg m^2'}
+RANGES = {'psi': [-3.14, 3.14], 'theta': [-1.4, 1.4], 'phi': [-3.14, 3.14], 'omega_x': [-2.0, 2.0], 'omega_y': [-2.0, 2.0], 'omega_z': [-2.0, 2.0], 's_1': [-300.0, 300.0], 's_2': [-300.0, 300.0], 's_3': [-300.0, 300.0], 'moment_x': [-0.5, 0.5], 'moment_y': [-0.5, 0.5], 'moment_z': [-0.5, 0.5], 'u_1': [-0.2, 0.2], 'u_2': [-0.2, 0.2], 'u_3': [-0.2, 0.2], 'I_xx': [1.2, 1.6], 'I_yy': [1.4, 1.8], 'I_zz': [1.6, 2.0], 'I_xy': [-0.2, 0.2], 'I_xz': [-0.2, 0.2], 'I_yz': [-0.2, 0.2], 'C_1': [0.005, 0.02], 'C_2': [0.005, 0.02], 'C_3': [0.005, 0.02]}
+SCALES = {'psi': 3.14, 'theta': 1.4, 'phi': 3.14, 'omega_x': 2.0, 'omega_y': 2.0, 'omega_z': 2.0, 's_1': 300.0, 's_2': 300.0, 's_3': 300.0, 'moment_x': 0.5, 'moment_y': 0.5, 'moment_z': 0.5, 'u_1': 0.2, 'u_2': 0.2, 'u_3': 0.2, 'I_xx': 1.6, 'I_yy': 1.8, 'I_zz': 2.0, 'I_xy': 0.2, 'I_xz': 0.2, 'I_yz': 0.2, 'C_1': 0.02, 'C_2': 0.02, 'C_3': 0.02}
+"""Of each by its name; the largest size in a range is its scale."""
+_PARTS = {'omega': ['omega_x', 'omega_y', 'omega_z'], 'wheel_speeds': ['s_1', 's_2', 's_3'], 'moment': ['moment_x', 'moment_y', 'moment_z'], 'wheel_torques': ['u_1', 'u_2', 'u_3']}
+
+
+def ode():
+    """Return the Function x, u, parameters -> xdot: the rate of the whole state."""
+    return _built(lambda: _packed(state_rate(), "gyrostat_ode", "xdot"))
+
+
+def error():
+    """Return the Function x, target -> error: x less target, zero where both are one state.
+
+    A quaternion's four parts become three, 2 sign(r_w) (r_x, r_y, r_z) of r = target* q: q and -q
+    are one attitude, near which this is the rotation vector along body axes.
+    """
+    x, target = (ca.SX.sym(name, len(STATES)) for name in ("x", "target"))
+    rows = [x[i] - target[i] for i in range(len(STATES))]
+    for k in reversed([]):
+        q, p = x[k : k + 4], target[k : k + 4]
+        r_w = ca.dot(p, q)
+        r = p[0] * q[1:] - q[0] * p[1:] - ca.cross(p[1:], q[1:])
+        rows[k : k + 4] = ca.vertsplit(ca.if_else(r_w < 0, -2, 2) * r)
+    names = ["x", "target"]
+    return ca.Function("gyrostat_error", [x, target], [ca.vertcat(*rows)], names, ["error"], _missing(2))
+
+
+def _packed(inner, name, result, more=()):
+    """Return a Function of quantities as one of x, u and parameters."""
+    held = {"x": STATES, "u": INPUTS, **{n: [n] for n in more}, "parameters": PARAMETERS}
+    given = {n: ca.SX.sym(n, len(parts)) for n, parts in held.items()}
+    rows = {c: given[n][i] for n in held if n != "parameters" for i, c in enumerate(held[n])}
+    rows["parameters"] = given["parameters"]
+    taken = [ca.vertcat(*(rows[c] for c in _PARTS.get(n, [n]))) for n in inner.name_in()]
+    found = ca.vertcat(*inner.call(taken))
+    return ca.Function(name, list(given.values()), [found], list(given), [result], _missing(len(given)))

@@ -353,3 +353,46 @@ def _angular_momentum():
         ['angular_momentum'],
         _missing(2),
     )
+
+
+STATES = ['psi', 'theta', 'phi', 'omega_x', 'omega_y', 'omega_z']
+INPUTS = []
+"""What x and u hold, in this order; parameters are in the order of PARAMETERS."""
+UNITS = {'psi': 'rad', 'theta': 'rad', 'phi': 'rad', 'omega_x': 'rad/s', 'omega_y': 'rad/s', 'omega_z': 'rad/s', 'A': 'kg m^2', 'C': 'kg m^2', 'm': 'kg', 'g': 'm/s^2', 'l': 'm'}
+RANGES = {'psi': [-3.14, 3.14], 'theta': [0.2, 2.9], 'phi': [-3.14, 3.14], 'omega_x': [-10.0, 10.0], 'omega_y': [-10.0, 10.0], 'omega_z': [-10.0, 10.0], 'A': [0.001, 0.002], 'C': [0.0004, 0.0008], 'm': [0.2, 1.0], 'g': [9.7, 9.9], 'l': [0.02, 0.06]}
+SCALES = {'psi': 3.14, 'theta': 2.9, 'phi': 3.14, 'omega_x': 10.0, 'omega_y': 10.0, 'omega_z': 10.0, 'A': 0.002, 'C': 0.0008, 'm': 1.0, 'g': 9.9, 'l': 0.06}
+"""Of each by its name; the largest size in a range is its scale."""
+_PARTS = {'omega': ['omega_x', 'omega_y', 'omega_z']}
+
+
+def ode():
+    """Return the Function x, u, parameters -> xdot: the rate of the whole state."""
+    return _built(lambda: _packed(state_rate(), "heavy_top_ode", "xdot"))
+
+
+def error():
+    """Return the Function x, target -> error: x less target, zero where both are one state.
+
+    A quaternion's four parts become three, 2 sign(r_w) (r_x, r_y, r_z) of r = target* q: q and -q
+    are one attitude, near which this is the rotation vector along body axes.
+    """
+    x, target = (ca.SX.sym(name, len(STATES)) for name in ("x", "target"))
+    rows = [x[i] - target[i] for i in range(len(STATES))]
+    for k in reversed([]):
+        q, p = x[k : k + 4], target[k : k + 4]
+        r_w = ca.dot(p, q)
+        r = p[0] * q[1:] - q[0] * p[1:] - ca.cross(p[1:], q[1:])
+        rows[k : k + 4] = ca.vertsplit(ca.if_else(r_w < 0, -2, 2) * r)
+    names = ["x", "target"]
+    return ca.Function("heavy_top_error", [x, target], [ca.vertcat(*rows)], names, ["error"], _missing(2))
+
+
+def _packed(inner, name, result, more=()):
+    """Return a Function of quantities as one of x, u and parameters."""
+    held = {"x": STATES, "u": INPUTS, **{n: [n] for n in more}, "parameters": PARAMETERS}
+    given = {n: ca.SX.sym(n, len(parts)) for n, parts in held.items()}
+    rows = {c: given[n][i] for n in held if n != "parameters" for i, c in enumerate(held[n])}
+    rows["parameters"] = given["parameters"]
+    taken = [ca.vertcat(*(rows[c] for c in _PARTS.get(n, [n]))) for n in inner.name_in()]
+    found = ca.vertcat(*inner.call(taken))
+    return ca.Function(name, list(given.values()), [found], list(given), [result], _missing(len(given)))

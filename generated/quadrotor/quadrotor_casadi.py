@@ -1402,3 +1402,51 @@ def _step_rk4():
         ['p_next', 'p_dot_next', 'w_next', 's_next', 'attitude_hull_next'],
         _missing(8),
     )
+
+
+STATES = ['p_x', 'p_y', 'p_z', 'p_x_dot', 'p_y_dot', 'p_z_dot', 'w_x', 'w_y', 'w_z', 's_fore', 's_left', 's_aft', 's_right', 'attitude_hull_w', 'attitude_hull_x', 'attitude_hull_y', 'attitude_hull_z']
+INPUTS = ['u_fore', 'u_left', 'u_aft', 'u_right']
+"""What x and u hold, in this order; parameters are in the order of PARAMETERS."""
+UNITS = {'p_x': 'm', 'p_y': 'm', 'p_z': 'm', 'p_x_dot': 'm/s', 'p_y_dot': 'm/s', 'p_z_dot': 'm/s', 'w_x': 'rad/s', 'w_y': 'rad/s', 'w_z': 'rad/s', 's_fore': 'rad/s', 's_left': 'rad/s', 's_aft': 'rad/s', 's_right': 'rad/s', 'attitude_hull_w': '1', 'attitude_hull_x': '1', 'attitude_hull_y': '1', 'attitude_hull_z': '1', 'u_fore': 'N m', 'u_left': 'N m', 'u_aft': 'N m', 'u_right': 'N m', 'm': 'kg', 'I_x': 'kg m^2', 'I_y': 'kg m^2', 'I_z': 'kg m^2', 'd': 'm', 'm_r': 'kg', 'J_r': 'kg m^2', 'c_T': 'N s^2', 'c_Q': 'N m s^2', 'g': 'm/s^2'}
+RANGES = {'p_x': [-100.0, 100.0], 'p_y': [-100.0, 100.0], 'p_z': [-100.0, 100.0], 'p_x_dot': [-10.0, 10.0], 'p_y_dot': [-10.0, 10.0], 'p_z_dot': [-10.0, 10.0], 'w_x': [-5.0, 5.0], 'w_y': [-5.0, 5.0], 'w_z': [-5.0, 5.0], 's_fore': [500.0, 1200.0], 's_left': [500.0, 1200.0], 's_aft': [500.0, 1200.0], 's_right': [500.0, 1200.0], 'attitude_hull_w': [-1.0, 1.0], 'attitude_hull_x': [-1.0, 1.0], 'attitude_hull_y': [-1.0, 1.0], 'attitude_hull_z': [-1.0, 1.0], 'u_fore': [0.0, 0.5], 'u_left': [0.0, 0.5], 'u_aft': [0.0, 0.5], 'u_right': [0.0, 0.5], 'm': [3.0, 5.0], 'I_x': [0.07, 0.1], 'I_y': [0.07, 0.1], 'I_z': [0.11, 0.14], 'd': [0.25, 0.4], 'm_r': [0.02, 0.04], 'J_r': [5e-05, 0.0001], 'c_T': [1e-05, 2e-05], 'c_Q': [8e-08, 3e-07], 'g': [9.7, 9.9]}
+SCALES = {'p_x': 100.0, 'p_y': 100.0, 'p_z': 100.0, 'p_x_dot': 10.0, 'p_y_dot': 10.0, 'p_z_dot': 10.0, 'w_x': 5.0, 'w_y': 5.0, 'w_z': 5.0, 's_fore': 1200.0, 's_left': 1200.0, 's_aft': 1200.0, 's_right': 1200.0, 'attitude_hull_w': 1.0, 'attitude_hull_x': 1.0, 'attitude_hull_y': 1.0, 'attitude_hull_z': 1.0, 'u_fore': 0.5, 'u_left': 0.5, 'u_aft': 0.5, 'u_right': 0.5, 'm': 5.0, 'I_x': 0.1, 'I_y': 0.1, 'I_z': 0.14, 'd': 0.4, 'm_r': 0.04, 'J_r': 0.0001, 'c_T': 2e-05, 'c_Q': 3e-07, 'g': 9.9}
+"""Of each by its name; the largest size in a range is its scale."""
+_PARTS = {'p': ['p_x', 'p_y', 'p_z'], 'p_dot': ['p_x_dot', 'p_y_dot', 'p_z_dot'], 'w': ['w_x', 'w_y', 'w_z'], 's': ['s_fore', 's_left', 's_aft', 's_right'], 'attitude_hull': ['attitude_hull_w', 'attitude_hull_x', 'attitude_hull_y', 'attitude_hull_z'], 'u': ['u_fore', 'u_left', 'u_aft', 'u_right']}
+
+
+def ode():
+    """Return the Function x, u, parameters -> xdot: the rate of the whole state."""
+    return _built(lambda: _packed(state_rate(), "quadrotor_ode", "xdot"))
+
+
+def step():
+    """Return the Function x, u, time_step, parameters -> xn: the state a `step_rk4` later, u held."""
+    return _built(lambda: _packed(step_rk4(), "quadrotor_step", "xn", ["time_step"]))
+
+
+def error():
+    """Return the Function x, target -> error: x less target, zero where both are one state.
+
+    A quaternion's four parts become three, 2 sign(r_w) (r_x, r_y, r_z) of r = target* q: q and -q
+    are one attitude, near which this is the rotation vector along body axes.
+    """
+    x, target = (ca.SX.sym(name, len(STATES)) for name in ("x", "target"))
+    rows = [x[i] - target[i] for i in range(len(STATES))]
+    for k in reversed([13]):
+        q, p = x[k : k + 4], target[k : k + 4]
+        r_w = ca.dot(p, q)
+        r = p[0] * q[1:] - q[0] * p[1:] - ca.cross(p[1:], q[1:])
+        rows[k : k + 4] = ca.vertsplit(ca.if_else(r_w < 0, -2, 2) * r)
+    names = ["x", "target"]
+    return ca.Function("quadrotor_error", [x, target], [ca.vertcat(*rows)], names, ["error"], _missing(2))
+
+
+def _packed(inner, name, result, more=()):
+    """Return a Function of quantities as one of x, u and parameters."""
+    held = {"x": STATES, "u": INPUTS, **{n: [n] for n in more}, "parameters": PARAMETERS}
+    given = {n: ca.SX.sym(n, len(parts)) for n, parts in held.items()}
+    rows = {c: given[n][i] for n in held if n != "parameters" for i, c in enumerate(held[n])}
+    rows["parameters"] = given["parameters"]
+    taken = [ca.vertcat(*(rows[c] for c in _PARTS.get(n, [n]))) for n in inner.name_in()]
+    found = ca.vertcat(*inner.call(taken))
+    return ca.Function(name, list(given.values()), [found], list(given), [result], _missing(len(given)))

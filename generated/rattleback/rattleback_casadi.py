@@ -2115,3 +2115,51 @@ def _step_rk4():
         ['alpha_next', 'alpha_dot_next', 'beta_next', 'beta_dot_next', 'W_next'],
         _missing(7),
     )
+
+
+STATES = ['alpha', 'alpha_dot', 'beta', 'beta_dot', 'W']
+INPUTS = []
+"""What x and u hold, in this order; parameters are in the order of PARAMETERS."""
+UNITS = {'alpha': 'rad', 'alpha_dot': 'rad/s', 'beta': 'rad', 'beta_dot': 'rad/s', 'W': 'rad/s', 'm': 'kg', 'a': 'm', 'b': 'm', 'c': 'm', 'h': 'm', 'A': 'kg m^2', 'B': 'kg m^2', 'C': 'kg m^2', 'D': 'kg m^2', 'n': 'rad/s', 'g': 'm/s^2'}
+RANGES = {'alpha': [-0.3, 0.3], 'alpha_dot': [-6.0, 6.0], 'beta': [-0.05, 0.05], 'beta_dot': [-3.0, 3.0], 'W': [-6.0, 6.0], 'm': [0.9, 1.1], 'a': [0.19, 0.21], 'b': [0.028, 0.032], 'c': [0.019, 0.021], 'h': [0.009, 0.011], 'A': [0.00019, 0.00021], 'B': [0.00156, 0.00164], 'C': [0.00168, 0.00172], 'D': [-2.5e-05, -1.5e-05], 'n': [-6.0, 6.0], 'g': [9.7, 9.9]}
+SCALES = {'alpha': 0.3, 'alpha_dot': 6.0, 'beta': 0.05, 'beta_dot': 3.0, 'W': 6.0, 'm': 1.1, 'a': 0.21, 'b': 0.032, 'c': 0.021, 'h': 0.011, 'A': 0.00021, 'B': 0.00164, 'C': 0.00172, 'D': 2.5e-05, 'n': 6.0, 'g': 9.9}
+"""Of each by its name; the largest size in a range is its scale."""
+_PARTS = {}
+
+
+def ode():
+    """Return the Function x, u, parameters -> xdot: the rate of the whole state."""
+    return _built(lambda: _packed(state_rate(), "rattleback_ode", "xdot"))
+
+
+def step():
+    """Return the Function x, u, time_step, parameters -> xn: the state a `step_rk4` later, u held."""
+    return _built(lambda: _packed(step_rk4(), "rattleback_step", "xn", ["time_step"]))
+
+
+def error():
+    """Return the Function x, target -> error: x less target, zero where both are one state.
+
+    A quaternion's four parts become three, 2 sign(r_w) (r_x, r_y, r_z) of r = target* q: q and -q
+    are one attitude, near which this is the rotation vector along body axes.
+    """
+    x, target = (ca.SX.sym(name, len(STATES)) for name in ("x", "target"))
+    rows = [x[i] - target[i] for i in range(len(STATES))]
+    for k in reversed([]):
+        q, p = x[k : k + 4], target[k : k + 4]
+        r_w = ca.dot(p, q)
+        r = p[0] * q[1:] - q[0] * p[1:] - ca.cross(p[1:], q[1:])
+        rows[k : k + 4] = ca.vertsplit(ca.if_else(r_w < 0, -2, 2) * r)
+    names = ["x", "target"]
+    return ca.Function("rattleback_error", [x, target], [ca.vertcat(*rows)], names, ["error"], _missing(2))
+
+
+def _packed(inner, name, result, more=()):
+    """Return a Function of quantities as one of x, u and parameters."""
+    held = {"x": STATES, "u": INPUTS, **{n: [n] for n in more}, "parameters": PARAMETERS}
+    given = {n: ca.SX.sym(n, len(parts)) for n, parts in held.items()}
+    rows = {c: given[n][i] for n in held if n != "parameters" for i, c in enumerate(held[n])}
+    rows["parameters"] = given["parameters"]
+    taken = [ca.vertcat(*(rows[c] for c in _PARTS.get(n, [n]))) for n in inner.name_in()]
+    found = ca.vertcat(*inner.call(taken))
+    return ca.Function(name, list(given.values()), [found], list(given), [result], _missing(len(given)))

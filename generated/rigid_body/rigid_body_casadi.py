@@ -769,3 +769,46 @@ def _moment():
         ['moment'],
         _missing(3),
     )
+
+
+STATES = ['position_x', 'position_y', 'position_z', 'attitude_w', 'attitude_x', 'attitude_y', 'attitude_z', 'velocity_x', 'velocity_y', 'velocity_z', 'omega_x', 'omega_y', 'omega_z']
+INPUTS = ['force_x', 'force_y', 'force_z', 'moment_x', 'moment_y', 'moment_z']
+"""What x and u hold, in this order; parameters are in the order of PARAMETERS."""
+UNITS = {'position_x': 'm', 'position_y': 'm', 'position_z': 'm', 'attitude_w': '1', 'attitude_x': '1', 'attitude_y': '1', 'attitude_z': '1', 'velocity_x': 'm/s', 'velocity_y': 'm/s', 'velocity_z': 'm/s', 'omega_x': 'rad/s', 'omega_y': 'rad/s', 'omega_z': 'rad/s', 'force_x': 'N', 'force_y': 'N', 'force_z': 'N', 'moment_x': 'N m', 'moment_y': 'N m', 'moment_z': 'N m', 'm': 'kg', 'I_xx': 'kg m^2', 'I_yy': 'kg m^2', 'I_zz': 'kg m^2', 'I_xy': 'kg m^2', 'I_xz': 'kg m^2', 'I_yz': 'kg m^2'}
+RANGES = {'position_x': [-100.0, 100.0], 'position_y': [-100.0, 100.0], 'position_z': [-100.0, 100.0], 'attitude_w': [-1.0, 1.0], 'attitude_x': [-1.0, 1.0], 'attitude_y': [-1.0, 1.0], 'attitude_z': [-1.0, 1.0], 'velocity_x': [-50.0, 50.0], 'velocity_y': [-50.0, 50.0], 'velocity_z': [-50.0, 50.0], 'omega_x': [-10.0, 10.0], 'omega_y': [-10.0, 10.0], 'omega_z': [-10.0, 10.0], 'force_x': [-100.0, 100.0], 'force_y': [-100.0, 100.0], 'force_z': [-100.0, 100.0], 'moment_x': [-10.0, 10.0], 'moment_y': [-10.0, 10.0], 'moment_z': [-10.0, 10.0], 'm': [5.0, 20.0], 'I_xx': [1.2, 1.6], 'I_yy': [1.4, 1.8], 'I_zz': [1.6, 2.0], 'I_xy': [-0.2, 0.2], 'I_xz': [-0.2, 0.2], 'I_yz': [-0.2, 0.2]}
+SCALES = {'position_x': 100.0, 'position_y': 100.0, 'position_z': 100.0, 'attitude_w': 1.0, 'attitude_x': 1.0, 'attitude_y': 1.0, 'attitude_z': 1.0, 'velocity_x': 50.0, 'velocity_y': 50.0, 'velocity_z': 50.0, 'omega_x': 10.0, 'omega_y': 10.0, 'omega_z': 10.0, 'force_x': 100.0, 'force_y': 100.0, 'force_z': 100.0, 'moment_x': 10.0, 'moment_y': 10.0, 'moment_z': 10.0, 'm': 20.0, 'I_xx': 1.6, 'I_yy': 1.8, 'I_zz': 2.0, 'I_xy': 0.2, 'I_xz': 0.2, 'I_yz': 0.2}
+"""Of each by its name; the largest size in a range is its scale."""
+_PARTS = {'position': ['position_x', 'position_y', 'position_z'], 'attitude': ['attitude_w', 'attitude_x', 'attitude_y', 'attitude_z'], 'velocity': ['velocity_x', 'velocity_y', 'velocity_z'], 'omega': ['omega_x', 'omega_y', 'omega_z'], 'force': ['force_x', 'force_y', 'force_z'], 'moment': ['moment_x', 'moment_y', 'moment_z']}
+
+
+def ode():
+    """Return the Function x, u, parameters -> xdot: the rate of the whole state."""
+    return _built(lambda: _packed(state_rate(), "rigid_body_ode", "xdot"))
+
+
+def error():
+    """Return the Function x, target -> error: x less target, zero where both are one state.
+
+    A quaternion's four parts become three, 2 sign(r_w) (r_x, r_y, r_z) of r = target* q: q and -q
+    are one attitude, near which this is the rotation vector along body axes.
+    """
+    x, target = (ca.SX.sym(name, len(STATES)) for name in ("x", "target"))
+    rows = [x[i] - target[i] for i in range(len(STATES))]
+    for k in reversed([3]):
+        q, p = x[k : k + 4], target[k : k + 4]
+        r_w = ca.dot(p, q)
+        r = p[0] * q[1:] - q[0] * p[1:] - ca.cross(p[1:], q[1:])
+        rows[k : k + 4] = ca.vertsplit(ca.if_else(r_w < 0, -2, 2) * r)
+    names = ["x", "target"]
+    return ca.Function("rigid_body_error", [x, target], [ca.vertcat(*rows)], names, ["error"], _missing(2))
+
+
+def _packed(inner, name, result, more=()):
+    """Return a Function of quantities as one of x, u and parameters."""
+    held = {"x": STATES, "u": INPUTS, **{n: [n] for n in more}, "parameters": PARAMETERS}
+    given = {n: ca.SX.sym(n, len(parts)) for n, parts in held.items()}
+    rows = {c: given[n][i] for n in held if n != "parameters" for i, c in enumerate(held[n])}
+    rows["parameters"] = given["parameters"]
+    taken = [ca.vertcat(*(rows[c] for c in _PARTS.get(n, [n]))) for n in inner.name_in()]
+    found = ca.vertcat(*inner.call(taken))
+    return ca.Function(name, list(given.values()), [found], list(given), [result], _missing(len(given)))

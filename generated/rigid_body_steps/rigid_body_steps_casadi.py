@@ -3939,3 +3939,180 @@ def _step_rk4_jacobian():
         ['position_next', 'attitude_next', 'velocity_next', 'omega_next', 'jacobian'],
         _missing(8),
     )
+
+
+def state_rate():
+    """Rate of the state from the state and the inputs (forward dynamics). Inputs: parameters, attitude, velocity, omega, force, moment."""
+    return _built(lambda: _from_parameters(_state_rate(), "rigid_body_steps_state_rate"))
+
+
+def state_rate_hot():
+    """The same with the constants of ``setup`` as first input, for calls in a loop."""
+    return _built(_state_rate)
+
+
+def _state_rate():
+    constants = ca.SX.sym("constants", 31)
+    attitude = ca.SX.sym("attitude", 4)
+    velocity = ca.SX.sym("velocity", 3)
+    omega = ca.SX.sym("omega", 3)
+    force = ca.SX.sym("force", 3)
+    moment = ca.SX.sym("moment", 3)
+    t0 = omega[0] * 0.5
+    t1 = attitude[1] * t0
+    t2 = omega[1] * 0.5
+    t3 = attitude[2] * t2
+    t4 = t1 + t3
+    t5 = omega[2] * 0.5
+    t6 = attitude[3] * t5
+    t7 = t4 + t6
+    t8 = -t7
+    t9 = t0 * attitude[0]
+    t10 = attitude[2] * t5
+    t11 = t9 + t10
+    t12 = t2 * attitude[3]
+    t13 = t11 - t12
+    t14 = t2 * attitude[0]
+    t15 = t0 * attitude[3]
+    t16 = t14 + t15
+    t17 = attitude[1] * t5
+    t18 = t16 - t17
+    t19 = t5 * attitude[0]
+    t20 = attitude[1] * t2
+    t21 = t19 + t20
+    t22 = t0 * attitude[2]
+    t23 = t21 - t22
+    t24 = attitude[1] * 2.0
+    t25 = force[2] * t24
+    t26 = attitude[3] * 2.0
+    t27 = force[0] * t26
+    t28 = t25 - t27
+    t29 = attitude[3] * t28
+    t30 = force[0] + t29
+    t31 = force[1] * t26
+    t32 = attitude[2] * 2.0
+    t33 = force[2] * t32
+    t34 = t31 - t33
+    t35 = attitude[0] * t34
+    t36 = t30 - t35
+    t37 = force[0] * t32
+    t38 = force[1] * t24
+    t39 = t37 - t38
+    t40 = attitude[2] * t39
+    t41 = t36 - t40
+    t42 = t41 * constants[0]
+    t43 = attitude[1] * t39
+    t44 = force[1] + t43
+    t45 = attitude[0] * t28
+    t46 = t44 - t45
+    t47 = attitude[3] * t34
+    t48 = t46 - t47
+    t49 = t48 * constants[0]
+    t50 = attitude[2] * t34
+    t51 = force[2] + t50
+    t52 = attitude[0] * t39
+    t53 = t51 - t52
+    t54 = attitude[1] * t28
+    t55 = t53 - t54
+    t56 = t55 * constants[0]
+    t57 = omega[0] * constants[1]
+    t58 = omega[1] * constants[2]
+    t59 = t57 + t58
+    t60 = omega[2] * constants[3]
+    t61 = t59 + t60
+    t62 = omega[1] * t61
+    t63 = moment[0] + t62
+    t64 = omega[0] * constants[4]
+    t65 = omega[2] * constants[2]
+    t66 = t64 + t65
+    t67 = omega[2] * t66
+    t68 = t63 - t67
+    t69 = t68 * constants[5]
+    t70 = omega[1] * constants[4]
+    t71 = omega[2] * constants[1]
+    t72 = t70 + t71
+    t73 = omega[0] * constants[6]
+    t74 = t72 - t73
+    t75 = omega[2] * t74
+    t76 = moment[1] + t75
+    t77 = omega[0] * t61
+    t78 = t76 - t77
+    t79 = t78 * constants[7]
+    t80 = t69 + t79
+    t81 = omega[0] * t66
+    t82 = moment[2] + t81
+    t83 = omega[1] * t74
+    t84 = t82 - t83
+    t85 = t84 * constants[8]
+    t86 = t80 + t85
+    t87 = t68 * constants[7]
+    t88 = t78 * constants[9]
+    t89 = t87 + t88
+    t90 = t84 * constants[10]
+    t91 = t89 + t90
+    t92 = t68 * constants[8]
+    t93 = t78 * constants[10]
+    t94 = t92 + t93
+    t95 = t84 * constants[11]
+    t96 = t94 + t95
+    return ca.Function(
+        "rigid_body_steps_state_rate_hot",
+        [constants, attitude, velocity, omega, force, moment],
+        [
+            ca.vertcat(velocity[0], velocity[1], velocity[2]),
+            ca.vertcat(t8, t13, t18, t23),
+            ca.vertcat(t42, t49, t56),
+            ca.vertcat(t86, t91, t96),
+        ],
+        ['constants', 'attitude', 'velocity', 'omega', 'force', 'moment'],
+        ['position_rate', 'attitude_rate', 'velocity_rate', 'omega_dot'],
+        _missing(6),
+    )
+
+
+STATES = ['position_x', 'position_y', 'position_z', 'attitude_w', 'attitude_x', 'attitude_y', 'attitude_z', 'velocity_x', 'velocity_y', 'velocity_z', 'omega_x', 'omega_y', 'omega_z']
+INPUTS = ['force_x', 'force_y', 'force_z', 'moment_x', 'moment_y', 'moment_z']
+"""What x and u hold, in this order; parameters are in the order of PARAMETERS."""
+UNITS = {'position_x': 'm', 'position_y': 'm', 'position_z': 'm', 'attitude_w': '1', 'attitude_x': '1', 'attitude_y': '1', 'attitude_z': '1', 'velocity_x': 'm/s', 'velocity_y': 'm/s', 'velocity_z': 'm/s', 'omega_x': 'rad/s', 'omega_y': 'rad/s', 'omega_z': 'rad/s', 'force_x': 'N', 'force_y': 'N', 'force_z': 'N', 'moment_x': 'N m', 'moment_y': 'N m', 'moment_z': 'N m', 'm': 'kg', 'I_xx': 'kg m^2', 'I_yy': 'kg m^2', 'I_zz': 'kg m^2', 'I_xy': 'kg m^2', 'I_xz': 'kg m^2', 'I_yz': 'kg m^2'}
+RANGES = {'position_x': [-100.0, 100.0], 'position_y': [-100.0, 100.0], 'position_z': [-100.0, 100.0], 'attitude_w': [-1.0, 1.0], 'attitude_x': [-1.0, 1.0], 'attitude_y': [-1.0, 1.0], 'attitude_z': [-1.0, 1.0], 'velocity_x': [-50.0, 50.0], 'velocity_y': [-50.0, 50.0], 'velocity_z': [-50.0, 50.0], 'omega_x': [-10.0, 10.0], 'omega_y': [-10.0, 10.0], 'omega_z': [-10.0, 10.0], 'force_x': [-100.0, 100.0], 'force_y': [-100.0, 100.0], 'force_z': [-100.0, 100.0], 'moment_x': [-10.0, 10.0], 'moment_y': [-10.0, 10.0], 'moment_z': [-10.0, 10.0], 'm': [5.0, 20.0], 'I_xx': [1.2, 1.6], 'I_yy': [1.4, 1.8], 'I_zz': [1.6, 2.0], 'I_xy': [-0.2, 0.2], 'I_xz': [-0.2, 0.2], 'I_yz': [-0.2, 0.2]}
+SCALES = {'position_x': 100.0, 'position_y': 100.0, 'position_z': 100.0, 'attitude_w': 1.0, 'attitude_x': 1.0, 'attitude_y': 1.0, 'attitude_z': 1.0, 'velocity_x': 50.0, 'velocity_y': 50.0, 'velocity_z': 50.0, 'omega_x': 10.0, 'omega_y': 10.0, 'omega_z': 10.0, 'force_x': 100.0, 'force_y': 100.0, 'force_z': 100.0, 'moment_x': 10.0, 'moment_y': 10.0, 'moment_z': 10.0, 'm': 20.0, 'I_xx': 1.6, 'I_yy': 1.8, 'I_zz': 2.0, 'I_xy': 0.2, 'I_xz': 0.2, 'I_yz': 0.2}
+"""Of each by its name; the largest size in a range is its scale."""
+_PARTS = {'position': ['position_x', 'position_y', 'position_z'], 'attitude': ['attitude_w', 'attitude_x', 'attitude_y', 'attitude_z'], 'velocity': ['velocity_x', 'velocity_y', 'velocity_z'], 'omega': ['omega_x', 'omega_y', 'omega_z'], 'force': ['force_x', 'force_y', 'force_z'], 'moment': ['moment_x', 'moment_y', 'moment_z']}
+
+
+def ode():
+    """Return the Function x, u, parameters -> xdot: the rate of the whole state."""
+    return _built(lambda: _packed(state_rate(), "rigid_body_steps_ode", "xdot"))
+
+
+def step():
+    """Return the Function x, u, time_step, parameters -> xn: the state a `step_rk4` later, u held."""
+    return _built(lambda: _packed(step_rk4(), "rigid_body_steps_step", "xn", ["time_step"]))
+
+
+def error():
+    """Return the Function x, target -> error: x less target, zero where both are one state.
+
+    A quaternion's four parts become three, 2 sign(r_w) (r_x, r_y, r_z) of r = target* q: q and -q
+    are one attitude, near which this is the rotation vector along body axes.
+    """
+    x, target = (ca.SX.sym(name, len(STATES)) for name in ("x", "target"))
+    rows = [x[i] - target[i] for i in range(len(STATES))]
+    for k in reversed([3]):
+        q, p = x[k : k + 4], target[k : k + 4]
+        r_w = ca.dot(p, q)
+        r = p[0] * q[1:] - q[0] * p[1:] - ca.cross(p[1:], q[1:])
+        rows[k : k + 4] = ca.vertsplit(ca.if_else(r_w < 0, -2, 2) * r)
+    names = ["x", "target"]
+    return ca.Function("rigid_body_steps_error", [x, target], [ca.vertcat(*rows)], names, ["error"], _missing(2))
+
+
+def _packed(inner, name, result, more=()):
+    """Return a Function of quantities as one of x, u and parameters."""
+    held = {"x": STATES, "u": INPUTS, **{n: [n] for n in more}, "parameters": PARAMETERS}
+    given = {n: ca.SX.sym(n, len(parts)) for n, parts in held.items()}
+    rows = {c: given[n][i] for n in held if n != "parameters" for i, c in enumerate(held[n])}
+    rows["parameters"] = given["parameters"]
+    taken = [ca.vertcat(*(rows[c] for c in _PARTS.get(n, [n]))) for n in inner.name_in()]
+    found = ca.vertcat(*inner.call(taken))
+    return ca.Function(name, list(given.values()), [found], list(given), [result], _missing(len(given)))

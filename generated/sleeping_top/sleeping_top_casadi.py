@@ -490,3 +490,104 @@ def _step_rk4():
         ['alpha_next', 'alpha_dot_next', 'beta_next', 'beta_dot_next'],
         _missing(6),
     )
+
+
+def state_rate():
+    """Rate of the state from the state and the inputs (forward dynamics). Inputs: parameters, alpha, alpha_dot, beta, beta_dot.
+
+    Singular:
+    at beta = pi/2 + k pi, alpha_dot_rate infinite, no number or beyond all measure
+"""
+    return _built(lambda: _from_parameters(_state_rate(), "sleeping_top_state_rate"))
+
+
+def state_rate_hot():
+    """The same with the constants of ``setup`` as first input, for calls in a loop."""
+    return _built(_state_rate)
+
+
+def _state_rate():
+    constants = ca.SX.sym("constants", 13)
+    alpha = ca.SX.sym("alpha", 1)
+    alpha_dot = ca.SX.sym("alpha_dot", 1)
+    beta = ca.SX.sym("beta", 1)
+    beta_dot = ca.SX.sym("beta_dot", 1)
+    t0 = ca.sin(alpha[0])
+    t1 = t0 * constants[4]
+    t2 = ca.sin(beta[0])
+    t3 = alpha_dot[0] * t2
+    t4 = t3 * constants[6]
+    t5 = constants[5] - t4
+    t6 = beta_dot[0] * t5
+    t7 = t1 - t6
+    t8 = ca.cos(beta[0])
+    t9 = t8 * constants[7]
+    t10 = t7 / t9
+    t11 = ca.cos(alpha[0])
+    t12 = t2 * t11
+    t13 = t12 * constants[8]
+    t14 = alpha_dot[0] * t8
+    t15 = t3 - constants[9]
+    t16 = t14 * t15
+    t17 = t13 - t16
+    return ca.Function(
+        "sleeping_top_state_rate_hot",
+        [constants, alpha, alpha_dot, beta, beta_dot],
+        [
+            ca.vertcat(alpha_dot[0]),
+            ca.vertcat(t10),
+            ca.vertcat(beta_dot[0]),
+            ca.vertcat(t17),
+        ],
+        ['constants', 'alpha', 'alpha_dot', 'beta', 'beta_dot'],
+        ['alpha_rate', 'alpha_dot_rate', 'beta_rate', 'beta_dot_rate'],
+        _missing(5),
+    )
+
+
+STATES = ['alpha', 'alpha_dot', 'beta', 'beta_dot']
+INPUTS = []
+"""What x and u hold, in this order; parameters are in the order of PARAMETERS."""
+UNITS = {'alpha': 'rad', 'alpha_dot': 'rad/s', 'beta': 'rad', 'beta_dot': 'rad/s', 'm': 'kg', 'r': 'm', 'l': 'm', 'n': 'rad/s', 'g': 'm/s^2'}
+RANGES = {'alpha': [-0.3, 0.3], 'alpha_dot': [-1.0, 1.0], 'beta': [-0.3, 0.3], 'beta_dot': [-1.0, 1.0], 'm': [0.4, 0.6], 'r': [0.04, 0.06], 'l': [0.05, 0.07], 'n': [20.0, 200.0], 'g': [9.7, 9.9]}
+SCALES = {'alpha': 0.3, 'alpha_dot': 1.0, 'beta': 0.3, 'beta_dot': 1.0, 'm': 0.6, 'r': 0.06, 'l': 0.07, 'n': 200.0, 'g': 9.9}
+"""Of each by its name; the largest size in a range is its scale."""
+_PARTS = {}
+
+
+def ode():
+    """Return the Function x, u, parameters -> xdot: the rate of the whole state."""
+    return _built(lambda: _packed(state_rate(), "sleeping_top_ode", "xdot"))
+
+
+def step():
+    """Return the Function x, u, time_step, parameters -> xn: the state a `step_rk4` later, u held."""
+    return _built(lambda: _packed(step_rk4(), "sleeping_top_step", "xn", ["time_step"]))
+
+
+def error():
+    """Return the Function x, target -> error: x less target, zero where both are one state.
+
+    A quaternion's four parts become three, 2 sign(r_w) (r_x, r_y, r_z) of r = target* q: q and -q
+    are one attitude, near which this is the rotation vector along body axes.
+    """
+    x, target = (ca.SX.sym(name, len(STATES)) for name in ("x", "target"))
+    rows = [x[i] - target[i] for i in range(len(STATES))]
+    for k in reversed([]):
+        q, p = x[k : k + 4], target[k : k + 4]
+        r_w = ca.dot(p, q)
+        r = p[0] * q[1:] - q[0] * p[1:] - ca.cross(p[1:], q[1:])
+        rows[k : k + 4] = ca.vertsplit(ca.if_else(r_w < 0, -2, 2) * r)
+    names = ["x", "target"]
+    return ca.Function("sleeping_top_error", [x, target], [ca.vertcat(*rows)], names, ["error"], _missing(2))
+
+
+def _packed(inner, name, result, more=()):
+    """Return a Function of quantities as one of x, u and parameters."""
+    held = {"x": STATES, "u": INPUTS, **{n: [n] for n in more}, "parameters": PARAMETERS}
+    given = {n: ca.SX.sym(n, len(parts)) for n, parts in held.items()}
+    rows = {c: given[n][i] for n in held if n != "parameters" for i, c in enumerate(held[n])}
+    rows["parameters"] = given["parameters"]
+    taken = [ca.vertcat(*(rows[c] for c in _PARTS.get(n, [n]))) for n in inner.name_in()]
+    found = ca.vertcat(*inner.call(taken))
+    return ca.Function(name, list(given.values()), [found], list(given), [result], _missing(len(given)))

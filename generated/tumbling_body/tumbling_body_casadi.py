@@ -6026,3 +6026,108 @@ def _step_taylor():
         ['attitude_next', 'omega_next', 'step_proposed'],
         _missing(4),
     )
+
+
+def state_rate():
+    """Rate of the state from the state and the inputs (forward dynamics). Inputs: parameters, attitude, omega."""
+    return _built(lambda: _from_parameters(_state_rate(), "tumbling_body_state_rate"))
+
+
+def state_rate_hot():
+    """The same with the constants of ``setup`` as first input, for calls in a loop."""
+    return _built(_state_rate)
+
+
+def _state_rate():
+    constants = ca.SX.sym("constants", 74)
+    attitude = ca.SX.sym("attitude", 4)
+    omega = ca.SX.sym("omega", 3)
+    t0 = omega[0] * 0.5
+    t1 = attitude[1] * t0
+    t2 = omega[1] * 0.5
+    t3 = attitude[2] * t2
+    t4 = t1 + t3
+    t5 = omega[2] * 0.5
+    t6 = attitude[3] * t5
+    t7 = t4 + t6
+    t8 = -t7
+    t9 = t0 * attitude[0]
+    t10 = attitude[2] * t5
+    t11 = t9 + t10
+    t12 = t2 * attitude[3]
+    t13 = t11 - t12
+    t14 = t2 * attitude[0]
+    t15 = t0 * attitude[3]
+    t16 = t14 + t15
+    t17 = attitude[1] * t5
+    t18 = t16 - t17
+    t19 = t5 * attitude[0]
+    t20 = attitude[1] * t2
+    t21 = t19 + t20
+    t22 = t0 * attitude[2]
+    t23 = t21 - t22
+    t24 = omega[1] * omega[2]
+    t25 = t24 * constants[3]
+    t26 = omega[0] * omega[2]
+    t27 = t26 * constants[4]
+    t28 = omega[0] * omega[1]
+    t29 = t28 * constants[5]
+    return ca.Function(
+        "tumbling_body_state_rate_hot",
+        [constants, attitude, omega],
+        [
+            ca.vertcat(t8, t13, t18, t23),
+            ca.vertcat(t25, t27, t29),
+        ],
+        ['constants', 'attitude', 'omega'],
+        ['attitude_rate', 'omega_dot'],
+        _missing(3),
+    )
+
+
+STATES = ['attitude_w', 'attitude_x', 'attitude_y', 'attitude_z', 'omega_x', 'omega_y', 'omega_z']
+INPUTS = []
+"""What x and u hold, in this order; parameters are in the order of PARAMETERS."""
+UNITS = {'attitude_w': '1', 'attitude_x': '1', 'attitude_y': '1', 'attitude_z': '1', 'omega_x': 'rad/s', 'omega_y': 'rad/s', 'omega_z': 'rad/s', 'I_xx': 'kg m^2', 'I_yy': 'kg m^2', 'I_zz': 'kg m^2'}
+RANGES = {'attitude_w': [-1.0, 1.0], 'attitude_x': [-1.0, 1.0], 'attitude_y': [-1.0, 1.0], 'attitude_z': [-1.0, 1.0], 'omega_x': [-10.0, 10.0], 'omega_y': [-10.0, 10.0], 'omega_z': [-10.0, 10.0], 'I_xx': [1.2, 1.6], 'I_yy': [1.4, 1.8], 'I_zz': [1.6, 2.0]}
+SCALES = {'attitude_w': 1.0, 'attitude_x': 1.0, 'attitude_y': 1.0, 'attitude_z': 1.0, 'omega_x': 10.0, 'omega_y': 10.0, 'omega_z': 10.0, 'I_xx': 1.6, 'I_yy': 1.8, 'I_zz': 2.0}
+"""Of each by its name; the largest size in a range is its scale."""
+_PARTS = {'attitude': ['attitude_w', 'attitude_x', 'attitude_y', 'attitude_z'], 'omega': ['omega_x', 'omega_y', 'omega_z']}
+
+
+def ode():
+    """Return the Function x, u, parameters -> xdot: the rate of the whole state."""
+    return _built(lambda: _packed(state_rate(), "tumbling_body_ode", "xdot"))
+
+
+def step():
+    """Return the Function x, u, time_step, parameters -> xn: the state a `step_rk4` later, u held."""
+    return _built(lambda: _packed(step_rk4(), "tumbling_body_step", "xn", ["time_step"]))
+
+
+def error():
+    """Return the Function x, target -> error: x less target, zero where both are one state.
+
+    A quaternion's four parts become three, 2 sign(r_w) (r_x, r_y, r_z) of r = target* q: q and -q
+    are one attitude, near which this is the rotation vector along body axes.
+    """
+    x, target = (ca.SX.sym(name, len(STATES)) for name in ("x", "target"))
+    rows = [x[i] - target[i] for i in range(len(STATES))]
+    for k in reversed([0]):
+        q, p = x[k : k + 4], target[k : k + 4]
+        r_w = ca.dot(p, q)
+        r = p[0] * q[1:] - q[0] * p[1:] - ca.cross(p[1:], q[1:])
+        rows[k : k + 4] = ca.vertsplit(ca.if_else(r_w < 0, -2, 2) * r)
+    names = ["x", "target"]
+    return ca.Function("tumbling_body_error", [x, target], [ca.vertcat(*rows)], names, ["error"], _missing(2))
+
+
+def _packed(inner, name, result, more=()):
+    """Return a Function of quantities as one of x, u and parameters."""
+    held = {"x": STATES, "u": INPUTS, **{n: [n] for n in more}, "parameters": PARAMETERS}
+    given = {n: ca.SX.sym(n, len(parts)) for n, parts in held.items()}
+    rows = {c: given[n][i] for n in held if n != "parameters" for i, c in enumerate(held[n])}
+    rows["parameters"] = given["parameters"]
+    taken = [ca.vertcat(*(rows[c] for c in _PARTS.get(n, [n]))) for n in inner.name_in()]
+    found = ca.vertcat(*inner.call(taken))
+    return ca.Function(name, list(given.values()), [found], list(given), [result], _missing(len(given)))

@@ -438,3 +438,51 @@ def _step_rk4():
         ['theta_next', 'theta_dot_next', 's_next'],
         _missing(6),
     )
+
+
+STATES = ['theta', 'theta_dot', 's']
+INPUTS = ['T']
+"""What x and u hold, in this order; parameters are in the order of PARAMETERS."""
+UNITS = {'theta': 'rad', 'theta_dot': 'rad/s', 's': 'rad/s', 'T': 'N m', 'm_p': 'kg', 'm_r': 'kg', 'l_p': 'm', 'l_r': 'm', 'J_p': 'kg m^2', 'J_r': 'kg m^2', 'g': 'm/s^2'}
+RANGES = {'theta': [-3.14, 3.14], 'theta_dot': [-20.0, 20.0], 's': [-800.0, 800.0], 'T': [-0.1, 0.1], 'm_p': [0.15, 0.25], 'm_r': [0.06, 0.12], 'l_p': [0.1, 0.13], 'l_r': [0.12, 0.14], 'J_p': [0.0002, 0.00025], 'J_r': [2e-05, 4e-05], 'g': [9.7, 9.9]}
+SCALES = {'theta': 3.14, 'theta_dot': 20.0, 's': 800.0, 'T': 0.1, 'm_p': 0.25, 'm_r': 0.12, 'l_p': 0.13, 'l_r': 0.14, 'J_p': 0.00025, 'J_r': 4e-05, 'g': 9.9}
+"""Of each by its name; the largest size in a range is its scale."""
+_PARTS = {}
+
+
+def ode():
+    """Return the Function x, u, parameters -> xdot: the rate of the whole state."""
+    return _built(lambda: _packed(state_rate(), "wheel_pendulum_ode", "xdot"))
+
+
+def step():
+    """Return the Function x, u, time_step, parameters -> xn: the state a `step_rk4` later, u held."""
+    return _built(lambda: _packed(step_rk4(), "wheel_pendulum_step", "xn", ["time_step"]))
+
+
+def error():
+    """Return the Function x, target -> error: x less target, zero where both are one state.
+
+    A quaternion's four parts become three, 2 sign(r_w) (r_x, r_y, r_z) of r = target* q: q and -q
+    are one attitude, near which this is the rotation vector along body axes.
+    """
+    x, target = (ca.SX.sym(name, len(STATES)) for name in ("x", "target"))
+    rows = [x[i] - target[i] for i in range(len(STATES))]
+    for k in reversed([]):
+        q, p = x[k : k + 4], target[k : k + 4]
+        r_w = ca.dot(p, q)
+        r = p[0] * q[1:] - q[0] * p[1:] - ca.cross(p[1:], q[1:])
+        rows[k : k + 4] = ca.vertsplit(ca.if_else(r_w < 0, -2, 2) * r)
+    names = ["x", "target"]
+    return ca.Function("wheel_pendulum_error", [x, target], [ca.vertcat(*rows)], names, ["error"], _missing(2))
+
+
+def _packed(inner, name, result, more=()):
+    """Return a Function of quantities as one of x, u and parameters."""
+    held = {"x": STATES, "u": INPUTS, **{n: [n] for n in more}, "parameters": PARAMETERS}
+    given = {n: ca.SX.sym(n, len(parts)) for n, parts in held.items()}
+    rows = {c: given[n][i] for n in held if n != "parameters" for i, c in enumerate(held[n])}
+    rows["parameters"] = given["parameters"]
+    taken = [ca.vertcat(*(rows[c] for c in _PARTS.get(n, [n]))) for n in inner.name_in()]
+    found = ca.vertcat(*inner.call(taken))
+    return ca.Function(name, list(given.values()), [found], list(given), [result], _missing(len(given)))
