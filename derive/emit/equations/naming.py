@@ -36,7 +36,8 @@ class Book:
 def with_names(one: Section, book: Book) -> Section:
     """Return a section with a name for every symbol in it.
 
-    What stands between is told by what it is equal to, so that equals have one name everywhere.
+    What stands between is told by what it is equal to, so that equals have one name everywhere;
+    two answers of one section that are equal have two.
     """
     found: dict[Symbol, str] = {}
     used, bases = one.symbols(), letters_used(one.called.values())
@@ -47,10 +48,10 @@ def with_names(one: Section, book: Book) -> Section:
             found[symbol] = book.name(f"{name} {symbol}", own) if own in found.values() else own
     for left, right in one.equations:
         if left.is_Symbol and left not in found:
-            what = right.xreplace({s: Symbol(name) for s, name in found.items()})
-            found[left] = book.name(
-                f"= {what}", letter_called(label_between(one, left), one.marks, bases)
-            )
+            what = f"= {right.xreplace({s: Symbol(name) for s, name in found.items()})}"
+            wish = letter_called(label_between(one, left), one.marks, bases)
+            own = book.name(what, wish)
+            found[left] = book.name(f"{what} {left}", wish) if own in found.values() else own
     return replace(one, names=found)
 
 

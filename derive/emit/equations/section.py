@@ -1,6 +1,6 @@
 """A function of the lecture as paragraphs of equations: laws, what they become here, solution."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -115,7 +115,7 @@ def section(library: Library, base: str) -> Section:
         every = [*_energies(library, base)] or every
     spoken = [*own.vocabulary.every(), *own.words.vocabulary.every()]
     of_scene = {symbols[c] for q in spoken for c in q.components} | written.found.keys()
-    parts = tuple(_fitted(every, called))
+    parts = tuple(_defined_once(tuple(_fitted(every, called)), {*called, *written.answers}))
     return Section(
         base,
         known.whole(base).says,
@@ -151,6 +151,28 @@ def _fitted(parts: Iterable[Paragraph], names: Mapping[Symbol, str]) -> Iterator
         if part.equations:
             each = ((neatened(left), neatened(right)) for left, right in part.equations)
             yield replace(part, equations=tuple(fitted(each, names, known)))
+
+
+def _defined_once(parts: Sequence[Paragraph], kept: Set[Symbol]) -> Iterator[Paragraph]:
+    """Yield the parts with one symbol for what is equal; those ``kept`` stay what they are."""
+    every = [sides for part in parts for sides in part.equations]
+    same: dict[Symbol, Symbol] = {}
+    while True:
+        first: dict[str, Symbol] = {}
+        found = {
+            left: first[str(right.xreplace(same))]
+            for left, right in every
+            if left.is_Symbol and left not in same and left not in kept
+            if first.setdefault(str(right.xreplace(same)), left) != left
+        }
+        if not found:
+            break
+        same = {left: one.xreplace(found) for left, one in same.items()} | found
+    for part in parts:
+        own = [(left, right) for left, right in part.equations if left not in same]
+        if own:
+            each = tuple((left.xreplace(same), right.xreplace(same)) for left, right in own)
+            yield replace(part, equations=each)
 
 
 def _units(
