@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from rich.table import Table
 
 import derive
+from derive.command.parsed import word_of
 from derive.command.scenes import samples_argument, scene_argument
 from derive.command.terminal import OUT, console, print_rows, progress
 from derive.solve.handle import FRESH, Handle
@@ -22,6 +23,7 @@ def options(command: argparse.ArgumentParser) -> None:
     samples_argument(command, FRESH, "fresh samples that stated errors are tried at")
     command.add_argument(
         "--target",
+        type=word_of(TARGETS),
         choices=TARGETS,
         help="run the C on an emulated core instead: the bits of this machine, and what it costs",
     )
@@ -40,7 +42,7 @@ def check(given: argparse.Namespace) -> int:
     if given.target:
         return _on_target(scenes, given)
     if given.keep:
-        raise derive.DeriveError("--keep keeps what C costs on a core: say which by --target")
+        raise derive.DeriveError(f"check: --keep needs --target, {' or '.join(TARGETS)}")
     table = Table("scene", "function", "in", "check", "verdict", "found", box=None)
     found: list[str] = []
     with progress() as shown:

@@ -1,7 +1,9 @@
 """How commands are told what to do: bad arguments are refused by one sentence."""
 
 import argparse
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
+from math import isfinite
 from pathlib import Path
 from typing import NoReturn
 
@@ -10,6 +12,7 @@ from derive.scene.escape import brief, visible
 from derive.scene.table import nearest
 
 COMMAND = "a command is missing"
+HELPS = ("-h", "--help")
 MISSING = "the following arguments are required: "
 
 
@@ -31,12 +34,29 @@ def parsed(top: Parser, commands: Iterable[str], arguments: Sequence[str]) -> ar
         raise SceneError(f"{f'there is no command {typed(first)}' if first else COMMAND}{hint}")
     told, more = top.parse_known_args(arguments)
     if more:
-        known = vars(told.parser_of)["_option_string_actions"]
         option = more[0].partition("=")[0]
         one = "no option" if option.startswith("-") else "one argument too many"
-        hint = nearest(option, known) if option.startswith("-") else ""
+        hint = _hint(option, top, told.parser_of) if option.startswith("-") else ""
         raise SceneError(f"{told.parser_of.prog[7:]}: {typed(option)} is {one}{hint}")
     return told
+
+
+def _hint(option: str, top: Parser, own: Parser) -> str:
+    """Return which other commands have an option, or begin one so; else what resembles it."""
+    commands = next(a for a in vars(top)["_actions"] if isinstance(a.choices, Mapping)).choices
+    having = [
+        name for name, other in commands.items()
+        if any(o.startswith(option) for o in _options(other))
+    ] if option.strip("-") else []  # fmt: skip
+    if having:
+        return f" of it (but of {', '.join(having)})"
+    return nearest(option, _options(own))
+
+
+def _options(of: Parser) -> list[str]:
+    """Return the long options of a parser but for its help, which resembles everything short."""
+    known = vars(of)["_option_string_actions"]
+    return [o for o in known if o.startswith("--") and o not in HELPS]
 
 
 def typed(text: str) -> str:
@@ -56,12 +76,11 @@ def word_of(words: Iterable[str]) -> Callable[[str], str]:
 
 
 def seconds(text: str) -> float:
-    """Return a time."""
-    try:
-        return float(text)
-    except ValueError:
-        rule = "must be a number of seconds, as 0.5"
-        raise argparse.ArgumentTypeError(f"{rule}, not {typed(text)}") from None
+    """Return a time, which a double can hold."""
+    with suppress(ValueError):
+        if isfinite(time := float(text)):
+            return time
+    raise argparse.ArgumentTypeError(f"must be a number of seconds, as 0.5, not {typed(text)}")
 
 
 def location(text: str) -> Path:
