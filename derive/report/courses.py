@@ -67,7 +67,7 @@ class StepErrors:
 
     time, given : s, and whether it was asked for      fast : rad/s, as ``fastest`` says
     start : the states, the ``hard`` ones first         tried, aside : how many were looked at, and
-    how many of those were left aside, by the reason     costs : operations of a call of each step
+    how many of those were left aside, by the reason     costs : weighted operations of each step
     work : operations in long floats that following the true motions took
     floors : by precision, what rounding the given numbers alone makes of the end, state by state
     """

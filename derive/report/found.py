@@ -22,14 +22,14 @@ LOOKED = sampled_at(8192)
 class FunctionFigures:
     """One function in one form and one precision.
 
-    flops : + - * / and roots, and a sine as its weight      median, largest : errors in u of the
+    weighted_operations : as ``price_of`` says        median, largest : errors in u of the
     largest product in an output's equation, of the output that is worst
     """
 
     function: str
     form: str
     precision: str
-    operations: int
+    weighted_operations: int
     median: float
     largest: float
 

@@ -269,7 +269,7 @@ def _advice(
 ) -> str:
     """Return what to do about a hard case."""
     if accurate is not None and other is not None and accurate * HELPS < error:
-        cost = f"{price_of(other[program.name])} operations instead of {price_of(program)}"
+        cost = f"{price_of(other[program.name])} weighted operations instead of {price_of(program)}"
         said = f'form = "accurate" is off by {accurate:.2g} u there, for {cost}'
     elif rounding * HELPS > error:
         said = "no form helps: rounding the given numbers does as much"

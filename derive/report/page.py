@@ -39,7 +39,7 @@ LEAST = 1e-17
 
 @dataclass(frozen=True)
 class StepRow:
-    """A step in the table: costs of a call, and by precision what the sentence's error takes."""
+    """A step in the table: weighted operations; by precision what the sentence's error takes."""
 
     name: str
     wanted: bool
@@ -53,7 +53,7 @@ class StepRow:
 
 @dataclass(frozen=True)
 class FunctionRow:
-    """A function in one form: operations, and by precision errors, times and instructions."""
+    """A function in one form: weighted operations; by precision errors, times, instructions."""
 
     name: str
     form: str
@@ -126,7 +126,7 @@ def _plot(
             name = step.removeprefix("step_").replace("_compensated", " comp.")
             y = [max(a.worst, LEAST) for a in own]
             curves.append(Curve(name, x, y, *_look(step), star=step == FLOW))
-    unit = "operations" if times is None else "microseconds"
+    unit = "weighted operations" if times is None else "microseconds"
     floor = max(motion.floors[precision])
     words = f"Error at the end, {TYPE_NAMES[precision]}, against {unit} for one second of motion."
     ends = [(c.name, figure(max(c.y)), figure(min(c.y))) for c in curves]
@@ -144,19 +144,19 @@ def _look(step: str) -> tuple[int, str]:
 
 
 def function_plots(found: SceneReport) -> Iterator[Slim]:
-    """Yield plots of the functions' errors against operations, so many functions each."""
+    """Yield plots of the functions' errors against weighted operations, so many functions each."""
     names = list(dict.fromkeys(f.function for f in found.figures))
     for start in range(0, len(names), MOST):
         curves = []
         for place, name in enumerate(names[start : start + MOST]):
             own = [f for f in found.figures if (f.function, f.precision) == (name, "f64")]
             kept = [f for f in own if isfinite(f.largest) and f.largest > 0]
-            x = [max(f.operations, 1) for f in kept]
+            x = [max(f.weighted_operations, 1) for f in kept]
             curves.append(Curve(name, x, [f.largest for f in kept], place))
         words = "; ".join(f"{c.name}: {', '.join(figure(y) for y in c.y)} u" for c in curves)
         yield svg(Plot(
-            curves, "operations of a call", "largest error, u of the largest product",
-            f"Largest error in double against operations, in both forms. {words}.",
+            curves, "weighted operations of a call", "largest error, u of the largest product",
+            f"Largest error in double against weighted operations, in both forms. {words}.",
         ))  # fmt: skip
 
 
@@ -181,7 +181,7 @@ def _function_rows(found: SceneReport) -> list[FunctionRow]:
         by.setdefault((f.function, f.form), []).append(f)
     return [
         FunctionRow(
-            name, form, own[0].operations,
+            name, form, own[0].weighted_operations,
             {f.precision: f"{figure(f.median)} / {figure(f.largest)}" for f in own},
             _times(found, name, form),
             _instructions(found, name, form),

@@ -121,12 +121,14 @@ def _axes(ax: Any, plot: Plot) -> None:
 
 def _few_decades(ax: Any) -> None:
     """Put marks between the powers of ten along a side that holds less than two of these."""
-    from matplotlib.ticker import FixedLocator
+    from matplotlib.ticker import FixedFormatter, FixedLocator
 
     for axis in (ax.xaxis, ax.yaxis):
         low, high = axis.get_view_interval()
         if sum(low <= x <= high for x in axis.get_ticklocs()) < FEWEST:
-            axis.set_major_locator(FixedLocator(between(low, high)))
+            places = between(low, high)
+            axis.set_major_locator(FixedLocator(places))
+            axis.set_major_formatter(FixedFormatter(marks(places)))
 
 
 def between(low: float, high: float) -> list[float]:
@@ -146,6 +148,18 @@ def between(low: float, high: float) -> list[float]:
         each = range(math.ceil(first), math.floor(last) + 1)
         found = [float(f"{k * factor}e{ten}") for k in each]
     return found
+
+
+def marks(places: Sequence[float]) -> list[str]:
+    """Return numbers of one scale, of which not all are powers of ten, as text of one kind.
+
+    >>> marks([10.0, 20.0]), marks([1e-7, 2.5e-7])
+    (['10', '20'], ['1·10⁻⁷', '2.5·10⁻⁷'])
+    """
+    if all(1e-2 <= x < 1e5 for x in places):
+        return [f"{x:.6g}" for x in places]
+    tens = [math.floor(math.log10(x * (1 + SLACK))) for x in places]
+    return [f"{x / 10.0**n:.6g}·10{raised(n)}" for x, n in zip(places, tens, strict=True)]
 
 
 def _curves(ax: Any, plot: Plot) -> None:
@@ -175,18 +189,22 @@ def _names(ax: Any, plot: Plot) -> None:
 
 
 def power(x: float, _: int = 0) -> str:
-    """Return a number of a scale as text: plain characters, quick to draw and to search.
+    """Return a power of ten as text: plain characters, quick to draw and to search.
 
-    >>> power(1e-12), power(1.0), power(20.0), power(2.5e-7)
-    ('10⁻¹²', '1', '20', '2.5·10⁻⁷')
+    >>> power(1e-12), power(1.0)
+    ('10⁻¹²', '1')
     """
-    digits = "⁰¹²³⁴⁵⁶⁷⁸⁹"
-    exponent = math.floor(math.log10(x * (1 + SLACK)))
-    if (factor := f"{x / 10.0**exponent:.6g}") != "1":
-        small = 1e-2 <= x < 1e5
-        return f"{x:.6g}" if small else f"{factor}·{power(10.0**exponent)}"
-    raised = "".join(digits[int(d)] for d in str(abs(exponent)))
-    return f"10{'⁻' if exponent < 0 else ''}{raised}" if exponent else "1"
+    exponent = round(math.log10(x))
+    return f"10{raised(exponent)}" if exponent else "1"
+
+
+def raised(exponent: int) -> str:
+    """Return an exponent as text.
+
+    >>> raised(-12)
+    '⁻¹²'
+    """
+    return str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
 
 
 def spread(places: Sequence[float], gap: float) -> list[float]:

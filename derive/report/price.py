@@ -1,4 +1,4 @@
-"""What a call costs: operations, and where there is a compiler nanoseconds, measured in batches.
+"""What a call costs: weighted operations, and with a compiler nanoseconds, measured in batches.
 
 A batch is as many calls in a row as take a good part of a millisecond, so that the clock's own
 steps do not count; the median of the batches stands beside their quartiles.
@@ -26,7 +26,7 @@ longest, which are the rounds of a batch of steps: it stays within its motion.""
 ROWS = 64
 """Samples that calls of a function go through in turn; a step moves one state on and on."""
 LIBM_COSTS = {"sin": 20, "cos": 20, "atan2": 40}
-"""Operations that a call of libm is counted as, about what a good one takes; a root is one."""
+"""What a call of libm is counted as, about what a good one takes; a root is one operation."""
 PAIR_COSTS = {"add": 20, "sub": 20, "mul": 24, "div": 131, "sqrt": 43, "sin": 1000, "cos": 1000}
 """The same on pairs of floats, as the templates of ``pair/`` do them."""
 
@@ -44,7 +44,7 @@ class Nanoseconds:
 
 
 def price_of(program: Program) -> int:
-    """Return what a call costs: + - * / and roots as one, a sine or an angle as its weight."""
+    """Return the weighted operations of a call: + - * / and roots are one, a sine its weight."""
     if program.arithmetic == "pairs":
         return sum(PAIR_COSTS.get(o, 0) * n for o, n in program.count.items())
     more = {**LIBM_COSTS, "sqrt": 1}

@@ -36,7 +36,11 @@ def _motion(report: SceneReport, found: StepErrors) -> dict[str, Any]:
     said = said_of(found)
     choices = {
         p: None if c is None else
-        {"step": c.attempt.step, "length": c.attempt.length, "operations_per_second": c.operations}
+        {
+            "step": c.attempt.step,
+            "length": c.attempt.length,
+            "weighted_operations_per_second": c.operations,
+        }
         for p, c in said.choices.items()
     }  # fmt: skip
     return {
@@ -49,8 +53,14 @@ def _motion(report: SceneReport, found: StepErrors) -> dict[str, Any]:
         "lost": found.lost,
         "aside": dict(found.aside),
         "operations_in_long_floats": found.work,
-        "steps": [{"name": s, "wanted": s in report.wished.own, "operations": found.costs[s]}
-                  for s in report.wished.steps],
+        "steps": [
+            {
+                "name": s,
+                "wanted": s in report.wished.own,
+                "weighted_operations": found.costs[s],
+            }
+            for s in report.wished.steps
+        ],
         "refused": report.wished.refused,
         "said": {"error": said.target, "margin": MARGIN, "choices": choices},
         "floors": {p: list(each) for p, each in found.floors.items()},

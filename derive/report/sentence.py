@@ -21,7 +21,7 @@ TYPE_NAMES = {"f64": "double", "f32": "float"}
 
 @dataclass(frozen=True)
 class Cheapest:
-    """The cheapest step for an error in a precision: its attempt, and operations a second."""
+    """The cheapest step for an error in a precision: its attempt, weighted operations a second."""
 
     attempt: Attempt
     operations: float
@@ -122,7 +122,7 @@ def _in_precision(
         return f"in {name} no step tried {reached}"
     step, cost = found.attempt.step, of.costs[found.attempt.step]
     took = times.get((step, precision))
-    spent = f"{cost} operations" + ("" if took is None else f", {in_time(took * 1e-9)}")
+    spent = f"{cost} weighted operations" + ("" if took is None else f", {in_time(took * 1e-9)}")
     if step == FLOW:
         return f"{step} in {name}, at once, {spent}"
     return f"{step} at {in_time(found.attempt.length)} in {name}, {spent} a step"
@@ -131,14 +131,14 @@ def _in_precision(
 def functions_sentence(figures: Sequence[FunctionFigures]) -> str:
     """Return the sentence on a scene whose functions move nothing."""
     own = [f for f in figures if f.form == figures[0].form]
-    costs = sorted({f.operations for f in own if f.precision == "f64"})
+    costs = sorted({f.weighted_operations for f in own if f.precision == "f64"})
     count = len({f.function for f in own})
     most = ", ".join(f"{rounded_up(max(f.largest for f in own if f.precision == p))} in {says}"
                      for p, says in TYPE_NAMES.items())  # fmt: skip
     spread = f"{costs[0]}" if len(costs) == 1 else f"{costs[0]} to {costs[-1]}"
     what = "1 function" if count == 1 else f"{count} functions"
     found = "largest error found, in u of the largest product"
-    return f"{what} of {spread} operations; {found}: {most}"
+    return f"{what} of {spread} weighted operations; {found}: {most}"
 
 
 def in_time(seconds: float) -> str:

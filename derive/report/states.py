@@ -60,9 +60,9 @@ class Begun:
 
 
 def anywhere(library: Library, seed: str, count: int) -> Begun:
-    """Return ``count`` states anywhere in the ranges."""
+    """Return ``count`` states anywhere in the ranges, the same whatever the scene is called."""
     of = Sampled(library, F32)
-    return _given(library, of, drawn(of, Dice(f"derive: {library.scene.name} {seed}"), count))
+    return _given(library, of, drawn(of, Dice(f"derive: {seed}"), count))
 
 
 def begun(library: Library, seed: str, count: int) -> Begun:

@@ -10,12 +10,14 @@ from hypothesis import strategies as st
 
 from derive.emit.templates import TEMPLATES
 from derive.report.page import outside
-from derive.report.plots import Curve, Plot, between, svg
+from derive.report.plots import Curve, Plot, between, marks, svg
 from derive.scene.declaration import Given
 from tests.made import scene_of
 from tests.report.test_sentence import made_up
 
 NUMBER = r">(10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|[\d.]+(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?)<"
+
+PLAIN = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 
 
 @pytest.mark.parametrize(
@@ -24,18 +26,33 @@ NUMBER = r">(10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|[\d.]+(?:·10[⁻⁰¹²³⁴�
 )
 def test_both_sides_of_a_plot_have_marks_even_within_one_decade(x, y) -> None:
     plot = svg(Plot([Curve("moment", x, y, 0)], "operations", "error", "words"))
-    marks = re.findall(NUMBER, plot.text)
-    assert len(marks) >= 4, marks
+    found = re.findall(NUMBER, plot.text)
+    assert len(found) >= 4, found
+
+
+@given(st.floats(1e-17, 1e9), st.floats(1e-3, 1.9))
+def test_marks_of_one_side_are_of_one_kind(low: float, decades: float) -> None:
+    places = between(low, low * 10**decades)
+    told = marks(places)
+    assert len({"10" in text and not text.isascii() for text in told}) == 1, told
+    values = [float(text.replace("·10", "e").translate(PLAIN)) for text in told]
+    assert values == pytest.approx(places, rel=1e-5)
+
+
+def test_a_side_with_marks_between_powers_of_ten_has_no_powers() -> None:
+    plot = svg(Plot([Curve("moment", (8, 30), (1e-9, 1e-3), 0)], "operations", "error", "words"))
+    assert {"10", "20"} <= {*re.findall(NUMBER, plot.text)}
+    assert "10¹" not in plot.text
 
 
 @given(st.floats(1e-17, 1e9), st.floats(1e-3, 1.9))
 def test_marks_lie_in_the_range_in_order(low: float, decades: float) -> None:
     high = low * 10**decades
-    marks = between(low, high)
-    assert 2 <= len(marks) <= 12
-    assert marks == sorted(set(marks))
-    assert low * (1 - 1e-8) <= marks[0]
-    assert marks[-1] <= high * (1 + 1e-8)
+    places = between(low, high)
+    assert 2 <= len(places) <= 12
+    assert places == sorted(set(places))
+    assert low * (1 - 1e-8) <= places[0]
+    assert places[-1] <= high * (1 + 1e-8)
 
 
 def motion_section(*stars: str, told: list[str] | None = None) -> str:

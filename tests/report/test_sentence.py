@@ -16,7 +16,7 @@ from derive.report.driver import drivers
 from derive.report.hardest import hardest
 from derive.report.march import ended
 from derive.report.sentence import cheapest, choice, least, motion_sentence
-from derive.report.states import Begun, begun, nearby
+from derive.report.states import Begun, begun, fastest, nearby
 from derive.report.whole import report
 from derive.report.wishes import wished
 from derive.scene import SceneError, parse_scene
@@ -58,7 +58,7 @@ def test_the_cheapest_step_for_a_second_is_named_not_that_of_a_step() -> None:
     assert best is not None
     assert best.attempt.step == "step_b"
     said = motion_sentence(found)
-    assert said.startswith("for 1e-6 over 1 s: step_b at 1 s in double, 35 operations a step")
+    assert said.startswith("for 1e-6 over 1 s: step_b at 1 s in double, 35 weighted operations a s")
     assert said.endswith("in float no step tried keeps below 0.01")
 
 
@@ -108,6 +108,14 @@ def test_a_time_that_is_out_of_all_bounds_is_refused_in_one_sentence() -> None:
             time_of(own, until, 10.0)
     for until in (1e-5, 0.5, 60000.0):
         assert time_of(own, until, 10.0) == pytest.approx(until)
+
+
+def test_scenes_that_differ_in_name_only_have_the_same_limit() -> None:
+    text = text_of("tumbling_disc")
+    own, other = (library(parse_scene(text, name)) for name in ("tumbling_disc", "plate"))
+    assert fastest(own) == fastest(other) > 0
+    wider = text.replace("[-10, 10] }\nmoment", "[-50, 50] }\nmoment")
+    assert fastest(library(parse_scene(wider, "plate"))) != fastest(other)
 
 
 def test_the_scene_says_to_what_time_unless_the_command_does() -> None:
