@@ -189,6 +189,15 @@ def test_force_and_couple_of_a_load_are_both_named_and_a_spring_is_one_line() ->
     assert spring.count("M") == 1
 
 
+@pytest.mark.parametrize(("long", "coils"), [("0.1", 9), ("4", 3)])
+def test_a_spring_that_is_short_beside_the_machine_has_few_coils(long: str, coils: int) -> None:
+    bead = f'shape = "rod"\naxis = "y"\nlength = {long}'
+    near = SPRUNG.replace("[0.1, 0.5]", "[0.1, 0.12]").replace('shape = "sphere"', bead)
+    text = drawing(parse_scene(near.replace("radius = 0.05\n", ""), "sprung"))
+    (spring,) = re.findall(r'<path class="spring[^"]*" d="([^"]*)"', text)
+    assert len(re.split("[ML]", spring)) - 1 == coils + 4
+
+
 @pytest.mark.parametrize("name", ["machine", "cart_pendulum", "disc_two_bearings"])
 def test_no_name_lies_over_an_arrow(name: str) -> None:
     own = (STARTERS / "machine.toml").read_text() if name == "machine" else load(name).text
