@@ -69,15 +69,27 @@ def built(library: Library, precision: Precision, core: Core, folder: Path) -> B
     source = CNames(library.scene.name).file(precision, "c")
     command = (core.tools.compiler, *core.flags, *core.tools.library)
     answer_of((*command, *FLAGS, *WARNINGS, "-fstack-usage", "-c", source, "-o", "scene.o"), folder)
-    link = (*command, *BOARD, "-DON_TARGET", "-nostartfiles", f"-L{HERE}", f"-T{core.memory}")
-    units = (str(HERE / core.start), str(HERE / "harness.c"), "scene.o")
-    end = ("-Wl,--no-warn-rwx-segments", "-Wl,--gc-sections", "-lm")
-    answer_of((*link, *units, "-o", "cost.elf", *end), folder)
+    units = (str(HERE / "harness.c"), "scene.o")
+    cost = linked(core, units, folder, "cost.elf")
     sizes = _sizes(core, folder)
-    if not calls_libm(library):
-        return Built(folder / "cost.elf", folder / "cost.elf", sizes)
-    answer_of((*link, "-DOWN_SINE", *units, "-o", "bits.elf", *end), folder)
-    return Built(folder / "bits.elf", folder / "cost.elf", sizes)
+    own = calls_libm(library)
+    bits = linked(core, ("-DOWN_SINE", *units), folder, "bits.elf") if own else cost
+    return Built(bits, cost, sizes)
+
+
+def linked(core: Core, units: Sequence[str], folder: Path, name: str) -> Path:
+    """Return a program of some units for a core's board, with what starts it."""
+    command = (core.tools.compiler, *core.flags, *core.tools.library, *BOARD, "-DON_TARGET")
+    place = ("-nostartfiles", f"-L{HERE}", f"-T{core.memory}", str(HERE / core.start))
+    end = ("-Wl,--no-warn-rwx-segments", "-Wl,--gc-sections", "-lm")
+    answer_of((*command, *place, *units, "-o", name, *end), folder)
+    return folder / name
+
+
+def linked_here(units: Sequence[str], folder: Path, with_: Compiler) -> Path:
+    """Return a program of the same units for this machine."""
+    answer_of((*with_.command, *BOARD, str(HERE / "host.c"), *units, "-o", "here", "-lm"), folder)
+    return folder / "here"
 
 
 def built_here(library: Library, precision: Precision, folder: Path, with_: Compiler) -> Path:
@@ -85,9 +97,7 @@ def built_here(library: Library, precision: Precision, folder: Path, with_: Comp
     source = CNames(library.scene.name).file(precision, "c")
     answer_of((*with_.command, "-std=c99", "-O2", "-c", source, "-o", "scene.o"), folder)
     own = ("-DOWN_SINE",) if calls_libm(library) else ()
-    units = (str(HERE / "host.c"), str(HERE / "harness.c"), "scene.o")
-    answer_of((*with_.command, *BOARD, *own, *units, "-o", "here", "-lm"), folder)
-    return folder / "here"
+    return linked_here((*own, str(HERE / "harness.c"), "scene.o"), folder, with_)
 
 
 def _sizes(core: Core, folder: Path) -> dict[str, Bytes]:

@@ -35,8 +35,7 @@ def on_board(core: Core, program: Path) -> list[Heard]:
 
     Raises RunError if it ends otherwise, or if the function of known length has another.
     """
-    command = (core.tools.emulator, *core.machine, *_QUIET, *_SEMIHOSTING, *_ICOUNT)
-    first, *found = _said((*command, "-kernel", str(program)))
+    first, *found = _lines(core.tools.emulator, said_on_board(core, program))
     if {counted(core, first.least), counted(core, first.most)} != {NOPS}:
         raise RunError(
             f"{core.name}: {NOPS} instructions must be counted as such, but "
@@ -45,9 +44,15 @@ def on_board(core: Core, program: Path) -> list[Heard]:
     return found
 
 
+def said_on_board(core: Core, program: Path) -> str:
+    """Return the text of a program on a core's emulated board. Raises RunError if it has no end."""
+    command = (core.tools.emulator, *core.machine, *_QUIET, *_SEMIHOSTING, *_ICOUNT)
+    return said((*command, "-kernel", str(program)))
+
+
 def here(program: Path) -> list[Heard]:
     """Return what the program of this machine says."""
-    return _said((str(program),))[1:]
+    return _lines(str(program), said((str(program),)))[1:]
 
 
 def counted(core: Core, ticks: int) -> int:
@@ -55,16 +60,20 @@ def counted(core: Core, ticks: int) -> int:
     return round(ticks / core.ticks)
 
 
-def _said(command: tuple[str, ...]) -> list[Heard]:
+def said(command: tuple[str, ...]) -> str:
+    """Return the text of a command. Raises RunError if it has no end."""
     try:
         done = subprocess.run(command, capture_output=True, check=False, timeout=PATIENCE)
     except subprocess.TimeoutExpired:
         raise RunError(f"{command[0]}: the program must end, but ran {PATIENCE} s") from None
-    text = (done.stdout + done.stderr).decode(errors="replace")
+    return (done.stdout + done.stderr).decode(errors="replace")
+
+
+def _lines(who: str, text: str) -> list[Heard]:
     try:
         return [_line(line.split()) for line in text.splitlines()]
     except (ValueError, IndexError):
-        raise RunError(f"{command[0]}: a row of figures must come, but: {text[-300:]!r}") from None
+        raise RunError(f"{who}: a row of figures must come, but: {text[-300:]!r}") from None
 
 
 def _line(words: list[str]) -> Heard:
