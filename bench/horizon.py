@@ -24,7 +24,7 @@ from rich.table import Table
 from derive.command.terminal import console
 from derive.emit.casadi_module import imported
 from derive.emit.files import scene_files
-from derive.library.external import second_of_step
+from derive.library.external import derivatives_of_step
 from derive.library.library import Library, library
 from derive.scene import parse_scene
 
@@ -55,7 +55,9 @@ moment           = { range = [-3, 3] }
 N, LENGTH = 100, 0.05
 PARAMETERS = (1.4, 1.6, 1.8, 0.1, -0.05, 0.03)
 CALLS = 200
-PLAIN = "plain, rate in an MX loop"
+CALLED = 7  # the step, its derivatives by states and inputs, by its length, by parameters, twice
+PLAIN, WHOLE = "plain, rate in an MX loop", "plain RK4 as one SX function"
+OURS = "emitted step as SX"
 Steps = Callable[[Any, Any], Any]  # of x (7, N) and u (3, N), the states after
 
 
@@ -119,9 +121,9 @@ def ways(module: ModuleType, empty: Steps) -> list[Way]:
 
     return [
         Way(PLAIN, by_column(lambda x, u: runge_kutta(slope, x, u))),
-        Way("plain RK4 as one SX function", by_column(whole)),
+        Way(WHOLE, by_column(whole)),
         Way("plain, expanded", by_column(whole), expanded=True),
-        Way("emitted step as SX", by_column(inlined), ours=True),
+        Way(OURS, by_column(inlined), ours=True),
         Way(
             "external, a step a call",
             by_column(lambda x, u: single(x, u, LENGTH, PARAMETERS)),
@@ -192,7 +194,7 @@ def least(function: Any, values: list[Any]) -> float:
 
 def written(made: Library, folder: Path) -> ModuleType:
     """Return the scene's module, its C beside it."""
-    every = scene_files(made, (), second=second_of_step(made))
+    every = scene_files(made, (), of=derivatives_of_step(made))
     texts = {path.partition("/")[2]: text for path, text in every.items()}
     module = imported("body_casadi", texts["body_casadi.py"], folder)
     for name, text in texts.items():
@@ -204,9 +206,10 @@ def emptied(module: ModuleType) -> Steps:
     """Return the horizon of C from which what computes a step is taken out."""
     source = Path(str(module.__file__)).parent / "body_external.c"
     text = source.read_text(encoding="utf-8")
-    empty, count = re.subn(r"^    body_step_rk4_unit\w*\(&constants.*;$", "", text, flags=re.M)
-    if count != 3:
-        raise ValueError(f"{source.name} has {count} calls of a step, not 3")
+    call = r"^ +body_step_rk4_unit\w*\((&constants|made->).*;$"
+    empty, count = re.subn(call, "", text, flags=re.M)
+    if count != CALLED:
+        raise ValueError(f"{source.name} has {count} calls of a step, not {CALLED}")
     source.write_text(empty, encoding="utf-8")
     try:
         found = module.external(N)
@@ -248,6 +251,9 @@ def main() -> int:
         found = [timed(way, exact) for way in every]
     console.print(f"CasADi {ca.CasadiMeta.version()}, N = {N}, full tensor")
     console.print(shown(found))
+    named = {one.name: one for one in found}
+    ratios = (getattr(named[OURS], n) / getattr(named[WHOLE], n) for n in ("jacobian", "hessian"))
+    console.print(f"{OURS} over {WHOLE}: {', '.join(f'{ratio:.2f}' for ratio in ratios)} times")
     console.print(f"compiled in {cold[1]:.2f} s of CPU; found again in {warm:.3f} s")
     return 0
 

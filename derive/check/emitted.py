@@ -15,7 +15,7 @@ from derive.check.verdict import Outcome, Verdict
 from derive.emit.casadi_module import imported
 from derive.emit.files import differences, scene_files
 from derive.emit.reported import lying_beside
-from derive.library.external import second_of_step
+from derive.library.external import derivatives_of_step
 from derive.library.library import Library
 from derive.program.precision import F64, PRECISIONS, Precision
 from derive.program.program import Program
@@ -116,9 +116,9 @@ def files(library: Library, folder: Path, sampling: Sampling) -> Files:
     name = library.scene.name
     measured = figures_of(library, Measuring(sampling, folder))
     lies = (folder / name / f"{name}_external.c").is_file()
-    second = second_of_step(library) if lies else None
+    of = derivatives_of_step(library) if lies else None
     beside = lying_beside(library, folder)
-    made = scene_files(library, measured.each, measured.digest, beside, second)
+    made = scene_files(library, measured.each, measured.digest, beside, of)
     texts = {path.partition("/")[2]: text for path, text in made.items()}
     own = {file: text for file, text in texts.items() if not file.endswith(".html")}
     if not (folder / name).is_dir():

@@ -14,6 +14,7 @@ from derive.emit.lines import SIGNS, Language, operation_text, written
 from derive.emit.operators import WRITTEN, patterns
 from derive.emit.packed import Packed, packed, range_of, scale_of
 from derive.emit.templates import TEMPLATES
+from derive.library.external import StepDerivatives
 from derive.library.library import Library
 from derive.program.arithmetic import pair_of, rounded
 from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, Row
@@ -36,11 +37,11 @@ BROKEN = {"finite": "_endless({})", "positive": "{} <= 0.0", "not negative": "{}
 
 
 def casadi_file(
-    library: Library, figures: Sequence[Measurement] = (), second: Program | None = None
+    library: Library, figures: Sequence[Measurement] = (), of: StepDerivatives | None = None
 ) -> str:
     """Return the text of ``<scene>_casadi.py``.
 
-    second : the second derivatives for which C lies beside it; the module then loads that C
+    of : the derivatives of a step for which C lies beside it; the module then loads that C
     """
     name = library.scene.name
     has_setup = bool(library.constants)
@@ -49,7 +50,7 @@ def casadi_file(
     in_pairs = [p for p in (*library.emitted(), *hidden) if p.arithmetic == "pairs"]
     functions = [_function(p, name) for p in (*library.printed(), *hidden)]
     return TEMPLATES.get_template("casadi.py.jinja").render(
-        first_line=first_line(library, figures, () if second is None else (OPTION,)),
+        first_line=first_line(library, figures, () if of is None else (OPTION,)),
         title=library.scene.title,
         scene=name,
         setup=_setup(library.setup, name) if has_setup else None,
@@ -63,7 +64,7 @@ def casadi_file(
         sloped=any(p.free or p.slopes for p in library.printed()),
         free=any(p.free for p in library.printed()),
         packed=None if motion is None else _of_solvers(motion),
-        external=None if second is None else described(library),
+        external=None if of is None else described(library),
     )
 
 

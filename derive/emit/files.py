@@ -20,8 +20,9 @@ from derive.emit.manifest import manifest
 from derive.emit.on_target import ENDING
 from derive.emit.page.scene import scene_page
 from derive.emit.reported import NOTHING_BESIDE, Beside
+from derive.library.external import StepDerivatives
 from derive.library.library import Library
-from derive.program.program import Measurement, Program
+from derive.program.program import Measurement
 from derive.scene.declaration import DeriveError
 
 MEASURED = ("_report.html", "_report.json", ENDING)
@@ -51,21 +52,21 @@ def scene_files(
     figures: Sequence[Measurement],
     digest: str = "",
     by: Beside = NOTHING_BESIDE,
-    second: Program | None = None,
+    of: StepDerivatives | None = None,
 ) -> dict[str, str]:
     """Return the path below the output folder and the text of every file of a scene.
 
     digest : of all that the figures depend on        by : what lies beside them
-    second : the second derivatives of a step, where C for CasADi is to lie beside the rest
+    of     : the derivatives of a step, where C for CasADi is to lie beside the rest
     """
     name = library.scene.name
     texts = c_files(library, figures, by.on_target) | {
-        f"{name}_casadi.py": casadi_file(library, figures, second),
+        f"{name}_casadi.py": casadi_file(library, figures, of),
         f"{name}.json": manifest(library, figures, digest, by.on_target),
         f"{name}.html": scene_page(library, figures, by),
     }
-    if second is not None:
-        texts |= dict([external_file(library, second, figures)])
+    if of is not None:
+        texts |= dict([external_file(library, of, figures)])
     return {f"{name}/{file}": text for file, text in texts.items()}
 
 

@@ -5,11 +5,9 @@ The same names, units, ranges and scales stand in the CasADi module and in the J
 
 from dataclasses import dataclass
 
+from derive.library.external import STEPS, step_inputs
 from derive.library.library import Library
 from derive.program.program import Program, Quantity, placed
-
-STEPS = ("step_rk4_unit", "step_rk4", "step_lie")
-"""Which of the wanted steps moves x: the first of these."""
 
 
 @dataclass(frozen=True)
@@ -36,11 +34,14 @@ def packed(library: Library) -> Packed | None:
     known = {p.name: p for p in (*library.printed(), *library.rates)}
     if "state_rate" not in known:
         return None
-    rate, states = known["state_rate"], library.vocabulary.states
-    own = {q.name for q in states}
-    inputs = tuple(q for q in rate.inputs if q.role != "constants" and q.name not in own)
-    step = next((known[name] for name in STEPS if name in known), None)
-    return Packed(states, inputs, library.setup.inputs if library.constants else (), rate, step)
+    step = next((known[name] for name in (*STEPS, "step_lie") if name in known), None)
+    return Packed(
+        library.vocabulary.states,
+        step_inputs(library),
+        library.setup.inputs if library.constants else (),
+        known["state_rate"],
+        step,
+    )
 
 
 def range_of(q: Quantity) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from derive.emit.page.lecture import lecture_page
 from derive.emit.page.scene import scene_page
 from derive.emit.reported import NOTHING_BESIDE, lying_beside, reports_in
 from derive.library.external import CASADI as CASADI
-from derive.library.external import second_of_step
+from derive.library.external import derivatives_of_step
 from derive.library.library import Library
 from derive.library.saving import Saving, savings
 from derive.program.precision import PRECISIONS
@@ -157,7 +157,7 @@ def made(
     """
     scene = programs.scene
     wider = one_of(parts, "parts", get_args(Extent)) == CASADI
-    second = second_of_step(programs) if wider else None
+    of = derivatives_of_step(programs) if wider else None
     try:
         prove(programs)
         measured = figures_of(programs, by)
@@ -169,7 +169,7 @@ def made(
     doubts = (*programs.mechanism.doubts(), *few_digits(measured.each))
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in doubts)
     lies = NOTHING_BESIDE if reports is None else lying_beside(programs, reports)
-    texts = scene_files(programs, measured.each, measured.digest, lies, second)
+    texts = scene_files(programs, measured.each, measured.digest, lies, of)
     costs, shown = cost_rows(programs, measured.each), card(programs, lies.best)
     return Made(texts, warnings, costs, card=shown, stale=lies.on_target.stale)
 

@@ -23,6 +23,7 @@ from derive.solve.bound import Accuracy, By, bound, evaluation, kernel_of, progr
 from derive.solve.function import Kernel, SceneFunction
 from derive.solve.generation import (
     STATED,
+    Extent,
     FigureSource,
     Generation,
     made_and_told,
@@ -174,18 +175,19 @@ class Handle:
         folder: str | Path,
         samples: int = STATED,
         figures: FigureSource = "kept",
+        parts: Extent = "usual",
     ) -> Generation:
         """Write the scene's C, CasADi, JSON and HTML below a folder, proved and measured.
 
         samples : that each stated error is looked for at; 256 are quick
         figures : "kept" takes over those in ``folder`` that nothing has changed, "anew" measures
+        parts   : "casadi-external" adds C by which CasADi takes all steps of a horizon at once
         Raises DeriveError for a scene whose ranges hold a pole, and for a folder that cannot be
         written to. Files are replaced all or none.
         """
-        into = path("folder", folder)
-        require_folder(into)
+        require_folder(into := path("folder", folder))
         by = measuring(into, samples, figures)
-        return stored(into, [made_and_told(self.library, by, "costs", into)], {})
+        return stored(into, [made_and_told(self.library, by, "costs", into, parts)], {})
 
     def report(
         self,
@@ -197,8 +199,7 @@ class Handle:
 
         The scene's own page, if it lies there, is made anew: it shows the sentence of the report.
 
-        until : s, the end at which errors of motion are taken; None for the scene's horizon, or
-                about ten turns
+        until : s, the end of the motions; None for the scene's horizon, or about ten turns
         told  : hears what is being done
         Raises DeriveError for a time that has no sense, and for a motion without an end.
         """
@@ -219,8 +220,7 @@ class Handle:
         samples : fresh ones that stated errors are tried at
         Raises DeriveError if there is no C compiler.
         """
-        into, many, hears = path("folder", folder), samples_of(samples), listener(told)
-        return self._checked(into, many, hears)
+        return self._checked(path("folder", folder), samples_of(samples), listener(told))
 
     def _checked(
         self, folder: Path, samples: int, told: Callable[[str], None]

@@ -4,7 +4,7 @@ import re
 from functools import cache
 
 from derive.emit.files import scene_files
-from derive.library.external import second_of_step
+from derive.library.external import derivatives_of_step
 from derive.library.library import Library, library
 from derive.program.precision import F64
 from derive.scene import parse_scene
@@ -41,7 +41,7 @@ def made(kind: str) -> Library:
 @cache
 def texts(kind: str) -> dict[str, str]:
     given = made(kind)
-    every = scene_files(given, (), second=second_of_step(given))
+    every = scene_files(given, (), of=derivatives_of_step(given))
     return {path.partition("/")[2]: text for path, text in every.items()}
 
 

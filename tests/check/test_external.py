@@ -17,11 +17,15 @@ from derive.emit.c.source import c_files
 from derive.emit.casadi_module import imported
 from derive.emit.casadi_text import casadi_file
 from derive.emit.files import scene_files
-from derive.library.external import second_of_step
+from derive.library.external import derivatives_of_step
 from derive.library.library import library
+from derive.program.precision import F64
 from derive.scene import SceneError, parse_scene
-from tests.check.craft import LINES, OPERATIONS, UNIT, drawn, made, text_of, texts
-from tests.made import CATALOGUE
+from derive.verify.draw import with_motion
+from derive.verify.sample import samples
+from tests.check.craft import LINES, OPERATIONS, drawn, made, text_of, texts
+from tests.made import text_of as scene_text
+from tests.made import thinned
 
 
 def judged(kind: str, module: ModuleType, workshop: Path, found: dict[str, str]) -> str:
@@ -48,7 +52,11 @@ def test_so_are_those_of_a_full_tensor(workshop: Path) -> None:
     [
         ("hessian[44] = ", "hessian[44] = 1e-9 + "),
         ("put(res[1], entries, x_u_takes", "put(res[1], entries, u_x_takes"),
-        ("return diagonal_xn_u();", "return diagonal_u_adj();"),
+        ("return pattern_xn_u();", "return pattern_u_adj();"),
+        ("put_below(res[2], entries, xn_time_step_takes", "put_below(res[2], entries, x_adj_takes"),
+        ("put_sum(res[14], ", "put_below(res[14], "),
+        ("put_sum(res[21], ", "put_below(res[21], "),
+        ("change[c] = 0.0;", ""),
         ("res[0] + NX * k", "res[0] + NX * (STEPS - 1 - k)"),
     ],
 )
@@ -66,7 +74,7 @@ def test_names_and_their_order_are_those_that_casadi_gives(
     monkeypatch.setenv("XDG_CACHE_HOME", str(cache_of_three))
     own = module.external(3)
     given = [ca.SX.sym(own.name_in(k), own.sparsity_in(k)) for k in range(4)]
-    results = of_module(made("principal"), module, 3).call(given)
+    results = of_module(module, 3).call(given)
     twin = ca.Function("twin", given, results, own.name_in(), ["xn"])
     pairs = [(own, twin), (own.jacobian(), twin.jacobian())]
     pairs += [(own.reverse(1), twin.reverse(1))]
@@ -81,14 +89,16 @@ def test_names_and_their_order_are_those_that_casadi_gives(
 
 def test_the_wrapper_is_short_and_the_second_derivatives_cost_little() -> None:
     assert len(texts("principal")["craft_external.c"].splitlines()) < LINES
-    assert second_of_step(made("principal")).flops() < OPERATIONS
-    assert second_of_step(made("general")).flops() < OPERATIONS
+    for kind in ("principal", "general"):
+        lower = derivatives_of_step(made(kind)).lower
+        assert lower is not None
+        assert lower.flops() < OPERATIONS
 
 
 def test_without_the_option_files_are_what_they_were() -> None:
     given = made("principal")
     usual = scene_files(given, ())
-    wider = scene_files(given, (), second=second_of_step(given))
+    wider = scene_files(given, (), of=derivatives_of_step(given))
     differ = {name for name in wider if wider[name] != usual.get(name)}
     assert differ == {"craft/craft_external.c", "craft/craft_casadi.py"}
     assert OPTION in wider["craft/craft_casadi.py"].splitlines()[0]
@@ -115,15 +125,33 @@ def test_many_threads_share_nothing(
             assert same
 
 
-def test_what_is_asked_by_parameters_or_the_step_is_nan_and_shows(
+def test_parameters_that_no_body_has_give_nan_everywhere(
     module: ModuleType, cache_of_three: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(cache_of_three))
-    own = module.external(3)
-    _, _, by_step, by_parameters = own.jacobian()(np.ones((7, 3)), 0, 0.1, [1.4, 1.6, 1.8], 0)
-    assert np.isnan(np.array(by_step)).all()
-    assert np.isnan(np.array(by_parameters)).all()
-    assert np.isnan(np.array(own(np.ones((7, 3)), 0, 0.1, [-1, 1, 1]))).all()
+    own, given = module.external(3), (np.ones((7, 3)), 0, 0.1, [-1, 1, 1])
+    assert np.isnan(np.array(own(*given))[4:]).all()
+    *_, by_step, by_parameters = own.jacobian()(*given, 0)
+    assert np.isnan(np.array(by_step)).any()
+    assert np.isnan(np.array(by_parameters)).any()
+
+
+def test_derivatives_that_nobody_asks_for_are_not_computed(
+    module: ModuleType, workshop: Path
+) -> None:
+    found = dict(texts("principal"))
+    for spoilt in ("by_length", "by_parameters"):
+        found["craft_external.c"] = found["craft_external.c"].replace(
+            f"    if ({spoilt}) {{", f"    if ({spoilt}) {{ entries[0] = NAN;"
+        )
+    steps = ca.external("craft_steps", str(built("craft", found, 2, (workshop, find_compiler()))))
+    x, u, h = ca.MX.sym("x", 7, 2), ca.MX.sym("u", 3, 2), ca.MX.sym("h")
+    xn = steps(x, u, h, [1.4, 1.6, 1.8])
+    for by, finite in ((ca.veccat(x, u), True), (ca.veccat(x, u, h), False)):
+        first, second = ca.jacobian(ca.vec(xn), by), ca.hessian(ca.sumsqr(xn), by)[0]
+        function = ca.Function("both", [x, u, h], [first, second])
+        results = function(np.full((7, 2), 0.4), 0.1, 0.1)
+        assert all(np.isfinite(np.array(r)).all() == finite for r in map(ca.DM, results))
 
 
 def test_integers_of_32_bits_do_not_compile(workshop: Path) -> None:
@@ -145,20 +173,45 @@ def test_neither_does_the_float_build_nor_a_double_that_is_none(workshop: Path) 
 
 
 @pytest.mark.parametrize(
-    ("wanted", "says"),
+    ("wanted", "more", "says"),
     [
-        ('["step_rk4"]', "needs 'step_rk4_unit' in wanted"),
-        ('["step_rk4_unit"]', "needs 'step_rk4_unit_jacobian' in wanted"),
+        ('["step_lie"]', "", "needs 'step_rk4_unit' or 'step_rk4' in wanted, and neither is there"),
+        ('["step_rk4_unit"]', "", "needs 'step_rk4_unit_jacobian' in wanted"),
+        ('["step_rk4", "step_rk4_jacobian"]', 'form = "accurate"', "needs form = 'fast'"),
+        ('["step_rk4", "step_rk4_jacobian"]', 'emission = "compact"', "needs emission = 'fast'"),
     ],
 )
-def test_a_scene_without_the_step_is_refused_by_a_sentence(wanted: str, says: str) -> None:
+def test_a_scene_without_the_step_is_refused_by_a_sentence(
+    wanted: str, more: str, says: str
+) -> None:
+    text = f"{more}\n{text_of('principal', wanted)}"
     with pytest.raises(SceneError, match=says):
-        second_of_step(library(parse_scene(text_of("principal", wanted), "craft")))
+        derivatives_of_step(library(parse_scene(text, "craft")))
 
 
-@pytest.mark.long
-def test_so_is_one_whose_rates_rest_on_the_attitude() -> None:
-    text = (CATALOGUE / "rigid_body.toml").read_text(encoding="utf-8")
-    text = re.sub(r"wanted = \[.*?\]", f"wanted = {UNIT}", text, count=1, flags=re.DOTALL)
-    with pytest.raises(SceneError, match="one rests on 'attitude_w'"):
-        second_of_step(library(parse_scene(text, "rigid_body")))
+OTHERS = {
+    "heavy_body": "attitude",
+    "reaction_wheel_satellite": "wheels",
+    "cart_pendulum": "machine",
+}
+OTHERS |= {"heavy_top": "Euler angles", "gyrostat": "wheels and moments", "rigid_body": "position"}
+
+
+@pytest.mark.parametrize("name", thinned(OTHERS, 4))
+def test_steps_of_any_rates_have_casadis_derivatives(name: str, workshop: Path) -> None:
+    """Where no structure helps, second derivatives are carried along one change after another."""
+    wanted = 'wanted = ["step_rk4", "step_rk4_jacobian"]'
+    text = re.sub(r"wanted = \[.*?\]", wanted, scene_text(name), count=1, flags=re.DOTALL)
+    own = library(parse_scene(text, name))
+    every = scene_files(own, (), of=derivatives_of_step(own))
+    found = {path.partition("/")[2]: text for path, text in every.items()}
+    module = imported(f"{name}_casadi", found[f"{name}_casadi.py"], workshop)
+    each = with_motion(own, samples(own.mechanism, F64, 3, 0).each, F64)
+    at = (workshop, find_compiler())
+    told = compiled_steps(own, Files(found, "memory"), module, each, at)
+    assert told.outcome == "holds", told
+    spoilt = found | {f"{name}_external.c": re.sub(
+        r"entries\[1\] = ", "entries[1] = 1e-6 + ", found[f"{name}_external.c"]
+    )}  # fmt: skip
+    told = compiled_steps(own, Files(spoilt, "memory"), module, each, at)
+    assert told.outcome == "FAILS"

@@ -12,7 +12,7 @@ from tests.pages import blocks, printed, told
 
 PAGE = Path(__file__).parents[2] / "docs" / "control.md"
 BLOCKS = blocks(PAGE)
-LONGEST_PAGE = 100
+LONGEST_PAGE = 120
 
 
 def test_every_kind_of_block_is_run_and_the_page_is_short() -> None:

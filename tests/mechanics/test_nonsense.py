@@ -141,7 +141,7 @@ def test_a_spring_whose_ends_coincide_is_refused(name: str) -> None:
 def test_a_spring_without_a_length_whose_ends_coincide_always_is_warned_about(
     at: str, says: tuple[str, ...]
 ) -> None:
-    plain = PLAIN.replace("k = { unit = \"N/m\", range = [-1, 2] }\n", "")
+    plain = PLAIN.replace('k = { unit = "N/m", range = [-1, 2] }\n', "")
     spring = f's = {{ on = "bob", spring = 1, at = ["0", "0", "{at}"], to = ["0", "0", "{at}"] }}\n'
     assert mechanism(parse_scene(plain + spring, "odd")).doubts() == says
 

@@ -107,6 +107,17 @@ def test_a_scene_of_a_dict_is_generated_and_its_file_makes_the_same(tmp_path: Pa
         ball.generate(file)
 
 
+def test_generate_adds_c_for_casadi_where_it_is_asked_for(tmp_path: Path) -> None:
+    wanted = ["step_rk4", "step_rk4_jacobian"]
+    made = derive.load(BALL | {"wanted": wanted}, "ball").generate(
+        tmp_path, samples=64, parts="casadi-external"
+    )
+    assert "ball/ball_external.c" in made.files
+    assert "def external(" in (tmp_path / "ball" / "ball_casadi.py").read_text(encoding="utf-8")
+    with pytest.raises(derive.DeriveError, match="parts must be"):
+        derive.load(BALL, "ball").generate(tmp_path, samples=64, parts="all")  # type: ignore[arg-type]
+
+
 def test_importing_the_package_imports_nothing_heavy() -> None:
     heavy = "{'numpy', 'sympy', 'casadi', 'flint', 'networkx', 'jinja2', 'rich'}"
     code = f"import sys, derive; print(sorted({heavy} & sys.modules.keys()))"

@@ -203,10 +203,7 @@ QUICK = [("heavy_top", "linearised"), ("attitude", "step_rk4"), ("edge_runner_fl
 
 @pytest.mark.parametrize(
     "case",
-    [
-        pytest.param(case, marks=() if case in QUICK else pytest.mark.long)
-        for case in ADVISED
-    ],
+    [pytest.param(case, marks=() if case in QUICK else pytest.mark.long) for case in ADVISED],
 )
 def test_advice_can_be_followed_and_is_given_where_it_can(case: tuple[str, str]) -> None:
     advice, refused = followed(*case)

@@ -1,45 +1,36 @@
 """CasADi's external interface in C: all steps of a horizon in one call, with exact derivatives.
 
-Steps do not meet, so all patterns are blocks on the diagonal, and values stand step after step.
-By the length of the step and by parameters nothing is differentiated: what is asked is NaN.
+Steps do not meet but in their length and in parameters, and values stand step after step.
 """
 
-import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from textwrap import wrap
 
+from derive.emit.c.blocks import LONGEST, Sizes, first_entries, horizon_block, second_entries
+from derive.emit.c.joined import joined
+from derive.emit.c.scope import declared_in_c, require_free
 from derive.emit.c.signature import CNames, prototype
 from derive.emit.c.source import first_line
 from derive.emit.c.text import function_body
 from derive.emit.templates import TEMPLATES
-from derive.library.external import CASADI, STEP, WITH_JACOBIAN
+from derive.library.external import (
+    BY_LENGTH,
+    BY_PARAMETERS,
+    BY_STATE,
+    CASADI,
+    StepDerivatives,
+    step_inputs,
+    step_name,
+)
 from derive.library.library import Library
+from derive.motion.along import ADJOINT, CHANGE
 from derive.program.precision import F64
-from derive.program.program import Measurement, Program, Quantity, Sparsity, placed
+from derive.program.program import Measurement, Program, Quantity, placed
 
-MADE = re.compile(r"const double (\w+) = (.*);")
-NAME = re.compile(r"\b[a-z]+\d+\b")
-LONGEST = 92
 OPTION = f"--{CASADI}"
 GIVEN = ("x", "u", "time_step", "parameters")
 SHAPES = {"x": ("NX", "STEPS"), "u": ("NU", "STEPS"), "xn": ("NX", "STEPS")}
 SHAPES |= {"time_step": ("1", "1"), "parameters": ("NP", "1")}
-
-
-@dataclass(frozen=True)
-class StepEntries:
-    """Entries of a matrix that every step has in its own block, in compressed-column order.
-
-    takes : for each entry, its place among the kernel's nonzeros
-    """
-
-    name: str
-    rows: int
-    columns: int
-    colind: tuple[int, ...]
-    row: tuple[int, ...]
-    takes: tuple[int, ...]
 
 
 def external_name(scene: str) -> str:
@@ -48,168 +39,174 @@ def external_name(scene: str) -> str:
 
 
 def external_file(
-    library: Library, second: Program, figures: Sequence[Measurement]
+    library: Library, of: StepDerivatives, figures: Sequence[Measurement]
 ) -> tuple[str, str]:
     """Return name and text of C that gives CasADi's interface beside the scene's own C."""
-    names, scene = CNames(library.scene.name), library.scene.name
-    states, inputs = sizes(library)
-    step, jacobian = library[STEP], library[WITH_JACOBIAN]
-    blocks = [*_of_jacobian(jacobian, states, inputs), *_of_second(second, states, inputs)]
+    names, scene, known = CNames(library.scene.name), library.scene.name, sizes(library)
+    first, first_size = first_entries(of, known, own_names(library))
+    second, second_size = second_entries(of, known)
+    by = [q for q in GIVEN if q != "parameters" or known.parameters]
+    slopes = [horizon_block(f"xn_{q}", first, "xn", q, known) for q in by]
+    back = {(k, i): at for (i, k), at in first.items()}
+    turned = [(_place(q, "xn"), horizon_block(f"{q}_adj", back, q, "xn", known)) for q in by]
+    bends = [(_place(a, b), horizon_block(f"{a}_{b}", second, a, b, known)) for a in by for b in by]
     text = TEMPLATES.get_template("external.c.jinja").render(
         first_line=first_line(library, figures, (OPTION,)),
         title=library.scene.title,
         header=names.file(F64, "h"),
         name=external_name(scene),
-        nx=states,
-        nu=inputs,
-        np=sum(len(q.components) for q in library.setup.inputs) if library.constants else 0,
+        nx=known.states,
+        nu=known.inputs,
+        np=known.parameters,
         constants=f"{scene}_constants_f64" if library.constants else "",
         setup=f"{scene}_setup_f64",
-        setup_inputs=_setup_inputs(library),
-        step=_call(step, names, library),
-        jacobian=_call(jacobian, names, library),
-        jacobian_size=len(jacobian.outputs[-1].components),
-        second=_call(second, names, library),
-        second_size=len(second.results),
-        kernel=[prototype(second, names, F64), *joined(function_body(second, scene, F64))],
-        blocks=[(b, _arrays(b)) for b in blocks],
-        functions=_functions(external_name(scene)),
-    )
+        setup_inputs=[f"parameters[{k}]" for k in range(known.parameters)],
+        step=_call(of.step, library, "xn"),
+        kernels=[_kernel(program, names) for program in of.programs()],
+        ways=[("firsts", *_first(of, library)), ("seconds", *_second(of, library))],
+        first_size=first_size,
+        second_size=second_size,
+        slopes=slopes,
+        bends=bends,
+        turned=turned,
+        blocks=[*slopes, *(b for _, b in turned), *(b for _, b in bends)],
+        functions=_functions(external_name(scene), {b.name for b in slopes}
+                             | {b.name for _, b in (*turned, *bends)}),
+    )  # fmt: skip
     return f"{scene}_external.c", text
+
+
+def _place(row: str, column: str) -> int:
+    """Return which output of jac_adj1 has the derivatives of one adjoint by something."""
+    columns = (*GIVEN, "out_xn", "xn")
+    return len(columns) * GIVEN.index(row) + columns.index(column)
+
+
+def _kernel(program: Program, names: CNames) -> list[str]:
+    lines = function_body(program, names.scene, F64)
+    require_free(names.scene, program.name, [q.name for q in program.inputs], declared_in_c(lines))
+    return [prototype(program, names, F64), *joined(lines)]
 
 
 def described(library: Library) -> dict[str, object]:
     """Return what the module says of the compiled steps, and what it compiles."""
-    (states, inputs), scene = sizes(library), library.scene.name
-    own = [c for q in library.vocabulary.states for c in q.components]
-    names = CNames(scene)
+    names = CNames(library.scene.name)
+    known = sizes(library)
     return {
-        "name": external_name(scene),
-        "steps": f"the step {STEP}",
-        "sources": [names.file(F64, "h"), names.file(F64, "c"), f"{scene}_external.c"],
-        "nx": states,
-        "nu": inputs,
-        "states": ", ".join(own),
-        "inputs": ", ".join(input_components(library)) or "nothing",
+        "name": external_name(names.scene),
+        "steps": f"the step {step_name(library.scene)}",
+        "sources": [names.file(F64, "h"), names.file(F64, "c"), f"{names.scene}_external.c"],
+        "nx": known.states,
+        "nu": known.inputs,
     }
 
 
-def sizes(library: Library) -> tuple[int, int]:
-    """Return the numbers of states and of inputs of a step."""
-    states = library.vocabulary.states
-    return sum(len(q.components) for q in states), len(input_components(library))
+def sizes(library: Library) -> Sizes:
+    """Return the numbers of states, inputs and parameters of a step."""
+    count = [sum(len(q.components) for q in each) for each in _quantities(library)]
+    return Sizes(*count)
 
 
-def input_components(library: Library) -> list[str]:
-    """Return what ``u`` holds: what the step is given beside state, constants and length."""
-    own = {"time_step", *(q.name for q in library.vocabulary.states)}
-    given = (q for q in library["state_rate"].inputs if q.role != "constants")
-    return [c for q in given if q.name not in own for c in q.components]
+def _quantities(library: Library) -> tuple[tuple[Quantity, ...], ...]:
+    parameters = library.setup.inputs if library.constants else ()
+    return library.vocabulary.states, step_inputs(library), parameters
 
 
-def _setup_inputs(library: Library) -> list[str]:
-    places = enumerate(c for q in library.setup.inputs for c in q.components)
-    return [f"parameters[{k}]" for k, _ in places]
+def own_names(library: Library) -> list[str]:
+    """Return what ``x`` and ``u`` hold."""
+    return [c for each in _quantities(library)[:2] for q in each for c in q.components]
 
 
-def _call(program: Program, names: CNames, library: Library) -> str:
-    """Return the call of a program for one step, from x, u, h into xn and what is behind it."""
-    where = {q.name: f"x + {at.start}" for q, at in placed(library.vocabulary.states)}
-    given = input_components(library)
-    arguments = []
-    for q in program.inputs:
-        if q.role == "constants":
-            arguments.append("&constants")
-        elif q.name in where:
-            arguments.append(where[q.name])
-        elif q.name in ("time_step", "adjoint"):
-            arguments.append({"time_step": "h", "adjoint": "adjoint"}[q.name])
-        else:
-            at = given.index(q.components[0])
-            arguments.append(f"u + {at}" if q.shape else f"u[{at}]")
-    arguments += [_result(q, place) for q, place in placed(program.outputs)]
-    return f"{names.symbol(program.name, F64)}({', '.join(arguments)})"
+def _call(program: Program, library: Library, into: str) -> str:
+    """Return the call of a program for one step, from x, u, h into what it gives last."""
+    states, inputs, parameters = _quantities(library)
+    where = {"time_step": "h", ADJOINT: ADJOINT, CHANGE: CHANGE}
+    for array, quantities in (("x", states), ("u", inputs), ("made->parameters", parameters)):
+        for q, at in placed(quantities):
+            where[q.name] = f"{array} + {at.start}" if q.shape else f"{array}[{at.start}]"
+    given = ["&constants" if q.role == "constants" else where[q.name] for q in program.inputs]
+    outputs = [(q, place.start) for q, place in placed(program.outputs)]
+    results = [f"xn + {at}" for _, at in outputs[:-1]]
+    last = f"xn + {outputs[-1][1]}" if into == "xn" else into
+    symbol = CNames(library.scene.name).symbol(program.name, F64)
+    return f"{symbol}({', '.join([*given, *results, last])})"
 
 
-def _result(q: Quantity, place: slice) -> str:
-    if q.name in ("jacobian", "hessian"):
-        return "entries"
-    return f"xn + {place.start}"
+def _first(of: StepDerivatives, library: Library) -> tuple[str, list[dict[str, object]]]:
+    """Return how C fills a step's first derivatives: what it calls at once, and along changes."""
+    known = sizes(library)
+    start = len((of.jacobian.sparsity or {})["jacobian"].row)
+    parts = [_part(of.first[BY_LENGTH], library, "by_length", start, 1)]
+    if known.parameters:
+        start += known.states
+        parts.append(
+            _part(of.first[BY_PARAMETERS], library, BY_PARAMETERS, start, known.parameters)
+        )
+    return _call(of.jacobian, library, "entries"), parts
 
 
-def _of_jacobian(program: Program, states: int, inputs: int) -> list[StepEntries]:
-    pattern = (program.sparsity or {})["jacobian"]
-    entries = {place: at for at, place in enumerate(pattern.places())}
-    x, u = range(states), range(states, states + inputs)
-    turned = {(k, i): at for (i, k), at in entries.items()}
-    return [
-        _block("xn_x", entries, x, x),
-        _block("xn_u", entries, x, u),
-        _block("x_adj", turned, x, x),
-        _block("u_adj", turned, u, x),
-    ]
+def _second(of: StepDerivatives, library: Library) -> tuple[str, list[dict[str, object]]]:
+    known, once = sizes(library), ""
+    if of.lower is not None:
+        once, start = _call(of.lower, library, "entries"), len(of.lower.results)
+        parts = [_part(of.second[BY_LENGTH], library, "by_length", start, 1)]
+    else:
+        start = known.own * (known.own - 1)
+        asked = "by_state || by_length"
+        whole = _part(of.second[BY_STATE], library, asked, 0, known.own)
+        last = known.own - 1
+        whole |= {"begin": f"(by_state ? 0 : {last})", "end": f"(by_length ? {known.own} : {last})"}
+        parts = [whole]
+    if known.parameters:
+        program = of.second[BY_PARAMETERS]
+        start += known.own
+        parts.append(_part(program, library, BY_PARAMETERS, start, known.parameters))
+    return once, parts
 
 
-def _of_second(program: Program, states: int, inputs: int) -> list[StepEntries]:
-    pattern: Sparsity = (program.sparsity or {})["hessian"]
-    lower = {place: at for at, place in enumerate(pattern.places())}
-    entries = lower | {(k, i): at for (i, k), at in lower.items()}
-    x, u = range(states), range(states, states + inputs)
-    return [
-        _block(f"{a}_{b}", entries, rows, columns)
-        for a, rows in (("x", x), ("u", u))
-        for b, columns in (("x", x), ("u", u))
-    ]
+def _part(
+    program: Program, library: Library, asked: str, start: int, changes: int
+) -> dict[str, object]:
+    return {
+        "asked": asked,
+        "call": _call(program, library, "column"),
+        "start": start,
+        "rows": len(program.results),
+        "changes": changes if changes > 1 else 0,
+        "begin": "0",
+        "end": str(changes),
+    }
 
 
-def _block(
-    name: str, entries: dict[tuple[int, int], int], rows: range, columns: range
-) -> StepEntries:
-    colind, row, takes = [0], list[int](), list[int]()
-    for k in columns:
-        found = [(i, entries[i, k]) for i in rows if (i, k) in entries]
-        row += [i - rows.start for i, _ in found]
-        takes += [at for _, at in found]
-        colind.append(len(row))
-    return StepEntries(name, len(rows), len(columns), tuple(colind), tuple(row), tuple(takes))
-
-
-def _arrays(block: StepEntries) -> list[str]:
-    """Return a block's arrays as C; none is empty, as C has it."""
-    each = (("colind", block.colind), ("row", block.row), ("takes", block.takes))
-    found = list[str]()
-    for name, values in each:
-        numbers = wrap(", ".join(map(str, values or (0,))), LONGEST)
-        found.append(f"static const int {block.name}_{name}[{len(values) or 1}] = {{")
-        found += [*(f"    {line}" for line in numbers), "};"]
-    return found
-
-
-def _functions(name: str) -> list[dict[str, object]]:
+def _functions(name: str, blocks: set[str]) -> list[dict[str, object]]:
     """Return what CasADi asks of each function: names and patterns of what goes in and out."""
     back = [*GIVEN, "out_xn", "adj_xn"]
     adjoint = [f"adj_{q}" for q in GIVEN]
+    outs = _matrices([*back, *(f"out_{q}" for q in adjoint)])
     return [
-        {"name": name, "given": _matrices(GIVEN), "found": _matrices(["xn"])},
-        {
-            "name": f"jac_{name}",
-            "given": _matrices([*GIVEN, "out_xn"]),
-            "found": _blocks(["xn"], GIVEN),
-        },
-        {"name": f"adj1_{name}", "given": _matrices(back), "found": _matrices(adjoint)},
-        {
-            "name": f"jac_adj1_{name}",
-            "given": _matrices([*back, *(f"out_{q}" for q in adjoint)]),
-            "found": _blocks(adjoint, back),
-        },
+        _function(name, _matrices(GIVEN), _matrices(["xn"])),
+        _function(f"jac_{name}", _matrices([*GIVEN, "out_xn"]), _blocks(["xn"], GIVEN, blocks)),
+        _function(f"adj1_{name}", _matrices(back), _matrices(adjoint)),
+        _function(f"jac_adj1_{name}", outs, _blocks(adjoint, back, blocks)),
     ]
+
+
+Matrices = list[tuple[str, str]]
+
+
+def _function(name: str, given: Matrices, found: Matrices) -> dict[str, object]:
+    names = {
+        way: wrap(", ".join(f'"{n}"' for n, _ in each), LONGEST)
+        for way, each in (("in", given), ("out", found))
+    }
+    return {"name": name, "given": given, "found": found, "names": names}
 
 
 def _shape(name: str) -> tuple[str, str]:
     return SHAPES[name.removeprefix("out_").removeprefix("adj_")]
 
 
-def _matrices(names: Sequence[str]) -> list[tuple[str, str]]:
+def _matrices(names: Sequence[str]) -> Matrices:
     """Return names with their patterns: dense, or without entries what holds an output's place."""
     return [(n, _empty(*_shape(n)) if n.startswith("out_") else _dense(*_shape(n))) for n in names]
 
@@ -223,47 +220,14 @@ def _empty(rows: str, columns: str) -> str:
     return f"{{ static const casadi_int made[{size}] = {{{rows}, {columns}}}; return made; }}"
 
 
-DIAGONAL = {
-    ("xn", "x"): "xn_x", ("xn", "u"): "xn_u",
-    ("adj_x", "x"): "x_x", ("adj_x", "u"): "x_u", ("adj_x", "adj_xn"): "x_adj",
-    ("adj_u", "x"): "u_x", ("adj_u", "u"): "u_u", ("adj_u", "adj_xn"): "u_adj",
-}  # fmt: skip
-
-
-def _blocks(rows: Sequence[str], columns: Sequence[str]) -> list[tuple[str, str]]:
+def _blocks(rows: Sequence[str], columns: Sequence[str], blocks: set[str]) -> Matrices:
     """Return the derivatives of each of some results by each input, with their patterns."""
     found = []
     for row in rows:
         for column in columns:
             size = [" * ".join(x for x in _shape(q) if x != "1") or "1" for q in (row, column)]
-            own = DIAGONAL.get((row, column))
-            pattern = f"return diagonal_{own}();" if own else _dense(*size)
-            found.append((f"jac_{row}_{column}", _empty(*size) if column == "out_xn" else pattern))
-    return found
-
-
-def joined(lines: Sequence[str]) -> list[str]:
-    """Return lines of constants with each that is read once put where it is read, if it fits."""
-    uses: dict[str, int] = {}
-    for line in lines:
-        for name in NAME.findall(line):
-            uses[name] = uses.get(name, 0) + 1
-    waiting, found = dict[str, str](), list[str]()
-    for line in lines:
-        whole = NAME.sub(lambda m: waiting.get(m[0], m[0]), line)
-        if len(whole) > LONGEST:
-            early = [n for n in NAME.findall(line) if n in waiting]
-            keep = max(early, key=lambda n: len(waiting[n]))
-            found.append(f"const double {keep} = {waiting.pop(keep)[1:-1]};")
-            whole = NAME.sub(lambda m: waiting.get(m[0], m[0]), line)
-            for name in [n for n in early if n in waiting and len(whole) > LONGEST]:
-                found.append(f"const double {name} = {waiting.pop(name)[1:-1]};")
-                whole = NAME.sub(lambda m: waiting.get(m[0], m[0]), line)
-        for name in NAME.findall(line):
-            waiting.pop(name, None)
-        made = MADE.fullmatch(whole)
-        if made and uses[made[1]] == 2:
-            waiting[made[1]] = f"({made[2]})"
-        else:
-            found.append(whole)
+            by = "adj" if column == "adj_xn" else column
+            own = f"{row.removeprefix('adj_')}_{by}"
+            pattern = f"return pattern_{own}();" if own in blocks else _empty(*size)
+            found.append((f"jac_{row}_{column}", pattern))
     return found

@@ -2,29 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from derive.motion.runge_kutta.matrices import Matrix, NumberRow, zeros
+from derive.motion.runge_kutta.matrices import Matrix, NumberRow, product, zeros
 from derive.motion.runge_kutta.system import System, pattern_of, slopes_of
-from derive.program.operations import cos, sin, sqrt
 from derive.program.program import Op, Operand
 from derive.program.recorded import called
+from derive.program.slopes import partials
 from derive.program.tape import Number, Tape, number
-
-SlopeOf = Callable[[Sequence[Number], Sequence[Number]], Number]
-RULES: Mapping[str, SlopeOf] = {
-    "add": lambda _, d: d[0] + d[1],
-    "sub": lambda _, d: d[0] - d[1],
-    "neg": lambda _, d: -d[0],
-    "mul": lambda v, d: d[0] * v[1] + v[0] * d[1],
-    "div": lambda v, d: (d[0] - (v[0] / v[1]) * d[1]) / v[1],
-    "sin": lambda v, d: cos(v[0]) * d[0],
-    "cos": lambda v, d: -(sin(v[0]) * d[0]),
-    "sqrt": lambda v, d: d[0] / (2 * sqrt(v[0])),
-}
-"""The derivative of an operation from its operands and their derivatives."""
 
 
 def curvature(
@@ -68,7 +55,8 @@ def _slopes_of_slopes(
                 slopes.get(o, number(0)) if isinstance(o, str) else number(0) for o in op.operands
             ]
             if any(x.exact != 0 for x in inner):
-                slopes[op.result] = _rule(op)([value(o) for o in op.operands], inner)
+                by_each = partials(op, [value(o) for o in op.operands], value(op.result))
+                slopes[op.result] = product([list(by_each)], [[x] for x in inner])[0][0]
         for (row, column), result in zip(
             pattern.places(), program.results[len(system.names) :], strict=True
         ):
@@ -76,9 +64,3 @@ def _slopes_of_slopes(
             name = pattern.columns[column]
             if found is not None and found.exact != 0 and name in names[: place + 1]:
                 yield row, name, by, found
-
-
-def _rule(op: Op) -> SlopeOf:
-    if op.operator not in RULES:
-        raise ValueError(f"second derivatives of '{op.operator}' are not known here")
-    return RULES[op.operator]

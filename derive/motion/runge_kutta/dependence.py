@@ -32,23 +32,24 @@ def free_omega(system: System) -> slice | None:
 
 def closure(system: System, wanted: set[str]) -> set[str]:
     """Return the states that the motion of the ``wanted`` ones rests on, these included."""
-    own = dict(zip(system.names, _rests_on(system.rate), strict=True))
+    own = dict(zip(system.names, rests_on(system.rate), strict=True))
     found = set(wanted)
     while more := (set[str]().union(*(own[name] for name in found)) & own.keys()) - found:
         found |= more
     return found
 
 
-def _rests_on(rate: Program) -> list[set[str]]:
+def rests_on(program: Program) -> list[set[str]]:
+    """Return the inputs that each result rests on."""
     known: dict[str, set[str]] = {}
 
     def below(operand: Operand) -> set[str]:
         return known.get(operand, {operand}) if isinstance(operand, str) else set()
 
-    for line in rate.ops:
+    for line in program.ops:
         if isinstance(line, Op):
             known[line.result] = set[str]().union(*map(below, line.operands))
-    return [below(result) for result in rate.results]
+    return [below(result) for result in program.results]
 
 
 def attitude_and_omega(system: System) -> tuple[slice, slice] | None:

@@ -75,9 +75,7 @@ def test_a_program_has_the_bits_of_this_machine_and_the_figures_of_the_readme(na
 def test_the_filter_knows_how_wrong_it_is_and_is_better_than_its_sensors() -> None:
     (told, _) = ran("estimator")
     error, expected = told["error"][0], told["expected"][0]
-    assert (
-        expected / 1.3 < error < 1.3 * expected
-    )  # of some tens of independent errors
+    assert expected / 1.3 < error < 1.3 * expected  # of some tens of independent errors
     assert error < 100 * 3**0.5 / 2  # of the star tracker, on three axes, in millionths
 
 
