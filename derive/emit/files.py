@@ -14,6 +14,7 @@ from difflib import unified_diff
 from pathlib import Path
 
 from derive.emit.c.external import external_file
+from derive.emit.c.relations import every_relation
 from derive.emit.c.source import c_files
 from derive.emit.casadi_text import casadi_file
 from derive.emit.manifest import manifest
@@ -60,7 +61,7 @@ def scene_files(
     of     : the derivatives of a step, where C for CasADi is to lie beside the rest
     """
     name = library.scene.name
-    texts = c_files(library, figures, by.on_target) | {
+    texts = c_files(library, figures, by.on_target, every_relation(library)) | {
         f"{name}_casadi.py": casadi_file(library, figures, of),
         f"{name}.json": manifest(library, figures, digest, by.on_target),
         f"{name}.html": scene_page(library, figures, by),

@@ -34,13 +34,16 @@ def comment(
     bodies: int,
     costs: Sequence[Cost] = (),
     potential: str = "",
+    here: Sequence[str] = (),
 ) -> str:
     """Return the comment block of ``program`` of a scene of so many bodies, as C text.
 
     costs : what it costs on cores, as far as is known
+    here : what it returns in this scene, equations in its arguments
     potential : how the scene counts the potential energy, "" if it has none
     """
     lines = [program.says, *_arguments(program), *_postconditions(program, bodies)]
+    lines += [line for each in here for line in _labelled("In this scene:", each)]
     if potential and any(q.name in WITH_POTENTIAL for q in program.outputs):
         lines += _labelled("Energy:", potential)
     if program.makes("constants"):

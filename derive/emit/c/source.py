@@ -9,6 +9,7 @@ from derive import __version__
 from derive.emit.c.columns import within_columns
 from derive.emit.c.comment import comment, dense_comment, wrapped
 from derive.emit.c.example import example
+from derive.emit.c.relations import UNSAID, Relations
 from derive.emit.c.scope import declared_in_c, require_free, require_no_symbol
 from derive.emit.c.signature import CNames, dense, dense_size, prototype
 from derive.emit.c.text import constant_array, function_body, pair_body, pair_functions
@@ -31,16 +32,20 @@ JACOBIAN_DENSE = "The whole matrix, column by column."
 
 
 def c_files(
-    library: Library, figures: Sequence[Measurement], costs: OnTarget = UNKNOWN
+    library: Library,
+    figures: Sequence[Measurement],
+    costs: OnTarget = UNKNOWN,
+    here: Relations = UNSAID,
 ) -> dict[str, str]:
     """Return name and text of the scene's C files, both precisions.
 
     costs : what functions cost on cores, if it is known
+    here  : equations of functions for readers of headers, by name
     """
     files: dict[str, str] = {}
     for precision in PRECISIONS:
         own = [m for m in figures if m.precision == precision.name]
-        files |= _pair_of_files(library, precision, own, costs)
+        files |= _pair_of_files(library, precision, own, costs, here)
     return files
 
 
@@ -51,12 +56,16 @@ def sources_of(library: Library) -> dict[str, str]:
 
 
 def _pair_of_files(
-    library: Library, precision: Precision, figures: Sequence[Measurement], costs: OnTarget
+    library: Library,
+    precision: Precision,
+    figures: Sequence[Measurement],
+    costs: OnTarget,
+    here: Relations,
 ) -> dict[str, str]:
     names = CNames(library.scene.name)
     source = within_columns(_source(library, names, precision, figures))
     digest = hashlib.sha256(source.encode()).hexdigest()[:16]
-    header = within_columns(_header(library, names, precision, figures, costs, digest))
+    header = within_columns(_header(library, names, precision, figures, (costs, here), digest))
     every = [q for p in (library.setup, *library.printed()) for q in (*p.inputs, *p.outputs)]
     given = [name for q in every for name in (q.name, *q.components)]
     require_no_symbol(names.scene, given, header + source)
@@ -92,13 +101,15 @@ def _header(
     names: CNames,
     precision: Precision,
     figures: Sequence[Measurement],
-    costs: OnTarget,
+    known: tuple[OnTarget, Relations],
     digest: str,
 ) -> str:
     described, bodies = [], len(library.scene.bodies)
+    costs, here = known
     for program in library.emitted():
         own = costs.of(program.name, precision.name)
-        says = comment(program, figures, bodies, own, potential_said(library.scene))
+        told = potential_said(library.scene), here.get(program.name, ())
+        says = comment(program, figures, bodies, own, *told)
         described.append((says, prototype(program, names, precision)))
         if program.sparsity:
             whole = dense(program)

@@ -68,6 +68,11 @@ def sympy_equation_mathml(left: Expr, right: Expr, names: Mapping[Symbol, str]) 
     return line(pieces(Layout("equal", sides)))
 
 
+def sympy_equation_text(left: Expr, right: Expr, names: Mapping[Symbol, str]) -> str:
+    """Return ``left = right`` in SymPy expressions as one line of ASCII."""
+    return plain(Layout("equal", (symbolic_layout(left, names), symbolic_layout(right, names))))
+
+
 def name_mathml(name: str, style: str) -> str:
     """Return the name of a quantity as inline MathML; style is scalar, vector or tensor."""
     return math(row(Layout("name", text=name, style=style)))

@@ -6,7 +6,7 @@ from sympy import Symbol
 
 from derive.emit.equations.fitted import TwoSides
 from derive.emit.equations.naming import Book, with_names
-from derive.emit.equations.section import section
+from derive.emit.equations.section import Section, section
 from derive.emit.notation import equation_mathml, sympy_equation_mathml
 from derive.emit.page.equation import is_short
 from derive.library.library import Library
@@ -21,15 +21,10 @@ def at_a_glance(library: Library, base: str) -> list[str]:
     An answer that is given or zero says nothing; what it is made of stands before it.
     """
     one = with_names(section(library, base), Book())
-    defined = {left: (left, right) for left, right in one.equations if one.assigns((left, right))}
-    shown: dict[TwoSides, None] = {}
-    for symbol in one.answers.values():
-        chain = _chain(symbol, defined, ())
-        whole = {**shown, **dict.fromkeys(chain)}
-        if len(whole) <= MOST and all(is_short(right) for _, right in chain):
-            shown = whole
+    shown = short_forms(one, MOST)
     if shown:
         return [sympy_equation_mathml(left, right, one.names) for left, right in shown]
+    defined = _defined(one)
     ends = [defined[s] for s in one.answers.values() if s in defined]
     sums = [e for e in ends if e[1].is_Add and all(term.is_Symbol for term in e[1].args)]
     parts = sorted(one.parts, key=lambda part: part.kind != "balance")
@@ -37,6 +32,21 @@ def at_a_glance(library: Library, base: str) -> list[str]:
     one_says_all = bool(parts) and parts[0].kind == "balance"
     laws = [s for n, s in enumerate(steps) if s not in steps[:n]][: 1 if one_says_all else MOST]
     return [sympy_equation_mathml(*e, one.names) for e in sums] + [*map(equation_mathml, laws)]
+
+
+def short_forms(one: Section, most: int) -> list[TwoSides]:
+    """Return the closed forms of as many answers as fit on so many lines, where these are short."""
+    defined, shown = _defined(one), dict[TwoSides, None]()
+    for symbol in one.answers.values():
+        chain = _chain(symbol, defined, ())
+        whole = {**shown, **dict.fromkeys(chain)}
+        if len(whole) <= most and all(is_short(right) for _, right in chain):
+            shown = whole
+    return [*shown]
+
+
+def _defined(one: Section) -> dict[Symbol, TwoSides]:
+    return {left: (left, right) for left, right in one.equations if one.assigns((left, right))}
 
 
 def _chain(

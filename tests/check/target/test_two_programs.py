@@ -65,6 +65,7 @@ def test_a_program_has_the_bits_of_this_machine_and_the_figures_of_the_readme(na
     assert compared(here) == compared(there)
     (row,) = re.findall(rf"\| \[`{name}`\].*", README)
     assert f"| {there['error'][0]} µrad" in row
+    assert "without" not in there or f"{there['without'][0]} by feedback alone" in row
     least, most = (round(counted(M4F, there[key][0]), -2) for key in ("least", "most"))
     found = re.search(r"\| (\d+) to (\d+) \|", row)
     assert found is not None
