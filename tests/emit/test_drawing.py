@@ -75,6 +75,11 @@ def boxes(picture: ET.Element) -> list[tuple[str, Box]]:
     return found
 
 
+def wider(box: Box) -> Box:
+    """Return a name's place with what keeps it apart from others: the gap between two words."""
+    return box[0] - 3.5, box[1] - 3.5, box[2] + 3.5, box[3] + 3.5
+
+
 def collide(a: Box, b: Box) -> bool:
     return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
@@ -93,6 +98,7 @@ def test_names_that_want_one_place_are_parted_and_kept_within() -> None:
     found = placed_labels(wanted, [], (120.0, 90.0))
     assert not any(collide(a.box, b.box) for a, b in combinations(found, 2))
     assert all(min(label.box) >= 0 for label in found)
+    assert not any(collide(wider(a.box), b.box) for a, b in combinations(found, 2))
     assert collide((0, 0, 2, 2), (1, 1, 3, 3))
     assert len(found) == 6
     assert 0 < len(placed_labels(wanted, [], (60.0, 25.0))) < 6  # no room for all

@@ -13,7 +13,7 @@ _NARROW, _WIDE = frozenset("fijlrt.,'I1 "), frozenset("mwMWNQOGω")
 _EM = {"narrow": 0.42, "usual": 0.68, "wide": 1.0}
 """Widths of letters of DejaVu Serif, the widest of the fonts that the style names, and more."""
 _GAPS = (3.0, 7.0, 12.0, 18.0, 26.0, 36.0, 50.0, 70.0)
-_CLOSE = 1.5  # px between two names
+_CLOSE = 4.0  # px between two names, lest a crowd of them at a hinge reads as one
 COVERED = 8.0  # px that a name goes farther rather than over three px of a line
 
 Rectangle = tuple[float, float, float, float]
