@@ -102,6 +102,15 @@ int acrobot_setup_f64(double m_1, double m_2, double l_1, double c_1, double c_2
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * In this scene: b = T + m_2*(g*sin(q_1 + q_2) - l_1*q_1_rate^2*sin(q_2))*c_2
+ * In this scene: mu = I_1 + I_2 + m_1*c_1^2 + m_2*(l_1^2 + c_2^2 + 2*l_1*c_2*cos(q_2))
+ * In this scene: Delta = I_2^2 + (2*m_2*(c_2 + l_1*cos(q_2))*c_2 - mu)*I_2 + m_2*(m_2*(c_2^2 +
+ *            2*l_1*c_2*cos(q_2) + l_1^2*cos(q_2)^2) - mu)*c_2^2
+ * In this scene: h = -m_1*c_1*g*sin(q_1) - m_2*(l_1*g*sin(q_1) + (g*sin(q_1 + q_2) +
+ *            l_1*(2*q_1_rate + q_2_rate)*q_2_rate*sin(q_2))*c_2)
+ * In this scene: q_1_dot_rate = ((I_2 + m_2*c_2^2)*h + b*(I_2 + m_2*(c_2 +
+ *            l_1*cos(q_2))*c_2))/Delta
+ * In this scene: q_2_dot_rate = -(b*mu + (I_2 + m_2*(c_2 + l_1*cos(q_2))*c_2)*h)/Delta
  * Error: median 0.84, largest 14 u of the largest product or sum in the equation (of q_2_dot_rate;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
@@ -171,6 +180,14 @@ void acrobot_state_rate_jacobian_dense_f64(const acrobot_constants_f64 *constant
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * In this scene: mass_matrix[0] = I_1 + I_2 + m_1*c_1^2 + m_2*(l_1 + c_2)^2
+ * In this scene: mass_matrix[1] = I_2 + m_2*(l_1 + c_2)*c_2
+ * In this scene: mass_matrix[2] = I_2 + m_2*(l_1 + c_2)*c_2
+ * In this scene: mass_matrix[3] = I_2 + m_2*c_2^2
+ * In this scene: stiffness_matrix[0] = -(m_1*c_1 + m_2*(l_1 + c_2))*g
+ * In this scene: stiffness_matrix[1] = -m_2*c_2*g
+ * In this scene: stiffness_matrix[2] = -m_2*c_2*g
+ * In this scene: stiffness_matrix[3] = -m_2*c_2*g
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of mass_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
@@ -195,6 +212,11 @@ void acrobot_linearised_f64(const acrobot_constants_f64 *constants, double mass_
  * Follows from, for each body: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = rho_i_dot + Omega x rho_i   [lecture step velocity_seen_from_axes]
+ * In this scene: sigma = I_2*(q_1_dot + q_2_dot)^2 + (I_1 + m_1*c_1^2)*q_1_dot^2 +
+ *            m_2*((c_2*(q_1_dot + q_2_dot) + l_1*q_1_dot*cos(q_2))^2 + l_1^2*q_1_dot^2*sin(q_2)^2)
+ * In this scene: E = 1/2*sigma
+ * In this scene: V = ((m_1*c_1 + m_2*l_1)*cos(q_1) + m_2*c_2*cos(q_1 + q_2))*g
+ * In this scene: energy = E + V
  * Energy: The potential energy is the sum of -m g . r_G of each weight, r_G from the inertial
  *            origin to the mass centre (from that of a frame which carries it, where of this only
  *            the motion is given).

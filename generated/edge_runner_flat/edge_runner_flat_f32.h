@@ -63,6 +63,7 @@ int edge_runner_flat_setup_f32(float m, float r, float L, float g,
  *            W  rad/s  1 .. 5  speed of the driven shaft
  * Returned:  N  N  along axle  force of ground on roller along z
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * In this scene: N = m*(g + 1/2*r*W^2)
  * Error: median 0.42, largest 2.3 u of the largest product or sum in the equation (of N; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8329 hard samples no more.
  * Cost: 1 add, 2 mul.
@@ -78,6 +79,8 @@ void edge_runner_flat_N_f32(const edge_runner_flat_constants_f32 *constants, flo
  *            W  rad/s  1 .. 5  speed of the driven shaft
  * Returned:  gyro_gain  1  N/(m*g)
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * In this scene: N = m*(g + 1/2*r*W^2)
+ * In this scene: gyro_gain = N/(m*g)
  * Error: median 0.41, largest 2.2 u of the largest product or sum in the equation (of gyro_gain;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8329 hard samples no
  *            more.
@@ -94,6 +97,7 @@ void edge_runner_flat_gyro_gain_f32(const edge_runner_flat_constants_f32 *consta
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  *            W  rad/s  1 .. 5  speed of the driven shaft
  * Returned:  spin_rel  rad/s  -W*L/r
+ * In this scene: spin_rel = -(L*W)/r
  * Error: median 0.43, largest 2 u of the largest component, by rounding alone (of spin_rel; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8329 hard samples no more.
  * Cost: 1 mul.
@@ -110,6 +114,7 @@ void edge_runner_flat_spin_rel_f32(const edge_runner_flat_constants_f32 *constan
  * Postcondition: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * In this scene: hinge_radial = -m*L*W^2
  * Error: median 0.51, largest 3 u of the largest product or sum in the equation (of hinge_radial;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8329 hard samples no
  *            more.
@@ -126,6 +131,7 @@ void edge_runner_flat_hinge_radial_f32(const edge_runner_flat_constants_f32 *con
  *            W  rad/s  1 .. 5  speed of the driven shaft
  * Returned:  hinge_z  N  along axle  force of hinge on roller along z
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * In this scene: hinge_z = -1/2*m*r*W^2
  * Error: median 0.51, largest 2.9 u of the largest product or sum in the equation (of hinge_z;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8329 hard samples no
  *            more.

@@ -91,6 +91,19 @@ int free_body_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_
  *            moment[3]  N m  along B  -10 .. 10  external moment about the centre of mass
  * Returned:  omega_dot[3]  rad/s^2  along B  rate of the components of omega along the axes
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * In this scene: b = moment[0] + (I_yy*omega[1] - I_xy*omega[0] - I_yz*omega[2])*omega[2] -
+ *            (I_zz*omega[2] - I_xz*omega[0] - I_yz*omega[1])*omega[1]
+ * In this scene: b_2 = moment[1] - (I_xx*omega[0] - I_xy*omega[1] - I_xz*omega[2])*omega[2] +
+ *            (I_zz*omega[2] - I_xz*omega[0] - I_yz*omega[1])*omega[0]
+ * In this scene: b_3 = moment[2] + (I_xx*omega[0] - I_xy*omega[1] - I_xz*omega[2])*omega[1] -
+ *            (I_yy*omega[1] - I_xy*omega[0] - I_yz*omega[2])*omega[0]
+ * In this scene: Delta = (I_xx*I_yy - I_xy^2)*I_zz - I_xx*I_yz^2 - I_yy*I_xz^2 - 2*I_xy*I_xz*I_yz
+ * In this scene: omega_dot[0] = (b*(I_yy*I_zz - I_yz^2) + b_2*(I_zz*I_xy + I_xz*I_yz) +
+ *            b_3*(I_yy*I_xz + I_xy*I_yz))/Delta
+ * In this scene: omega_dot[1] = (b*(I_zz*I_xy + I_xz*I_yz) + b_2*(I_xx*I_zz - I_xz^2) +
+ *            b_3*(I_xx*I_yz + I_xy*I_xz))/Delta
+ * In this scene: omega_dot[2] = (b*(I_yy*I_xz + I_xy*I_yz) + b_2*(I_xx*I_yz + I_xy*I_xz) +
+ *            b_3*(I_xx*I_yy - I_xy^2))/Delta
  * Error: median 0.24, largest 12 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
@@ -135,6 +148,15 @@ void free_body_acceleration_jacobian_dense_f32(const free_body_constants_f32 *co
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
  * Returned:  moment[3]  N m  along B  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * In this scene: moment[0] = I_xx*omega_dot[0] - I_xy*omega_dot[1] + ((I_zz - I_yy)*omega[1] +
+ *            I_xy*omega[0])*omega[2] - I_xz*(omega_dot[2] + omega[0]*omega[1]) + I_yz*(omega[2]^2
+ *            - omega[1]^2)
+ * In this scene: moment[1] = I_yy*omega_dot[1] - I_xy*omega_dot[0] + ((I_xx - I_zz)*omega[0] -
+ *            I_xy*omega[1])*omega[2] + I_xz*(omega[0]^2 - omega[2]^2) + I_yz*(omega[0]*omega[1] -
+ *            omega_dot[2])
+ * In this scene: moment[2] = I_zz*omega_dot[2] - I_xz*omega_dot[0] + ((I_yy - I_xx)*omega[0] +
+ *            I_xz*omega[2])*omega[1] + I_xy*(omega[1]^2 - omega[0]^2) - I_yz*(omega_dot[1] +
+ *            omega[0]*omega[2])
  * Error: median 0.44, largest 9.6 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples
  *            9.7 u (of moment, turned, ill-conditioned).
@@ -152,6 +174,9 @@ void free_body_moment_f32(const free_body_constants_f32 *constants, const float 
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum about the centre of mass
  * Postcondition: l = I omega   [lecture step angular_momentum]
+ * In this scene: angular_momentum[0] = I_xx*omega[0] - I_xy*omega[1] - I_xz*omega[2]
+ * In this scene: angular_momentum[1] = I_yy*omega[1] - I_xy*omega[0] - I_yz*omega[2]
+ * In this scene: angular_momentum[2] = I_zz*omega[2] - I_xz*omega[0] - I_yz*omega[1]
  * Error: median 0.48, largest 4.4 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8348 hard samples no more.
@@ -172,6 +197,18 @@ void free_body_angular_momentum_f32(const free_body_constants_f32 *constants, co
  *              frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
+ * In this scene: rate_in_axes[0] = I_xx*omega_dot[0] - I_xy*omega_dot[1] - I_xz*omega_dot[2]
+ * In this scene: rate_in_axes[1] = I_yy*omega_dot[1] - I_xy*omega_dot[0] - I_yz*omega_dot[2]
+ * In this scene: rate_in_axes[2] = I_zz*omega_dot[2] - I_xz*omega_dot[0] - I_yz*omega_dot[1]
+ * In this scene: rate_absolute[0] = I_xx*omega_dot[0] - I_xy*omega_dot[1] + ((I_zz -
+ *            I_yy)*omega[1] + I_xy*omega[0])*omega[2] - I_xz*(omega_dot[2] + omega[0]*omega[1]) +
+ *            I_yz*(omega[2]^2 - omega[1]^2)
+ * In this scene: rate_absolute[1] = I_yy*omega_dot[1] - I_xy*omega_dot[0] + ((I_xx -
+ *            I_zz)*omega[0] - I_xy*omega[1])*omega[2] + I_xz*(omega[0]^2 - omega[2]^2) +
+ *            I_yz*(omega[0]*omega[1] - omega_dot[2])
+ * In this scene: rate_absolute[2] = I_zz*omega_dot[2] - I_xz*omega_dot[0] + ((I_yy -
+ *            I_xx)*omega[0] + I_xz*omega[2])*omega[1] + I_xy*(omega[1]^2 - omega[0]^2) -
+ *            I_yz*(omega_dot[1] + omega[0]*omega[2])
  * Error: median 0.49, largest 8 u of the largest product or sum in the equation (of rate_absolute;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples
  *            8.2 u (of rate_absolute, turned, ill-conditioned).
@@ -188,6 +225,8 @@ void free_body_angular_momentum_rate_f32(const free_body_constants_f32 *constant
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Postcondition: K = 1/2 omega . (I omega)   [lecture step energy_of_turning]
+ * In this scene: kinetic_energy = 1/2*I_xx*omega[0]^2 + 1/2*I_yy*omega[1]^2 + 1/2*I_zz*omega[2]^2
+ *            - I_xy*omega[0]*omega[1] - (I_xz*omega[0] + I_yz*omega[1])*omega[2]
  * Error: median 0.53, largest 5.2 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8348
  *            hard samples no more.

@@ -126,6 +126,10 @@ int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doubl
  * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
  *            general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * In this scene: coordinate_rates[0] = (omega[1]*sin(phi) + omega[2]*cos(phi))/cos(theta)
+ * In this scene: coordinate_rates[1] = omega[1]*cos(phi) - omega[2]*sin(phi)
+ * In this scene: coordinate_rates[2] = omega[0] + ((omega[1]*sin(phi) +
+ *            omega[2]*cos(phi))*sin(theta))/cos(theta)
  * Error: median 0.72, largest 12 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
@@ -188,6 +192,12 @@ void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *consta
  * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Follows from, for each body: K = 1/2 omega . (I omega)   [lecture step energy_of_turning]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * In this scene: c = C_1*(omega[0] + wheel_speeds[0])^2 - (I_xy*omega[1] - (I_xx - C_1)*omega[0] +
+ *            I_xz*omega[2])*omega[0] - (I_xy*omega[0] - (I_yy - C_2)*omega[1] +
+ *            I_yz*omega[2])*omega[1] - (I_xz*omega[0] - (I_zz - C_3)*omega[2] +
+ *            I_yz*omega[1])*omega[2] + C_2*(omega[1] + wheel_speeds[1])^2 + C_3*(omega[2] +
+ *            wheel_speeds[2])^2
+ * In this scene: kinetic_energy = 1/2*c
  * Error: median 0.69, largest 7.6 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
@@ -206,6 +216,12 @@ void gyrostat_kinetic_energy_f64(const gyrostat_constants_f64 *constants, const 
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum about the centre of mass
  * Follows from, for each body: l = I omega   [lecture step angular_momentum]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * In this scene: angular_momentum[0] = I_xx*omega[0] - I_xy*omega[1] - I_xz*omega[2] +
+ *            C_1*wheel_speeds[0]
+ * In this scene: angular_momentum[1] = I_yy*omega[1] - I_xy*omega[0] - I_yz*omega[2] +
+ *            C_2*wheel_speeds[1]
+ * In this scene: angular_momentum[2] = I_zz*omega[2] - I_xz*omega[0] - I_yz*omega[1] +
+ *            C_3*wheel_speeds[2]
  * Error: median 0.51, largest 6.9 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8354 hard samples no more.

@@ -141,6 +141,16 @@ int quadrotor_setup_f32(float m, float I_x, float I_y, float I_z, float d, float
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * In this scene: p_dot_rate[1] = (2*c_T*(s[0]^2 + s[1]^2 + s[2]^2 +
+ *            s[3]^2)*(attitude_hull[2]*attitude_hull[3] - attitude_hull[0]*attitude_hull[1]))/(m +
+ *            4*m_r)
+ * In this scene: sigma_2 = J_r*(2*w[2] - s[0] + s[1] - s[2] + s[3]) + (I_y - I_z - 2*d^2*m_r)*w[2]
+ * In this scene: w_rate[0] = (sigma_2*w[1] + d*c_T*(s[1]^2 - s[3]^2))/(I_x + 2*J_r + 2*d^2*m_r)
+ * In this scene: sigma_3 = J_r*(s[0] - 2*w[2] - s[1] + s[2] - s[3]) + (I_z - I_x + 2*d^2*m_r)*w[2]
+ * In this scene: w_rate[1] = (sigma_3*w[0] + d*c_T*(s[2]^2 - s[0]^2))/(I_y + 2*J_r + 2*d^2*m_r)
+ * In this scene: s_rate[0] = (u[0] - c_Q*s[0]^2)/J_r
+ * In this scene: s_rate[1] = (u[1] - c_Q*s[1]^2)/J_r
+ * In this scene: s_rate[2] = (u[2] - c_Q*s[2]^2)/J_r
  * Error: median 0.73, largest 13 u of the largest product or sum in the equation (of w_rate;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
@@ -241,6 +251,13 @@ void quadrotor_energy_f32(const quadrotor_constants_f32 *constants, const float 
  *            [lecture step any_point_form]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
+ * In this scene: sigma = J_r*(2*w[2] - s[0] + s[1] - s[2] + s[3]) + (I_y - I_z - 2*d^2*m_r)*w[2]
+ * In this scene: w_x_dot = (sigma*w[1] + d*c_T*(s[1]^2 - s[3]^2))/(I_x + 2*J_r + 2*d^2*m_r)
+ * In this scene: a_fore = J_r*(1/2*w_x_dot + w[1]*(s[0] - 1/2*w[2]))
+ * In this scene: a_left = J_r*(1/2*w_x_dot - w[1]*(1/2*w[2] + s[1]))
+ * In this scene: a_aft = J_r*(1/2*w_x_dot + w[1]*(s[2] - 1/2*w[2]))
+ * In this scene: a_right = J_r*(1/2*w_x_dot - w[1]*(1/2*w[2] + s[3]))
+ * In this scene: gyro_x = -a_fore - a_left - a_aft - a_right
  * Error: median 0.69, largest 12 u of the largest product or sum in the equation (of gyro_y;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.

@@ -94,6 +94,21 @@ int reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float
  *            w_z_dot  rad/s^2  rate of w_z
  * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
  *            general_form]
+ * In this scene: Delta = (J_xy^2 - J_xx*J_yy)*J_zz + J_xx*J_yz^2 - (J_xx + J_yy + J_zz)*I_w^2 -
+ *            (J_xy^2 - J_xx*J_yy - (J_xx + J_yy)*J_zz + J_xz^2 + J_yz^2)*I_w + J_yy*J_xz^2 +
+ *            2*J_xy*J_xz*J_yz + I_w^3
+ * In this scene: beta = ((J_xx - J_yy)*w_x - J_xz*w_z + I_w*s_1)*w_y - u_3 + J_xy*(w_x^2 - w_y^2)
+ *            + (J_yz*w_z - I_w*s_2)*w_x
+ * In this scene: beta_2 = ((J_zz - J_xx)*w_x + J_xy*w_y - I_w*s_1)*w_z - u_2 + J_xz*(w_z^2 -
+ *            w_x^2) + (I_w*s_3 - J_yz*w_y)*w_x
+ * In this scene: beta_3 = ((J_yy - J_zz)*w_y - J_xy*w_x + I_w*s_2)*w_z - u_1 + (J_xz*w_x -
+ *            I_w*s_3)*w_y + J_yz*(w_y^2 - w_z^2)
+ * In this scene: sigma = beta*((I_w - J_yy)*J_xz - J_xy*J_yz) + beta_2*((I_w - J_zz)*J_xy -
+ *            J_xz*J_yz) + beta_3*((J_yy + J_zz)*I_w - J_yy*J_zz + J_yz^2 - I_w^2)
+ * In this scene: w_x_dot = sigma/Delta
+ * In this scene: sigma_2 = beta*((I_w - J_xx)*J_yz - J_xy*J_xz) + beta_2*((J_xx + J_zz)*I_w -
+ *            J_xx*J_zz + J_xz^2 - I_w^2) + beta_3*((I_w - J_zz)*J_xy - J_xz*J_yz)
+ * In this scene: w_y_dot = sigma_2/Delta
  * Error: median 0.75, largest 9.4 u of the largest product or sum in the equation (of w_y_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
@@ -123,6 +138,19 @@ void reaction_wheel_satellite_body_f32(const reaction_wheel_satellite_constants_
  *            s_3_dot  rad/s^2  rate of s_3
  * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
  *            general_form]
+ * In this scene: Delta = (J_xy^2 - J_xx*J_yy)*J_zz + J_xx*J_yz^2 - (J_xx + J_yy + J_zz)*I_w^2 -
+ *            (J_xy^2 - J_xx*J_yy - (J_xx + J_yy)*J_zz + J_xz^2 + J_yz^2)*I_w + J_yy*J_xz^2 +
+ *            2*J_xy*J_xz*J_yz + I_w^3
+ * In this scene: beta = ((J_xx - J_yy)*w_x - J_xz*w_z + I_w*s_1)*w_y - u_3 + J_xy*(w_x^2 - w_y^2)
+ *            + (J_yz*w_z - I_w*s_2)*w_x
+ * In this scene: beta_2 = ((J_zz - J_xx)*w_x + J_xy*w_y - I_w*s_1)*w_z - u_2 + J_xz*(w_z^2 -
+ *            w_x^2) + (I_w*s_3 - J_yz*w_y)*w_x
+ * In this scene: beta_3 = ((J_yy - J_zz)*w_y - J_xy*w_x + I_w*s_2)*w_z - u_1 + (J_xz*w_x -
+ *            I_w*s_3)*w_y + J_yz*(w_y^2 - w_z^2)
+ * In this scene: sigma = beta*((I_w - J_yy)*J_xz - J_xy*J_yz) + beta_2*((I_w - J_zz)*J_xy -
+ *            J_xz*J_yz) + beta_3*((J_yy + J_zz)*I_w - J_yy*J_zz + J_yz^2 - I_w^2)
+ * In this scene: w_x_dot = sigma/Delta
+ * In this scene: s_1_dot = u_1/I_w - w_x_dot
  * Error: median 0.51, largest 7.1 u of the largest product or sum in the equation (of s_2_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.

@@ -107,6 +107,21 @@ int rigid_body_setup_f64(double m, double I_xx, double I_yy, double I_zz, double
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
+ * In this scene: position_rate[0] = velocity[0]
+ * In this scene: position_rate[1] = velocity[1]
+ * In this scene: position_rate[2] = velocity[2]
+ * In this scene: attitude_rate[0] = -1/2*(attitude[1]*omega[0] + attitude[2]*omega[1] +
+ *            attitude[3]*omega[2])
+ * In this scene: attitude_rate[1] = 1/2*(attitude[0]*omega[0] + attitude[2]*omega[2] -
+ *            attitude[3]*omega[1])
+ * In this scene: attitude_rate[2] = 1/2*(attitude[0]*omega[1] - attitude[1]*omega[2] +
+ *            attitude[3]*omega[0])
+ * In this scene: attitude_rate[3] = 1/2*(attitude[0]*omega[2] + attitude[1]*omega[1] -
+ *            attitude[2]*omega[0])
+ * In this scene: velocity_rate[0] = (2*(attitude[1]*attitude[2] -
+ *            attitude[0]*attitude[3])*force[1] + 2*(attitude[0]*attitude[2] +
+ *            attitude[1]*attitude[3])*force[2] - (2*attitude[2]^2 - 1 +
+ *            2*attitude[3]^2)*force[0])/m
  * Error: median 0.68, largest 9.9 u of the largest product or sum in the equation (of
  *            velocity_rate; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
@@ -165,6 +180,9 @@ void rigid_body_state_rate_jacobian_dense_f64(const rigid_body_constants_f64 *co
  *            omega[3]  rad/s  along B  -10 .. 10  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
+ * In this scene: kinetic_energy = 1/2*m*(velocity[0]^2 + velocity[1]^2 + velocity[2]^2) +
+ *            1/2*I_xx*omega[0]^2 + 1/2*I_yy*omega[1]^2 + 1/2*I_zz*omega[2]^2 -
+ *            I_xy*omega[0]*omega[1] - (I_xz*omega[0] + I_yz*omega[1])*omega[2]
  * Error: median 0.72, largest 6.5 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
@@ -181,6 +199,15 @@ void rigid_body_kinetic_energy_f64(const rigid_body_constants_f64 *constants,
  *            omega_dot[3]  rad/s^2  along B  -50 .. 50  rate of the components of omega along the axes
  * Returned:  moment[3]  N m  along B  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * In this scene: moment[0] = I_xx*omega_dot[0] - I_xy*omega_dot[1] + ((I_zz - I_yy)*omega[1] +
+ *            I_xy*omega[0])*omega[2] - I_xz*(omega_dot[2] + omega[0]*omega[1]) + I_yz*(omega[2]^2
+ *            - omega[1]^2)
+ * In this scene: moment[1] = I_yy*omega_dot[1] - I_xy*omega_dot[0] + ((I_xx - I_zz)*omega[0] -
+ *            I_xy*omega[1])*omega[2] + I_xz*(omega[0]^2 - omega[2]^2) + I_yz*(omega[0]*omega[1] -
+ *            omega_dot[2])
+ * In this scene: moment[2] = I_zz*omega_dot[2] - I_xz*omega_dot[0] + ((I_yy - I_xx)*omega[0] +
+ *            I_xz*omega[2])*omega[1] + I_xy*(omega[1]^2 - omega[0]^2) - I_yz*(omega_dot[1] +
+ *            omega[0]*omega[2])
  * Error: median 0.44, largest 14 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.

@@ -90,6 +90,12 @@ int rolling_disc_setup_f32(float m, float r, float n, float g,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
+ * In this scene: lean_dot_rate = (4*(g*sin(lean) + 1/4*r*(6*s + 5*W*sin(lean))*W*cos(lean)))/(5*r)
+ * In this scene: yaw_rate = W
+ * In this scene: x_rate = r*s*cos(yaw)
+ * In this scene: y_rate = r*s*sin(yaw)
+ * In this scene: W_rate = -(2*lean_rate*s)/cos(lean)
+ * In this scene: s_rate = -W_rate*sin(lean) - 5/3*lean_rate*W*cos(lean)
  * Error: median 0.68, largest 8.3 u of the largest product or sum in the equation (of
  *            lean_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 8318
  *            hard samples no more.
@@ -164,6 +170,12 @@ void rolling_disc_state_rate_jacobian_dense_f32(const rolling_disc_constants_f32
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
+ * In this scene: mass_matrix[0] = 5/4*m*r^2
+ * In this scene: mass_matrix[4] = 1/4*m*r^2
+ * In this scene: mass_matrix[8] = 3/2*m*r^2
+ * In this scene: damping_matrix[1] = 1/2*m*r^2*n
+ * In this scene: damping_matrix[3] = -3/2*m*r^2*n
+ * In this scene: stiffness_matrix[0] = -m*r*g
  * Error: median 0, largest 1 u of the largest product or sum in the equation (of mass_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
@@ -190,6 +202,7 @@ void rolling_disc_linearised_f32(const rolling_disc_constants_f32 *constants, fl
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
+ * In this scene: steady = (4*(g*sin(lean) + 1/4*r*(6*s + 5*W*sin(lean))*W*cos(lean)))/(5*r)
  * Error: median 0.71, largest 7.1 u of the largest product or sum in the equation (of steady;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
@@ -218,6 +231,14 @@ void rolling_disc_steady_f32(const rolling_disc_constants_f32 *constants, float 
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
+ * In this scene: W_dot = -(2*lean_dot*s)/cos(lean)
+ * In this scene: s_dot = -W_dot*sin(lean) - 5/3*lean_dot*W*cos(lean)
+ * In this scene: ground[0] = m*r*(s_dot + W_dot*sin(lean) + 2*lean_dot*W*cos(lean))
+ * In this scene: lean_ddot = (4*(g*sin(lean) + 1/4*r*(6*s + 5*W*sin(lean))*W*cos(lean)))/(5*r)
+ * In this scene: ground[1] = m*r*(W*s - lean_ddot*cos(lean) + (lean_dot^2 + W^2)*sin(lean))
+ * In this scene: c = ground[1]*sin(lean) - m*(r*(lean_dot^2 + (s + W*sin(lean))*W*sin(lean)) -
+ *            g*cos(lean))
+ * In this scene: ground[2] = c/cos(lean)
  * Error: median 0.25, largest 7.7 u of the largest product or sum in the equation (of ground;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
@@ -241,6 +262,8 @@ void rolling_disc_ground_f32(const rolling_disc_constants_f32 *constants, float 
  * Postcondition: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
+ * In this scene: energy_of_all = m*(g*cos(lean) + 1/8*r*(5*lean_dot^2 + 6*(s + W*sin(lean))^2 +
+ *            W^2*cos(lean)^2))*r
  * Error: median 0.69, largest 7.9 u of the largest product or sum in the equation (of
  *            energy_of_all; 200000 samples of the ranges, 65536 searched from the worst); at 8318
  *            hard samples no more.

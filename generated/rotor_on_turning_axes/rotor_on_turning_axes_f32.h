@@ -64,6 +64,9 @@ int rotor_on_turning_axes_setup_f32(float A, float C,
  *            p_dot  rad/s^2  -50 .. 50  rate of p
  * Returned:  moment[3]  N m  along xyz  external moment about the centre of mass
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * In this scene: moment[0] = C*(W_x_dot + p_dot)
+ * In this scene: moment[1] = A*W_y_dot + (C*(W_x + p) - A*W_x)*W_z
+ * In this scene: moment[2] = A*W_z_dot + (A*W_x - C*(W_x + p))*W_y
  * Error: median 0.52, largest 4 u of the largest product or sum in the equation (of moment; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8336 hard samples 4.4 u (of
  *            moment, thin rod).
@@ -85,6 +88,9 @@ void rotor_on_turning_axes_moment_f32(const rotor_on_turning_axes_constants_f32 
  *            p  rad/s  -500 .. 500  spin of the rotor in its bearings
  * Returned:  angular_momentum[3]  kg m^2/s  along xyz  angular momentum about the centre of mass
  * Postcondition: l = I omega   [lecture step angular_momentum]
+ * In this scene: angular_momentum[0] = C*(W_x + p)
+ * In this scene: angular_momentum[1] = A*W_y
+ * In this scene: angular_momentum[2] = A*W_z
  * Error: median 0.37, largest 2 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8336 hard samples no more.
@@ -111,6 +117,12 @@ void rotor_on_turning_axes_angular_momentum_f32(const rotor_on_turning_axes_cons
  *              inertial frame
  * Postcondition: l_dot = I_dot omega + I omega_dot   [lecture step rate_in_axes]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
+ * In this scene: rate_in_axes[0] = C*(W_x_dot + p_dot)
+ * In this scene: rate_in_axes[1] = A*W_y_dot
+ * In this scene: rate_in_axes[2] = A*W_z_dot
+ * In this scene: rate_absolute[0] = C*(W_x_dot + p_dot)
+ * In this scene: rate_absolute[1] = A*W_y_dot + (C*(W_x + p) - A*W_x)*W_z
+ * In this scene: rate_absolute[2] = A*W_z_dot + (A*W_x - C*(W_x + p))*W_y
  * Error: median 0.52, largest 3.7 u of the largest product or sum in the equation (of
  *            rate_absolute; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples 4.3 u (of rate_absolute, thin rod).
@@ -131,6 +143,7 @@ void rotor_on_turning_axes_angular_momentum_rate_f32(const rotor_on_turning_axes
  *            p  rad/s  -500 .. 500  spin of the rotor in its bearings
  * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Postcondition: K = 1/2 omega . (I omega)   [lecture step energy_of_turning]
+ * In this scene: kinetic_energy = 1/2*(A*(W_y^2 + W_z^2) + C*(W_x + p)^2)
  * Error: median 0.78, largest 4.9 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.

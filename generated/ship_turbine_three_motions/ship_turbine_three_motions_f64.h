@@ -82,6 +82,8 @@ int ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double 
  *            B_roll  N  along rolling  force of B_rolling on rolling along z
  * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
  *            general_form]
+ * In this scene: A_roll = (m*a*g)/(a + b)
+ * In this scene: B_roll = (m*b*g)/(a + b)
  * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of A_roll; 200000
  *            samples of the ranges, 65536 searched from the worst); at 114 hard samples no more.
  * Cost: no operations.
@@ -98,6 +100,8 @@ void ship_turbine_three_motions_roll_case_f64(const ship_turbine_three_motions_c
  *            B_turn  N  along turning  force of B_turning on turning along z
  * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
  *            general_form]
+ * In this scene: A_turn = (m*(a*g - kz^2*ws*turn))/(a + b)
+ * In this scene: B_turn = (m*(b*g + kz^2*ws*turn))/(a + b)
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of B_turn; 200000
  *            samples of the ranges, 65536 searched from the worst); at 114 hard samples no more.
  * Cost: no operations.
@@ -114,6 +118,8 @@ void ship_turbine_three_motions_turn_case_f64(const ship_turbine_three_motions_c
  *            B_pitch  N  along pitching  force of B_pitching on pitching along z
  * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
  *            general_form]
+ * In this scene: A_pitch = (m*a*g)/(a + b)
+ * In this scene: B_pitch = (m*b*g)/(a + b)
  * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of A_pitch;
  *            200000 samples of the ranges, 65536 searched from the worst); at 114 hard samples no
  *            more.
@@ -130,6 +136,9 @@ void ship_turbine_three_motions_pitch_case_f64(const ship_turbine_three_motions_
  * Returned:  pitch_horizontal_couple  N m  b*A_pitch_side - a*B_pitch_side
  * Follows from, for each body: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step
  *            general_form]
+ * In this scene: A_pitch_side = -(m*kz^2*ws*pitch)/(a + b)
+ * In this scene: B_pitch_side = (m*kz^2*ws*pitch)/(a + b)
+ * In this scene: pitch_horizontal_couple = b*A_pitch_side - a*B_pitch_side
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of
  *            pitch_horizontal_couple; 200000 samples of the ranges, 65536 searched from the
  *            worst); at 114 hard samples no more.

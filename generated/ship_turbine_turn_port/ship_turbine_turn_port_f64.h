@@ -63,6 +63,8 @@ int ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, dou
  * Returned:  R_A  N  along ship  force of A on rotor along z
  *            R_B  N  along ship  force of B on rotor along z
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * In this scene: R_A = (m*(b*g + (k^2*p*v)/R))/(a + b)
+ * In this scene: R_B = (m*(a*g - (k^2*p*v)/R))/(a + b)
  * Error: median 0.33, largest 1 u of the largest product or sum in the equation (of R_A; 200000
  *            samples of the ranges, 65536 searched from the worst); at 114 hard samples no more.
  * Cost: no operations.
@@ -77,6 +79,9 @@ void ship_turbine_turn_port_reactions_f64(const ship_turbine_turn_port_constants
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  gyro_moment  N m  a*R_A - b*R_B
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
+ * In this scene: R_A = (m*(b*g + (k^2*p*v)/R))/(a + b)
+ * In this scene: R_B = (m*(a*g - (k^2*p*v)/R))/(a + b)
+ * In this scene: gyro_moment = a*R_A - b*R_B
  * Error: median 0.045, largest 0.65 u of the largest product or sum in the equation (of
  *            gyro_moment; 200000 samples of the ranges, 65536 searched from the worst); at 114
  *            hard samples no more.

@@ -71,6 +71,12 @@ int sleeping_top_setup_f64(double m, double r, double l, double n, double g,
  *            stiffness_matrix[4]  forces by displacement, column by column, for alpha, beta, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * In this scene: mass_matrix[0] = m*(1/4*r^2 + l^2)
+ * In this scene: mass_matrix[3] = m*(1/4*r^2 + l^2)
+ * In this scene: damping_matrix[1] = -1/2*m*r^2*n
+ * In this scene: damping_matrix[2] = 1/2*m*r^2*n
+ * In this scene: stiffness_matrix[0] = -m*l*g
+ * In this scene: stiffness_matrix[3] = -m*l*g
  * Error: median 1.5e-05, largest 1 u of the largest product or sum in the equation (of
  *            mass_matrix; 200000 samples of the ranges, 65536 searched from the worst); at 8318
  *            hard samples no more.
@@ -93,6 +99,10 @@ void sleeping_top_linearised_f64(const sleeping_top_constants_f64 *constants, do
  *            beta_ddot  rad/s^2  acceleration of beta
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * In this scene: alpha_ddot = (l*g*sin(alpha) + 1/2*((r^2 + 4*l^2)*alpha_dot*sin(beta) -
+ *            r^2*n)*beta_dot)/((1/4*r^2 + l^2)*cos(beta))
+ * In this scene: beta_ddot = (l*g*cos(alpha)*sin(beta) + (1/2*r^2*n*alpha_dot - (1/4*r^2 +
+ *            l^2)*alpha_dot^2*sin(beta))*cos(beta))/(1/4*r^2 + l^2)
  * Error: median 0.72, largest 7.4 u of the largest product or sum in the equation (of beta_ddot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
@@ -115,6 +125,9 @@ void sleeping_top_accelerations_f64(const sleeping_top_constants_f64 *constants,
  * Returned:  energy  J  energy
  * Postcondition: T = 1/2 omega . (I omega)   [lecture step kinetic_energy_about_point]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * In this scene: T = m*(1/4*r^2*n^2 + 1/2*(1/4*r^2 + l^2)*(beta_dot^2 + alpha_dot^2*cos(beta)^2))
+ * In this scene: V = m*l*g*cos(alpha)*cos(beta)
+ * In this scene: energy = T + V
  * Energy: The potential energy is the sum of -m g . r_G of each weight, r_G from the inertial
  *            origin to the mass centre (from that of a frame which carries it, where of this only
  *            the motion is given).

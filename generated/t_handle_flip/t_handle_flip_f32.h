@@ -81,6 +81,7 @@ int t_handle_flip_setup_f32(float I_xx, float I_yy, float I_zz,
  *            omega[3]  rad/s  along B  -15 .. 15  angular velocity of the body in the inertial frame
  * Returned:  kinetic_energy  J  kinetic energy of turning about the centre of mass
  * Postcondition: K = 1/2 omega . (I omega)   [lecture step energy_of_turning]
+ * In this scene: kinetic_energy = 1/2*(I_xx*omega[0]^2 + I_yy*omega[1]^2 + I_zz*omega[2]^2)
  * Error: median 0.5, largest 3.6 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
@@ -97,6 +98,9 @@ void t_handle_flip_kinetic_energy_f32(const t_handle_flip_constants_f32 *constan
  *            omega[3]  rad/s  along B  -15 .. 15  angular velocity of the body in the inertial frame
  * Returned:  angular_momentum[3]  kg m^2/s  along B  angular momentum about the centre of mass
  * Postcondition: l = I omega   [lecture step angular_momentum]
+ * In this scene: angular_momentum[0] = I_xx*omega[0]
+ * In this scene: angular_momentum[1] = I_yy*omega[1]
+ * In this scene: angular_momentum[2] = I_zz*omega[2]
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8342 hard samples no more.

@@ -61,6 +61,7 @@ int top_steady_precession_setup_f64(double r, double l, double theta, double n, 
  * Returned:  steady  what vanishes in a steady motion, without factors that never vanish, so in no unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
+ * In this scene: steady = -(l*g - 1/2*r^2*n*W + (1/4*r^2 + l^2)*W^2*cos(theta))*sin(theta)
  * Error: median 0.52, largest 3.7 u of the largest product or sum in the equation (of steady;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8324 hard samples no
  *            more.

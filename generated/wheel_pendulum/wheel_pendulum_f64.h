@@ -78,6 +78,10 @@ int wheel_pendulum_setup_f64(double m_p, double m_r, double l_p, double l_r, dou
  *            to G: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Follows from, for each body, M about any point, M_G about G: M = M_G + rho_G x (m a_G)
  *            [lecture step any_point_form]
+ * In this scene: b = (m_p*l_p + m_r*l_r)*g*sin(theta)
+ * In this scene: Delta = -(J_p + m_p*l_p^2 + m_r*l_r^2)*J_r
+ * In this scene: theta_dot_rate = ((T - b)*J_r)/Delta
+ * In this scene: s_rate = (b*J_r - (J_p + J_r + m_p*l_p^2 + m_r*l_r^2)*T)/Delta
  * Error: median 0.63, largest 4.6 u of the largest product or sum in the equation (of
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
@@ -131,6 +135,11 @@ void wheel_pendulum_state_rate_jacobian_dense_f64(const wheel_pendulum_constants
  *            to G: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Follows from, for each body, M about any point, M_G about G: M = M_G + rho_G x (m a_G)
  *            [lecture step any_point_form]
+ * In this scene: mass_matrix[0] = J_p + J_r + m_p*l_p^2 + m_r*l_r^2
+ * In this scene: mass_matrix[1] = J_r
+ * In this scene: mass_matrix[2] = J_r
+ * In this scene: mass_matrix[3] = J_r
+ * In this scene: stiffness_matrix[0] = -(m_p*l_p + m_r*l_r)*g
  * Error: median 0, largest 1 u of the largest product or sum in the equation (of mass_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
@@ -152,6 +161,9 @@ void wheel_pendulum_linearised_f64(const wheel_pendulum_constants_f64 *constants
  *            kinetic_energy_about_point]
  * Follows from, for each body: T = 1/2 m v_G . v_G + 1/2 omega . (I omega)   [lecture step koenig]
  * Postcondition: rho_i_N_dot = rho_i_dot + Omega x rho_i   [lecture step velocity_seen_from_axes]
+ * In this scene: E = 1/2*(J_r*(theta_dot + s)^2 + (J_p + m_p*l_p^2 + m_r*l_r^2)*theta_dot^2)
+ * In this scene: V = (m_p*l_p + m_r*l_r)*g*cos(theta)
+ * In this scene: energy = E + V
  * Energy: The potential energy is the sum of -m g . r_G of each weight, r_G from the inertial
  *            origin to the mass centre (from that of a frame which carries it, where of this only
  *            the motion is given).
