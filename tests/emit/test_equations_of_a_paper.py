@@ -35,6 +35,13 @@ hinge = { on = "rod", force = ["?rail", "?across", "?up"], couple = ["?a", "0", 
 """
 
 
+def test_a_letter_of_the_laws_that_the_scene_uses_otherwise_is_said_to_be_another() -> None:
+    meanings = {row.shown[0]: row.meaning for row in account(library_of("cart_pendulum")).of_laws}
+    other = "in the laws alone, for above m is: mass of the pendulum"
+    assert meanings["m"] == f"mass of the body; {other}"
+    assert meanings["T"] == "kinetic energy"
+
+
 @pytest.mark.long
 def test_letters_are_those_of_a_paper_and_values_stand_in_the_list(tmp_path: Path) -> None:
     lib = library(parse_scene(PENDULUM, "pendulum"))

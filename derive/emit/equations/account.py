@@ -69,12 +69,22 @@ def _account(library: Library, known: Library) -> Account:
         library.mechanism.said,
         sections,
         rows,
-        tuple(lecture_symbols(steps.values())),
+        tuple(_told_apart(lecture_symbols(steps.values()), rows)),
         {n: decimal_value(values[n]) for row in rows for n in row.names if n in values},
         tuple(step for step in LECTURE.steps if step.name in reasons),
         tuple(name for name in names if name not in library.problems),
         tuple(program.name for program in library.motions),
     )
+
+
+def _told_apart(laws: Iterable[Listed], own: Iterable[Listed]) -> Iterator[Listed]:
+    """Yield the letters of the laws; of one that the scene uses for another quantity, that too."""
+    here = {name: row.meaning for row in own for name in row.shown}
+    for law in laws:
+        (name,) = law.shown
+        other = here.get(name, law.meaning) if law.style == "scalar" else law.meaning
+        more = "" if other == law.meaning else f"; in the laws alone, for above {name} is: {other}"
+        yield replace(law, meaning=f"{law.meaning}{more}")
 
 
 def _shown(scene: Scene, sections: Iterable[Section]) -> list[Section]:
