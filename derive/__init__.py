@@ -15,6 +15,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from derive.control import Trajectory, steer
     from derive.emit.files import Difference
     from derive.report import SceneReport
     from derive.scene import DeriveError, catalogue
@@ -38,13 +39,16 @@ __all__ = [
     "SceneFunction",
     "SceneReport",
     "Simulation",
+    "Trajectory",
     "catalogue",
     "compare",
     "generate",
     "load",
     "principal_axes",
+    "steer",
 ]
 PLACES = {
+    "derive.control": ("Trajectory", "steer"),
     "derive.emit.files": ("Difference",),
     "derive.report": ("SceneReport",),
     "derive.scene": ("DeriveError", "catalogue"),

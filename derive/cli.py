@@ -17,6 +17,7 @@ from derive import DeriveError, __version__
 from derive.command import (
     check,
     completion,
+    control,
     equations,
     generate,
     lecture,
@@ -61,6 +62,14 @@ COMMANDS: Mapping[str, tuple[Callable[[argparse.ArgumentParser], None], str, tup
         (
             "derive solve edge_runner_flat --set m=1200 r=0.6 width=0.3 L=0.9 W=3.2 g=9.81",
             "derive solve sleeping_top --set m=0.5 r=0.05 l=0.06 g=9.81 --limit n",
+        ),
+    ),
+    "control": (
+        control.options,
+        "find inputs that bring a scene where it is to go, at the least cost",
+        (
+            "derive control craft.toml --turn 'z 180deg' --limit moment=0.4 --set I_xx=1.4 ...",
+            "derive control craft.toml --turn '1,2,2 2' --cost energy=1 --until 5 --set ...",
         ),
     ),
     "equations": (

@@ -40,8 +40,8 @@ WORDS = {
                "scene", "solve", "verify"),
     "moved": ("nothing",),
     "moving": ("a scalar that changes in time, axes that turn", "lecture", "scene"),
-    "rate": ("a derivative by time", "check", "lecture", "library", "lower", "mechanics", "motion",
-             "report", "scene", "verify"),
+    "rate": ("a derivative by time", "check", "control", "lecture", "library", "lower", "mechanics",
+             "motion", "report", "scene", "verify"),
     "stage": ("of a Runge-Kutta method", "motion"),
     "draft": ("nothing",),
     "table": ("of a scene file", "scene"),
@@ -71,7 +71,7 @@ def test_a_second_function_of_a_name_is_found_once_another_module_reads_it() -> 
 
 ALIKE = {
     **dict.fromkeys(
-        ("added", "number", "product", "symbol", "time", "trace", "turn", "zero"),
+        ("added", "conjugate", "number", "product", "symbol", "time", "trace", "turn", "zero"),
         "the same operation on another kind of numbers",
     ),
     **dict.fromkeys(("from_quaternion", "to_quaternion"), "the way to other parameters"),

@@ -52,7 +52,7 @@ def solve(given: argparse.Namespace) -> int:
     """Print the answers of a scene with their units; refuse at the end what has no values."""
     _require_one_question(given)
     scene = derive.load(given.scene)
-    values = named([text for group in given.set for text in group])
+    values = values_named([text for group in given.set for text in group])
     if given.until is not None or given.limit:
         ask = _limits if given.limit else _simulated
         rows, doubts = ask(scene, given, values)
@@ -78,7 +78,9 @@ def _print(rows: Sequence[Printed] | None, doubts: Sequence[str]) -> None:
         print_rows(table)
 
 
-def named(texts: Sequence[str]) -> dict[str, str]:
+def values_named(
+    texts: Sequence[str], option: str = "--set", example: str = "m=1200"
+) -> dict[str, str]:
     """Return the texts of values by name, of a list such as ``m=1200 skew=3deg``.
 
     Raises DeriveError for what is not of this form, and for a name that is set twice.
@@ -87,9 +89,9 @@ def named(texts: Sequence[str]) -> dict[str, str]:
     for text in texts:
         name, equals, value = text.partition("=")
         if not (equals and name.strip()):
-            raise derive.DeriveError(f"--set takes NAME=VALUE, as m=1200, not {typed(text)}")
+            raise derive.DeriveError(f"{option} takes NAME=VALUE, as {example}, not {typed(text)}")
         if name.strip() in values:
-            raise derive.DeriveError(f"--set {text[:60]}: '{name.strip()}' is set twice")
+            raise derive.DeriveError(f"{option} {text[:60]}: '{name.strip()}' is set twice")
         values[name.strip()] = value
     return values
 

@@ -29,7 +29,7 @@ def settings(scene: str, quantities: Sequence[Quantity], values: NamedValues) ->
     for name, value in by_name(f"scene '{scene}'", values).items():
         q = settable(scene, quantities, name)
         shape, names = (q.shape, q.components) if name == q.name else ((), (name,))
-        own = _number(f"{name}={value}", value.strip(), q.unit) if isinstance(value, str) else value
+        own = number(f"{name}={value}", value.strip(), q.unit) if isinstance(value, str) else value
         array = real(f"scene '{scene}'", name, shape, own, np.dtype(np.float64))
         if array.shape != shape:
             rule = f"must have the shape {shape_text(shape)}"
@@ -57,7 +57,8 @@ def settable(scene: str, quantities: Sequence[Quantity], name: str) -> Quantity:
     return found
 
 
-def _number(label: str, text: str, unit: str) -> float:
+def number(label: str, text: str, unit: str) -> float:
+    """Return the number of a text, in SI units. Raises SceneError for one that is none."""
     found = NUMBER.fullmatch(text)
     if found and found[2] and dimension(unit) != OF[found[2]]:
         raise SceneError(f"{label[:60]}: the value is in {unit}, not in {found[2]}")

@@ -1,0 +1,215 @@
+"""A trajectory refined: collocation on arcs, whose lengths are to be found, as inputs switch.
+
+On an arc an input is at one of its limits or a polynomial on each element, so that nothing jumps
+inside of an element, and Gauss's points converge as they do for smooth motions.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import ceil
+from typing import Any
+
+import casadi
+import numpy as np
+
+from derive.control.direct import QUIET, Grid
+from derive.control.plant import NDFloat, Plant
+from derive.control.structure import Arc
+from derive.control.task import Task
+
+DEGREE = 6
+LEAST, MORE = 3, 13  # elements of an arc: at least, and so many more of one that lasts all the time
+TOLERANCE = 1e-11
+OPTIONS = {
+    "print_level": 0, "sb": "yes", "max_iter": 200, "tol": TOLERANCE, "mu_init": 1e-5,
+    "constr_viol_tol": TOLERANCE, "acceptable_tol": 1e-8, "bound_relax_factor": 0.0,
+}  # fmt: skip
+GAUSS = np.array(casadi.collocation_points(DEGREE, "legendre"))
+SLOPES, ENDS, WEIGHTS = (np.array(m) for m in casadi.collocation_coeff(GAUSS.tolist()))
+
+
+@dataclass(frozen=True)
+class Refined:
+    """A trajectory by elements of time, each from one node to the next.
+
+    lasts : (elements,) s       x : (states, elements + 1) at nodes
+    u     : (inputs, DEGREE, elements) at Gauss's points
+    arcs  : with their lengths found           elements : of each arc
+    adjoint : (states, elements) what the cost changes with the state at each node but the first
+    """
+
+    lasts: NDFloat
+    x: NDFloat
+    u: NDFloat
+    arcs: tuple[Arc, ...]
+    elements: tuple[int, ...]
+    adjoint: NDFloat
+    cost: float
+    turns: int
+    why: str
+
+    @property
+    def until(self) -> float:
+        """Return the time at the end, s."""
+        return float(self.lasts.sum())
+
+    def at_end(self, element: int) -> NDFloat:
+        """Return the inputs at the end of an element."""
+        values: NDFloat = self.u[:, :, element] @ lagrange(1.0)
+        return values
+
+
+def lagrange(tau: float) -> NDFloat:
+    """Return what each value at Gauss's points weighs in the polynomial's at tau, 0 to 1."""
+    others = [np.delete(GAUSS, k) for k in range(DEGREE)]
+    return np.array([np.prod((tau - o) / (p - o)) for p, o in zip(GAUSS, others, strict=True)])
+
+
+@dataclass(frozen=True)
+class Span:
+    """Variables of one element, from node to node, with first guesses and limits; what must vanish.
+
+    moving : the inputs that are polynomials here, by number        held : the others' values
+    """
+
+    variables: Any
+    first: NDFloat
+    least: NDFloat
+    most: NDFloat
+    gaps: Any
+    cost: Any
+    moving: tuple[int, ...]
+    held: NDFloat
+
+
+def refined(own: Plant, asked: Task, guess: Grid, arcs: Sequence[Arc], finer: int) -> Refined:
+    """Return the trajectory on these arcs, from one on a grid; ``finer`` times the elements."""
+    each = [finer * _elements(arc, guess.until) for arc in arcs]
+    sizes = np.maximum(np.abs(guess.x).max(axis=1), 1e-3 * asked.sizes[: len(own.x)])
+    inputs = np.maximum(np.abs(guess.u).max(axis=1), 1e-9)
+    lengths = casadi.MX.sym("d", len(arcs))
+    x = [casadi.MX.sym(f"x{k}", len(own.x)) for k in range(sum(each) + 1)]
+    parts = [*_parts(own, asked, guess, arcs, each, lengths, x, (sizes, inputs))]
+    last = guess.x[:, -1] / sizes
+    endless = np.full(len(last), np.inf)
+    w = casadi.vertcat(lengths, *(p.variables for p in parts), x[-1])
+    lasts = np.array([a.lasts for a in arcs]) / guess.until
+    begins = np.concatenate([lasts, *(p.first for p in parts), last])
+    least = np.concatenate([0 * lasts, *(p.least for p in parts), -endless])
+    most = np.concatenate([lasts + np.inf, *(p.most for p in parts), endless])
+    whole = casadi.sum1(lengths) * guess.until
+    cost = sum(p.cost for p in parts) + asked.cost["time"] * whole
+    ends = [asked.ends(x[-1] * sizes)] + ([] if asked.is_free else [whole / asked.until - 1])
+    unit = abs(guess.cost) or 1.0
+    problem = {"x": w, "f": cost / unit, "g": casadi.vertcat(*(p.gaps for p in parts), *ends)}
+    options: dict[str, Any] = {**QUIET, "expand": True, "ipopt": OPTIONS}
+    solver = casadi.nlpsol("arcs", "ipopt", problem, options)
+    found = solver(x0=begins, lbx=least, ubx=most, lbg=0, ubg=0)
+    told = solver.stats()
+    read = casadi.Function("read", [w], [lengths, casadi.horzcat(*x)])(found["x"])
+    lasting = np.array(read[0]).ravel() * guess.until
+    u = np.array([*_inputs_of(np.array(found["x"]).ravel(), len(arcs), len(own.x), parts, inputs)])
+    adjoint = _adjoint(np.array(found["lam_g"]).ravel(), len(own.x), len(parts))
+    return Refined(
+        np.concatenate([np.full(n, d / n) for d, n in zip(lasting, each, strict=True)]),
+        np.array(read[1]) * sizes[:, None],
+        u.transpose(1, 2, 0),
+        tuple(Arc(arc.stays, float(d)) for arc, d in zip(arcs, lasting, strict=True)),
+        tuple(each),
+        adjoint * unit / sizes[:, None],
+        float(found["f"]) * unit,
+        told["iter_count"],
+        "" if told["success"] else str(told["return_status"]).replace("_", " ").lower(),
+    )
+
+
+def _parts(
+    own: Plant, asked: Task, guess: Grid, arcs: Sequence[Arc], each: Sequence[int],
+    lengths: Any, x: Sequence[Any], sizes: tuple[NDFloat, NDFloat],
+) -> Iterator[Span]:  # fmt: skip
+    states, (size, inputs) = len(own.x), sizes
+    low, high = asked.low[states:], asked.high[states:]
+    k, begins = 0, 0.0
+    for place, (arc, count) in enumerate(zip(arcs, each, strict=True)):
+        moving = tuple(i for i, stay in enumerate(arc.stays) if stay == 0)
+        own_low, own_high = (side[[*moving]] / inputs[[*moving]] for side in (low, high))
+        held = np.array([(low, high)[max(s, 0)][i] if s else 0.0 for i, s in enumerate(arc.stays)])
+        element = _element(own, asked, sizes, moving, held)
+        for _ in range(count):
+            z = casadi.MX.sym(f"z{k}", states, DEGREE)
+            v = casadi.MX.sym(f"v{k}", len(moving), DEGREE)
+            inner, end, spent = element(x[k], z, v, lengths[place] * (guess.until / count))
+            times = begins + arc.lasts / count * GAUSS
+            endless = np.full(states * (DEGREE + 1), np.inf)
+            least, most = -endless, endless.copy()
+            if k == 0:
+                least[:states] = most[:states] = asked.start / size
+            columns = np.column_stack([_states_at(guess, [begins]), _states_at(guess, times)])
+            u = _inputs_at(guess, times)[[*moving]] / inputs[[*moving], None]
+            yield Span(
+                casadi.vertcat(x[k], casadi.vec(z), casadi.vec(v)),
+                np.concatenate([(columns / size[:, None]).T.ravel(), u.T.ravel()]),
+                np.concatenate([least, np.tile(own_low, DEGREE)]),
+                np.concatenate([most, np.tile(own_high, DEGREE)]),
+                casadi.vertcat(casadi.vec(inner), end - x[k + 1]),
+                spent,
+                moving,
+                held,
+            )
+            begins, k = begins + arc.lasts / count, k + 1
+
+
+def _elements(arc: Arc, until: float) -> int:
+    return LEAST + ceil(MORE * min(arc.lasts / until, 1.0))
+
+
+def _element(
+    own: Plant, asked: Task, sizes: tuple[NDFloat, NDFloat], free: Sequence[int], held: NDFloat
+) -> Any:
+    """Return what vanishes at Gauss's points, the state at the end, and the energy spent."""
+    size, inputs = sizes
+    states = len(size)
+    x, z = casadi.SX.sym("x", states), casadi.SX.sym("z", states, DEGREE)
+    v, lasts = casadi.SX.sym("v", len(free), DEGREE), casadi.SX.sym("h")
+    whole = casadi.horzcat(x, z)
+    inner, spent = list[Any](), 0
+    for j in range(DEGREE):
+        u = [casadi.SX(value) for value in held]
+        for place, i in enumerate(free):
+            u[i] = v[place, j] * inputs[i]
+        column = casadi.vertcat(*u)
+        slope = casadi.mtimes(whole, casadi.DM(SLOPES[:, j]))
+        inner.append(slope - lasts * own.rate(z[:, j] * size, column) / size)
+        spent += asked.cost["energy"] * lasts * WEIGHTS.ravel()[j] * casadi.sumsqr(column)
+    end = casadi.mtimes(whole, casadi.DM(ENDS.ravel()))
+    return casadi.Function("element", [x, z, v, lasts], [casadi.horzcat(*inner), end, spent])
+
+
+def _states_at(guess: Grid, times: Sequence[float] | NDFloat) -> NDFloat:
+    grid = np.linspace(0, guess.until, guess.x.shape[1])
+    return np.array([np.interp(times, grid, row) for row in guess.x])
+
+
+def _inputs_at(guess: Grid, times: NDFloat) -> NDFloat:
+    middle = (np.arange(guess.u.shape[1]) + 0.5) * guess.until / guess.u.shape[1]
+    return np.array([np.interp(times, middle, row) for row in guess.u])
+
+
+def _inputs_of(
+    w: NDFloat, count: int, states: int, parts: Sequence[Span], inputs: NDFloat
+) -> Iterator[NDFloat]:
+    """Yield the inputs (inputs, DEGREE) of each element."""
+    place = count
+    for part in parts:
+        place += states * (DEGREE + 1)
+        many, moving = len(part.moving), [*part.moving]
+        u = np.repeat(part.held[:, None], DEGREE, axis=1)
+        u[moving] = w[place : place + many * DEGREE].reshape(DEGREE, many).T * inputs[moving, None]
+        place += many * DEGREE
+        yield u
+
+
+def _adjoint(multipliers: NDFloat, states: int, count: int) -> NDFloat:
+    """Return the multipliers of the nodes, what an element's end moves the cost by."""
+    size = states * (DEGREE + 1)
+    return np.column_stack([multipliers[k * size :][states * DEGREE : size] for k in range(count)])

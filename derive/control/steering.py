@@ -1,0 +1,188 @@
+"""From a scene and a task to a trajectory: several starts on a coarse grid, a finer one, arcs."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from derive.control.arcs import Refined, refined
+from derive.control.conditions import Conditions, conditions, missed
+from derive.control.direct import SOLVERS, TRANSCRIPTIONS, Grid, direct, first_guesses
+from derive.control.plant import Plant, plant
+from derive.control.structure import Arc, arcs_of
+from derive.control.task import Task, task
+from derive.control.trajectory import Trajectory, beyond_ranges
+from derive.emit.files import require_folder, write
+from derive.scene import SceneError
+from derive.scene.table import one_of
+from derive.solve.handle import Handle, silent
+from derive.solve.settings import NamedValues
+from derive.solve.told import count, path
+
+COARSE = 40  # steps from which the several starts begin
+FINEST = 1600
+CLOSE = 1e-6  # to what should vanish at the end, inputs flown
+SHORTEST = 1e-7  # of the time: an arc that is shorter is none
+JUMPS = (4, 8)  # per cent of the steps: what else may be a switch between limits
+HOLDS, FAILS = 1e-6, 1e-2  # of Pontryagin's conditions: what is looked no further for, or not shown
+FLOWN = 1e-9  # to what should vanish at the end: elements are halved until it is so
+FINER = 4
+HELD = 1e-6  # of a limit's width: a state so close to it is at it
+STARTS, STEPS = 16, 100
+MOST_STARTS = 1000
+
+
+def steer(
+    scene: Handle,
+    values: NamedValues,
+    turn: str = "",
+    end: NamedValues | None = None,
+    limits: Mapping[str, float | str] | None = None,
+    avoid: Sequence[str] = (),
+    cost: Mapping[str, float] | None = None,
+    until: float | None = None,
+    steps: int = STEPS,
+    starts: int = STARTS,
+    method: str = "shooting",
+    solver: str = "ipopt",
+    folder: str | Path | None = None,
+    told: Callable[[str], None] = silent,
+) -> Trajectory:
+    """Return the cheapest trajectory, with its inputs, that brings a scene where it is to go.
+
+    values : parameters, inputs that are held, and states at the start; others begin at 0
+    turn   : from rest to rest about an axis of the body at the start, as "z 180deg", "1,2,2 2"
+    end    : states at the end, those that are named
+    limits : of inputs and states: 0.4 is -0.4 to 0.4; "0..2"; without, inputs keep to their ranges
+             if time alone is the cost
+    avoid  : "x 0,0,1 30deg" keeps the body's x so far from the inertial frame's z
+    cost   : weights of "time", s, and "energy", the integral of u.u; the time alone, if None
+    until  : s, the time at the end, or where the cost counts it the first guess
+    steps  : of the grid, at least      starts : the first straight, the others perturbed
+    method : "shooting", "collocation"   solver : "ipopt", "fatrop"       told : hears how far it is
+    folder : where a table (CSV) and a plot (SVG) of it are written, None for nowhere
+    Raises DeriveError for what makes no sense, and if no start leads to an end.
+    """
+    most = count("steps", steps, range(1, FINEST + 1))
+    many = count("starts", starts, range(1, MOST_STARTS + 1))
+    one_of(method, "method", TRANSCRIPTIONS)
+    one_of(solver, "solver", tuple(SOLVERS))
+    into = None if folder is None else path("folder", folder)
+    if into is not None:
+        require_folder(into)
+    told("deriving")
+    own, given = plant(scene.scene, values)
+    asked = task(own, given, turn, end or {}, limits or {}, avoid, cost or {"time": 1}, until)
+    tried = _tried(own, asked, min(COARSE, most), many, (method, solver), told)
+    best = min((g for g in tried if g.is_found), key=lambda g: g.cost, default=None)
+    if best is None:
+        raise SceneError(
+            f"scene '{scene.name}': none of {many} starts led to the end: {_reasons(tried)}"
+        )
+    grid = _finer(own, asked, best, most, (method, solver), told)
+    told("refining")
+    found, holds, why = _refined(own, asked, grid)
+    last = grid if found is None else found
+    made = Trajectory(
+        scene.name, own.x, own.u, own.units, last.until, last.cost, missed(own, asked, last),
+        grid, found, why, holds, tuple(g.cost if g.is_found else None for g in tried), (),
+    )  # fmt: skip
+    made = replace(made, doubts=beyond_ranges(own, made.states, made.inputs[1]))
+    if into is not None:
+        write(into, made.files())
+    return made
+
+
+def _tried(
+    own: Plant, asked: Task, steps: int, many: int, by: tuple[str, str], told: Callable[[str], None]
+) -> list[Grid]:
+    problem = direct(own, asked, steps, *by)
+    found = []
+    for number, start in enumerate(first_guesses(own, asked, steps, many), 1):
+        told(f"start {number} of {many}")
+        found.append(problem.solved(start))
+    return found
+
+
+def _reasons(tried: Sequence[Grid]) -> str:
+    each = [g.why for g in tried]
+    return ", ".join(f"{each.count(why)} end by {why}" for why in dict.fromkeys(each))
+
+
+def _finer(
+    own: Plant,
+    asked: Task,
+    trajectory: Grid,
+    least: int,
+    by: tuple[str, str],
+    told: Callable[[str], None],
+) -> Grid:
+    """Return the trajectory on so fine a grid that the inputs, flown, lead to the end."""
+    steps = trajectory.u.shape[1]
+    while steps < least or (missed(own, asked, trajectory) > CLOSE and steps < FINEST):
+        steps = least if steps < least else min(2 * steps, FINEST)
+        told(f"{steps} steps")
+        better = direct(own, asked, steps, *by).solved(trajectory.finer(steps))
+        if not better.is_found:
+            return trajectory
+        trajectory = better
+    return trajectory
+
+
+def _refined(own: Plant, asked: Task, grid: Grid) -> tuple[Refined | None, Conditions | None, str]:
+    """Return the trajectory on arcs, and how well it is the cheapest; or None twice, and why."""
+    states, steps = len(own.x), grid.u.shape[1]
+    if which := _held_back(own, asked, grid):
+        return None, None, f"{which} on the way"
+    why, best, holds = "", None, None
+    looked = set[tuple[tuple[int, ...], ...]]()
+    for short in dict.fromkeys((2, *(max(2, steps * part // 100) for part in JUMPS))):
+        arcs = arcs_of(grid, asked.low[states:], asked.high[states:], short)
+        stays = tuple(arc.stays for arc in arcs)
+        if stays in looked:
+            continue
+        looked.add(stays)
+        found, why = _on_arcs(own, asked, grid, arcs)
+        if found is None:
+            continue
+        told = conditions(own, asked, found)
+        if holds is None or told.worst < holds.worst:
+            best, holds = found, told
+        if told.worst <= HOLDS:
+            break
+    if best is None or holds is None or holds.worst > FAILS:
+        return None, None, why or "what its inputs do is not understood as arcs"
+    return best, holds, ""
+
+
+def _on_arcs(
+    own: Plant, asked: Task, grid: Grid, arcs: tuple[Arc, ...]
+) -> tuple[Refined | None, str]:
+    """Return the trajectory on arcs, or why there is none; elements are halved if it flies ill."""
+    finer = 1
+    while True:
+        found = refined(own, asked, grid, arcs, finer)
+        if found.why:
+            return None, f"on {len(arcs)} arcs the solver ends by {found.why}"
+        kept = tuple(arc for arc in found.arcs if arc.lasts > SHORTEST * found.until)
+        if len(kept) < len(arcs):
+            arcs = kept
+        elif missed(own, asked, found) <= FLOWN or finer == FINER:
+            return found, ""
+        else:
+            finer *= 2
+
+
+def _held_back(own: Plant, asked: Task, grid: Grid) -> str:
+    """Return which limit of a state is reached, "" if none is."""
+    for k, name in enumerate(own.x):
+        low, high = asked.low[k], asked.high[k]
+        room = min(grid.x[k].min() - low, high - grid.x[k].max())
+        if np.isfinite(low) and room <= HELD * (high - low):
+            return f"{name} comes to its limit"
+    if asked.keeps.numel_out(0):
+        values = np.array([asked.keeps(column) for column in grid.x.T])
+        if values.max() >= -HELD:
+            return "an axis comes to the edge of what it avoids"
+    return ""

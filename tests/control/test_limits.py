@@ -1,0 +1,61 @@
+"""Limits on the way: of speeds, of directions; scenes that are machines; and their plain words."""
+
+import numpy as np
+import pytest
+
+import derive
+from tests.control.crafts import craft, inertia
+
+CART = {"M": 0.5, "m": 0.2, "l": 0.3, "I": 0.006, "b": 0.1, "g": 9.8}
+
+
+@pytest.mark.long
+def test_a_limit_of_a_speed_holds_and_costs() -> None:
+    values = inertia((1, 2, 3))
+    free = derive.steer(craft(), values, "x 2", limits={"moment": 0.8}, starts=1)
+    trajectory = derive.steer(
+        craft(), values, "x 2", limits={"moment": 0.8, "omega_x": 0.6}, starts=1
+    )
+    assert free.cost < trajectory.cost
+    assert np.abs(trajectory.states["omega_x"]).max() <= 0.6 + 1e-7
+    assert trajectory.refined is None
+    assert trajectory.unrefined == "omega_x comes to its limit on the way"
+
+
+@pytest.mark.long
+def test_an_axis_keeps_out_of_a_cone() -> None:
+    values, limits = inertia((1, 1, 1)), {"moment": 1.0}
+    free = derive.steer(craft(), values, "z 90deg", limits=limits, starts=2)
+    trajectory = derive.steer(
+        craft(), values, "z 90deg", limits=limits, starts=2, avoid=["x 1,1,0 20deg"]
+    )
+    assert free.cost < trajectory.cost
+    w, x, y, z = (trajectory.states[f"attitude_{c}"] for c in "wxyz")
+    seen = np.array([w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y)])
+    assert (np.array([1, 1, 0]) / np.sqrt(2) @ seen).max() <= np.cos(np.radians(20)) + 1e-7
+
+
+@pytest.mark.long
+def test_a_cart_swings_its_pendulum_up() -> None:
+    trajectory = derive.steer(
+        derive.load("cart_pendulum"),
+        {**CART, "theta": np.pi},
+        end={"x": 0, "theta": 0, "x_dot": 0, "theta_dot": 0},
+        limits={"F": 10, "x": 2},
+        cost={"energy": 1},
+        until=2.5,
+        starts=2,
+    )
+    assert trajectory.cost == pytest.approx(10.47994, rel=1e-5)
+    assert trajectory.missed < 1e-6
+    assert trajectory.doubts[0].startswith("theta comes to 4.6")
+
+
+def test_a_table_and_a_plot_show_the_way() -> None:
+    trajectory = derive.steer(craft(), inertia((1, 2, 3)), "x 1", limits={"moment": 1}, starts=1)
+    head, first, *_, last = trajectory.table().splitlines()
+    states = [f"attitude_{c}" for c in "wxyz"] + [f"omega_{c}" for c in "xyz"]
+    assert head.split(",") == ["time", *states, *(f"moment_{c}" for c in "xyz")]
+    assert [float(v) for v in first.split(",")][:5] == [0, 1, 0, 0, 0]
+    assert float(last.split(",")[0]) == pytest.approx(trajectory.until)
+    assert trajectory.plot().count("<polyline") == 13

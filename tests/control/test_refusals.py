@@ -1,0 +1,72 @@
+"""What makes no sense is refused by one sentence, before anything is solved."""
+
+import pytest
+
+import derive
+from derive.cli import main
+from tests.control.crafts import craft, inertia
+
+COST = {"energy": 1}
+REFUSED = [
+    ({}, "nothing is to be reached"),
+    ({"turn": "z"}, 'a turn is an axis and an angle, as "z 180deg"'),
+    ({"turn": "q 1"}, "an axis is x, y, z or three numbers as 1,2,2, not 'q'"),
+    ({"turn": "0,0,0 1"}, "an axis is x, y, z or three numbers"),
+    ({"turn": "z 200deg"}, "by more than 0 and at most 180deg, not 200deg"),
+    ({"turn": "z x"}, "a value is a finite number"),
+    ({"turn": "z 1", "cost": {"fuel": 1}}, "a cost is time or energy, not 'fuel'"),
+    ({"turn": "z 1", "cost": {"time": -1}}, "the weight of time must be a number from 0 up"),
+    ({"turn": "z 1", "cost": {"time": 0}}, "the cost must weigh time or energy above 0"),
+    ({"turn": "z 1", "cost": {"energy": 1}}, "until is missing: the time at the end, in seconds"),
+    ({"turn": "z 1", "until": 0}, "until must be a number of seconds above 0, not 0"),
+    ({"turn": "z 1", "limits": {"momnt": 1}}, "not of 'momnt' (did you mean 'moment_"),
+    ({"turn": "z 1", "limits": {"moment": 0}}, "a limit must be above 0, or LOW..HIGH, not 0"),
+    ({"turn": "z 1", "limits": {"moment": "2..1"}}, "or LOW..HIGH, not 2..1"),
+    ({"turn": "z 1", "avoid": ["x 1"]}, "to avoid is an axis of a body with an attitude"),
+    ({"end": {"attitude_w": 2}}, "an attitude must have length 1, not 2"),
+    ({"end": {"moment_x": 2}}, "has no 'moment_x' to set"),
+    ({"turn": "z 1", "steps": 0}, "steps must be"),
+    ({"turn": "z 1", "method": "x"}, "method"),
+    ({"turn": "z 1", "solver": "x"}, "solver"),
+]
+
+
+@pytest.mark.parametrize(("given", "says"), REFUSED, ids=[str(n) for n in range(len(REFUSED))])
+def test_what_makes_no_sense_is_refused(given, says: str) -> None:
+    with pytest.raises(derive.DeriveError) as refused:
+        derive.steer(craft(), inertia((1, 2, 3)), **given)
+    assert says in str(refused.value)
+
+
+def test_scenes_that_cannot_be_steered_say_why() -> None:
+    with pytest.raises(derive.DeriveError, match="set values by --set: I_y, I_z"):
+        derive.steer(craft(), {"I_x": 1}, "z 1")
+    free = craft(known={"angular_velocity": {"range": [-1, 1]}, "moment": ["0", "0", "0"]})
+    with pytest.raises(derive.DeriveError, match="nothing steers it, for its rate has no input"):
+        derive.steer(free, inertia((1, 2, 3)), "z 1")
+    cart = {"M": 0.5, "m": 0.2, "l": 0.3, "I": 0.006, "b": 0.1, "g": 9.8}
+    with pytest.raises(derive.DeriveError, match="a turn is of an attitude"):
+        derive.steer(derive.load("cart_pendulum"), cart, "z 1")
+    with pytest.raises(derive.DeriveError, match="to be steered, a scene must admit state_rate"):
+        derive.steer(derive.load("attitude"), {}, "z 1")
+
+
+def test_an_end_that_cannot_be_reached_is_said(capsys) -> None:
+    values = inertia((1, 2, 3))
+    with pytest.raises(derive.DeriveError, match="none of 2 starts led to the end: "):
+        derive.steer(craft(), values, "z 3", limits={"moment": 0.01}, cost=COST, until=1, starts=2)
+
+
+def test_the_command_prints_what_was_found_and_writes_the_way(tmp_path, capsys) -> None:
+    file = tmp_path / "craft.toml"
+    file.write_text(craft().scene.text)
+    told = ["control", str(file), "--set", "I_x=1", "I_y=2", "I_z=3", "--turn", "x 1"]
+    assert main([*told, "--limit", "moment=1", "--starts", "1", "--out", str(tmp_path / "o")]) == 0
+    shown = capsys.readouterr().out
+    assert "time at the end 2 s cost 2 a local minimum 2" in " ".join(shown.split())
+    assert sorted(p.name for p in (tmp_path / "o").iterdir()) == [
+        "craft_trajectory.csv",
+        "craft_trajectory.svg",
+    ]
+    assert main([*told, "--cost", "energy=x", "--until", "2"]) == 2
+    assert "cost energy: a value is a finite number" in capsys.readouterr().err
