@@ -18,7 +18,7 @@ from derive.emit.casadi_module import imported
 from derive.emit.casadi_text import casadi_file
 from derive.emit.files import scene_files
 from derive.library.external import derivatives_of_step
-from derive.library.library import library
+from derive.library.library import Library, library
 from derive.program.precision import F64
 from derive.scene import SceneError, parse_scene
 from derive.verify.draw import with_motion
@@ -215,3 +215,27 @@ def test_steps_of_any_rates_have_casadis_derivatives(name: str, workshop: Path) 
     )}  # fmt: skip
     told = compiled_steps(own, Files(spoilt, "memory"), module, each, at)
     assert told.outcome == "FAILS"
+
+
+FREE = """
+wanted = ["step_rk4_unit", "step_rk4_unit_jacobian"]
+axes   = { attitude = "quaternion" }
+body   = { kind = "axisymmetric", axis = "z", axial = 1.5, transverse = 1 }
+[known]
+angular_velocity = { range = [-1, 1] }
+moment           = { range = [-3, 3] }
+"""
+
+
+def test_a_scene_without_parameters_is_compiled_too(workshop: Path) -> None:
+    assert judged_alone(library(parse_scene(FREE, "free")), workshop) == "holds"
+
+
+def judged_alone(own: Library, workshop: Path) -> str:
+    name = own.scene.name
+    every = scene_files(own, (), of=derivatives_of_step(own))
+    found = {path.partition("/")[2]: text for path, text in every.items()}
+    module = imported(f"{name}_casadi", found[f"{name}_casadi.py"], workshop)
+    each = with_motion(own, samples(own.mechanism, F64, 3, 0).each, F64)
+    at = (workshop, find_compiler())
+    return compiled_steps(own, Files(found, "memory"), module, each, at).outcome
