@@ -1,5 +1,8 @@
 """Limits on the way: of speeds, of directions; scenes that are machines; and their plain words."""
 
+import tomllib
+from decimal import Decimal
+
 import numpy as np
 import pytest
 
@@ -33,6 +36,34 @@ def test_an_axis_keeps_out_of_a_cone() -> None:
     w, x, y, z = (trajectory.states[f"attitude_{c}"] for c in "wxyz")
     seen = np.array([w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y)])
     assert (np.array([1, 1, 0]) / np.sqrt(2) @ seen).max() <= np.cos(np.radians(20)) + 1e-7
+
+
+TENSOR = np.array([[1.2, -0.02, -0.01], [-0.02, 1.5, 0.03], [-0.01, 0.03, 0.9]])
+WHEEL = 0.002
+WHEELS = {f"J_{a}{a}": TENSOR[k, k] for k, a in enumerate("xyz")} | {"I_w": WHEEL}
+WHEELS |= {"J_xy": -TENSOR[0, 1], "J_xz": -TENSOR[0, 2], "J_yz": -TENSOR[1, 2]}
+
+
+@pytest.mark.long
+def test_a_satellite_on_wheels_turns_later_where_a_wheel_comes_to_its_limit() -> None:
+    text = derive.load("reaction_wheel_satellite").scene.text
+    document = tomllib.loads(text, parse_float=Decimal)
+    document["frames"]["hub"]["attitude"] = "quaternion"
+    scene = derive.load(document | {"wanted": ["state_rate"]}, name="wheels")
+    free, bound = (
+        derive.steer(scene, WHEELS, "1,2,2 60deg", limits={"u_1": 0.05, **more}, starts=2)
+        for more in ({}, {f"s_{k}": 100 for k in (1, 2, 3)})
+    )
+    assert free.missed < 1e-9
+    assert free.conditions is not None
+    assert free.conditions.worst < 1e-7
+    assert max(np.abs(free.states[f"s_{k}"]).max() for k in (1, 2, 3)) > 101
+    assert max(np.abs(bound.states[f"s_{k}"]).max() for k in (1, 2, 3)) <= 100 * (1 + 1e-7)
+    assert free.until < bound.until < 1.01 * free.until
+    for one in (free, bound):  # begun at rest, the whole keeps no angular momentum
+        omega = np.array([one.states[f"w_{k}"] for k in "xyz"])
+        spin = np.array([one.states[f"s_{k}"] for k in "123"])
+        assert np.abs(TENSOR @ omega + WHEEL * spin).max() < 1e-8
 
 
 @pytest.mark.long
