@@ -21,7 +21,8 @@ DEGREE = 6
 LEAST, MORE = 3, 13  # elements of an arc: at least, and so many more of one that lasts all the time
 TOLERANCE = 1e-11
 OPTIONS = {
-    "print_level": 0, "sb": "yes", "max_iter": 200, "tol": TOLERANCE, "mu_init": 1e-5,
+    "print_level": 0, "sb": "yes", "max_iter": 150, "tol": TOLERANCE, "mu_init": 1e-5,
+    "max_cpu_time": 20.0,  # s: where it does not converge, it can search long
     "constr_viol_tol": TOLERANCE, "acceptable_tol": 1e-8, "bound_relax_factor": 0.0,
 }  # fmt: skip
 GAUSS = np.array(casadi.collocation_points(DEGREE, "legendre"))

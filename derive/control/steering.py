@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -20,12 +21,14 @@ from derive.solve.handle import Handle, silent
 from derive.solve.settings import NamedValues
 from derive.solve.told import count, path
 
+Listener = Callable[[str], None]
 COARSE = 40  # steps from which the several starts begin
-FINEST = 1600
+FINEST = 800
+HELPS = 4  # times less of a miss by halved steps, which are of order four
 CLOSE = 1e-6  # to what should vanish at the end, inputs flown
 SHORTEST = 1e-7  # of the time: an arc that is shorter is none
 JUMPS = (4, 8)  # per cent of the steps: what else may be a switch between limits
-HOLDS, FAILS = 1e-6, 1e-2  # of Pontryagin's conditions: what is looked no further for, or not shown
+HOLDS, FAILS = 2e-3, 1e-2  # of Pontryagin's conditions: what is looked no further for, or not shown
 FLOWN = 1e-9  # to what should vanish at the end: elements are halved until it is so
 FINER = 4
 HELD = 1e-6  # of a limit's width: a state so close to it is at it
@@ -47,7 +50,7 @@ def steer(
     method: str = "shooting",
     solver: str = "ipopt",
     folder: str | Path | None = None,
-    told: Callable[[str], None] = silent,
+    told: Listener = silent,
 ) -> Trajectory:
     """Return the cheapest trajectory, with its inputs, that brings a scene where it is to go.
 
@@ -80,7 +83,9 @@ def steer(
         raise SceneError(
             f"scene '{scene.name}': none of {many} starts led to the end: {_reasons(tried)}"
         )
-    grid = _finer(own, asked, best, most, (method, solver), told)
+    by = (method, solver)
+    grid = best if best.u.shape[1] >= most else _again(own, asked, best, most, by, told)
+    grid = _finer(own, asked, grid, by, told)
     told("refining")
     found, holds, why = _refined(own, asked, grid)
     last = grid if found is None else found
@@ -95,7 +100,7 @@ def steer(
 
 
 def _tried(
-    own: Plant, asked: Task, steps: int, many: int, by: tuple[str, str], told: Callable[[str], None]
+    own: Plant, asked: Task, steps: int, many: int, by: tuple[str, str], told: Listener
 ) -> list[Grid]:
     problem = direct(own, asked, steps, *by)
     found = []
@@ -110,24 +115,26 @@ def _reasons(tried: Sequence[Grid]) -> str:
     return ", ".join(f"{each.count(why)} end by {why}" for why in dict.fromkeys(each))
 
 
-def _finer(
-    own: Plant,
-    asked: Task,
-    trajectory: Grid,
-    least: int,
-    by: tuple[str, str],
-    told: Callable[[str], None],
+def _again(
+    own: Plant, asked: Task, guess: Grid, steps: int, by: tuple[str, str], told: Listener
 ) -> Grid:
-    """Return the trajectory on so fine a grid that the inputs, flown, lead to the end."""
-    steps = trajectory.u.shape[1]
-    while steps < least or (missed(own, asked, trajectory) > CLOSE and steps < FINEST):
-        steps = least if steps < least else min(2 * steps, FINEST)
-        told(f"{steps} steps")
-        better = direct(own, asked, steps, *by).solved(trajectory.finer(steps))
-        if not better.is_found:
-            return trajectory
-        trajectory = better
-    return trajectory
+    """Return the trajectory on another grid, or the one that is there, if the solver fails."""
+    told(f"{steps} steps")
+    found = direct(own, asked, steps, *by).solved(guess.finer(steps))
+    return found if found.is_found else guess
+
+
+def _finer(own: Plant, asked: Task, guess: Grid, by: tuple[str, str], told: Listener) -> Grid:
+    """Return the trajectory on a grid so fine that its inputs, flown, lead to the end.
+
+    Halving ends where it helps no more: what is unstable makes much of the solver's own error.
+    """
+    left, before, steps = missed(own, asked, guess), inf, guess.u.shape[1]
+    while CLOSE < left <= before / HELPS and steps < FINEST:
+        steps = min(2 * steps, FINEST)
+        guess = _again(own, asked, guess, steps, by, told)
+        left, before = missed(own, asked, guess), left
+    return guess
 
 
 def _refined(own: Plant, asked: Task, grid: Grid) -> tuple[Refined | None, Conditions | None, str]:
@@ -160,18 +167,19 @@ def _on_arcs(
     own: Plant, asked: Task, grid: Grid, arcs: tuple[Arc, ...]
 ) -> tuple[Refined | None, str]:
     """Return the trajectory on arcs, or why there is none; elements are halved if it flies ill."""
-    finer = 1
+    finer, before, last = 1, inf, None
     while True:
         found = refined(own, asked, grid, arcs, finer)
         if found.why:
-            return None, f"on {len(arcs)} arcs the solver ends by {found.why}"
+            return last, f"on {len(arcs)} arcs the solver ends by {found.why}"
         kept = tuple(arc for arc in found.arcs if arc.lasts > SHORTEST * found.until)
         if len(kept) < len(arcs):
             arcs = kept
-        elif missed(own, asked, found) <= FLOWN or finer == FINER:
+            continue
+        left = missed(own, asked, found)
+        if left <= FLOWN or left > before / HELPS or finer == FINER:
             return found, ""
-        else:
-            finer *= 2
+        finer, before, last = 2 * finer, left, found
 
 
 def _held_back(own: Plant, asked: Task, grid: Grid) -> str:

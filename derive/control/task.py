@@ -72,6 +72,8 @@ def task(
     goal, left = start.copy(), list[Any]()
     if turn:
         goal, left = slewed(own, says, turn, start, x)
+    if not {own.x[k] for k in own.attitude}.isdisjoint(there):
+        goal[list(own.attitude)] = 0
     for name, value in there.items():
         k = own.x.index(name)
         goal[k] = value
