@@ -11,7 +11,7 @@ from derive.command.parsed import location, seconds
 from derive.command.solve import values_named
 from derive.command.terminal import complain, console, print_rows, progress
 from derive.control.direct import SOLVERS, TRANSCRIPTIONS
-from derive.control.steering import STARTS, STEPS
+from derive.control.steering import COARSE, STARTS, STEPS
 from derive.control.task import costs_of
 
 
@@ -33,7 +33,7 @@ def options(command: argparse.ArgumentParser) -> None:
         "--turn",
         default="",
         metavar="'AXIS ANGLE'",
-        help="from rest to rest about an axis of the body: 'z 180deg', '1,2,2 2'",
+        help="to rest, turned about an axis of the body at the start: 'z 180deg', '1,2,2 2'",
     )
     command.add_argument("--end", help="states at the end, those that matter", **several)
     command.add_argument(
@@ -107,7 +107,9 @@ def _rows(trajectory: derive.Trajectory) -> Iterator[tuple[str, str, str]]:
     yield "time at the end", f"{trajectory.until:.10g}", "s"
     yield "cost", f"{trajectory.cost:.10g}", ""
     for cost, count in trajectory.minima:
-        yield "a local minimum", f"{cost:.6g}", f"from {count} of {many} starts"
+        yield "a local minimum", f"{cost:.6g}", f"from {count} of {many} starts, {COARSE} steps"
+    if trajectory.found[0] is not None:
+        yield "the straight start", f"{trajectory.found[0]:.6g}", "where the first guess led"
     if lost := trajectory.found.count(None):
         yield "no end", "", f"from {lost} of {many} starts"
     yield "on the grid", f"{trajectory.grid.cost:.10g}", f"{trajectory.grid.u.shape[1]} steps"

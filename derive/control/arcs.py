@@ -12,12 +12,13 @@ from typing import Any
 import casadi
 import numpy as np
 
-from derive.control.direct import QUIET, Grid
+from derive.control.direct import QUIET, Grid, quietly
 from derive.control.plant import NDFloat, Plant
 from derive.control.structure import Arc
 from derive.control.task import Task
 
 DEGREE = 6
+LOOKED = 21  # points of an element at which its inputs are held against their limits
 LEAST, MORE = 3, 13  # elements of an arc: at least, and so many more of one that lasts all the time
 TOLERANCE = 1e-11
 OPTIONS = {
@@ -27,6 +28,15 @@ OPTIONS = {
 }  # fmt: skip
 GAUSS = np.array(casadi.collocation_points(DEGREE, "legendre"))
 SLOPES, ENDS, WEIGHTS = (np.array(m) for m in casadi.collocation_coeff(GAUSS.tolist()))
+
+
+def lagrange(tau: float) -> NDFloat:
+    """Return what each value at Gauss's points weighs in the polynomial's at tau, 0 to 1."""
+    others = [np.delete(GAUSS, k) for k in range(DEGREE)]
+    return np.array([np.prod((tau - o) / (p - o)) for p, o in zip(GAUSS, others, strict=True)])
+
+
+EDGES = np.column_stack([lagrange(0.0), lagrange(1.0)])
 
 
 @dataclass(frozen=True)
@@ -54,22 +64,24 @@ class Refined:
         """Return the time at the end, s."""
         return float(self.lasts.sum())
 
+    def beyond(self, low: NDFloat, high: NDFloat) -> float:
+        """Return by how much an input passes its limits between Gauss's points, of their width."""
+        at = np.array([lagrange(t) for t in np.linspace(0, 1, LOOKED)])
+        u = np.einsum("ijk,tj->ikt", self.u, at).reshape(len(low), -1)
+        over = np.maximum(u.max(axis=1) - high, low - u.min(axis=1))
+        return float((over / np.where(np.isfinite(high - low), high - low, 1.0)).max())
+
     def at_end(self, element: int) -> NDFloat:
         """Return the inputs at the end of an element."""
         values: NDFloat = self.u[:, :, element] @ lagrange(1.0)
         return values
 
 
-def lagrange(tau: float) -> NDFloat:
-    """Return what each value at Gauss's points weighs in the polynomial's at tau, 0 to 1."""
-    others = [np.delete(GAUSS, k) for k in range(DEGREE)]
-    return np.array([np.prod((tau - o) / (p - o)) for p, o in zip(GAUSS, others, strict=True)])
-
-
 @dataclass(frozen=True)
 class Span:
     """Variables of one element, from node to node, with first guesses and limits; what must vanish.
 
+    edges  : inputs that move, at both its ends        kept : least and most of these
     moving : the inputs that are polynomials here, by number        held : the others' values
     """
 
@@ -78,13 +90,20 @@ class Span:
     least: NDFloat
     most: NDFloat
     gaps: Any
+    edges: Any
+    kept: tuple[NDFloat, NDFloat]
     cost: Any
     moving: tuple[int, ...]
     held: NDFloat
 
 
-def refined(own: Plant, asked: Task, guess: Grid, arcs: Sequence[Arc], finer: int) -> Refined:
-    """Return the trajectory on these arcs, from one on a grid; ``finer`` times the elements."""
+def refined(
+    own: Plant, asked: Task, guess: Grid, arcs: Sequence[Arc], finer: int
+) -> Refined | None:
+    """Return the trajectory on these arcs, from one on a grid; ``finer`` times the elements.
+
+    None where the end asks for more than arcs of these lengths and inputs can give.
+    """
     each = [finer * _elements(arc, guess.until) for arc in arcs]
     sizes = np.maximum(np.abs(guess.x).max(axis=1), 1e-3 * asked.sizes[: len(own.x)])
     inputs = np.maximum(np.abs(guess.u).max(axis=1), 1e-9)
@@ -102,10 +121,15 @@ def refined(own: Plant, asked: Task, guess: Grid, arcs: Sequence[Arc], finer: in
     cost = sum(p.cost for p in parts) + asked.cost["time"] * whole
     ends = [asked.ends(x[-1] * sizes)] + ([] if asked.is_free else [whole / asked.until - 1])
     unit = abs(guess.cost) or 1.0
-    problem = {"x": w, "f": cost / unit, "g": casadi.vertcat(*(p.gaps for p in parts), *ends)}
+    zero = casadi.vertcat(*(p.gaps for p in parts), *ends)
+    if zero.numel() > w.numel() - len(last):
+        return None
+    edges = casadi.vertcat(*(p.edges for p in parts))
+    problem = {"x": w, "f": cost / unit, "g": casadi.vertcat(zero, edges)}
     options: dict[str, Any] = {**QUIET, "expand": True, "ipopt": OPTIONS}
     solver = casadi.nlpsol("arcs", "ipopt", problem, options)
-    found = solver(x0=begins, lbx=least, ubx=most, lbg=0, ubg=0)
+    kept = [np.concatenate([np.zeros(zero.numel()), *(p.kept[k] for p in parts)]) for k in (0, 1)]
+    found = quietly(solver, x0=begins, lbx=least, ubx=most, lbg=kept[0], ubg=kept[1])
     told = solver.stats()
     read = casadi.Function("read", [w], [lengths, casadi.horzcat(*x)])(found["x"])
     lasting = np.array(read[0]).ravel() * guess.until
@@ -153,6 +177,8 @@ def _parts(
                 np.concatenate([least, np.tile(own_low, DEGREE)]),
                 np.concatenate([most, np.tile(own_high, DEGREE)]),
                 casadi.vertcat(casadi.vec(inner), end - x[k + 1]),
+                casadi.vec(casadi.mtimes(v, casadi.DM(EDGES))),
+                (np.tile(own_low, 2), np.tile(own_high, 2)),
                 spent,
                 moving,
                 held,

@@ -4,8 +4,12 @@ Inputs are held over each step. Where the time at the end is free it is a state 
 all stages, so that every constraint is of neighbouring stages: the order that fatrop asks for.
 """
 
+import signal
+import threading
 from collections.abc import Sequence
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass, replace
+from io import StringIO
 from typing import Any
 
 import casadi
@@ -23,7 +27,27 @@ SOLVERS = {
     "fatrop": {"print_level": 0, "max_iter": MOST_TURNS, "tol": TOLERANCE},
 }
 TRANSCRIPTIONS = ("shooting", "collocation")
+NEAREST, FARTHEST = 2e-3, 500  # of the guess: a time at the end beyond them is none
 PERTURBED = 0.3  # of what a component ranges over, or of a unit quaternion
+
+
+def quietly(solver: Any, **values: Any) -> Any:
+    """Return what a solver finds, its own warnings unprinted: what they say is told by its status.
+
+    CasADi takes Ctrl-C for a failure of the function that it calls; here it stops the program.
+    """
+    stopped = list[int]()
+    main = threading.current_thread() is threading.main_thread()
+    before = signal.signal(signal.SIGINT, lambda n, _: stopped.append(n)) if main else None
+    try:
+        with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+            found = solver(**values)
+    finally:
+        if main:
+            signal.signal(signal.SIGINT, before)
+    if stopped:
+        raise KeyboardInterrupt
+    return found
 
 
 @dataclass(frozen=True)
@@ -70,7 +94,7 @@ class Direct:
         first = np.vstack([tall[:, :-1], start.u]).T.ravel()
         guess = np.concatenate([first, tall[:, -1]]) / self.scale
         try:
-            found = self.solver(x0=guess, lbx=low, ubx=high, lbg=least, ubg=most)
+            found = quietly(self.solver, x0=guess, lbx=low, ubx=high, lbg=least, ubg=most)
         except RuntimeError:  # of fatrop, where a step of its own fails
             return replace(start, why="an error of the solver")
         told = self.solver.stats()
@@ -80,6 +104,8 @@ class Direct:
         x = np.column_stack([body[:states], w[n * self.count :][:states]])
         until = float(w[n * self.count :][states]) if free else self.asked.until
         why = "" if told["success"] else str(told["return_status"]).replace("_", " ").lower()
+        if free and not NEAREST * self.asked.until < until < FARTHEST * self.asked.until:
+            why = why or f"a time of {until:.3g} s"
         return Grid(
             x, body[len(tall) :], until, float(found["f"]) * self.unit, told["iter_count"], why
         )
@@ -166,7 +192,8 @@ def _bounds(own: Plant, asked: Task, count: int) -> tuple[NDFloat, NDFloat]:
     """Return the least and largest values of all variables; the first state has none."""
     states = len(own.x)
     ends = []
-    for side, until, until_start in ((asked.low, 1e-3, -np.inf), (asked.high, 1e3, np.inf)):
+    sides = ((asked.low, NEAREST / 2, -np.inf), (asked.high, FARTHEST * 2, np.inf))
+    for side, until, until_start in sides:
         tall = np.concatenate([side[:states], [asked.until * until] * int(asked.is_free)])
         every = np.tile(np.concatenate([tall, side[states:]]), count)
         whole = np.concatenate([every, tall])

@@ -22,7 +22,7 @@ conjugate: Callable[[Any], list[Any]] = quaternion.conjugate
 
 def require_unit(says: str, q: NDFloat) -> None:
     if abs(np.linalg.norm(q) - 1) > UNIT:
-        raise SceneError(f"{says}: an attitude must have length 1, not {np.linalg.norm(q):.6g}")
+        raise SceneError(f"{says} must have length 1, not {np.linalg.norm(q):.6g}")
 
 
 def axis_of(label: str, text: str) -> NDFloat:
@@ -59,13 +59,12 @@ def slewed(own: Plant, says: str, turn: str, start: NDFloat, x: Any) -> tuple[ND
     goal[place] = product(start[place], [cos(angle / 2), *(sin(angle / 2) * axis)])
     goal[list(own.turning)] = 0
     rest = [x[k] for k in own.turning]
-    return goal, [turn_error(own, says, goal, x), *rest]
+    return goal, [turn_error(own, goal, x), *rest]
 
 
-def turn_error(own: Plant, says: str, goal: NDFloat, x: Any) -> Any:
+def turn_error(own: Plant, goal: NDFloat, x: Any) -> Any:
     """Return twice the vector of conj(q_goal) q, which has no fold at any turn."""
     q = goal[list(own.attitude)]
-    require_unit(says, q)
     return 2 * casadi.vertcat(*product(conjugate(q), [x[k] for k in own.attitude])[1:])
 
 
@@ -77,6 +76,8 @@ def outside(own: Plant, says: str, text: str, x: Any) -> Any:
         raise SceneError(f"{says}: to avoid is {rule}, not {shown(text)}")
     own_axis, direction = (axis_of(f"{says}: avoid", w) for w in words[:2])
     angle = number(f"{says}: avoid", words[2], "rad")
+    if not 0 < angle < pi:
+        raise SceneError(f"{says}: a cone to avoid is of 0 to 180deg, not {words[2]}")
     q = [x[k] for k in own.attitude]
     seen = product(product(q, [0, *own_axis]), conjugate(q))[1:]
     return casadi.dot(casadi.vertcat(*seen), casadi.DM(direction)) - cos(angle)

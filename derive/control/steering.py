@@ -17,9 +17,10 @@ from derive.control.trajectory import Trajectory, beyond_ranges
 from derive.emit.files import require_folder, write
 from derive.scene import SceneError
 from derive.scene.table import one_of
+from derive.solve.arguments import by_name
 from derive.solve.handle import Handle, silent
 from derive.solve.settings import NamedValues
-from derive.solve.told import count, path
+from derive.solve.told import count, listener, met, path
 
 Listener = Callable[[str], None]
 COARSE = 40  # steps from which the several starts begin
@@ -29,6 +30,7 @@ CLOSE = 1e-6  # to what should vanish at the end, inputs flown
 SHORTEST = 1e-7  # of the time: an arc that is shorter is none
 JUMPS = (4, 8)  # per cent of the steps: what else may be a switch between limits
 HOLDS, FAILS = 2e-3, 1e-2  # of Pontryagin's conditions: what is looked no further for, or not shown
+OVER = 1e-6  # of the width between its limits, that an input may be beyond them
 FLOWN = 1e-9  # to what should vanish at the end: elements are halved until it is so
 FINER = 4
 HELD = 1e-6  # of a limit's width: a state so close to it is at it
@@ -55,7 +57,7 @@ def steer(
     """Return the cheapest trajectory, with its inputs, that brings a scene where it is to go.
 
     values : parameters, inputs that are held, and states at the start; others begin at 0
-    turn   : from rest to rest about an axis of the body at the start, as "z 180deg", "1,2,2 2"
+    turn   : to rest, about an axis of the body at the start, as "z 180deg", "1,2,2 2"
     end    : states at the end, those that are named
     limits : of inputs and states: 0.4 is -0.4 to 0.4; "0..2"; without, inputs keep to their ranges
              if time alone is the cost
@@ -67,26 +69,31 @@ def steer(
     folder : where a table (CSV) and a plot (SVG) of it are written, None for nowhere
     Raises DeriveError for what makes no sense, and if no start leads to an end.
     """
+    if not isinstance(scene, Handle):
+        raise SceneError(f"scene must be what derive.load returns, not {met(scene)}")
     most = count("steps", steps, range(1, FINEST + 1))
     many = count("starts", starts, range(1, MOST_STARTS + 1))
-    one_of(method, "method", TRANSCRIPTIONS)
-    one_of(solver, "solver", tuple(SOLVERS))
+    by = one_of(method, "method", TRANSCRIPTIONS), one_of(solver, "solver", tuple(SOLVERS))
+    if by == ("collocation", "fatrop"):
+        raise SceneError("fatrop solves steps of shooting, not collocation; take ipopt")
+    cones = (avoid,) if isinstance(avoid, str) else avoid
+    _require_words(turn, cones, {"values": values, "end": end, "limits": limits, "cost": cost})
     into = None if folder is None else path("folder", folder)
     if into is not None:
         require_folder(into)
-    told("deriving")
+    hears = listener(told)
+    hears("deriving")
     own, given = plant(scene.scene, values)
-    asked = task(own, given, turn, end or {}, limits or {}, avoid, cost or {"time": 1}, until)
-    tried = _tried(own, asked, min(COARSE, most), many, (method, solver), told)
+    asked = task(own, given, turn, end or {}, limits or {}, cones, cost or {"time": 1}, until)
+    tried = _tried(own, asked, min(COARSE, most), many, by, hears)
     best = min((g for g in tried if g.is_found), key=lambda g: g.cost, default=None)
     if best is None:
         raise SceneError(
             f"scene '{scene.name}': none of {many} starts led to the end: {_reasons(tried)}"
         )
-    by = (method, solver)
-    grid = best if best.u.shape[1] >= most else _again(own, asked, best, most, by, told)
-    grid = _finer(own, asked, grid, by, told)
-    told("refining")
+    grid = best if best.u.shape[1] >= most else _again(own, asked, best, most, by, hears)
+    grid = _finer(own, asked, grid, by, hears)
+    hears("refining")
     found, holds, why = _refined(own, asked, grid)
     last = grid if found is None else found
     made = Trajectory(
@@ -97,6 +104,17 @@ def steer(
     if into is not None:
         write(into, made.files())
     return made
+
+
+def _require_words(turn: object, avoid: object, named: Mapping[str, object]) -> None:
+    if not isinstance(turn, str):
+        raise SceneError(f'turn must be a text, as "z 180deg", not {met(turn)}')
+    if not (isinstance(avoid, Sequence) and all(isinstance(text, str) for text in avoid)):
+        raise SceneError(f'avoid must be texts, as ["x 0,0,1 30deg"], not {met(avoid)}')
+    for what, values in named.items():
+        if not isinstance(values, Mapping) and (values is not None or what == "values"):
+            raise SceneError(f"{what} must be given by name, not as {met(values)}")
+        by_name(what, values or {})
 
 
 def _tried(
@@ -154,6 +172,9 @@ def _refined(own: Plant, asked: Task, grid: Grid) -> tuple[Refined | None, Condi
         if found is None:
             continue
         told = conditions(own, asked, found)
+        if found.beyond(asked.low[states:], asked.high[states:]) > OVER:
+            why = "between its points an input passes its limit"
+            continue
         if holds is None or told.worst < holds.worst:
             best, holds = found, told
         if told.worst <= HOLDS:
@@ -170,6 +191,8 @@ def _on_arcs(
     finer, before, last = 1, inf, None
     while True:
         found = refined(own, asked, grid, arcs, finer)
+        if found is None:
+            return last, f"{len(arcs)} arcs are too few for what the end asks for"
         if found.why:
             return last, f"on {len(arcs)} arcs the solver ends by {found.why}"
         kept = tuple(arc for arc in found.arcs if arc.lasts > SHORTEST * found.until)

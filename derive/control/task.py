@@ -8,11 +8,13 @@ from typing import Any
 import casadi
 import numpy as np
 
+from derive.control.aim import Aim, aim, vector_names
 from derive.control.plant import NDFloat, Plant
-from derive.control.slew import conjugate, outside, product, require_unit, slewed, turn_error
+from derive.control.slew import conjugate, outside, product
 from derive.scene import SceneError
 from derive.scene.table import nearest, shown
-from derive.solve.settings import NamedValues, number, settings
+from derive.solve.arguments import one_number
+from derive.solve.settings import NamedValues, number
 
 COSTS = ("time", "energy")
 
@@ -64,38 +66,29 @@ def task(
     """
     says = f"scene '{own.name}'"
     weights = _weights(says, cost)
-    start = _start(own, given)
-    there = settings(own.name, own.states, end)
-    _require_states(says, "end", there, own.x)
+    to = aim(own, given, turn, end)
     low, high = _bounded(own, says, limits, () if weights["energy"] else own.u)
     x = casadi.SX.sym("x", len(own.x))
-    goal, left = start.copy(), list[Any]()
-    if turn:
-        goal, left = slewed(own, says, turn, start, x)
-    if not {own.x[k] for k in own.attitude}.isdisjoint(there):
-        goal[list(own.attitude)] = 0
-    for name, value in there.items():
-        k = own.x.index(name)
-        goal[k] = value
-        if k not in own.attitude:
-            left.append(x[k] - value)
-    if not turn and {own.x[k] for k in own.attitude} & there.keys():
-        left.append(turn_error(own, says, goal, x))
-    if not left:
-        raise SceneError(f"{says}: nothing is to be reached; give a turn, or states at the end")
     away = [outside(own, says, text, x) for text in avoid]
-    end_time = _time(own, says, weights, until, start, goal, low, high)
-    return Task(
-        start,
-        goal,
-        casadi.Function("ends", [x], [casadi.vertcat(*left)]),
-        casadi.Function("keeps", [x], [casadi.vertcat(*away)]),
-        low,
-        high,
-        weights,
-        _sizes(own, start, goal, low, high, end_time),
-        end_time,
-    )
+    keeps = casadi.Function("keeps", [x], [casadi.vertcat(*away)])
+    _require_room(own, says, to, low, high)
+    for where, at in (("start", to.start), *((("end", to.goal),) if turn else ())):
+        inside = np.flatnonzero(np.array(keeps(at)).ravel() > 0) if away else ()
+        if len(inside):
+            raise SceneError(f"{says}: the {where} lies inside of what is to be avoided")
+    end_time = _time(own, says, weights, until, to, low, high)
+    sizes = _sizes(own, to, low, high, end_time)
+    return Task(to.start, to.goal, to.ends, keeps, low, high, weights, sizes, end_time)
+
+
+def _require_room(own: Plant, says: str, to: Aim, low: NDFloat, high: NDFloat) -> None:
+    """Refuse a start, or an end, that lies outside of its own limits."""
+    for k, name in enumerate(own.x):
+        asked = (("start", to.start), *((("end", to.goal),) if name in to.named else ()))
+        for where, at in asked:
+            if not low[k] <= at[k] <= high[k]:
+                rule = f"must be within its limits, {low[k]:g} to {high[k]:g}"
+                raise SceneError(f"{says}: {name} at the {where} {rule}, not {at[k]:g}")
 
 
 def _weights(says: str, cost: Mapping[str, float]) -> dict[str, float]:
@@ -104,30 +97,15 @@ def _weights(says: str, cost: Mapping[str, float]) -> dict[str, float]:
             raise SceneError(
                 f"{says}: a cost is time or energy, not {shown(name)}{nearest(name, COSTS)}"
             )
-        if not (isfinite(value) and value >= 0):
+        weight = one_number(says, f"the weight of {name}", value)
+        if not (isfinite(weight) and weight >= 0):
             raise SceneError(
-                f"{says}: the weight of {name} must be a number from 0 up, not {value:g}"
+                f"{says}: the weight of {name} must be a number from 0 up, not {weight:g}"
             )
     weights = {name: float(cost.get(name, 0)) for name in COSTS}
     if not any(weights.values()):
         raise SceneError(f"{says}: the cost must weigh time or energy above 0")
     return weights
-
-
-def _start(own: Plant, given: Mapping[str, float]) -> NDFloat:
-    start = np.array([given.get(n, 0.0) for n in own.x])
-    place = list(own.attitude)
-    if place and not start[place].any():
-        start[place] = (1, 0, 0, 0)
-    if place:
-        require_unit(f"scene '{own.name}'", start[place])
-    return start
-
-
-def _require_states(says: str, what: str, names: Mapping[str, Any], known: Sequence[str]) -> None:
-    for name in names:
-        if name not in known:
-            raise SceneError(f"{says}: '{name}' has no value at the {what}, for it is no state")
 
 
 def _bounded(
@@ -136,12 +114,15 @@ def _bounded(
     """Return the least and largest x and u; of ``ranged``, those of their ranges, if none else."""
     every = (*own.x, *own.u)
     ends = dict.fromkeys(every, (-inf, inf)) | {n: own.ranges[n] for n in ranged}
-    whole = {q.name: q.components for q in own.found.quantities()}
+    whole, limited = vector_names(own), set[str]()
     for name, value in limits.items():
         named = [c for c in whole.get(name, (name,)) if c in ends]
         if not named:
             rule = "a limit is of a state or an input"
             raise SceneError(f"{says}: {rule}, not of {shown(name)}{nearest(name, every)}")
+        if not limited.isdisjoint(named):
+            raise SceneError(f"{says}: {sorted(limited & {*named})[0]} is limited twice")
+        limited |= {*named}
         ends |= dict.fromkeys(named, _ends(f"{says}: limit {name}", value, own.units[named[0]]))
     low, high = np.array([ends[n] for n in every]).T
     return low, high
@@ -153,7 +134,8 @@ def _ends(label: str, value: float | str, unit: str) -> tuple[float, float]:
     if dots:
         low, high = (number(label, t.strip(), unit) for t in (first, last))
     else:
-        high = number(label, value.strip(), unit) if isinstance(value, str) else float(value)
+        own = number(label, value.strip(), unit) if isinstance(value, str) else value
+        high = one_number(label, "the limit", own)
         low = -high
     if not low < high:
         raise SceneError(f"{label}: a limit must be above 0, or LOW..HIGH, not {value}")
@@ -162,41 +144,39 @@ def _ends(label: str, value: float | str, unit: str) -> tuple[float, float]:
 
 def _time(
     own: Plant, says: str, weights: Mapping[str, float], until: float | None,
-    start: NDFloat, goal: NDFloat, low: NDFloat, high: NDFloat,
+    to: Aim, low: NDFloat, high: NDFloat,
 ) -> float:  # fmt: skip
-    """Return the time that is asked for, or a guess: what a turn about one axis takes."""
+    """Return the time that is asked for, or a guess: of turning about one axis, of slowing."""
     if until is not None:
-        if not (isfinite(until) and until > 0):
-            raise SceneError(f"{says}: until must be a number of seconds above 0, not {until:g}")
-        return until
+        end = one_number(says, "until", until)
+        if not (isfinite(end) and end > 0):
+            raise SceneError(f"{says}: until must be a number of seconds above 0, not {end:g}")
+        return end
     count = len(own.x)
     most = np.minimum(high[count:], -low[count:])
-    if (
-        weights["time"] == 0
-        or not own.turning
-        or not (np.isfinite(most).all() and (most > 0).all())
-    ):
+    place, turning = list(own.attitude), list(own.turning)
+    guess = 0.0
+    if weights["time"] and turning and np.isfinite(most).all() and (most > 0).all():
+        between = np.array(product(conjugate(to.start[place]), to.goal[place]))
+        angle = 2 * np.arctan2(np.linalg.norm(between[1:]), abs(between[0]))
+        axis = between[1:] / (np.linalg.norm(between[1:]) or 1.0)
+        faster = to.goal[turning] - to.start[turning]
+        each = np.linalg.lstsq(own.gain(to.start)[turning], np.array([axis, faster]).T, rcond=None)
+        turns, speeds = (np.abs(needed) / most for needed in each[0].T)
+        guess = float(2 * np.sqrt(angle * turns.max()) + speeds.max())
+    if not guess > 0:
         which = "a first guess of it" if weights["time"] else "the time at the end"
         raise SceneError(f"{says}: until is missing: {which}, in seconds")
-    gain = own.gain(start)[list(own.turning)]
-    place = list(own.attitude)
-    between = np.array(product(conjugate(start[place]), goal[place]))
-    trajectory = between[1:] / (np.linalg.norm(between[1:]) or 1.0)
-    needed = np.linalg.lstsq(gain, trajectory, rcond=None)[0]
-    angle = 2 * np.arctan2(np.linalg.norm(between[1:]), abs(between[0]))
-    fastest = 1 / max(np.abs(needed) / most)
-    return float(2 * np.sqrt(max(angle, 1e-3) / fastest))
+    return guess
 
 
-def _sizes(
-    own: Plant, start: NDFloat, goal: NDFloat, low: NDFloat, high: NDFloat, until: float
-) -> NDFloat:
+def _sizes(own: Plant, to: Aim, low: NDFloat, high: NDFloat, until: float) -> NDFloat:
     """Return how large states and inputs may become: scales of variables, and of perturbations."""
     count = len(own.x)
     widest = np.maximum(np.abs(low), np.abs(high))[count:]
     inputs = np.where(np.isfinite(widest), widest, own.scales(own.u))
-    ends = np.maximum(np.abs(start), np.abs(goal))
-    reached = np.maximum(until * np.abs(own.gain(start)) @ inputs, ends)
+    ends = np.maximum(np.abs(to.start), np.abs(to.goal))
+    reached = np.maximum(until * np.abs(own.gain(to.start)) @ inputs, ends)
     ranges = own.scales(own.x)
     return np.concatenate([np.where(reached > 0, np.minimum(reached, ranges), ranges), inputs])
 

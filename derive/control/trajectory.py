@@ -1,7 +1,7 @@
 """A trajectory that was found: what it costs, how surely, its times, states and inputs."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -99,10 +99,16 @@ class Trajectory:
         return {f"{name}.csv": self.table(), f"{name}.svg": self.plot()}
 
     def table(self) -> str:
-        """Return the trajectory as CSV: a row a time, and the inputs that hold from then on."""
+        """Return the trajectory as CSV: a row a time, and the inputs that are held to the next.
+
+        It is that on arcs where all inputs stay at limits, and else that by equal steps.
+        """
+        held = replace(self, refined=None, until=self.grid.until)
+        if self.refined is not None and all(0 not in arc.stays for arc in self.refined.arcs):
+            held = self
         rows = [",".join(["time", *self.x, *self.u])]
-        for time, x in zip(self.times, np.array([*self.states.values()]).T, strict=True):
-            rows.append(",".join(f"{v:z.17g}" for v in (time, *x, *self._inputs_at(time))))
+        for time, x in zip(held.times, np.array([*held.states.values()]).T, strict=True):
+            rows.append(",".join(f"{v:z.17g}" for v in (time, *x, *held._inputs_at(time))))
         return "\n".join(rows) + "\n"
 
     def plot(self) -> str:
@@ -113,7 +119,10 @@ class Trajectory:
         lines |= dict(zip(self.u, inputs, strict=True))
         if self.conditions is not None:
             each = zip(self.u, self.conditions.switching, strict=True)
-            lines |= {f"dH/d {n}": np.interp(times, self.times[1:], own) for n, own in each}
+            lines |= {
+                f"dH/d {n}": np.interp(times, self.times, _from_start(self.times, own))
+                for n, own in each
+            }
         units = dict.fromkeys(lines, "") | dict(self.units)
         return plot_of(Simulation(times, lines, units))
 
@@ -126,6 +135,12 @@ class Trajectory:
         part = (time - self.times[k]) / (self.refined.lasts[k] or 1.0)
         own: NDFloat = self.refined.u[:, :, k] @ lagrange(part)
         return own
+
+
+def _from_start(times: NDFloat, values: NDFloat) -> NDFloat:
+    """Return values at all nodes, of those behind the first: it is reached by a straight line."""
+    slope = (values[1] - values[0]) / (times[2] - times[1])
+    return np.concatenate([[values[0] - slope * (times[1] - times[0])], values])
 
 
 def beyond_ranges(

@@ -2,6 +2,7 @@
 
 import tomllib
 from decimal import Decimal
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -80,6 +81,36 @@ def test_a_cart_swings_its_pendulum_up() -> None:
     assert trajectory.cost == pytest.approx(10.47994, rel=1e-5)
     assert trajectory.missed < 1e-6
     assert trajectory.doubts[0].startswith("theta comes to 4.6")
+
+
+def test_a_tumbling_body_is_stopped_in_the_time_that_its_moments_need() -> None:
+    values = {**inertia((1, 2, 3)), "omega_x": 0.5}
+    limits = {"moment": 0.8}
+    found = derive.steer(craft(), values, end={"omega": 0}, limits=limits, starts=1)
+    assert found.until == pytest.approx(0.5 / 0.8, rel=1e-6)
+
+
+def test_a_part_of_an_attitude_may_be_the_end() -> None:
+    values = {**inertia((1, 2, 3)), "attitude_w": 0.6, "attitude_x": 0.8}
+    end = {"attitude_x": 0, "attitude_y": 0, "omega": 0}
+    found = derive.steer(craft(), values, end=end, limits={"moment": 0.8}, starts=3)
+    assert abs(found.states["attitude_x"][-1]) + abs(found.states["attitude_y"][-1]) < 1e-9
+    assert abs(found.states["attitude_z"][-1]) > 1e-3  # free, and used
+
+
+@pytest.mark.parametrize("cost", [{"time": 1}, {"energy": 1}])
+def test_inputs_held_from_row_to_row_of_the_table_lead_to_the_end(cost) -> None:
+    values, until = inertia((1, 2, 3)), None if "time" in cost else 5
+    found = derive.steer(
+        craft(), values, "1,2,2 1.5", limits={"moment": 0.4}, cost=cost, until=until, starts=2
+    )
+    rows = np.array([[float(v) for v in row.split(",")] for row in found.table().split()[1:]])
+    assert np.abs(rows[:, 8:]).max() <= 0.4 * (1 + 1e-7)
+    step = craft().function("step_taylor12", dict(values))
+    q, omega = rows[0, 1:5], rows[0, 5:8]
+    for row, after in pairwise(rows):
+        q, omega, _ = step(q, omega, row[8:], after[0] - row[0])
+    assert np.abs(np.array([*q, *omega]) - rows[-1, 1:8]).max() < 1e-6
 
 
 def test_a_table_and_a_plot_show_the_way() -> None:

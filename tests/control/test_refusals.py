@@ -1,9 +1,13 @@
 """What makes no sense is refused by one sentence, before anything is solved."""
 
+import os
+import signal
+
 import pytest
 
 import derive
 from derive.cli import main
+from derive.control.direct import quietly
 from tests.control.crafts import craft, inertia
 
 COST = {"energy": 1}
@@ -23,8 +27,21 @@ REFUSED = [
     ({"turn": "z 1", "limits": {"moment": 0}}, "a limit must be above 0, or LOW..HIGH, not 0"),
     ({"turn": "z 1", "limits": {"moment": "2..1"}}, "or LOW..HIGH, not 2..1"),
     ({"turn": "z 1", "avoid": ["x 1"]}, "to avoid is an axis of a body with an attitude"),
-    ({"end": {"attitude_w": 2}}, "an attitude must have length 1, not 2"),
+    ({"end": {"attitude_w": 2}}, "an attitude at the end must have length 1, not 2"),
     ({"end": {"moment_x": 2}}, "has no 'moment_x' to set"),
+    ({"end": {"attitude_w": 1}}, "the start is where the end is to be"),
+    ({"turn": "z 1", "end": {"omega_x": 1}}, "a turn says what omega_x is at the end; leave one"),
+    ({"turn": "z 1", "limits": {"moment": 1, "moment_x": 2}}, "moment_x is limited twice"),
+    ({"turn": "z 1", "limits": {"moment": (0, 1)}}, "limit"),
+    ({"turn": "z 1", "avoid": ["x 0,0,1 1e9deg"]}, "a cone to avoid is of 0 to 180deg, not 1e9deg"),
+    ({"turn": "z 90deg", "avoid": ["x 1,0,0 30deg"]}, "the start lies inside of what is to be"),
+    ({"turn": "z 90deg", "avoid": ["x 0,1,0 30deg"]}, "the end lies inside of what is to be"),
+    (
+        {"turn": "z 1", "method": "collocation", "solver": "fatrop"},
+        "fatrop solves steps of",
+    ),
+    ({"end": {"omega": 0, "attitude_x": 0.5}, "limits": {"attitude_x": 0.1}}, "at the end must be"),
+    ({"turn": "z 1", "until": "abc"}, "until"),
     ({"turn": "z 1", "steps": 0}, "steps must be"),
     ({"turn": "z 1", "method": "x"}, "method"),
     ({"turn": "z 1", "solver": "x"}, "solver"),
@@ -49,6 +66,18 @@ def test_scenes_that_cannot_be_steered_say_why() -> None:
         derive.steer(derive.load("cart_pendulum"), cart, "z 1")
     with pytest.raises(derive.DeriveError, match="to be steered, a scene must admit state_rate"):
         derive.steer(derive.load("attitude"), {}, "z 1")
+
+
+def test_a_start_outside_of_its_limits_is_refused() -> None:
+    values = {**inertia((1, 2, 3)), "omega_x": 0.5}
+    with pytest.raises(derive.DeriveError, match="omega_x at the start must be within its limits"):
+        derive.steer(craft(), values, "z 1", limits={"omega": 0.4})
+
+
+def test_ctrl_c_in_a_solver_stops_the_program() -> None:
+    with pytest.raises(KeyboardInterrupt):
+        quietly(lambda: os.kill(os.getpid(), signal.SIGINT))
+    assert quietly(lambda: 3) == 3
 
 
 def test_an_end_that_cannot_be_reached_is_said(capsys) -> None:

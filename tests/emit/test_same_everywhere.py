@@ -25,8 +25,8 @@ OF_NUMPY = {"sum", "mean", "std", "var", "dot", "vdot", "inner", "matmul", "eins
             "log2", "log10", "power", "prod", "cumsum", "average", "percentile", "quantile",
             "hypot", "convolve", "fft", "random", "float128", "longdouble"}  # fmt: skip
 """Of numpy: rounded in an order or by a method of its own."""
-MEASURED = ("bench", "report", "solve")
-"""Rooms whose figures are of one run on one machine, or answers: times, peers, roots."""
+MEASURED = ("bench", "report", "solve", "control")
+"""Rooms whose figures are of one run on one machine, or answers: times, peers, roots, ways."""
 ASKED = {
     "verify/operators.py: sin": "a first value, and the size of terms, rounded to two digits",
     "verify/operators.py: cos": "as sin",
@@ -54,6 +54,7 @@ WHOLE = {
     "bench/motion/case.py: _exact": "digits counted",
     "bench/motion/case.py: rate": "fractions",
     "bench/show.py: bench": "problems counted",
+    "control/arcs.py: refined": "formulas of CasADi",
     "bench/truth.py: _add": "balls",
     "check/admission.py: _joined": "entries counted",
     "check/derivatives.py: _differentiated": "whole numbers",

@@ -50,7 +50,7 @@ REFUSED = {
     "step must be a positive number of seconds, not 0.0": ["--until=1", "--step=0"],
     "step must be a positive number of seconds, not -0.1": ["--until=1", "--step=-0.1"],
     "step must be a positive number of seconds, not nan": ["--until=1", "--step=nan"],
-    "until must be a number of seconds from 0 up, not nan": ["--until=nan"],
+    "--until: must be a number of seconds, as 0.5, not 'nan'": ["--until=nan"],
     "until must be a number of seconds from 0 up, not inf": ["--until=inf"],
     "until must be a number of seconds from 0 up, not -1.0": ["--until=-1"],
     "until must be at most 10,000,000 steps": ["--until=1e9"],
