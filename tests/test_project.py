@@ -139,7 +139,7 @@ def test_every_dependency_has_a_lower_bound() -> None:
     own = [name for name in every if name.startswith("derive")]
     assert own == ["derive-eom[test]"]
     assert project["name"] == "derive-eom"  # the package index has another derive
-    assert project["scripts"] == {"derive": "derive.cli:main"}
+    assert project["scripts"] == {"derive": "derive.__main__:run"}
     bounded = re.compile(r"[\w-]+>=[\d.]+")
     assert [name for name in every if name not in own and not bounded.fullmatch(name)] == []
 

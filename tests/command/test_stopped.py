@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from derive import Generation
+from derive.__main__ import run
 from derive.command.generate import mended
 from derive.emit.files import UNFINISHED, OutputError, abandoned, differences, unfinished, write
 
@@ -155,3 +156,13 @@ def test_what_a_stopped_run_has_left_is_named_by_scene(tmp_path: Path) -> None:
     left = unfinished(tmp_path)
     says = mended(Generation(tmp_path, (), (), ("rotor/rotor.json",), left))
     assert says.endswith("; 3 are still to be made: generate again rotor, top")
+
+
+def test_an_interrupt_while_the_commands_are_imported_is_an_exit_code(monkeypatch, capsys) -> None:
+    class Interrupted:
+        def __getattr__(self, name: str) -> object:
+            raise KeyboardInterrupt
+
+    monkeypatch.setitem(sys.modules, "derive.cli", Interrupted())
+    assert run() == 130
+    assert capsys.readouterr().err == "derive: stopped before it began\n"
