@@ -8,6 +8,7 @@ from pathlib import Path
 
 from derive.cli import main
 
+NEAR = 1.0  # px: what versions of matplotlib and IPOPT may draw otherwise
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$(?:\n```text\n(.*?)^```$)?", re.MULTILINE | re.DOTALL)
 
 
@@ -54,3 +55,10 @@ def standalone(page: str) -> str:
     colours = "\n".join(line.replace("width: 100%; height: auto; ", "") for line in rules)
     head, rest = drawn.split(">", 1)
     return f'{head} xmlns="http://www.w3.org/2000/svg"><style>\n{colours}\n</style>{rest}\n'
+
+
+def curves(svg: str) -> list[float]:
+    """Return the coordinates of all lines of a picture, but not of letters and marks."""
+    bare = re.sub(r"<(defs|style|clipPath)\b.*?</\1>", "", svg, flags=re.DOTALL)
+    lines = re.findall(r'(?:points| d)="([^"]*)"', bare)
+    return [float(x) for line in lines for x in re.findall(r"-?\d+(?:\.\d+)?", line)]

@@ -10,13 +10,12 @@ from pathlib import Path
 import pytest
 
 from derive.check.compiler import find_compiler
-from tests.pages import Block, blocks, printed, standalone, told
+from tests.pages import NEAR, Block, blocks, curves, printed, standalone, told
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "tutorial.md"
 BLOCKS = blocks(PAGE)
 END = "-- end of a block --\n"
-NEAR = 1.0  # px: what versions of matplotlib and IPOPT may draw otherwise
 pytestmark = pytest.mark.long
 
 
@@ -99,12 +98,5 @@ def test_the_pictures_of_the_tutorial_are_those_that_it_makes(
     for name in linked:
         kept = (ROOT / "docs" / "pictures" / name).read_text(encoding="utf-8")
         made = (folder / name).read_text(encoding="utf-8")
-        assert _curves(made) == pytest.approx(_curves(kept), abs=NEAR), folder / name
-        assert len(_curves(kept)) > 100
-
-
-def _curves(svg: str) -> list[float]:
-    """Return the coordinates of all lines of a picture, but not of letters and marks."""
-    bare = re.sub(r"<(defs|style|clipPath)\b.*?</\1>", "", svg, flags=re.DOTALL)
-    lines = re.findall(r'(?:points| d)="([^"]*)"', bare)
-    return [float(x) for line in lines for x in re.findall(r"-?\d+(?:\.\d+)?", line)]
+        assert curves(made) == pytest.approx(curves(kept), abs=NEAR), folder / name
+        assert len(curves(kept)) > 100
