@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from rich.progress import Progress
 
 import derive
+from derive.command import packaged
 from derive.command.costs import full, print_costs, print_stale, usual
 from derive.command.parsed import location
 from derive.command.scenes import samples_argument, scene_argument
@@ -60,18 +61,24 @@ def options(command: argparse.ArgumentParser) -> None:
         help="write C, too, by which CasADi takes all steps of a horizon in one call",
     )
     samples_argument(command, STATED, "samples that each stated error is looked for at")
+    packaged.options(command)
     command.set_defaults(run=generate)
 
 
 def generate(given: argparse.Namespace) -> int:
-    """Write, or with --check compare, the files of scenes."""
+    """Write, or with --check compare, the files of scenes; with --package a package of one."""
+    packaged.require_sense(given)
     if given.check:
         return _compare(given)
     scenes = [derive.load(source) for source in given.scenes]
     with progress() as shown:
         told = telling(shown)
-        made = derive.generate(
-            scenes, given.out, given.samples, given.figures, given.tell, told, given.parts
+        made = (
+            packaged.made(scenes[0], given, told)
+            if given.package
+            else derive.generate(
+                scenes, given.out, given.samples, given.figures, given.tell, told, given.parts
+            )
         )
     warn(made.warnings)
     if made.stopped:
@@ -79,7 +86,7 @@ def generate(given: argparse.Namespace) -> int:
     print_costs(made.made, VIEWS[given.tell])
     if given.tell == "savings":
         print_stale(made.made)
-    console.print(f"{len(made.files)} files in {given.out}/")
+    console.print(f"{len(made.files)} files in {made.folder}/")
     return 0
 
 

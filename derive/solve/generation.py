@@ -72,6 +72,7 @@ class Made:
     savings: tuple[Saving, ...] = ()
     card: Card | None = field(default=None, repr=False)
     stale: tuple[str, ...] = ()
+    figures: tuple[Measurement, ...] = field(default=(), repr=False)
 
 
 @dataclass(frozen=True)
@@ -171,7 +172,8 @@ def made(
     lies = NOTHING_BESIDE if reports is None else lying_beside(programs, reports)
     texts = scene_files(programs, measured.each, measured.digest, lies, of)
     costs, shown = cost_rows(programs, measured.each), card(programs, lies.best)
-    return Made(texts, warnings, costs, card=shown, stale=lies.on_target.stale)
+    stale, stated = lies.on_target.stale, tuple(measured.each)
+    return Made(texts, warnings, costs, card=shown, stale=stale, figures=stated)
 
 
 def _poles(programs: Library) -> str:
