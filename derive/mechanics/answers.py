@@ -153,7 +153,7 @@ class Answers:
 
     def _state_rate(self) -> dict[Quantity, list[Expr]]:
         """Return the rates of all states, in their order, grouped as the scene groups them."""
-        rates = [rate for q in self._states for rate in self._rates(q)]
+        rates = [self.frames.sheet.rate(s) for q in self._states for s in self._symbols(q)]
         found: dict[Quantity, list[Expr]] = {}
         for q in map(self._quantity, self.machine.groups.rates):
             found[q], rates = rates[: len(q.components)], rates[len(q.components) :]
@@ -170,18 +170,6 @@ class Answers:
     @property
     def _states(self) -> tuple[Quantity, ...]:
         return self.frames.words.vocabulary.states
-
-    def _rates(self, q: Quantity) -> list[Expr]:
-        """Return the rates of a state: of a quaternion by the lecture, of others by their names."""
-        sheet = self.frames.sheet
-        if not q.is_quaternion:
-            return [sheet.rate(s) for s in self._symbols(q)]
-        frame = next(f for f in self.machine.frames if f.attitude == q.name)
-        assert frame.angular_velocity is not None  # noqa: S101
-        w, *v = self._symbols(q)
-        omega = self.frames.words.column(frame.angular_velocity)
-        known = {"q_w": w, "q_v": Matrix(v), "omega": omega}
-        return [by_law("quaternion_rate_scalar", known), *by_law("quaternion_rate_vector", known)]
 
     def expression(self, formula: Formula) -> Expr:
         """Return a formula of answers, with every result in it written out."""

@@ -6,6 +6,7 @@ from typing import Any
 
 from sympy import Expr, Integer, Matrix, Symbol, cos, expand_trig, sin, tan
 
+from derive.lecture.stated import by_law
 from derive.mechanics.sheet import Sheet
 from derive.mechanics.vocabulary import Vocabulary, require_floats
 from derive.program.program import Quantity, Role
@@ -87,7 +88,7 @@ def _quantity(g: Group) -> Quantity:
 
 
 def _rates(machine: Scene, made: Words) -> dict[Symbol, Expr]:
-    """Return the rate of every coordinate, of its rate where it has a name, and of every speed."""
+    """Return the rate of coordinates, of their rates with a name, of speeds and of attitudes."""
     symbols, found = made.sheet.symbols, dict[Symbol, Expr]()
     for m in (*machine.coordinates, *machine.speeds):
         first = symbols[m.name]
@@ -101,6 +102,13 @@ def _rates(machine: Scene, made: Words) -> dict[Symbol, Expr]:
             found[first] = symbols[m.unknown]
         else:
             found[first] = made.expression(m.rate) if m.rate is not None else Integer(0)
+    for frame in machine.frames:
+        if frame.attitude and frame.angular_velocity is not None:
+            w, *v = made.vocabulary.column(frame.attitude)
+            omega = made.column(frame.angular_velocity)
+            known = {"q_w": w, "q_v": Matrix(v), "omega": omega}
+            found[w] = by_law("quaternion_rate_scalar", known)
+            found |= zip(v, by_law("quaternion_rate_vector", known), strict=True)
     return found
 
 
