@@ -110,9 +110,10 @@ def refined(
     lengths = casadi.MX.sym("d", len(arcs))
     x = [casadi.MX.sym(f"x{k}", len(own.x)) for k in range(sum(each) + 1)]
     parts = [*_parts(own, asked, guess, arcs, each, lengths, x, (sizes, inputs))]
-    last = guess.x[:, -1] / sizes
+    last = np.concatenate([guess.x[:, -1] / sizes, [0.0]])
     endless = np.full(len(last), np.inf)
-    w = casadi.vertcat(lengths, *(p.variables for p in parts), x[-1])
+    spare = casadi.MX.sym("s")  # where unknowns are as many as equations, IPOPT looks at no cost
+    w = casadi.vertcat(lengths, *(p.variables for p in parts), x[-1], spare)
     lasts = np.array([a.lasts for a in arcs]) / guess.until
     begins = np.concatenate([lasts, *(p.first for p in parts), last])
     least = np.concatenate([0 * lasts, *(p.least for p in parts), -endless])
@@ -125,7 +126,7 @@ def refined(
     if zero.numel() > w.numel() - len(last):
         return None
     edges = casadi.vertcat(*(p.edges for p in parts))
-    problem = {"x": w, "f": cost / unit, "g": casadi.vertcat(zero, edges)}
+    problem = {"x": w, "f": cost / unit + spare**2, "g": casadi.vertcat(zero, edges)}
     options: dict[str, Any] = {**QUIET, "expand": True, "ipopt": OPTIONS}
     solver = casadi.nlpsol("arcs", "ipopt", problem, options)
     kept = [np.concatenate([np.zeros(zero.numel()), *(p.kept[k] for p in parts)]) for k in (0, 1)]
