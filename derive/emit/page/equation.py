@@ -73,10 +73,14 @@ def written_names(mechanism: Mechanism) -> dict[Symbol, str]:
     names = _apart(names)
     chosen = {r.name for r in mechanism.scene.results} | {name.replace("_dot", "_rate")
                                                           for name in taken}  # fmt: skip
+    states = {c for q in mechanism.vocabulary.states for c in q.components}
     for q in mechanism.vocabulary.states:  # the rate of what is written q_w is written q_w_dot
         rates = ((c, f"{c}_rate") for c in q.components
                  if f"{c}_rate" in symbols and f"{c}_rate" not in chosen)  # fmt: skip
         names |= {symbols[rate]: _dotted(names[symbols[c]]) for c, rate in rates}
+        unknown = ((c, _acceleration(c)) for c in q.components)
+        names |= {symbols[a]: _dotted(names[symbols[c]]) for c, a in unknown
+                  if a in symbols and a not in states}  # fmt: skip
     return names
 
 
@@ -87,6 +91,11 @@ def _apart(names: Mapping[Symbol, str]) -> dict[Symbol, str]:
         symbol: name if seen.setdefault(glyph(name), name) == name else name.replace("_", " ")
         for symbol, name in names.items()
     }
+
+
+def _acceleration(speed: str) -> str:
+    """Return the name by which balances know the rate of a speed, as w_x_dot, q_1_ddot."""
+    return f"{speed.removesuffix('_dot')}_d{'d' * speed.endswith('_dot')}ot"
 
 
 def _dotted(name: str) -> str:
