@@ -57,7 +57,7 @@ def made(name: str) -> tuple[Library, ModuleType]:
 
 
 @pytest.mark.parametrize("function", ["flow_exact", "plan_dmv"])
-@pytest.mark.parametrize("name", thinned([*BODIES, "tumbling_disc"], 2))
+@pytest.mark.parametrize("name", thinned([*BODIES, "tumbling_disc"], 4))
 def test_no_slope_is_wrong_or_lost(name: str, function: str) -> None:
     """At rest, about and beside each axis, for no time, with equal moments, and elsewhere."""
     found, module = made(name)
@@ -67,6 +67,7 @@ def test_no_slope_is_wrong_or_lost(name: str, function: str) -> None:
     assert (wrong, missing) == ([], [])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("way", [called_with_sx, expanded])
 def test_slopes_are_the_same_where_casadi_builds_a_flow_anew(way: Callable[[Any], Any]) -> None:
     flow = made("principal")[1].flow_exact()
@@ -88,6 +89,7 @@ def slopes(f: Any) -> Callable[[Any], list[NDArray[Any]]]:
     return lambda at: [np.array(y) for y in found.call([ca.vertcat(*map(ca.DM, at))])]
 
 
+@pytest.mark.long
 def test_third_slopes_of_a_turn_are_no_numbers() -> None:
     x = ca.MX.sym("x", 3)
     end = made("principal")[1].flow_exact()(AT[0], x, AT[2])[0][1]

@@ -68,6 +68,7 @@ def test_mutants_of_the_c_are_found(module: ModuleType, workshop: Path, old: str
         assert judged("principal", module, workshop, found) == "FAILS"
 
 
+@pytest.mark.long
 def test_names_and_their_order_are_those_that_casadi_gives(
     module: ModuleType, cache_of_three: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -87,6 +88,7 @@ def test_names_and_their_order_are_those_that_casadi_gives(
         ]
 
 
+@pytest.mark.long
 def test_the_wrapper_is_short_and_the_second_derivatives_cost_little() -> None:
     assert len(texts("principal")["craft_external.c"].splitlines()) < LINES
     for kind in ("principal", "general"):
@@ -95,6 +97,7 @@ def test_the_wrapper_is_short_and_the_second_derivatives_cost_little() -> None:
         assert lower.flops() < OPERATIONS
 
 
+@pytest.mark.long
 def test_without_the_option_files_are_what_they_were() -> None:
     given = made("principal")
     usual = scene_files(given, ())
@@ -136,6 +139,7 @@ def test_parameters_that_no_body_has_give_nan_everywhere(
     assert np.isnan(np.array(by_parameters)).any()
 
 
+@pytest.mark.long
 def test_derivatives_that_nobody_asks_for_are_not_computed(
     module: ModuleType, workshop: Path
 ) -> None:
@@ -197,6 +201,7 @@ OTHERS = {
 OTHERS |= {"heavy_top": "Euler angles", "gyrostat": "wheels and moments", "rigid_body": "position"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", thinned(OTHERS, 4))
 def test_steps_of_any_rates_have_casadis_derivatives(name: str, workshop: Path) -> None:
     """Where no structure helps, second derivatives are carried along one change after another."""
@@ -227,6 +232,7 @@ moment           = { range = [-3, 3] }
 """
 
 
+@pytest.mark.long
 def test_a_scene_without_parameters_is_compiled_too(workshop: Path) -> None:
     assert judged_alone(library(parse_scene(FREE, "free")), workshop) == "holds"
 

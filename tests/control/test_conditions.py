@@ -78,6 +78,7 @@ def test_switches_are_read_from_steps_in_which_an_input_is_in_between(
     assert lasts == pytest.approx([2.75, 3.95, 3.3])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("by", [("collocation", "ipopt"), ("shooting", "fatrop")])
 def test_other_methods_and_solvers_find_the_same(
     trajectory: derive.Trajectory, by: tuple[str, str]

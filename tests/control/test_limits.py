@@ -90,6 +90,7 @@ def test_a_tumbling_body_is_stopped_in_the_time_that_its_moments_need() -> None:
     assert found.until == pytest.approx(0.5 / 0.8, rel=1e-6)
 
 
+@pytest.mark.long
 def test_a_part_of_an_attitude_may_be_the_end() -> None:
     values = {**inertia((1, 2, 3)), "attitude_w": 0.6, "attitude_x": 0.8}
     end = {"attitude_x": 0, "attitude_y": 0, "omega": 0}
@@ -98,6 +99,7 @@ def test_a_part_of_an_attitude_may_be_the_end() -> None:
     assert abs(found.states["attitude_z"][-1]) > 1e-3  # free, and used
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("cost", [{"time": 1}, {"energy": 1}])
 def test_inputs_held_from_row_to_row_of_the_table_lead_to_the_end(cost) -> None:
     values, until = inertia((1, 2, 3)), None if "time" in cost else 5

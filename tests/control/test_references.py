@@ -56,6 +56,7 @@ def test_a_turn_costs_the_energy_that_is_known(name: str) -> None:
     assert trajectory.conditions.worst < 1e-8
 
 
+@pytest.mark.long
 def test_taylor_steps_lead_to_the_end() -> None:
     trajectory = slewed("sym180", 3)
     assert trajectory.refined is not None

@@ -71,6 +71,7 @@ def test_assumptions_stand_alone() -> None:
     assert [step.name for step in every if re.match(leaning, alone(step))] == []
 
 
+@pytest.mark.long
 def test_laws_are_quoted_in_sentences_that_need_none_before_them() -> None:
     scenes = map(library_of, ("acrobot", "satellite", "rolling_disc", "heavy_top"))
     parts = [part for known in scenes for one in account(known).sections for part in one.parts]

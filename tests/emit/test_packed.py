@@ -71,6 +71,7 @@ def unpacked(module: ModuleType, function: Any, given: dict[str, Any]) -> Any:
     return ca.vertcat(*(function(**taken)[n] for n in function.name_out()))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", KINDS)
 def test_the_packed_functions_are_the_scenes_own(name: str, tmp_path: Path) -> None:
     module = module_of(name, tmp_path)

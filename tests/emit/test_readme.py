@@ -140,6 +140,7 @@ def test_the_python_runs_as_written_and_brings_the_brick_to_rest(folder: Path) -
     assert json.loads(rate) == pytest.approx(omega_dot(), rel=1e-14)
 
 
+@pytest.mark.long
 def test_the_table_counts_what_the_catalogue_gives() -> None:
     rows = {(label, int(flops), divisions) for label, flops, divisions in ROW.findall(README)}
     assert len(rows) == 6

@@ -46,6 +46,7 @@ def test_any_degrees_give_the_choice_of_trying_all(rows):
     assert degrees_that_sum(rows) == by_trying_all(rows)
 
 
+@pytest.mark.long
 @given(homogeneous())
 def test_degrees_that_a_choice_holds_for_give_the_choice_of_trying_all(rows):
     assert degrees_that_sum(rows) == by_trying_all(rows)

@@ -63,6 +63,7 @@ def test_a_sphere_without_torque_ends_where_its_turn_takes_it() -> None:
     assert end.sizes["omega_z"] == 6.0
 
 
+@pytest.mark.long
 def test_a_motion_that_is_infinite_on_its_way_has_no_end() -> None:
     own = library(parse_scene(RUNAWAY, "runaway"))
     values = {"A": 2.0, "attitude_w": 1.0, "attitude_x": 0.0, "attitude_y": 0.0, "attitude_z": 0.0}
@@ -71,6 +72,7 @@ def test_a_motion_that_is_infinite_on_its_way_has_no_end() -> None:
         end_of(own, values, 0.5, 3.0)
 
 
+@pytest.mark.long
 def test_another_body_ends_elsewhere() -> None:
     own = library_of("tumbling_body")
     values = values_of(own, 0)

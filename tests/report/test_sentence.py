@@ -110,6 +110,7 @@ def test_a_time_that_is_out_of_all_bounds_is_refused_in_one_sentence() -> None:
         assert time_of(own, until, 10.0) == pytest.approx(until)
 
 
+@pytest.mark.long
 def test_scenes_that_differ_in_name_only_have_the_same_limit() -> None:
     text = text_of("tumbling_disc")
     own, other = (library(parse_scene(text, name)) for name in ("tumbling_disc", "plate"))
@@ -134,6 +135,7 @@ def test_the_scene_says_to_what_time_unless_the_command_does() -> None:
         report(still)
 
 
+@pytest.mark.long
 def test_states_of_a_motion_hold_what_moves_it_and_nothing_else() -> None:
     text = """
     wanted = ["state_rate", "angular_momentum", "moment"]

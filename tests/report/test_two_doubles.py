@@ -64,6 +64,7 @@ def test_a_length_in_c_ends_where_one_in_long_floats_does(name: str, tmp_path: P
         assert gap(changed(state, TURN)[0], should) > 10 * SAME
 
 
+@pytest.mark.long
 def test_a_motion_in_c_ends_where_one_in_long_floats_does(tmp_path: Path) -> None:
     own = library_of("sleeping_top")
     values = begun(own, "test", 4).values(1)
@@ -95,6 +96,7 @@ def test_without_a_compiler_no_lengths_are_taken_in_c(
     assert extrapolation_made(tmp_path) is None
 
 
+@pytest.mark.long
 def test_what_rests_on_held_numbers_alone_is_worked_out_once() -> None:
     with ctx.workprec(BITS):
         few, many = (moving(library(parse_scene(BODY.format(b), "body")))[0]

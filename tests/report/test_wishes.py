@@ -11,6 +11,7 @@ from derive.scene import parse_scene
 from tests.made import library_of, scene_of
 
 
+@pytest.mark.long
 def test_a_body_without_torque_could_want_every_step() -> None:
     found = wished(library_of("tumbling_disc"))
     assert {*found.steps} == {s for s in STEPS if "taylor" not in s or s in ORDERS}
@@ -31,6 +32,7 @@ def test_a_machine_in_which_nothing_is_free_has_none_and_it_is_said_why() -> Non
     assert "nothing is" in found.refused["step_rk4"]
 
 
+@pytest.mark.long
 def test_the_other_form_has_the_same_functions() -> None:
     other = in_other_form(scene_of("heavy_top"))
     assert other is not None

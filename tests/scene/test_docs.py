@@ -64,6 +64,7 @@ def test_a_machine_of_the_page_is_proved(text: str) -> None:
     assert proof(library(parse_scene(text, "example"))).outcome == "holds"
 
 
+@pytest.mark.long
 def test_the_program_of_the_page_prints_the_frequencies_of_a_sleeping_top(
     capsys: pytest.CaptureFixture[str],
 ) -> None:

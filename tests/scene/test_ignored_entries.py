@@ -110,10 +110,12 @@ def test_a_force_that_is_left_out_is_noticed(monkeypatch: Any) -> None:
     assert {"known.force.0", "known.force.1", "known.force.2"} <= set(ignored(FORCE))
 
 
+@pytest.mark.long
 def test_an_inertia_on_which_no_moment_acts_does_not_matter() -> None:
     assert ignored(UNTURNED) == []
 
 
+@pytest.mark.long
 def test_an_inertia_that_is_left_out_is_noticed(monkeypatch: Any) -> None:
     monkeypatch.setattr(bodies, "inertia_tensor", lambda *_: eye(3))
     assert "body.moment" in ignored(TURNED)

@@ -59,6 +59,7 @@ def rocket_by_particles(values: Mapping[str, Any]) -> list[Any]:
     return [*(found[f"{p}_ddot"] for p in "XYZ"), *(found[f"w_{p}_dot"] for p in "xyz")]
 
 
+@pytest.mark.long
 def test_a_force_of_state_and_inputs_moves_the_body_as_it_moves_its_particles() -> None:
     made = body(ROCKET, "state_rate")
     equations = equations_of(made.mechanism, made.problems["state_rate"])
@@ -72,6 +73,7 @@ def test_a_force_of_state_and_inputs_moves_the_body_as_it_moves_its_particles() 
             assert all(abs(digits(true[n].value) - x) < AGREE * (1 + abs(x)) for n, x in pairs)
 
 
+@pytest.mark.long
 def test_a_step_and_its_taylor_series_feel_the_force() -> None:
     for wanted in ("step_rk4", "step_taylor12"):
         made = body((DATA / "trials" / "force_by_attitude.toml").read_text(), wanted)

@@ -31,6 +31,7 @@ def test_every_cloud_of_particles_has_a_possible_inertia(
     assert triangle(cloud_tensor(particles))
 
 
+@pytest.mark.long
 @given(PARTICLES)
 def test_an_inertia_is_definite_unless_its_particles_lie_on_a_line(
     particles: list[tuple[int, int, int, int]],

@@ -103,6 +103,7 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.long
 def test_generate_states_it_and_drops_it_with_a_note_when_it_is_stale(
     place: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
