@@ -38,8 +38,9 @@ def options(command: argparse.ArgumentParser) -> None:
     command.add_argument("--end", help="states at the end, those that matter", **several)
     command.add_argument(
         "--limit",
-        help="of inputs and states: moment=0.4 is -0.4 to 0.4, u=0..2 what it says (inputs without "
-        "one keep to their declared ranges, if the cost is time alone)",
+        help="of inputs, states, and what functions tell of them, as angular_momentum: moment=0.4 "
+        "is -0.4 to 0.4, u=0..2 what it says (inputs without one keep to their declared ranges, if "
+        "the cost is time alone)",
         **several,
     )
     command.add_argument(

@@ -122,7 +122,8 @@ def direct(own: Plant, asked: Task, count: int, method: str, solver: str) -> Dir
     between = _between(own, asked, count, method, size, inputs)
     constraints, least, most = list[Any](), list[Any](), list[Any]()
     cost: Any = 0
-    keeps = asked.keeps.numel_out(0)
+    keeps = asked.keeps.at
+    kept = [(-np.inf, 0.0)] * len(asked.keeps)
     for k in range(count):
         gap, spent = between(x[k], u[k], x[k + 1])
         cost += spent
@@ -131,9 +132,9 @@ def direct(own: Plant, asked: Task, count: int, method: str, solver: str) -> Dir
         if not k:
             constraints.append(x[0][:states] - asked.start / size[:states])
             bounds += [(0.0, 0.0)] * states
-        if keeps and k:
-            constraints.append(asked.keeps(x[k][:states] * size[:states]))
-            bounds += [(-np.inf, 0.0)] * keeps
+        if kept and (k or asked.keeps.takes_inputs):
+            constraints.append(keeps(x[k][:states] * size[:states], u[k] * inputs))
+            bounds += kept
         least += [low for low, _ in bounds]
         most += [high for _, high in bounds]
     last = x[count]

@@ -29,9 +29,11 @@ class Plant:
     x, u   : the components of the states, in the scene's order, and of the inputs
     rate   : (x, u) -> dx/dt        step : (x, u, time_step) -> x after it, u held
     ranges : declared, by component
+    given  : values of parameters, and of inputs that are held
     """
 
-    name: str
+    scene: Scene
+    given: Mapping[str, float]
     found: Instrument
     states: tuple[Quantity, ...]
     x: tuple[str, ...]
@@ -52,6 +54,11 @@ class Plant:
         slope = casadi.Function("slope", [X, U], [casadi.jacobian(self.rate(X, U), U)])
         found: NDFloat = np.array(slope(x, np.zeros(len(self.u))).full())
         return found
+
+    @property
+    def name(self) -> str:
+        """Return the scene's name."""
+        return self.scene.name
 
     @property
     def attitude(self) -> tuple[int, ...]:
@@ -96,7 +103,8 @@ def plant(scene: Scene, values: NamedValues) -> tuple[Plant, dict[str, float]]:
     following = [after.get(f"{n}_next", X[k]) for k, n in enumerate(x)]
     every = {c: q for q in wished.vocabulary.given() for c in q.components}
     made = Plant(
-        scene.name,
+        scene,
+        given,
         found,
         states,
         x,

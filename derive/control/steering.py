@@ -59,8 +59,8 @@ def steer(
     values : parameters, inputs that are held, and states at the start; others begin at 0
     turn   : to rest, about an axis of the body at the start, as "z 180deg", "1,2,2 2"
     end    : states at the end, those that are named
-    limits : of inputs and states: 0.4 is -0.4 to 0.4; "0..2"; without, inputs keep to their ranges
-             if time alone is the cost
+    limits : of inputs, states, and what functions tell of them, as angular_momentum: 0.4 is -0.4
+             to 0.4; "0..2"; without, inputs keep to their ranges if time alone is the cost
     avoid  : "x 0,0,1 30deg" keeps the body's x so far from the inertial frame's z
     cost   : weights of "time", s, and "energy", the integral of u.u; the time alone, if None
     until  : s, the time at the end, or where the cost counts it the first guess
@@ -206,14 +206,14 @@ def _on_arcs(
 
 
 def _held_back(own: Plant, asked: Task, grid: Grid) -> str:
-    """Return which limit of a state is reached, "" if none is."""
+    """Return which limit is reached that is not of an input, "" if none is."""
     for k, name in enumerate(own.x):
         low, high = asked.low[k], asked.high[k]
         room = min(grid.x[k].min() - low, high - grid.x[k].max())
         if np.isfinite(low) and room <= HELD * (high - low):
             return f"{name} comes to its limit"
-    if asked.keeps.numel_out(0):
-        values = np.array([asked.keeps(column) for column in grid.x.T])
-        if values.max() >= -HELD:
-            return "an axis comes to the edge of what it avoids"
+    if len(asked.keeps):
+        values = np.array(asked.keeps.at(grid.x[:, :-1], grid.u))
+        worst = values[:, int(not asked.keeps.takes_inputs) :].max(axis=1)
+        return next((asked.keeps.reached[k] for k in np.flatnonzero(worst >= -HELD)), "")
     return ""

@@ -2,15 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import inf, isfinite
+from math import isfinite
 from typing import Any
 
-import casadi
 import numpy as np
 
-from derive.control.aim import Aim, aim, vector_names
+from derive.control.aim import Aim, aim
+from derive.control.limits import Keeps, limited, require_kept, require_room
 from derive.control.plant import NDFloat, Plant
-from derive.control.slew import conjugate, outside, product
+from derive.control.slew import conjugate, product
 from derive.scene import SceneError
 from derive.scene.table import nearest, shown
 from derive.solve.arguments import one_number
@@ -25,7 +25,7 @@ class Task:
 
     start, goal : (x,) where it begins, and a state that satisfies the end
     ends        : x -> what vanishes at the end; three components of an attitude, never four
-    keeps       : x -> what must not be above 0 on the way
+    keeps       : what must not be above 0 on the way
     low, high   : of x, then of u
     cost        : weights of the time in s and of the integral of u.u ("energy")
     sizes       : of x, then of u: what each may come to, by its limits, its range, and what inputs
@@ -36,7 +36,7 @@ class Task:
     start: NDFloat
     goal: NDFloat
     ends: Any
-    keeps: Any
+    keeps: Keeps
     low: NDFloat
     high: NDFloat
     cost: Mapping[str, float]
@@ -67,28 +67,12 @@ def task(
     says = f"scene '{own.name}'"
     weights = _weights(says, cost)
     to = aim(own, given, turn, end)
-    low, high = _bounded(own, says, limits, () if weights["energy"] else own.u)
-    x = casadi.SX.sym("x", len(own.x))
-    away = [outside(own, says, text, x) for text in avoid]
-    keeps = casadi.Function("keeps", [x], [casadi.vertcat(*away)])
-    _require_room(own, says, to, low, high)
-    for where, at in (("start", to.start), *((("end", to.goal),) if turn else ())):
-        inside = np.flatnonzero(np.array(keeps(at)).ravel() > 0) if away else ()
-        if len(inside):
-            raise SceneError(f"{says}: the {where} lies inside of what is to be avoided")
+    low, high, keeps = limited(own, says, limits, () if weights["energy"] else own.u, avoid)
+    require_room(own, says, to, low, high)
+    require_kept(own, says, keeps, {"start": to.start} | ({"end": to.goal} if turn else {}))
     end_time = _time(own, says, weights, until, to, low, high)
     sizes = _sizes(own, to, low, high, end_time)
     return Task(to.start, to.goal, to.ends, keeps, low, high, weights, sizes, end_time)
-
-
-def _require_room(own: Plant, says: str, to: Aim, low: NDFloat, high: NDFloat) -> None:
-    """Refuse a start, or an end, that lies outside of its own limits."""
-    for k, name in enumerate(own.x):
-        asked = (("start", to.start), *((("end", to.goal),) if name in to.named else ()))
-        for where, at in asked:
-            if not low[k] <= at[k] <= high[k]:
-                rule = f"must be within its limits, {low[k]:g} to {high[k]:g}"
-                raise SceneError(f"{says}: {name} at the {where} {rule}, not {at[k]:g}")
 
 
 def _weights(says: str, cost: Mapping[str, float]) -> dict[str, float]:
@@ -106,40 +90,6 @@ def _weights(says: str, cost: Mapping[str, float]) -> dict[str, float]:
     if not any(weights.values()):
         raise SceneError(f"{says}: the cost must weigh time or energy above 0")
     return weights
-
-
-def _bounded(
-    own: Plant, says: str, limits: Mapping[str, float | str], ranged: Sequence[str]
-) -> tuple[NDFloat, NDFloat]:
-    """Return the least and largest x and u; of ``ranged``, those of their ranges, if none else."""
-    every = (*own.x, *own.u)
-    ends = dict.fromkeys(every, (-inf, inf)) | {n: own.ranges[n] for n in ranged}
-    whole, limited = vector_names(own), set[str]()
-    for name, value in limits.items():
-        named = [c for c in whole.get(name, (name,)) if c in ends]
-        if not named:
-            rule = "a limit is of a state or an input"
-            raise SceneError(f"{says}: {rule}, not of {shown(name)}{nearest(name, every)}")
-        if not limited.isdisjoint(named):
-            raise SceneError(f"{says}: {sorted(limited & {*named})[0]} is limited twice")
-        limited |= {*named}
-        ends |= dict.fromkeys(named, _ends(f"{says}: limit {name}", value, own.units[named[0]]))
-    low, high = np.array([ends[n] for n in every]).T
-    return low, high
-
-
-def _ends(label: str, value: float | str, unit: str) -> tuple[float, float]:
-    """Return the limits that a text tells: 0.4 is -0.4 to 0.4, and 0..2 is what it says."""
-    first, dots, last = value.partition("..") if isinstance(value, str) else ("", "", "")
-    if dots:
-        low, high = (number(label, t.strip(), unit) for t in (first, last))
-    else:
-        own = number(label, value.strip(), unit) if isinstance(value, str) else value
-        high = one_number(label, "the limit", own)
-        low = -high
-    if not low < high:
-        raise SceneError(f"{label}: a limit must be above 0, or LOW..HIGH, not {value}")
-    return low, high
 
 
 def _time(

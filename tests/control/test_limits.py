@@ -27,6 +27,42 @@ def test_a_limit_of_a_speed_holds_and_costs() -> None:
 
 
 @pytest.mark.long
+def test_a_limit_of_what_a_function_tells_holds_and_costs() -> None:
+    """The craft wants no angular momentum for itself; what it has is told by its own moments."""
+    moments = (1, 2, 3)
+    values, limits = inertia(moments), {"moment": 0.8}
+    free, slow, poor = (
+        derive.steer(craft(), values, "1,2,2 2", limits=limits | more, starts=1)
+        for more in ({}, {"angular_momentum": 0.9}, {"kinetic_energy": "0..0.3"})
+    )
+    omega = [np.array([one.states[f"omega_{c}"] for c in "xyz"]) for one in (free, slow, poor)]
+    momenta = [np.abs(np.diag(moments) @ w).max() for w in omega]
+    energies = [(np.diag(moments) @ w * w).sum(axis=0).max() / 2 for w in omega]
+    assert momenta[0] > 1.2 > 0.9 + 1e-6 > momenta[1] > 0.9 - 1e-6
+    assert energies[0] > 0.6 > 0.3 + 1e-6 > energies[2] > 0.3 - 1e-6
+    assert free.cost < min(slow.cost, poor.cost)
+    assert slow.unrefined == "angular_momentum_y comes to its limit on the way"
+
+
+@pytest.mark.long
+def test_a_limit_of_a_force_holds_of_states_and_inputs() -> None:
+    scene, spread, costs = derive.load("cart_pendulum"), [], []
+    force = scene.function("rail", CART)
+    for more in ({}, {"rail": "6.65..7.08"}):
+        ends, limits = {"x": 1, "theta": 0, "x_dot": 0, "theta_dot": 0}, {"F": 10, **more}
+        one = derive.steer(
+            scene, CART, end=ends, limits=limits, cost={"energy": 1}, until=1.3, starts=1
+        )
+        told = force(*one.grid.x[1:, :-1], one.grid.u[0])
+        spread.append((told.min(), told.max()))
+        costs.append(one.cost)
+    assert spread[0][0] < 6.63 < 7.09 < spread[0][1]
+    assert 6.65 - 1e-6 < spread[1][0] < spread[1][1] < 7.08 + 1e-6
+    assert costs[0] < costs[1]
+    assert one.unrefined.startswith("rail comes to its limit")
+
+
+@pytest.mark.long
 def test_an_axis_keeps_out_of_a_cone() -> None:
     values, limits = inertia((1, 1, 1)), {"moment": 1.0}
     free = derive.steer(craft(), values, "z 90deg", limits=limits, starts=2)
