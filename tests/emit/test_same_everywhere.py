@@ -60,6 +60,8 @@ WHOLE = {
     "check/derivatives.py: _differentiated": "whole numbers",
     "check/target/build.py: _taken": "bytes",
     "check/target/harness.py: count_of": "values counted",
+    "bench/nmpc.py: flown": "seconds of this run",
+    "emit/package/tested.py: _function": "values counted",
     "command/lecture.py: _verified": "seconds of this run",
     "lower/expand.py: degree": "powers",
     "motion/compensated.py: normalising_increment": "values that are recorded",
