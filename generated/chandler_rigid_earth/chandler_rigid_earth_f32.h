@@ -52,8 +52,8 @@ int chandler_rigid_earth_setup_f32(float A, float C, float rate,
  * Given:     constants  constants of this scene, made of parameters only, each in its own unit
  * Returned:  period_days  d  period of the wobble
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
- * In this scene: w_x_dot = ((A - C)*rate)/A
- * In this scene: period_days = -pi/(43200*w_x_dot)
+ * In this scene: w_dot_x = ((A - C)*rate)/A
+ * In this scene: period_days = -pi/(43200*w_dot_x)
  * Error: median 0.0012, largest 0.0051 u of the largest product or sum in the equation (of
  *            period_days; 200000 samples of the ranges, 65536 searched from the worst); at 8324
  *            hard samples 0.82 u (of period_days, thin rod).

@@ -252,11 +252,11 @@ void quadrotor_energy_f32(const quadrotor_constants_f32 *constants, const float 
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * In this scene: sigma = J_r*(2*w[2] - s[0] + s[1] - s[2] + s[3]) + (I_y - I_z - 2*d^2*m_r)*w[2]
- * In this scene: w_x_dot = (sigma*w[1] + d*c_T*(s[1]^2 - s[3]^2))/(I_x + 2*J_r + 2*d^2*m_r)
- * In this scene: a_fore = J_r*(1/2*w_x_dot + w[1]*(s[0] - 1/2*w[2]))
- * In this scene: a_left = J_r*(1/2*w_x_dot - w[1]*(1/2*w[2] + s[1]))
- * In this scene: a_aft = J_r*(1/2*w_x_dot + w[1]*(s[2] - 1/2*w[2]))
- * In this scene: a_right = J_r*(1/2*w_x_dot - w[1]*(1/2*w[2] + s[3]))
+ * In this scene: w_dot_x = (sigma*w[1] + d*c_T*(s[1]^2 - s[3]^2))/(I_x + 2*J_r + 2*d^2*m_r)
+ * In this scene: a_fore = J_r*(1/2*w_dot_x + w[1]*(s[0] - 1/2*w[2]))
+ * In this scene: a_left = J_r*(1/2*w_dot_x - w[1]*(1/2*w[2] + s[1]))
+ * In this scene: a_aft = J_r*(1/2*w_dot_x + w[1]*(s[2] - 1/2*w[2]))
+ * In this scene: a_right = J_r*(1/2*w_dot_x - w[1]*(1/2*w[2] + s[3]))
  * In this scene: gyro_x = -a_fore - a_left - a_aft - a_right
  * Error: median 0.69, largest 12 u of the largest product or sum in the equation (of gyro_y;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no

@@ -146,8 +146,8 @@ void reaction_wheel_satellite_body_f64(const reaction_wheel_satellite_constants_
  *            I_w*s_3)*w_y + J_yz*(w_y^2 - w_z^2)
  * In this scene: sigma = beta*((I_w - J_yy)*J_xz - J_xy*J_yz) + beta_2*((I_w - J_zz)*J_xy -
  *            J_xz*J_yz) + beta_3*((J_yy + J_zz)*I_w - J_yy*J_zz + J_yz^2 - I_w^2)
- * In this scene: w_x_dot = sigma/Delta
- * In this scene: s_1_dot = u_1/I_w - w_x_dot
+ * In this scene: w_dot_x = sigma/Delta
+ * In this scene: s_1_dot = u_1/I_w - w_dot_x
  * Error: median 0.51, largest 7.4 u of the largest product or sum in the equation (of s_2_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
