@@ -1,16 +1,18 @@
 """``python -m bench.horizon``: derivatives of multiple shooting by seven ways, in one run.
 
 A body with a full tensor and three moments, N = 100 steps of a fourth-order Runge-Kutta step. A
-way's figures are the least of many calls, in microseconds, of the constraint with its Jacobian and
-of the Hessian of the Lagrangian; the floor is a compiled horizon whose step computes nothing.
+way's figures are the least CPU times of many calls, in microseconds, of the constraint with its
+Jacobian and of the Hessian of the Lagrangian, all ways in turn, several times over, so that what
+else the machine does falls on all; the floor is a compiled horizon whose step computes nothing.
 """
 
 import argparse
 import os
 import re
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter, process_time
@@ -54,7 +56,7 @@ moment           = { range = [-3, 3] }
 """
 N, LENGTH = 100, 0.05
 PARAMETERS = (1.4, 1.6, 1.8, 0.1, -0.05, 0.03)
-CALLS = 200
+ROUNDS, CALLS = 30, 20  # of all ways; of each in a round
 CALLED = 7  # the step, its derivatives by states and inputs, by its length, by parameters, twice
 PLAIN, WHOLE = "plain, rate in an MX loop", "plain RK4 as one SX function"
 OURS = "emitted step as SX"
@@ -138,16 +140,21 @@ def by_column(step: Callable[[Any, Any], Any]) -> Steps:
     return lambda x, u: ca.horzcat(*(step(x[:, k], u[:, k]) for k in range(u.shape[1])))
 
 
-def timed(way: Way, reference: Way) -> Timing:
-    """Return what a way takes, and how far its derivatives are from those of the emitted step."""
-    begin = process_time()
-    made = functions(way)
-    spent = process_time() - begin
-    values = sample()
-    jacobian, hessian = (least(f, values[: f.n_in()]) for f in made)
-    return Timing(
-        way.name, spent, jacobian, hessian, apart(made, functions(reference), values), way.ours
-    )
+def timed(every: Sequence[Way], reference: Way) -> list[Timing]:
+    """Return what ways take, and how far derivatives are from those of the emitted step."""
+    built, values = list[float](), sample()
+    made = list[tuple[Any, Any]]()
+    for way in every:
+        begin = process_time()
+        made.append(functions(way))
+        built.append(process_time() - begin)
+    took = least([f for pair in made for f in pair], values)
+    exact = functions(reference)
+    each = zip(every, made, built, took[::2], took[1::2], strict=True)
+    return [
+        Timing(way.name, spent, first, second, apart(pair, exact, values), way.ours)
+        for way, pair, spent, first, second in each
+    ]
 
 
 def apart(ours: tuple[Any, Any], theirs: tuple[Any, Any], values: list[Any]) -> float:
@@ -182,13 +189,15 @@ def sample() -> list[Any]:
     return [ca.DM(x), ca.DM(dice.normal(size=(3, N))), ca.DM(dice.normal(size=(7, N)))]
 
 
-def least(function: Any, values: list[Any]) -> float:
-    """Return the shortest time of a call in microseconds, CasADi's own clock."""
-    found, until = list[float](), perf_counter() + 3
-    while len(found) < CALLS and (perf_counter() < until or len(found) < 5):
-        function(*values)
-        found.append(function.stats()["t_wall_total"])
-    return float(min(found)) * 1e6
+def least(every: Sequence[Any], values: list[Any]) -> list[float]:
+    """Return the shortest CPU times of calls in microseconds, by CasADi's own clock."""
+    found = [inf] * len(every)
+    for _ in range(ROUNDS):
+        for place, function in enumerate(every):
+            for _ in range(CALLS):
+                function(*values[: function.n_in()])
+                found[place] = min(found[place], function.stats()["t_proc_total"] * 1e6)
+    return found
 
 
 def written(made: Library, folder: Path) -> ModuleType:
@@ -246,8 +255,7 @@ def main() -> int:
         module.external(N)
         warm = perf_counter() - start
         every = [*ways(module, N), Way("floor: it computes nothing", empty)]
-        exact = every[3]
-        found = [timed(way, exact) for way in every]
+        found = timed(every, reference=every[3])
     console.print(f"CasADi {ca.CasadiMeta.version()}, N = {N}, full tensor")
     console.print(shown(found))
     named = {one.name: one for one in found}

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from bench import horizon
+from bench import control, horizon, nmpc
 
 CLOSE = 1e-13
 """As `derive check` has it: some hundreds of roundings."""
@@ -15,10 +15,12 @@ def test_every_way_is_timed_and_what_is_ours_agrees(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(horizon, "N", 3)
+    monkeypatch.setattr(horizon, "ROUNDS", 1)
     monkeypatch.setattr(horizon, "CALLS", 2)
-    monkeypatch.setattr("sys.argv", ["horizon"])
+    monkeypatch.setattr(nmpc, "main", lambda: 0)
+    monkeypatch.setattr("sys.argv", ["control"])
     monkeypatch.setenv("XDG_CACHE_HOME", "")
-    assert horizon.main() == 0
+    assert control.main() == 0
     rows = [line for line in capsys.readouterr().out.splitlines() if line.startswith(" ")][1:]
     assert len(rows) == 7
     ours = [row.split()[-1] for row in rows if re.match(r" (emitted|external)", row)]
