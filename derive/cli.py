@@ -44,6 +44,7 @@ COMMANDS: Mapping[str, tuple[Callable[[argparse.ArgumentParser], None], str, tup
         (
             "derive generate heavy_top",
             "derive generate brick.toml --out build --samples 256",
+            "derive generate eulers_disk --fixed m=0.44,r=0.038,tilt=5deg,g=9.81 --out build",
             "derive generate heavy_top --package lib/heavy_top --for platformio,cmake",
             "derive generate --check",
         ),

@@ -1,12 +1,13 @@
 """Emitted C beside its program, beside CasADi, beside the reference, and over its own inputs.
 
-Bits are compared where both sides run the same operations: sine and cosine are taken from the
-library that the C is linked with, all other operations are IEEE's.
+Bits are compared where both sides run the same operations: what the C asks its library (atan2, and
+sines of large angles) is taken from there, all other operations are IEEE's.
 """
 
 import ctypes
 import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import chain
 from statistics import median
 from typing import Any
@@ -16,7 +17,7 @@ import numpy as np
 
 from derive.check.emitted import Emitted, errors_of, from_parameters, inputs, verdict
 from derive.check.verdict import JUDGED, Verdict
-from derive.program.arithmetic import LIBM, working
+from derive.program.arithmetic import LIBM, TURNS, of_turns, working
 from derive.program.largest import largest
 from derive.program.precision import Precision
 from derive.program.program import Program
@@ -54,15 +55,16 @@ def same_values(a: Sequence[float], b: Sequence[float]) -> bool:
 
 
 def linked_arithmetic(emitted: Emitted) -> Arithmetic:
-    """Return the file's arithmetic with the sine and cosine that the C is linked with."""
+    """Return the file's arithmetic with the functions that the C is linked with."""
     return arithmetic_of(ctypes.CDLL(str(emitted.shared)), emitted.precision)
 
 
 def arithmetic_of(loaded: ctypes.CDLL, precision: Precision) -> Arithmetic:
-    """Return the arithmetic of a precision with the sine and cosine of a loaded library."""
+    """Return the arithmetic of a precision with the functions of a loaded library."""
     dtype, functions = precision.dtype, precision.functions
-    linked = {name: _linked(loaded, functions[name], dtype) for name in sorted(LIBM)}
-    return {**working(dtype), **linked}
+    linked = {name: _linked(loaded, functions[name], dtype) for name in sorted(LIBM | TURNS)}
+    turns = {name: partial(of_turns, name, far=linked[name]) for name in sorted(TURNS)}
+    return {**working(dtype), **linked, **turns}
 
 
 def _linked(loaded: ctypes.CDLL, symbol: str, dtype: type) -> Callable[..., Any]:
@@ -80,7 +82,7 @@ def _linked(loaded: ctypes.CDLL, symbol: str, dtype: type) -> Callable[..., Any]
 
 def replay(emitted: Emitted, each: Sequence[Sample]) -> Iterator[Verdict]:
     """Yield whether the C of every function gives the bits of its program."""
-    uses_libm = any(kind in LIBM for f in emitted.library.printed() for kind in f.count)
+    uses_libm = any(kind in LIBM | TURNS for f in emitted.library.printed() for kind in f.count)
     own = linked_arithmetic(emitted) if uses_libm else working(emitted.precision.dtype)
     expected = replayed(emitted.library, each, emitted.precision, own)
     for program in emitted.library.printed():

@@ -12,9 +12,12 @@ from derive.command import packaged
 from derive.command.costs import full, print_costs, print_stale, usual
 from derive.command.parsed import location
 from derive.command.scenes import samples_argument, scene_argument
+from derive.command.solve import values_named
 from derive.command.terminal import OUT, complain, console, error_console, progress
 from derive.scene.escape import visible
+from derive.solve.fixed import fix
 from derive.solve.generation import CASADI, STATED
+from derive.solve.handle import Handle
 
 VIEWS = {"costs": usual, "savings": full}
 MEASURING = "deriving, proving and measuring"
@@ -61,6 +64,13 @@ def options(command: argparse.ArgumentParser) -> None:
         help="write C, too, by which CasADi takes all steps of a horizon in one call",
     )
     samples_argument(command, STATED, "samples that each stated error is looked for at")
+    command.add_argument(
+        "--fixed",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE,...",
+        help="values of all parameters of one scene: its C has a table of constants and no set-up",
+    )
     packaged.options(command)
     command.set_defaults(run=generate)
 
@@ -70,7 +80,7 @@ def generate(given: argparse.Namespace) -> int:
     packaged.require_sense(given)
     if given.check:
         return _compare(given)
-    scenes = [derive.load(source) for source in given.scenes]
+    scenes = _scenes(given)
     with progress() as shown:
         told = telling(shown)
         made = (
@@ -88,6 +98,18 @@ def generate(given: argparse.Namespace) -> int:
         print_stale(made.made)
     console.print(f"{len(made.files)} files in {made.folder}/")
     return 0
+
+
+def _scenes(given: argparse.Namespace) -> list[Handle]:
+    """Return the scenes that were named, one of them with fixed parameters if any are."""
+    scenes = [derive.load(source) for source in given.scenes]
+    if not given.fixed:
+        return scenes
+    if len(scenes) != 1:
+        said = f"{len(scenes)} were named" if scenes else "none was named"
+        raise derive.DeriveError(f"generate: --fixed takes one scene, but {said}")
+    texts = [text for several in given.fixed for text in several.split(",")]
+    return [fix(scenes[0], values_named(texts, "--fixed", "m=2,d=0.06"))]
 
 
 def telling(shown: Progress) -> Callable[[str], None]:
@@ -113,7 +135,7 @@ def mended(made: derive.Generation) -> str:
 
 def _compare(given: argparse.Namespace) -> int:
     """Print how the files differ from what scenes become, and the commands that mend it."""
-    scenes = [derive.load(source) for source in given.scenes]
+    scenes = _scenes(given)
     with progress() as shown:
         made = derive.compare(
             scenes, given.out, given.samples, given.figures, telling(shown), given.parts
@@ -140,6 +162,7 @@ def _mending(given: argparse.Namespace, found: Sequence[derive.Difference]) -> l
         few = given.samples != STATED
         samples = ["--samples", str(given.samples)] if few else []
         wider = [f"--{CASADI}"] if given.parts != "usual" else []
-        commands.append(shlex.join(["derive", "generate", *given.scenes, *samples, *out, *wider]))
+        more = [*samples, *(f"--fixed={text}" for text in given.fixed), *out, *wider]
+        commands.append(shlex.join(["derive", "generate", *given.scenes, *more]))
     left = [str(given.out / difference.name) for difference in found if difference.left_over]
     return [*commands, *([shlex.join(["rm", *left])] if left else [])]

@@ -8,11 +8,13 @@ import numpy as np
 from derive.emit.c.comment import singular_clause
 from derive.emit.c.external import OPTION, described
 from derive.emit.c.scope import declared_in_python, require_free
+from derive.emit.c.sines import numbers_of_sines, takes_sines
 from derive.emit.c.source import first_line
 from derive.emit.c.text import pair_functions
 from derive.emit.lines import SIGNS, Language, operation_text, written
-from derive.emit.operators import WRITTEN, patterns
+from derive.emit.operators import SINES, WRITTEN, patterns
 from derive.emit.packed import Packed, packed, range_of, scale_of
+from derive.emit.sines import TOGETHER, together
 from derive.emit.templates import TEMPLATES
 from derive.library.external import StepDerivatives
 from derive.library.library import Library
@@ -49,13 +51,15 @@ def casadi_file(
     hidden = [motion.rate] if motion and motion.rate not in library.printed() else []
     in_pairs = [p for p in (*library.emitted(), *hidden) if p.arithmetic == "pairs"]
     functions = [_function(p, name) for p in (*library.printed(), *hidden)]
+    sines = any(map(takes_sines, _every(library, hidden)))
     return TEMPLATES.get_template("casadi.py.jinja").render(
         first_line=first_line(library, figures, () if of is None else (OPTION,)),
         title=library.scene.title,
         scene=name,
         setup=_setup(library.setup, name) if has_setup else None,
         pairs=bool(in_pairs),
-        kept=bool(in_pairs) or any(KEPT in str(f["lines"]) for f in functions),
+        kept=bool(in_pairs) or sines or any(KEPT in str(f["lines"]) for f in functions),
+        sines=numbers_of_sines(F64.bits, _literal) if sines else None,
         turns=any(name in ("sin", "cos") for name in pair_functions(in_pairs)),
         odd=[tuple(map(float, pair_of(c, F64.dtype))) for c in coefficients(F64.bits, 1)],
         even=[tuple(map(float, pair_of(c, F64.dtype))) for c in coefficients(F64.bits, 0)],
@@ -69,6 +73,18 @@ def casadi_file(
 
 
 OWN = {name: row.casadi for name, row in WRITTEN.items() if row.casadi}
+BOTH = {
+    TOGETHER: f"_{TOGETHER}({{0}})",
+    **{f"{name}_of": f"{{0}}[{place}]" for place, name in enumerate(SINES.values())},
+}
+
+
+def _every(library: Library, hidden: Sequence[Program]) -> Iterator[Program]:
+    """Yield all programs that the module may have lines of."""
+    for p in (*library.printed(), *hidden):
+        yield p.unrolled or p
+        if p.slopes is not None:
+            yield p.slopes
 
 
 def _pairs(program: Program, place: dict[str, str]) -> tuple[list[str], Callable[[Operand], str]]:
@@ -209,8 +225,9 @@ def plain_lines(
     def text(operand: Operand) -> str:
         return _literal(operand) if isinstance(operand, Fraction) else known.get(operand, operand)
 
-    own = patterns(OWN, _literal, F64.bits)
-    return written(_language(text, own, "ca.", _to_keep(program.ops)), program.ops), text
+    own = patterns(OWN | BOTH, _literal, F64.bits)
+    lines = together(program.ops)
+    return written(_language(text, own, "ca.", _to_keep(program.ops)), lines), text
 
 
 def _to_keep(lines: Sequence[Line]) -> frozenset[str]:

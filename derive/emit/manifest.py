@@ -7,6 +7,7 @@ from typing import Any
 
 from derive import __version__
 from derive.emit.c.comment import SETUP_ERROR, holds, of_what
+from derive.emit.c.fixed import fixed_symbol
 from derive.emit.c.signature import CNames, dense
 from derive.emit.c.source import JACOBIAN_DENSE, command
 from derive.emit.c.text import pair_functions
@@ -52,12 +53,21 @@ def manifest(
         "parameters": [_quantity(q) for q in library.vocabulary.parameters],
         "packed": _packed(library),
         "constants": [{"name": c, "formula": f} for c, f in library.constants.items()],
+        **_fixed(library),
         "functions": [f | _on_cores(f["name"], costs) for f in _functions(library, figures)],
         "taken": list(library.mechanism.signs),
         "warnings": list(library.mechanism.doubts()),
         "measured": {"digest": digest},
     }
     return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
+
+
+def _fixed(library: Library) -> dict[str, Any]:
+    """Return the values of fixed parameters and what C calls their table; nothing if none are."""
+    if not library.fixed:
+        return {}
+    tables = {p.name: fixed_symbol(library, p) for p in PRECISIONS}
+    return {"fixed": {"parameters": dict(library.fixed), "symbols": tables}}
 
 
 def _packed(library: Library) -> dict[str, Any] | None:
@@ -128,10 +138,13 @@ def _arguments(program: Program) -> list[dict[str, Any]]:
 def _setup(library: Library) -> dict[str, Any]:
     program = library.setup
     cost = {"flops_on_pairs": program.flops(), "pair_operations": pair_functions([program])}
+    symbols = _symbols(library, "setup", "setup") | {"casadi_status": "setup_status"}
+    if library.fixed:
+        symbols |= {p.name: None for p in PRECISIONS}
     return {
         "name": "setup",
         "says": program.says,
-        "symbols": _symbols(library, "setup", "setup") | {"casadi_status": "setup_status"},
+        "symbols": symbols,
         "returns": "int: 0, or the first rule that the parameters break; see status",
         "status": {str(number): says for number, says in possible(program).items()},
         "arguments": _arguments(program),

@@ -56,6 +56,8 @@ WRITTEN: Mapping[str, Written] = {
     "select": Written(c="{0} ? {1} : {2}", casadi="ca.if_else({0}, {1}, {2})"),
 }
 SUMS = ("add", "sub")
+SINES = {"sin": "sine", "cos": "cosine"}
+"""The parts of what makes sine and cosine of an angle together."""
 
 
 def patterns(

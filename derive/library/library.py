@@ -1,7 +1,7 @@
 """All programs of a scene: one set-up, and for every wanted function its hot part."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from sys import float_info
 
 from mpmath import mpf, nstr
@@ -30,6 +30,7 @@ class Library:
     constants : what each constant is made by, in the order of the struct
     rates     : further such functions that ``motions`` rest on and nobody wanted for themselves
     motions   : what moves the state in time, and formulas for attitudes
+    fixed     : the values of parameters for which C has a table in the place of set-up
     """
 
     mechanism: Mechanism
@@ -39,6 +40,7 @@ class Library:
     problems: Mapping[str, Problem]
     rates: tuple[Program, ...] = ()
     motions: tuple[Program, ...] = ()
+    fixed: Mapping[str, float] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Program:
         return next(p for p in (self.setup, *self.printed(), *self.rates) if p.name == name)
@@ -60,6 +62,10 @@ class Library:
     def emitted(self) -> tuple[Program, ...]:
         """Return what is printed with set-up before it, if there are constants to make."""
         return (*([self.setup] if self.constants else []), *self.printed())
+
+    def in_c(self) -> tuple[Program, ...]:
+        """Return the functions that C has: no set-up where parameters are fixed."""
+        return self.printed() if self.fixed else self.emitted()
 
 
 def library(scene: Scene) -> Library:

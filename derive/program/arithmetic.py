@@ -15,6 +15,7 @@ import flint
 import numpy as np
 from numpy.typing import NDArray
 
+from derive.program.own_sine import FITTED, sine_and_cosine
 from derive.program.pair_sine import PI, pair_sine
 from derive.program.pairs import (
     MANTISSA,
@@ -46,15 +47,17 @@ class Operator:
     """What an operator is, and what it does; None where an arithmetic does not have it.
 
     kind   : "flop" counts as one, "truth" gives true or false, "libm" asks the platform's library,
+             "turn" does so of large angles alone,
              "number" has no operands and rests on the precision alone
     exact  : what it does to fractions; roots, sines and their like need a proof's own (``prove``)
-    floats : what it does to floats, in columns; a libm's is rounded correctly for every type
+    floats : what it does to floats, in columns; a libm's is rounded correctly for every type, and
+             so is a large angle's
     pairs  : what it does to pairs of floats, in columns, told the float first
     number : the number that it is, by the bits of a float
     libc   : the function of <math.h>; in float it takes an f at its end
     """
 
-    kind: Literal["flop", "truth", "libm", "number", "value"]
+    kind: Literal["flop", "truth", "libm", "turn", "number", "value"]
     exact: Callable[..., Any] | None = None
     floats: Callable[..., Any] | None = None
     pairs: Callable[..., Any] | None = None
@@ -83,8 +86,12 @@ OPERATORS: Mapping[str, Operator] = {
     "neg": Operator("value", neg, neg, lambda _, a: pair_minus(a)),
     "low": Operator("value", pairs=lambda _, a: (a[1], a[1] * 0)),
     "sqrt": Operator("value", None, np.sqrt, lambda by, a: pair_sqrt(a, by.factor), libc="sqrt"),
-    "sin": Operator("libm", pairs=lambda by, a: by.sine(a, 0), libc="sin"),
-    "cos": Operator("libm", pairs=lambda by, a: by.sine(a, 1), libc="cos"),
+    "sin": Operator(
+        "turn", None, lambda x: _turned("sin", x), lambda by, a: by.sine(a, 0), libc="sin"
+    ),
+    "cos": Operator(
+        "turn", None, lambda x: _turned("cos", x), lambda by, a: by.sine(a, 1), libc="cos"
+    ),
     "atan2": Operator("libm", libc="atan2"),
     "abs": Operator("value", abs, np.abs, lambda _, a: pair_absolute(a), libc="fabs"),
     "floor": Operator("value", _exact_floor, np.floor, libc="floor"),
@@ -110,9 +117,9 @@ OPERATORS: Mapping[str, Operator] = {
     "unit_roundoff": Operator("number", number=lambda bits: Fraction(1, 2**bits)),
     "splitter": Operator("number", number=lambda bits: Fraction(splitter(bits))),
 }
-FLOPS, TRUTHS, LIBM = (
+FLOPS, TRUTHS, LIBM, TURNS = (
     frozenset(name for name, row in OPERATORS.items() if row.kind == kind)
-    for kind in ("flop", "truth", "libm")
+    for kind in ("flop", "truth", "libm", "turn")
 )
 EXACT: Arithmetic = {
     "number": Fraction,
@@ -147,7 +154,7 @@ def _correctly(function: str, dtype: type) -> Callable[..., Any]:
         with flint.ctx.workprec(200):
             first, *rest = (flint.arb(float(x)) for x in given)
             ball = getattr(flint.arb, function)(first, *rest)
-            if not ball.is_finite():
+            if not ball.is_finite() or not np.all(np.isfinite(given)):
                 return dtype(_at_the_edge(function, *given))
             man, exp = ball.mid().man_exp()
         return rounded(Fraction(int(man)) * Fraction(2) ** int(exp), dtype)
@@ -158,6 +165,22 @@ def _correctly(function: str, dtype: type) -> Callable[..., Any]:
         return np.array([one(*values) for values in flat], dtype).reshape(several[0].shape)
 
     return each
+
+
+def of_turns(name: str, x: Any, far: Callable[[Any], Any]) -> Any:
+    """Return sines or cosines: our own, by ``far`` where an angle is too large for them."""
+    angle = np.asarray(x)
+    dtype = angle.dtype.type
+    beyond = ~(np.abs(angle) <= FITTED[MANTISSA[dtype]].largest)
+    both = sine_and_cosine(np.where(beyond, dtype(0), angle), dtype)
+    found = np.asarray(both[("sin", "cos").index(name)])
+    if np.any(beyond):
+        found[beyond] = far(angle[beyond])
+    return found[()]
+
+
+def _turned(name: str, x: Any) -> Any:
+    return of_turns(name, x, _correctly(name, np.asarray(x).dtype.type))
 
 
 def _at_the_edge(function: str, *given: Any) -> float:

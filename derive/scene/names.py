@@ -22,6 +22,7 @@ HELPERS: Mapping[str, str] = {
          "splitter", "two_product", "unit_roundoff"),
         "a function of pairs of floats",
     ),
+    **dict.fromkeys(("sine_cosine", "sines"), "the sine and cosine of an angle"),
     "PARAMETERS": "the list of parameters in the CasADi module",
     "CONSTANTS": "the list of constants in the CasADi module",
     **dict.fromkeys(("ode", "step", "error"), "a function of x and u in the CasADi module"),

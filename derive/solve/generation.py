@@ -15,6 +15,7 @@ from derive.emit.page.scene import scene_page
 from derive.emit.reported import NOTHING_BESIDE, lying_beside, reports_in
 from derive.library.external import CASADI as CASADI
 from derive.library.external import derivatives_of_step
+from derive.library.fixed import unstated_values
 from derive.library.library import Library
 from derive.library.saving import Saving, savings
 from derive.program.precision import PRECISIONS
@@ -167,7 +168,7 @@ def made(
         why = scene.merging or _poles(programs) or str(error)
         raise SceneError(f"scene '{scene.name}': {rule}, but {why}") from None
     _finite(programs, measured.each)
-    doubts = (*programs.mechanism.doubts(), *few_digits(measured.each))
+    doubts = (*programs.mechanism.doubts(), *few_digits(measured.each), *unstated_values(programs))
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in doubts)
     lies = NOTHING_BESIDE if reports is None else lying_beside(programs, reports)
     texts = scene_files(programs, measured.each, measured.digest, lies, of)

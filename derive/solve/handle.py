@@ -11,6 +11,7 @@ from derive.check import check
 from derive.check.verdict import Verdict
 from derive.emit.equations import FORMS, equations
 from derive.emit.files import require_folder, require_writable, write
+from derive.library.fixed import with_fixed
 from derive.library.library import Library, library
 from derive.program.program import Quantity
 from derive.report import SceneReport, report, report_files
@@ -58,11 +59,13 @@ class Handle:
     component. What is refused is refused by a DeriveError, with the sentence of the command line.
 
     scene : what was declared         source : what it was loaded by
+    fixed : values of parameters for which C has a table in the place of set-up
     """
 
     scene: Scene
     source: str
     kernels: dict[tuple[str, str, str], Kernel] = field(default_factory=dict)
+    fixed: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -87,7 +90,7 @@ class Handle:
     @cached_property
     def library(self) -> Library:
         """Return the programs of the scene. Raises DeriveError if there can be none."""
-        return library(self.scene)
+        return with_fixed(library(self.scene), self.fixed)
 
     @cached_property
     def _instrument(self) -> Instrument:
@@ -249,30 +252,27 @@ class Handle:
 
     def __reduce__(self) -> Any:
         """Return how another process loads the same scene, by its text."""
-        return handle, (self.scene.text, self.name, self.source)
+        return handle, (self.scene.text, self.name, self.source, (*self.fixed.items(),))
 
     def __repr__(self) -> str:
         """Return what the scene is, what it wants, and what may be given to it."""
-        own = [
-            ("parameter", q.name, q.unit, q.meaning)
-            for q in self.scene.parameters
-            if q.value is None
-        ]
+        own = [("parameter", q.name, q.unit, q.meaning) for q in self.scene.parameters
+               if q.value is None]  # fmt: skip
         own += [(q.kind, q.name, q.unit, q.meaning) for q in self.scene.moving]
         wide = max((len(name) for _, name, _, _ in own), default=0)
-        rows = [
-            f"  {what:10} {name:{wide}}{behind(unit)}  {says}".rstrip()
-            for what, name, unit, says in own
-        ]
+        rows = [f"  {what:10} {name:{wide}}{behind(unit)}  {says}".rstrip()
+                for what, name, unit, says in own]  # fmt: skip
         wanted = ", ".join(self.wanted)
         return "\n".join([f"scene '{self.name}': {self.title}", f"  functions {wanted}", *rows])
 
 
 @lru_cache(KEPT)
-def handle(text: str, name: str, source: str) -> Handle:
-    """Return the scene that a text declares; the same text is read once."""
+def handle(text: str, name: str, source: str, fixed: tuple[tuple[str, float], ...] = ()) -> Handle:
+    """Return the scene that a text declares, its fixed parameters; the same text is read once."""
     scene = parse_scene(text, name)
-    return Handle(scene, source) if scene.text == text else handle(scene.text, name, source)
+    if scene.text != text:
+        return handle(scene.text, name, source, fixed)
+    return Handle(scene, source, fixed=dict(fixed))
 
 
 def load(source: str | Path | Mapping[str, object], name: str = "") -> Handle:

@@ -1,8 +1,8 @@
 """Programs on columns of numbers: thousands of samples in one operation, in floats and in pairs.
 
 What is no longer needed is let go, so that columns stay in the cache. What libm knows is rounded
-correctly: sine, cosine and atan2 by a value of more digits, or by a ball where even that leaves a
-doubt, all others by balls.
+correctly: atan2 by a value of more digits, or by a ball where even that leaves a doubt, all others
+by balls.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -21,13 +21,11 @@ from derive.program.pairs import Pair
 from derive.program.program import Line, Op, Program, component_names, operands_of
 from derive.program.run import numbers_of, run_lines, values_of
 from derive.scene.formula import Arithmetic
-from derive.verify.operators import IN_BALLS, IN_DOUBLES, UNROUNDED, Column, pair_sines
+from derive.verify.operators import IN_BALLS, IN_DOUBLES, UNROUNDED, Column
 
-SMALL, LARGE = 2.0**-27, 2.0**20
-"""Sines are taken in pairs between these; below, x is the float next to sin x, and 1 to cos x."""
 FAR = 2.0**200
 """Components of an angle's direction are taken in pairs up to this, and down to its inverse."""
-QUICKLY = ("sin", "cos", "atan2")
+QUICKLY = ("atan2",)
 """Functions of libm that more digits than a float's round rightly nearly always, before balls."""
 BITS = 200  # of balls: a double's range apart, two pairs differ within 106
 SURE = {np.float32: 2.0**-46, np.float64: 2.0**-94}
@@ -159,8 +157,8 @@ def _correctly(name: str, dtype: type) -> Callable[..., Any]:
     def each(*given: Any) -> Any:
         several = [np.atleast_1d(x) for x in np.broadcast_arrays(*given)]
         found, sure = value(name, several)
-        flat = (several[0] == 0) & (several[-1] > 0 if name == "atan2" else True)
-        found = np.where(flat, 1.0 if name == "cos" else several[0], found).astype(dtype)
+        flat = (several[0] == 0) & (several[-1] > 0)
+        found = np.where(flat, several[0], found).astype(dtype)
         doubt = ~(sure | flat)
         if np.any(doubt):
             found[doubt] = with_balls(*(x[doubt] for x in several))
@@ -174,22 +172,14 @@ def _single(name: str, given: Sequence[Column]) -> tuple[Column, NDArray[np.bool
     value = IN_DOUBLES[name](*wide)
     found = value.astype(np.float32)
     ends = [(value * (1 + side * SURE[np.float32])).astype(np.float32) for side in (-1, 1)]
-    within = np.all([np.abs(x) < (LARGE if len(wide) == 1 else FAR) for x in wide], axis=0)
+    within = np.all(np.abs(wide) < FAR, axis=0)
     return found, (ends[0] == found) & (ends[1] == found) & (found != 0) & within
 
 
 def _double(name: str, given: Sequence[Column]) -> tuple[Column, NDArray[np.bool_]]:
-    if name == "atan2":
-        high, low = UNROUNDED["atan2"](*((x, x * 0) for x in given))
-        sizes = np.abs(given)
-        sure = np.all((sizes < FAR) & (sizes > 1 / FAR), axis=0)
-    else:
-        (x,) = given
-        high, low = pair_sines()((x, x * 0), ("sin", "cos").index(name))
-        tiny = (np.abs(x) < SMALL) & (x != 0)
-        high = np.where(tiny, x if name == "sin" else 1.0, high)
-        low = np.where(tiny, 0.0, low)
-        sure = (np.abs(x) < LARGE) & (x != 0)
+    high, low = UNROUNDED[name](*((x, x * 0) for x in given))
+    sizes = np.abs(given)
+    sure = np.all((sizes < FAR) & (sizes > 1 / FAR), axis=0)
     wrong = np.abs(high) * SURE[np.float64]
     same = (high + (low + wrong) == high) & (high + (low - wrong) == high)
     return high, same & sure & (high != 0)

@@ -22,6 +22,8 @@ CHUNK = 8192
 TURN = 2 * float(PI)
 MIDDLE = 16384
 """Samples that a median is taken of."""
+LEAST = 1024
+"""Samples of a round of the search, however few are drawn: it is what finds the largest error."""
 
 
 @dataclass(frozen=True)
@@ -53,10 +55,13 @@ SAMPLING = Sampling()
 
 
 def sampled_at(samples: int) -> Sampling:
-    """Return a sampling with so many samples of the ranges, and a search of half as many."""
+    """Return a sampling with so many samples of the ranges, and a search of half as many at least.
+
+    A figure is a promise to samples that nobody has drawn: those of few are searched for as well.
+    """
     if samples == SAMPLING.samples:
         return SAMPLING
-    return Sampling(samples=max(samples, 1), batch=max(1, samples // (2 * SAMPLING.rounds)))
+    return Sampling(samples=max(samples, 1), batch=max(LEAST, samples // (2 * SAMPLING.rounds)))
 
 
 @dataclass

@@ -12,6 +12,7 @@ import pytest
 
 from derive.check.compiler import CompilerError, compiled, find_compiler
 from derive.emit.c.signature import CNames, prototype
+from derive.emit.c.sines import own_sines, takes_sines
 from derive.emit.c.text import body
 from derive.emit.templates import TEMPLATES
 from derive.motion.runge_kutta import step
@@ -77,11 +78,13 @@ def c_source(program: Program, precision: Precision) -> str:
     assert program.has_arrays
     kind, head = precision.scalar, prototype(program, CNames("body"), precision)
     fields = [c for q in program.inputs if q.role == "constants" for c in q.components]
-    lines = "\n".join(f"    {line}" for line in body(program, precision))
+    lines = "\n".join(f"    {line}" for line in body(program, "f", precision))
     struct = " ".join(f"{kind} {field};" for field in fields)
     typedef = f"typedef struct {{ {struct} }} body_constants_{precision.name};"
     contraction_off = TEMPLATES.get_template("contraction_off.c.jinja").render()
-    return f"{contraction_off}#include <math.h>\n{typedef}\n{head};\n{head}\n{{\n{lines}\n}}\n"
+    sines = own_sines("f", precision) if takes_sines(program) else ""
+    before = f"{contraction_off}#include <math.h>\n{sines}\n{typedef}\n"
+    return f"{before}{head};\n{head}\n{{\n{lines}\n}}\n"
 
 
 def called(library: Path, program: Program, values: dict[str, Any], precision: Precision) -> Any:

@@ -11,6 +11,7 @@ import pytest
 
 from derive.check.compiler import CompilerError, compiled, find_compiler
 from derive.emit.c.signature import CNames, prototype
+from derive.emit.c.sines import own_sines, takes_sines
 from derive.emit.c.text import body
 from derive.emit.casadi_text import plain_lines
 from derive.emit.templates import TEMPLATES
@@ -26,9 +27,10 @@ from tests.motion.solution import (
 
 def c_source(step: TaylorStep, precision: Precision) -> str:
     head = prototype(in_loops(step), CNames("body"), precision)
-    lines = "\n".join(f"    {line}" for line in body(in_loops(step), precision))
+    lines = "\n".join(f"    {line}" for line in body(in_loops(step), "f", precision))
     contraction_off = TEMPLATES.get_template("contraction_off.c.jinja").render()
-    return f"{contraction_off}#include <math.h>\n{head};\n{head}\n{{\n{lines}\n}}\n"
+    sines = own_sines("f", precision) if takes_sines(in_loops(step)) else ""
+    return f"{contraction_off}#include <math.h>\n{sines}\n{head};\n{head}\n{{\n{lines}\n}}\n"
 
 
 def samples(count: int, dtype: type) -> list[list[Any]]:

@@ -146,7 +146,7 @@ def test_the_same_loop_is_recorded_once_and_another_is_not() -> None:
 def test_a_loop_is_printed_as_a_loop() -> None:
     _, tape = tapes()
     made = root_by_newton(tape, 60)
-    text = "\n".join(body(made, F64))
+    text = "\n".join(body(made, "f", F64))
     assert "for (int pass_t" in text
     assert "< 60;" in text
     assert "break;" in text

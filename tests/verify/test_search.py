@@ -95,16 +95,15 @@ def test_samples_are_of_bodies_within_the_ranges():
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
-@pytest.mark.parametrize("name", ["sin", "cos", "atan2"])
-def test_functions_of_columns_are_rounded_correctly(name: str, dtype: type) -> None:
+def test_functions_of_columns_are_rounded_correctly(dtype: type) -> None:
     from derive.program.arithmetic import working
 
-    wide = 20 * Dice(f"{name}").uniform(2, 400) - 10
+    wide = 20 * Dice("atan2").uniform(2, 400) - 10
     wide[:, :40] *= 10.0 ** np.arange(-38, 2)  # down to where a sine is its angle
     wide[0, 40:44], wide[1, 44:46] = 0.0, 0.0
-    given = wide.astype(dtype)[: 2 if name == "atan2" else 1]
-    found = arithmetics(dtype).own[name](*given)
-    assert found.tolist() == working(dtype)[name](*given).tolist()
+    given = wide.astype(dtype)
+    found = arithmetics(dtype).own["atan2"](*given)
+    assert found.tolist() == working(dtype)["atan2"](*given).tolist()
 
 
 @pytest.mark.long

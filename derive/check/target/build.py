@@ -15,11 +15,12 @@ from derive.check.target.core import FLAGS, HERE, Core
 from derive.check.target.harness import calling
 from derive.emit.c.signature import CNames
 from derive.library.library import Library
+from derive.program.arithmetic import LIBM, TURNS
 from derive.program.precision import Precision
 
 BOARD = (*("-std=gnu99", "-O2", "-ffp-contract=off", "-fno-builtin"), f"-I{HERE}", "-I.")
-LIBM = ("sin", "cos", "atan2")
-"""Functions of the C library that are not rounded alike everywhere."""
+ASKED = LIBM | TURNS
+"""What asks the C library, which is not the same everywhere: always, or for large angles."""
 _SECTION = re.compile(r"^ *\d+ (\.\S+) +([0-9a-f]{8}) ")
 _SYMBOL = re.compile(r"^[0-9a-f]{8} .{7} (\.\S+)\t[0-9a-f]{8} (?:\.hidden )?(\S+)$")
 _RELOCATED = re.compile(r"^RELOCATION RECORDS FOR \[(\S+)\]:$")
@@ -50,8 +51,8 @@ class Built:
 
 
 def calls_libm(library: Library) -> bool:
-    """Tell whether a function of a scene calls what C libraries round differently."""
-    return any(set(LIBM) & set(p.count) for p in library.printed())
+    """Tell whether a function of a scene has a call of what C libraries round differently."""
+    return any(ASKED & set(p.count) for p in library.printed())
 
 
 def laid_out(

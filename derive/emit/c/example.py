@@ -13,7 +13,7 @@ def example(library: Library, names: CNames, precision: Precision) -> list[str]:
     """Return a few lines of C that use the first function."""
     program = library.printed()[0]
     lines = []
-    if any(q.role == "constants" for q in program.inputs):
+    if any(q.role == "constants" for q in program.inputs) and not library.fixed:
         given = ", ".join(literal(_middle(q), precision) for q in library.setup.inputs)
         call = f"{names.symbol('setup', precision)}({given}, &constants)"
         lines.append(f"{names.scene}_constants_{precision.name} constants;")
@@ -28,7 +28,8 @@ def example(library: Library, names: CNames, precision: Precision) -> list[str]:
         )
     outputs = [f"{q.name}[{len(q.components)}]" if q.shape else q.name for q in program.outputs]
     lines.append(f"{precision.scalar} {', '.join(outputs)};")
-    passed = [_passed(q, precision) for q in program.inputs]
+    constants = f"{names.scene}_fixed_{precision.name}" if library.fixed else "constants"
+    passed = [_passed(q, precision, constants) for q in program.inputs]
     passed += [q.name if q.shape else f"&{q.name}" for q in program.outputs]
     lines.append(f"{names.symbol(program.name, precision)}({', '.join(passed)});")
     return lines
@@ -44,7 +45,7 @@ def _values(q: Quantity, precision: Precision) -> str:
     return "{" + ", ".join([first, *rest]) + "}"
 
 
-def _passed(q: Quantity, precision: Precision) -> str:
+def _passed(q: Quantity, precision: Precision, constants: str) -> str:
     if q.role == "constants":
-        return "&constants"
+        return f"&{constants}"
     return q.name if q.shape else literal(_middle(q), precision)

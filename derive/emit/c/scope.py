@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from derive.scene import SceneError
 
-_TYPE = r"(?:double|float|int|_Bool|unsigned char|unsigned short|\w+_pair_f(?:32|64))"
+_TYPE = r"(?:double|float|int|_Bool|unsigned char|unsigned short|\w+_(?:pair|sines)_f(?:32|64))"
 _DECLARED = re.compile(rf"\s*(?:for \()?(?:static )?(?:const )?{_TYPE} ([^;]*);?")
 _FIRST = re.compile(r"\*?([A-Za-z_]\w*)(?:\[\w+\])*(?: =.*)?")
 _ASSIGNED = re.compile(r"\s*(?:for )?([A-Za-z_]\w*(?:, [A-Za-z_]\w*)*)(?: =| in) ")

@@ -9,13 +9,16 @@ from derive import __version__
 from derive.emit.c.columns import within_columns
 from derive.emit.c.comment import comment, dense_comment, wrapped
 from derive.emit.c.example import example
+from derive.emit.c.fixed import fixed_definition, fixed_symbol
 from derive.emit.c.relations import UNSAID, Relations
 from derive.emit.c.scope import declared_in_c, require_free, require_no_symbol
 from derive.emit.c.signature import CNames, dense, dense_size, prototype
+from derive.emit.c.sines import own_sines, takes_sines
 from derive.emit.c.text import constant_array, function_body, pair_body, pair_functions
 from derive.emit.on_target import UNKNOWN, OnTarget
 from derive.emit.operators import literal
 from derive.emit.templates import TEMPLATES
+from derive.library.fixed import fixed_text, unstated_values
 from derive.library.library import Library
 from derive.program.arithmetic import pair_of, rounded
 from derive.program.pair_sine import PI, coefficients, quarter_turn
@@ -79,6 +82,7 @@ def command(library: Library, figures: Sequence[Measurement], options: Sequence[
         "derive generate",
         argument(library.scene),
         *(f"--samples {n}" for n in other),
+        *([f"--fixed {fixed_text(library.fixed)}"] if library.fixed else []),
         *options,
     ]
     return " ".join(words)
@@ -106,7 +110,7 @@ def _header(
 ) -> str:
     described, bodies = [], len(library.scene.bodies)
     costs, here = known
-    for program in library.emitted():
+    for program in library.in_c():
         own = costs.of(program.name, precision.name)
         told = potential_said(library.scene), here.get(program.name, ())
         says = comment(program, figures, bodies, own, *told)
@@ -125,6 +129,9 @@ def _header(
         constants=library.constants,
         aside=any("I" in names_in(p) for p in library.emitted()),
         setup={"symbol": names.symbol("setup", precision)},
+        fixed=fixed_symbol(library, precision),
+        values=fixed_text(library.fixed).replace(",", ", ").replace("=", " = "),
+        doubts=[line for each in unstated_values(library) for line in wrapped(f"But {each}.")],
         struct=f"{names.scene}_constants_{precision.name}",
         scalar=precision.scalar,
         functions=described,
@@ -141,9 +148,9 @@ def names_in(program: Program) -> set[str]:
 def _source(
     library: Library, names: CNames, precision: Precision, figures: Sequence[Measurement]
 ) -> str:
-    programs = library.emitted()
+    programs = library.in_c()
     pairs = pair_functions(p for p in programs if p.arithmetic == "pairs")
-    made = _setup_definition(library.setup, names, precision) if library.constants else ""
+    made = _setup_definition(library.setup, names, precision) if library.setup in programs else ""
     operations = [_pair_function(name, names, precision) for name in pairs]
     if all(p.arithmetic != "pairs" for p in library.printed()):
         operations = apart(operations, made)
@@ -157,6 +164,8 @@ def _source(
         scalar=precision.scalar,
         pair=f"{names.scene}_pair_{precision.name}",
         setup={"definition": made} if made else None,
+        fixed=fixed_definition(library, precision),
+        sines=own_sines(names.scene, precision) if any(map(takes_sines, programs)) else "",
         functions=_definitions(library, names, precision),
     )
 

@@ -1,12 +1,15 @@
 """A program as C99 text: one line an operation, everything computed before anything is stored."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
+from derive.emit.c.sines import sines_type
 from derive.emit.c.status import status
 from derive.emit.lines import SIGNS, Language, written
-from derive.emit.operators import WRITTEN, literal, patterns
+from derive.emit.operators import SINES, WRITTEN, literal, patterns
+from derive.emit.sines import TOGETHER, together
 from derive.program.arithmetic import TRUTHS, pair_of
 from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, Row
 from derive.program.precision import Precision
@@ -20,7 +23,7 @@ def function_body(program: Program, scene: str, precision: Precision) -> list[st
     """Return the lines between the braces of any function but set-up."""
     if program.arithmetic == "pairs":
         return pair_body(program, scene, precision)
-    return body(program, precision)
+    return body(program, scene, precision)
 
 
 def places(quantities: tuple[Quantity, ...]) -> dict[str, str]:
@@ -35,7 +38,7 @@ def places(quantities: tuple[Quantity, ...]) -> dict[str, str]:
     return found
 
 
-def body(program: Program, precision: Precision) -> list[str]:
+def body(program: Program, scene: str, precision: Precision) -> list[str]:
     """Return the lines between the braces of a hot function."""
     place = places(program.inputs)
     place |= {n: literal(q[precision.bits], precision) for n, q in program.numbers.items()}
@@ -45,9 +48,18 @@ def body(program: Program, precision: Precision) -> list[str]:
             return literal(operand, precision)
         return place.get(operand, operand)
 
-    own = patterns(OWN, partial(literal, precision=precision), precision.bits)
+    makes = {TOGETHER: f"{scene}_{TOGETHER}_{precision.name}({{0}})"}
+    makes |= {f"{part}_of": f"{{0}}.{part}" for part in SINES.values()}
+    own = patterns(OWN | makes, partial(literal, precision=precision), precision.bits)
     of = _language(text, own, precision.functions.__getitem__, precision.scalar, precision)
-    return [*written(of, program.ops), *_stores(program, text, precision)]
+    of = replace(of, line=partial(_line, sines_type(scene, precision), of.line))
+    return [*written(of, together(program.ops)), *_stores(program, text, precision)]
+
+
+def _line(kind: str, otherwise: Callable[[Op, str], str], op: Op, value: str) -> str:
+    if op.operator == TOGETHER:
+        return f"const {kind} {op.result} = {value};"
+    return otherwise(op, value)
 
 
 def pair_body(program: Program, scene: str, precision: Precision) -> list[str]:

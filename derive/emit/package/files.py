@@ -10,7 +10,7 @@ from derive.emit.package.kinds import BUILD_TOOLS, Contents, rendered
 from derive.emit.package.single import single_header, single_name
 from derive.emit.package.tested import tested
 from derive.library.library import Library
-from derive.program.arithmetic import LIBM
+from derive.program.arithmetic import LIBM, TURNS
 from derive.program.precision import MATH, PRECISIONS, Precision
 from derive.program.program import Measurement, Program
 
@@ -54,7 +54,7 @@ def _contents(
     kinds: Sequence[str],
     precisions: Sequence[Precision],
 ) -> Contents:
-    every = {kind for program in library.emitted() for kind in program.count}
+    every = {kind for program in library.in_c() for kind in program.count}
     called = {kind for p in library.printed() if p.arithmetic != "pairs" for kind in p.count}
     options = ["--package DIR"]
     options += [f"--precision {p.scalar}" for p in precisions if len(precisions) == 1]
@@ -65,7 +65,7 @@ def _contents(
         tuple(p for p in PRECISIONS if p in precisions),
         first_line(library, figures, options),
         bool(every & {*MATH}),
-        bool(called & {*LIBM}),
+        bool(called & (LIBM | TURNS)),
         tuple(kinds),
     )
 

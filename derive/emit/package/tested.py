@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from derive.emit.c.columns import within_columns
+from derive.emit.c.fixed import fixed_symbol
 from derive.emit.c.signature import CNames
 from derive.emit.package.vectors import SMALL, BitsOf, bits, bits_at, by_vector
 from derive.emit.templates import TEMPLATES
@@ -15,7 +16,7 @@ from derive.program.precision import F64, Precision
 from derive.program.program import Program, Quantity
 
 DIGITS = {"f32": 12, "f64": 26}
-"""Bits to which what calls the C library's sines must agree: half of a number's."""
+"""Bits to which what calls the C library's arctangent must agree: half of a number's."""
 
 ACROSS = {"f32": 8, "f64": 4}
 """Numbers of a vector on a line."""
@@ -36,11 +37,12 @@ def tested(library: Library, precision: Precision, first_line: str) -> str:
         digits=DIGITS[precision.name],
         differences=list(zip(bits(small, precision), bits(1 - small, precision), strict=True)),
         constants=bool(library.constants),
+        fixed=fixed_symbol(library, precision),
         functions=[
             {"place": place, **_function(p, names, precision, found)}
-            for place, p in enumerate(library.emitted(), 1)
+            for place, p in enumerate(library.in_c(), 1)
         ],
-        every_exact=all(p.name in found.exact for p in library.emitted()),
+        every_exact=all(p.name in found.exact for p in library.in_c()),
     )
     return within_columns(text)
 

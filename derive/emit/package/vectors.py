@@ -3,13 +3,14 @@
 They come from the programs that the C is printed from, replayed in floats of its precision.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from derive.library.library import Library
-from derive.program.arithmetic import LIBM
+from derive.program.arithmetic import LIBM, TURNS
+from derive.program.own_sine import FITTED
 from derive.program.precision import Precision
 from derive.program.program import Program, component_names
 from derive.verify.columns import Plan, Supplied, arithmetics, in_columns
@@ -27,7 +28,8 @@ SMALL = (1.5694008 * 2.0**-33, 1.9551697 * 2.0**-33, 1.0071509 * 2.0**-33)
 class BitsOf:
     """What functions are given and give, by component: bits, of each vector a row.
 
-    exact : functions of which every bit must be so; the others call the C library's sines
+    exact : functions of which every bit must be so; the others call the C library's arctangent, or
+            its sines of large angles
     """
 
     given: Mapping[str, list[str]]
@@ -39,27 +41,49 @@ def bits_at(library: Library, precision: Precision) -> BitsOf:
     """Return the reference vectors of a scene in one precision."""
     of = Sampled(library, precision)
     seed = f"derive: {library.scene.name} {precision.name} package"
-    at = complete(of, drawn(of, Dice(seed), DRAWN))
+    rows = drawn(of, Dice(seed), DRAWN)
+    for name, x in library.fixed.items():
+        rows[of.names.index(name)] = x
+    at = complete(of, rows)
     plans = {plan.program.name: plan for plan in (of.setup, *of.plans)}
     found = {
-        program.name: _returned(plans[program.name], at, precision) for program in library.emitted()
+        program.name: _returned(plans[program.name], at, precision) for program in library.in_c()
     }
     finite = np.all([np.isfinite(c) for each in found.values() for c in each], axis=0)
     taken = np.flatnonzero(np.broadcast_to(finite, (DRAWN,)))[:VECTORS]
-    given = {c for p in library.emitted() for c in _given(p)}
+    given = {c for p in library.in_c() for c in _given(p)}
     return BitsOf(
         {name: bits(at.own[name][taken], precision) for name in at.own if name in given},
         {
             name: by_vector([bits(column[taken], precision) for column in each])
             for name, each in found.items()
         },
-        frozenset(p.name for p in library.emitted() if p is library.setup or is_exact(p)),
+        frozenset(p.name for p in library.in_c() if is_exact(p, plans, at, precision)),
     )
 
 
-def is_exact(program: Program) -> bool:
+def is_exact(
+    program: Program, plans: Mapping[str, Plan], at: Supplied, precision: Precision
+) -> bool:
     """Tell whether a function has the same bits wherever + - * / and roots are IEEE's."""
-    return program.arithmetic == "pairs" or not {*LIBM} & {*program.count}
+    if program.makes("constants") or program.arithmetic == "pairs":
+        return True
+    if not TURNS & {*program.count}:
+        return not LIBM & {*program.count}
+    angles, own = list[Column](), arithmetics(precision.dtype).own
+    watched = {name: _watched(angles, own[name]) for name in TURNS}
+    with np.errstate(all="ignore"):
+        in_columns(plans[program.name], {**own, **watched}, at.own)
+    most = max(float(np.max(np.abs(x))) for x in angles)
+    return not LIBM & {*program.count} and most <= FITTED[precision.bits].largest
+
+
+def _watched(angles: list[Column], sine: Callable[[Column], Column]) -> Callable[[Column], Column]:
+    def seen(x: Column) -> Column:
+        angles.append(x)
+        return sine(x)
+
+    return seen
 
 
 def by_vector(columns: Sequence[Sequence[str]]) -> list[list[str]]:

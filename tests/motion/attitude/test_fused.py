@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from derive.check.compiler import find_compiler
+from derive.emit.c.sines import own_sines
 from derive.emit.c.text import body
 from derive.motion.attitude.functions import FUNCTIONS
 from derive.program.precision import F32, F64, Precision
@@ -37,14 +38,15 @@ def text(one: Program, precision: Precision) -> str:
     inputs = [f"const {kind} {q.name}[{len(q.components)}]" for q in one.inputs]
     outputs = [f"{kind} {q.name}[{len(q.components)}]" for q in one.outputs]
     head = f"void {one.name}_{precision.name}({', '.join(inputs + outputs)})"
-    return "\n".join([head, "{", *body(one, precision), "}"])
+    return "\n".join([head, "{", *body(one, "f", precision), "}"])
 
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory):
     folder: Path = tmp_path_factory.mktemp("fused")
     every = [POWER_OF_TWO, *(program(f.name) for f in FUNCTIONS)]
-    lines = ["#include <math.h>", *(text(p, which) for p in every for which in (F32, F64))]
+    lines = ["#include <math.h>", *(own_sines("f", which) for which in (F32, F64))]
+    lines += [text(p, which) for p in every for which in (F32, F64)]
     (folder / "fused.c").write_text("\n".join(lines), encoding="utf-8")
     command = (*find_compiler().command, *FUSING, "fused.c", "-o", "fused.so", "-lm")
     subprocess.run(command, cwd=folder, check=True)
