@@ -129,6 +129,41 @@ def _select(condition, yes, no):
     return ca.if_else(condition, yes[0], no[0]), ca.if_else(condition, yes[1], no[1])
 
 
+
+def _sine_cosine(angle):
+    """Return sine and cosine by the operations of the C; their slopes are those of CasADi's own."""
+    k = _kept(angle * 0.6366197723675814 + 6755399441055744.0) - 6755399441055744.0
+    r0 = angle - k * 1.5707963267923333
+    off1 = k * 2.5633441515839558e-12
+    r1 = _kept(r0 - off1)
+    low1 = _kept(r0 - r1) - off1
+    off = k * 1.0562999066987426e-23 - low1
+    r = _kept(r1 - off)
+    low = _kept(r1 - r) - off
+    z = r * r
+    cube = z * r
+    odd = 0.00833333333332184 + (z * (-0.00019841269829358528 + (z * (2.7557313538514204e-06 + (z * (-2.5050734389242796e-08 + (z * 1.5895433287554087e-10)))))))
+    even = 0.041666666666666595 + (z * (-0.0013888888888873338 + (z * (2.480158728899748e-05 + (z * (-2.755731421529914e-07 + (z * (2.0875705115002216e-09 + (z * -1.1358732776766006e-11)))))))))
+    half = 0.5 * z
+    one_less = _kept(1.0 - half)
+    sine = r - ((z * (0.5 * low - cube * odd) - low) - cube * -0.1666666666666663)
+    cosine = one_less + (((1.0 - one_less) - half) + (z * (z * even) - r * low))
+    halves = ca.floor(0.5 * k)
+    across = k - 2.0 * halves
+    along, sign = 1.0 - across, 1.0 - 2.0 * (halves - 2.0 * ca.floor(0.5 * halves))
+    served = ca.fabs(angle) <= 25735.0
+
+    def set_right(other, own):
+        """Return CasADi's own, and what ours differs by as a floor, which has no slope."""
+        off = ca.if_else(served, own - other, 0.0)
+        return other + ca.floor(off * 2.0**200) * 2.0**-200
+
+    return (
+        set_right(ca.sin(angle), sign * (along * sine + across * cosine)),
+        set_right(ca.cos(angle), sign * (1.0 - 2.0 * across) * (along * cosine + across * sine)),
+    )
+
+
 def setup():
     """Return the Function parameters -> constants; both in the order of PARAMETERS and CONSTANTS.
 
@@ -240,9 +275,11 @@ def _state_rate():
     q_2 = ca.SX.sym("q_2", 1)
     q_2_dot = ca.SX.sym("q_2_dot", 1)
     T = ca.SX.sym("T", 1)
-    t0 = ca.sin(q_1[0])
+    t0_both = _sine_cosine(q_1[0])
+    t0 = t0_both[0]
     t1 = t0 * constants[0]
-    t2 = ca.sin(q_2[0])
+    t2_both = _sine_cosine(q_2[0])
+    t2 = t2_both[0]
     t3 = t2 * q_2_dot[0]
     t4 = t3 * q_2_dot[0]
     t5 = t4 * constants[1]
@@ -251,10 +288,10 @@ def _state_rate():
     t8 = q_2_dot[0] * t7
     t9 = t8 * constants[2]
     t10 = t6 + t9
-    t11 = ca.cos(q_1[0])
+    t11 = t0_both[1]
     t12 = t2 * t11
     t13 = t12 * constants[3]
-    t14 = ca.cos(q_2[0])
+    t14 = t2_both[1]
     t15 = t14 * t0
     t16 = t15 * constants[3]
     t17 = t13 + t16
@@ -320,13 +357,14 @@ def _state_rate_jacobian():
     q_2 = ca.SX.sym("q_2", 1)
     q_2_dot = ca.SX.sym("q_2_dot", 1)
     T = ca.SX.sym("T", 1)
-    t0 = ca.cos(q_2[0])
+    t0_both = _sine_cosine(q_2[0])
+    t0 = t0_both[1]
     t1 = t0 * constants[4]
     t2 = t1 + constants[6]
     t3 = t0 * constants[5]
     t4 = t3 + constants[9]
     t5 = t2 * t4
-    t6 = ca.sin(q_2[0])
+    t6 = t0_both[0]
     t7 = t6 * constants[4]
     t8 = t6 * constants[5]
     t9 = t7 * t8
@@ -342,10 +380,11 @@ def _state_rate_jacobian():
     t19 = t14 * t18
     t20 = t11 + t19
     t21 = 1.0 / t20
-    t22 = ca.cos(q_1[0])
+    t22_both = _sine_cosine(q_1[0])
+    t22 = t22_both[1]
     t23 = t6 * constants[3]
     t24 = t22 * t23
-    t25 = ca.sin(q_1[0])
+    t25 = t22_both[0]
     t26 = t0 * constants[3]
     t27 = t25 * t26
     t28 = t24 + t27
@@ -492,8 +531,10 @@ def _energy():
     q_2_dot = ca.SX.sym("q_2_dot", 1)
     t0 = q_2_dot[0] * q_2_dot[0]
     t1 = t0 * constants[22]
-    t2 = ca.cos(q_1[0])
-    t3 = ca.cos(q_2[0])
+    t2_both = _sine_cosine(q_1[0])
+    t2 = t2_both[1]
+    t3_both = _sine_cosine(q_2[0])
+    t3 = t3_both[1]
     t4 = t3 * constants[3]
     t5 = t4 + constants[0]
     t6 = t2 * t5
@@ -506,8 +547,8 @@ def _energy():
     t13 = t10 + t12
     t14 = q_1_dot[0] * t13
     t15 = t7 + t14
-    t16 = ca.sin(q_2[0])
-    t17 = ca.sin(q_1[0])
+    t16 = t3_both[0]
+    t17 = t2_both[0]
     t18 = t16 * t17
     t19 = t18 * constants[3]
     t20 = t15 - t19
@@ -546,8 +587,9 @@ def _step_rk4():
     t49 = constants[0] * t0
     t48 = q_1_dot[0] * t0
     t80 = q_1[0] + t48
-    t84 = ca.sin(t80)
-    t95 = ca.cos(t80)
+    t84_both = _sine_cosine(t80)
+    t84 = t84_both[0]
+    t95 = t84_both[1]
     t85 = t84 * constants[0]
     t132 = t84 * t49
     t54 = constants[2] * t0
@@ -557,9 +599,10 @@ def _step_rk4():
     t71 = constants[7] * t0
     t77 = q_2_dot[0] * t0
     t82 = q_2[0] + t77
-    t86 = ca.sin(t82)
+    t86_both = _sine_cosine(t82)
+    t86 = t86_both[0]
     t96 = t86 * t95
-    t98 = ca.cos(t82)
+    t98 = t86_both[1]
     t99 = t98 * t84
     t100 = t99 * constants[3]
     t138 = t99 * t57
@@ -596,10 +639,12 @@ def _step_rk4():
     t148 = t147 + t71
     t149 = t148 * constants[8]
     t78 = constants[12] * t0
-    t1 = ca.sin(q_1[0])
+    t1_both = _sine_cosine(q_1[0])
+    t1 = t1_both[0]
     t2 = t1 * constants[0]
     t50 = t1 * t49
-    t3 = ca.sin(q_2[0])
+    t3_both = _sine_cosine(q_2[0])
+    t3 = t3_both[0]
     t4 = t3 * q_2_dot[0]
     t5 = t4 * q_2_dot[0]
     t6 = t5 * constants[1]
@@ -621,11 +666,11 @@ def _step_rk4():
     t63 = t3 * t62
     t64 = t3 * t63
     t65 = t64 * constants[5]
-    t12 = ca.cos(q_1[0])
+    t12 = t1_both[1]
     t13 = t3 * t12
     t14 = t13 * constants[3]
     t58 = t13 * t57
-    t15 = ca.cos(q_2[0])
+    t15 = t3_both[1]
     t16 = t15 * t1
     t17 = t16 * constants[3]
     t18 = t14 + t17
@@ -665,8 +710,9 @@ def _step_rk4():
     t134 = t132 + t133
     t153 = t83 * t0
     t157 = q_2[0] + t153
-    t161 = ca.sin(t157)
-    t173 = ca.cos(t157)
+    t161_both = _sine_cosine(t157)
+    t161 = t161_both[0]
+    t173 = t161_both[1]
     t181 = t173 * constants[4]
     t182 = t181 + constants[6]
     t183 = t173 * constants[5]
@@ -715,9 +761,10 @@ def _step_rk4():
     t150 = t149 * t116
     t131 = t81 * t0
     t155 = q_1[0] + t131
-    t159 = ca.sin(t155)
+    t159_both = _sine_cosine(t155)
+    t159 = t159_both[0]
     t174 = t173 * t159
-    t170 = ca.cos(t155)
+    t170 = t159_both[1]
     t171 = t161 * t170
     t172 = t171 * constants[3]
     t212 = t171 * t57
@@ -748,8 +795,9 @@ def _step_rk4():
     t321 = t77 + t320
     t232 = t228 * 2.0
     t236 = q_2[0] + t232
-    t240 = ca.sin(t236)
-    t252 = ca.cos(t236)
+    t240_both = _sine_cosine(t236)
+    t240 = t240_both[0]
+    t252 = t240_both[1]
     t260 = t252 * constants[4]
     t261 = t260 + constants[6]
     t262 = t252 * constants[5]
@@ -798,11 +846,12 @@ def _step_rk4():
     t311 = t48 + t310
     t230 = t206 * 2.0
     t234 = q_1[0] + t230
-    t238 = ca.sin(t234)
+    t238_both = _sine_cosine(t234)
+    t238 = t238_both[0]
     t253 = t252 * t238
     t286 = t238 * t49
     t239 = t238 * constants[0]
-    t249 = ca.cos(t234)
+    t249 = t238_both[1]
     t250 = t240 * t249
     t251 = t250 * constants[3]
     t291 = t250 * t57

@@ -210,14 +210,58 @@ int acrobot_setup_f32(float m_1, float m_2, float l_1, float c_1, float c_2, flo
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 804; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    float sine;
+    float cosine;
+} acrobot_sines_f32;
+
+static acrobot_sines_f32 acrobot_sine_cosine_f32(float angle)
+{
+    acrobot_sines_f32 found;
+    if (fabsf(angle) <= 804.0F) {
+        const float k = ((angle * 0.636619747F) + 12582912.0F) - 12582912.0F;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const float r0 = angle - (k * 1.57067871F);
+        const float off1 = k * 0.000117614865F;
+        const float r1 = r0 - off1;
+        const float low1 = (r0 - r1) - off1;
+        const float off2 = k * 9.92088189e-10F;
+        const float r2 = r1 - off2;
+        const float low2 = low1 + ((r1 - r2) - off2);
+        const float off = (k * 5.39030253e-15F) - low2;
+        const float r = r2 - off;
+        const float low = (r2 - r) - off;
+        const float z = r * r;
+        const float cube = z * r;
+        const float odd = 0.00833218917F + (z * (-0.000195182845F));
+        const float even = 0.0416666456F + (z * ((-0.00138873095F) + (z * 2.44323273e-05F)));
+        const float half = 0.5F * z;
+        const float one_less = 1.0F - half;
+        const float sine = r - (((z * ((0.5F * low) - (cube * odd))) - low) - (cube * (-0.166666552F)));
+        const float cosine = one_less + (((1.0F - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const float first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const float second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sinf(angle);
+        found.cosine = cosf(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void acrobot_state_rate_f32(const acrobot_constants_f32 *constants, float q_1, float q_1_dot,
     float q_2, float q_2_dot, float T, float *q_1_rate, float *q_1_dot_rate, float *q_2_rate,
     float *q_2_dot_rate)
 {
-    const float t0 = sinf(q_1);
+    const acrobot_sines_f32 t0_both = acrobot_sine_cosine_f32(q_1);
+    const float t0 = t0_both.sine;
     const float t1 = t0 * constants->k1;
-    const float t2 = sinf(q_2);
+    const acrobot_sines_f32 t2_both = acrobot_sine_cosine_f32(q_2);
+    const float t2 = t2_both.sine;
     const float t3 = t2 * q_2_dot;
     const float t4 = t3 * q_2_dot;
     const float t5 = t4 * constants->m_2_l_1_c_2;
@@ -226,10 +270,10 @@ void acrobot_state_rate_f32(const acrobot_constants_f32 *constants, float q_1, f
     const float t8 = q_2_dot * t7;
     const float t9 = t8 * constants->twice_m_2_l_1_c_2;
     const float t10 = t6 + t9;
-    const float t11 = cosf(q_1);
+    const float t11 = t0_both.cosine;
     const float t12 = t2 * t11;
     const float t13 = t12 * constants->m_2_c_2_g;
-    const float t14 = cosf(q_2);
+    const float t14 = t2_both.cosine;
     const float t15 = t14 * t0;
     const float t16 = t15 * constants->m_2_c_2_g;
     const float t17 = t13 + t16;
@@ -274,13 +318,14 @@ void acrobot_state_rate_jacobian_f32(const acrobot_constants_f32 *constants, flo
     float q_1_dot, float q_2, float q_2_dot, float T, float *q_1_rate, float *q_1_dot_rate,
     float *q_2_rate, float *q_2_dot_rate, float jacobian[12])
 {
-    const float t0 = cosf(q_2);
+    const acrobot_sines_f32 t0_both = acrobot_sine_cosine_f32(q_2);
+    const float t0 = t0_both.cosine;
     const float t1 = t0 * constants->c_2;
     const float t2 = t1 + constants->l_1;
     const float t3 = t0 * constants->m_2_c_2;
     const float t4 = t3 + constants->m_2_l_1;
     const float t5 = t2 * t4;
-    const float t6 = sinf(q_2);
+    const float t6 = t0_both.sine;
     const float t7 = t6 * constants->c_2;
     const float t8 = t6 * constants->m_2_c_2;
     const float t9 = t7 * t8;
@@ -296,10 +341,11 @@ void acrobot_state_rate_jacobian_f32(const acrobot_constants_f32 *constants, flo
     const float t19 = t14 * t18;
     const float t20 = t11 + t19;
     const float t21 = 1.0F / t20;
-    const float t22 = cosf(q_1);
+    const acrobot_sines_f32 t22_both = acrobot_sine_cosine_f32(q_1);
+    const float t22 = t22_both.cosine;
     const float t23 = t6 * constants->m_2_c_2_g;
     const float t24 = t22 * t23;
-    const float t25 = sinf(q_1);
+    const float t25 = t22_both.sine;
     const float t26 = t0 * constants->m_2_c_2_g;
     const float t27 = t25 * t26;
     const float t28 = t24 + t27;
@@ -448,8 +494,10 @@ void acrobot_energy_f32(const acrobot_constants_f32 *constants, float q_1, float
 {
     const float t0 = q_2_dot * q_2_dot;
     const float t1 = t0 * constants->k10;
-    const float t2 = cosf(q_1);
-    const float t3 = cosf(q_2);
+    const acrobot_sines_f32 t2_both = acrobot_sine_cosine_f32(q_1);
+    const float t2 = t2_both.cosine;
+    const acrobot_sines_f32 t3_both = acrobot_sine_cosine_f32(q_2);
+    const float t3 = t3_both.cosine;
     const float t4 = t3 * constants->m_2_c_2_g;
     const float t5 = t4 + constants->k1;
     const float t6 = t2 * t5;
@@ -462,8 +510,8 @@ void acrobot_energy_f32(const acrobot_constants_f32 *constants, float q_1, float
     const float t13 = t10 + t12;
     const float t14 = q_1_dot * t13;
     const float t15 = t7 + t14;
-    const float t16 = sinf(q_2);
-    const float t17 = sinf(q_1);
+    const float t16 = t3_both.sine;
+    const float t17 = t2_both.sine;
     const float t18 = t16 * t17;
     const float t19 = t18 * constants->m_2_c_2_g;
     const float t20 = t15 - t19;
@@ -480,8 +528,9 @@ void acrobot_step_rk4_f32(const acrobot_constants_f32 *constants, float q_1, flo
     const float t49 = constants->k1 * t0;
     const float t48 = q_1_dot * t0;
     const float t80 = q_1 + t48;
-    const float t84 = sinf(t80);
-    const float t95 = cosf(t80);
+    const acrobot_sines_f32 t84_both = acrobot_sine_cosine_f32(t80);
+    const float t84 = t84_both.sine;
+    const float t95 = t84_both.cosine;
     const float t85 = t84 * constants->k1;
     const float t132 = t84 * t49;
     const float t54 = constants->twice_m_2_l_1_c_2 * t0;
@@ -491,9 +540,10 @@ void acrobot_step_rk4_f32(const acrobot_constants_f32 *constants, float q_1, flo
     const float t71 = constants->I_2 * t0;
     const float t77 = q_2_dot * t0;
     const float t82 = q_2 + t77;
-    const float t86 = sinf(t82);
+    const acrobot_sines_f32 t86_both = acrobot_sine_cosine_f32(t82);
+    const float t86 = t86_both.sine;
     const float t96 = t86 * t95;
-    const float t98 = cosf(t82);
+    const float t98 = t86_both.cosine;
     const float t99 = t98 * t84;
     const float t100 = t99 * constants->m_2_c_2_g;
     const float t138 = t99 * t57;
@@ -530,10 +580,12 @@ void acrobot_step_rk4_f32(const acrobot_constants_f32 *constants, float q_1, flo
     const float t148 = t147 + t71;
     const float t149 = t148 * constants->pivot;
     const float t78 = constants->k4 * t0;
-    const float t1 = sinf(q_1);
+    const acrobot_sines_f32 t1_both = acrobot_sine_cosine_f32(q_1);
+    const float t1 = t1_both.sine;
     const float t2 = t1 * constants->k1;
     const float t50 = t1 * t49;
-    const float t3 = sinf(q_2);
+    const acrobot_sines_f32 t3_both = acrobot_sine_cosine_f32(q_2);
+    const float t3 = t3_both.sine;
     const float t4 = t3 * q_2_dot;
     const float t5 = t4 * q_2_dot;
     const float t6 = t5 * constants->m_2_l_1_c_2;
@@ -555,11 +607,11 @@ void acrobot_step_rk4_f32(const acrobot_constants_f32 *constants, float q_1, flo
     const float t63 = t3 * t62;
     const float t64 = t3 * t63;
     const float t65 = t64 * constants->m_2_c_2;
-    const float t12 = cosf(q_1);
+    const float t12 = t1_both.cosine;
     const float t13 = t3 * t12;
     const float t14 = t13 * constants->m_2_c_2_g;
     const float t58 = t13 * t57;
-    const float t15 = cosf(q_2);
+    const float t15 = t3_both.cosine;
     const float t16 = t15 * t1;
     const float t17 = t16 * constants->m_2_c_2_g;
     const float t18 = t14 + t17;
@@ -599,8 +651,9 @@ void acrobot_step_rk4_f32(const acrobot_constants_f32 *constants, float q_1, flo
     const float t134 = t132 + t133;
     const float t153 = t83 * t0;
     const float t157 = q_2 + t153;
-    const float t161 = sinf(t157);
-    const float t173 = cosf(t157);
+    const acrobot_sines_f32 t161_both = acrobot_sine_cosine_f32(t157);
+    const float t161 = t161_both.sine;
+    const float t173 = t161_both.cosine;
     const float t181 = t173 * constants->c_2;
     const float t182 = t181 + constants->l_1;
     const float t183 = t173 * constants->m_2_c_2;
@@ -649,9 +702,10 @@ void acrobot_step_rk4_f32(const acrobot_constants_f32 *constants, float q_1, flo
     const float t150 = t149 * t116;
     const float t131 = t81 * t0;
     const float t155 = q_1 + t131;
-    const float t159 = sinf(t155);
+    const acrobot_sines_f32 t159_both = acrobot_sine_cosine_f32(t155);
+    const float t159 = t159_both.sine;
     const float t174 = t173 * t159;
-    const float t170 = cosf(t155);
+    const float t170 = t159_both.cosine;
     const float t171 = t161 * t170;
     const float t172 = t171 * constants->m_2_c_2_g;
     const float t212 = t171 * t57;
@@ -682,8 +736,9 @@ void acrobot_step_rk4_f32(const acrobot_constants_f32 *constants, float q_1, flo
     const float t321 = t77 + t320;
     const float t232 = t228 * 2.0F;
     const float t236 = q_2 + t232;
-    const float t240 = sinf(t236);
-    const float t252 = cosf(t236);
+    const acrobot_sines_f32 t240_both = acrobot_sine_cosine_f32(t236);
+    const float t240 = t240_both.sine;
+    const float t252 = t240_both.cosine;
     const float t260 = t252 * constants->c_2;
     const float t261 = t260 + constants->l_1;
     const float t262 = t252 * constants->m_2_c_2;
@@ -732,11 +787,12 @@ void acrobot_step_rk4_f32(const acrobot_constants_f32 *constants, float q_1, flo
     const float t311 = t48 + t310;
     const float t230 = t206 * 2.0F;
     const float t234 = q_1 + t230;
-    const float t238 = sinf(t234);
+    const acrobot_sines_f32 t238_both = acrobot_sine_cosine_f32(t234);
+    const float t238 = t238_both.sine;
     const float t253 = t252 * t238;
     const float t286 = t238 * t49;
     const float t239 = t238 * constants->k1;
-    const float t249 = cosf(t234);
+    const float t249 = t238_both.cosine;
     const float t250 = t240 * t249;
     const float t251 = t250 * constants->m_2_c_2_g;
     const float t291 = t250 * t57;

@@ -27,7 +27,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 6d3ea7ba64d314ef.
+ * Body of these files: sha256 fe3045f93050a4db.
  */
 #ifndef ACROBOT_F32_H
 #define ACROBOT_F32_H
@@ -114,12 +114,12 @@ int acrobot_setup_f32(float m_1, float m_2, float l_1, float c_1, float c_2, flo
  * In this scene: q_1_dot_rate = ((I_2 + m_2*c_2^2)*h + b*(I_2 + m_2*(c_2 +
  *            l_1*cos(q_2))*c_2))/Delta
  * In this scene: q_2_dot_rate = -(b*mu + (I_2 + m_2*(c_2 + l_1*cos(q_2))*c_2)*h)/Delta
- * Error: median 0.83, largest 14 u of the largest product or sum in the equation (of q_1_dot_rate;
- *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
- *            more.
+ * Error: median 0.83, largest 9.3 u of the largest product or sum in the equation (of
+ *            q_1_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
+ *            hard samples no more.
  * Cost: 12 add, 4 sub, 27 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 11317 to 16115 instructions, 460 B of code, 184 B of stack.
- * On Cortex-M4F, -O2: 210 to 509 instructions, 332 B of code, 88 B of stack.
+ * On Cortex-M0+, -O2: 11939 to 13477 instructions, 992 B of code, 160 B of stack.
+ * On Cortex-M4F, -O2: 255 to 257 instructions, 732 B of code, 76 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -153,8 +153,8 @@ void acrobot_state_rate_f32(const acrobot_constants_f32 *constants, float q_1, f
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: 24 add, 13 sub, 70 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 18204 to 22858 instructions, 1116 B of code, 248 B of stack.
- * On Cortex-M4F, -O2: 292 to 598 instructions, 656 B of code, 120 B of stack.
+ * On Cortex-M0+, -O2: 18761 to 20394 instructions, 1664 B of code, 224 B of stack.
+ * On Cortex-M4F, -O2: 337 to 339 instructions, 1056 B of code, 108 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -164,8 +164,8 @@ void acrobot_state_rate_jacobian_f32(const acrobot_constants_f32 *constants, flo
     float *q_2_rate, float *q_2_dot_rate, float jacobian[12]);
 
 /* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 18352 to 23107 instructions, 1192 B of code, 12 B of tables, 344 B of stack.
- * On Cortex-M4F, -O2: 453 to 752 instructions, 720 B of code, 12 B of tables, 192 B of stack.
+ * On Cortex-M0+, -O2: 18936 to 20599 instructions, 1740 B of code, 12 B of tables, 320 B of stack.
+ * On Cortex-M4F, -O2: 491 to 493 instructions, 1120 B of code, 12 B of tables, 180 B of stack.
  */
 void acrobot_state_rate_jacobian_dense_f32(const acrobot_constants_f32 *constants, float q_1,
     float q_1_dot, float q_2, float q_2_dot, float T, float *q_1_rate, float *q_1_dot_rate,
@@ -231,8 +231,8 @@ void acrobot_linearised_f32(const acrobot_constants_f32 *constants, float mass_m
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: 6 add, 1 sub, 10 mul, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 8051 to 13102 instructions, 204 B of code, 152 B of stack.
- * On Cortex-M4F, -O2: 168 to 467 instructions, 168 B of code, 80 B of stack.
+ * On Cortex-M0+, -O2: 8797 to 10398 instructions, 740 B of code, 128 B of stack.
+ * On Cortex-M4F, -O2: 214 to 216 instructions, 572 B of code, 68 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, constant_mass, further_axes_are_right_handed, rate_seen_from_N,
  *            rigid.
@@ -261,12 +261,12 @@ void acrobot_energy_f32(const acrobot_constants_f32 *constants, float q_1, float
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.39, largest 4.7e+02 u of the largest component, before or after, or of the
+ * Error: median 0.39, largest 1.7e+02 u of the largest component, before or after, or of the
  *            largest product of what the step adds, by rounding alone (of q_2_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Cost: 104 add, 20 sub, 185 mul, 8 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 59340 to 79722 instructions, 2856 B of code, 360 B of stack.
- * On Cortex-M4F, -O2: 1051 to 2247 instructions, 2208 B of code, 280 B of stack.
+ * On Cortex-M0+, -O2: 61900 to 68553 instructions, 3372 B of code, 368 B of stack.
+ * On Cortex-M4F, -O2: 1202 to 1210 instructions, 2436 B of code, 300 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -210,14 +210,57 @@ int acrobot_setup_f64(double m_1, double m_2, double l_1, double c_1, double c_2
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 25735; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    double sine;
+    double cosine;
+} acrobot_sines_f64;
+
+static acrobot_sines_f64 acrobot_sine_cosine_f64(double angle)
+{
+    acrobot_sines_f64 found;
+    if (fabs(angle) <= 25735.0) {
+        const double k = ((angle * 0.6366197723675814) + 6755399441055744.0) - 6755399441055744.0;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const double r0 = angle - (k * 1.5707963267923333);
+        const double off1 = k * 2.5633441515839558e-12;
+        const double r1 = r0 - off1;
+        const double low1 = (r0 - r1) - off1;
+        const double off = (k * 1.0562999066987426e-23) - low1;
+        const double r = r1 - off;
+        const double low = (r1 - r) - off;
+        const double z = r * r;
+        const double cube = z * r;
+        const double odd = 0.00833333333332184 + (z * ((-0.00019841269829358528) + (z * (2.7557313538514204e-06 + (z *
+            ((-2.5050734389242796e-08) + (z * 1.5895433287554087e-10)))))));
+        const double even = 0.041666666666666595 + (z * ((-0.0013888888888873338) + (z * (2.480158728899748e-05 + (z *
+            ((-2.755731421529914e-07) + (z * (2.0875705115002216e-09 + (z * (-1.1358732776766006e-11))))))))));
+        const double half = 0.5 * z;
+        const double one_less = 1.0 - half;
+        const double sine = r - (((z * ((0.5 * low) - (cube * odd))) - low) - (cube * (-0.1666666666666663)));
+        const double cosine = one_less + (((1.0 - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const double first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const double second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sin(angle);
+        found.cosine = cos(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void acrobot_state_rate_f64(const acrobot_constants_f64 *constants, double q_1, double q_1_dot,
     double q_2, double q_2_dot, double T, double *q_1_rate, double *q_1_dot_rate, double *q_2_rate,
     double *q_2_dot_rate)
 {
-    const double t0 = sin(q_1);
+    const acrobot_sines_f64 t0_both = acrobot_sine_cosine_f64(q_1);
+    const double t0 = t0_both.sine;
     const double t1 = t0 * constants->k1;
-    const double t2 = sin(q_2);
+    const acrobot_sines_f64 t2_both = acrobot_sine_cosine_f64(q_2);
+    const double t2 = t2_both.sine;
     const double t3 = t2 * q_2_dot;
     const double t4 = t3 * q_2_dot;
     const double t5 = t4 * constants->m_2_l_1_c_2;
@@ -226,10 +269,10 @@ void acrobot_state_rate_f64(const acrobot_constants_f64 *constants, double q_1, 
     const double t8 = q_2_dot * t7;
     const double t9 = t8 * constants->twice_m_2_l_1_c_2;
     const double t10 = t6 + t9;
-    const double t11 = cos(q_1);
+    const double t11 = t0_both.cosine;
     const double t12 = t2 * t11;
     const double t13 = t12 * constants->m_2_c_2_g;
-    const double t14 = cos(q_2);
+    const double t14 = t2_both.cosine;
     const double t15 = t14 * t0;
     const double t16 = t15 * constants->m_2_c_2_g;
     const double t17 = t13 + t16;
@@ -274,13 +317,14 @@ void acrobot_state_rate_jacobian_f64(const acrobot_constants_f64 *constants, dou
     double q_1_dot, double q_2, double q_2_dot, double T, double *q_1_rate, double *q_1_dot_rate,
     double *q_2_rate, double *q_2_dot_rate, double jacobian[12])
 {
-    const double t0 = cos(q_2);
+    const acrobot_sines_f64 t0_both = acrobot_sine_cosine_f64(q_2);
+    const double t0 = t0_both.cosine;
     const double t1 = t0 * constants->c_2;
     const double t2 = t1 + constants->l_1;
     const double t3 = t0 * constants->m_2_c_2;
     const double t4 = t3 + constants->m_2_l_1;
     const double t5 = t2 * t4;
-    const double t6 = sin(q_2);
+    const double t6 = t0_both.sine;
     const double t7 = t6 * constants->c_2;
     const double t8 = t6 * constants->m_2_c_2;
     const double t9 = t7 * t8;
@@ -296,10 +340,11 @@ void acrobot_state_rate_jacobian_f64(const acrobot_constants_f64 *constants, dou
     const double t19 = t14 * t18;
     const double t20 = t11 + t19;
     const double t21 = 1.0 / t20;
-    const double t22 = cos(q_1);
+    const acrobot_sines_f64 t22_both = acrobot_sine_cosine_f64(q_1);
+    const double t22 = t22_both.cosine;
     const double t23 = t6 * constants->m_2_c_2_g;
     const double t24 = t22 * t23;
-    const double t25 = sin(q_1);
+    const double t25 = t22_both.sine;
     const double t26 = t0 * constants->m_2_c_2_g;
     const double t27 = t25 * t26;
     const double t28 = t24 + t27;
@@ -448,8 +493,10 @@ void acrobot_energy_f64(const acrobot_constants_f64 *constants, double q_1, doub
 {
     const double t0 = q_2_dot * q_2_dot;
     const double t1 = t0 * constants->k10;
-    const double t2 = cos(q_1);
-    const double t3 = cos(q_2);
+    const acrobot_sines_f64 t2_both = acrobot_sine_cosine_f64(q_1);
+    const double t2 = t2_both.cosine;
+    const acrobot_sines_f64 t3_both = acrobot_sine_cosine_f64(q_2);
+    const double t3 = t3_both.cosine;
     const double t4 = t3 * constants->m_2_c_2_g;
     const double t5 = t4 + constants->k1;
     const double t6 = t2 * t5;
@@ -462,8 +509,8 @@ void acrobot_energy_f64(const acrobot_constants_f64 *constants, double q_1, doub
     const double t13 = t10 + t12;
     const double t14 = q_1_dot * t13;
     const double t15 = t7 + t14;
-    const double t16 = sin(q_2);
-    const double t17 = sin(q_1);
+    const double t16 = t3_both.sine;
+    const double t17 = t2_both.sine;
     const double t18 = t16 * t17;
     const double t19 = t18 * constants->m_2_c_2_g;
     const double t20 = t15 - t19;
@@ -480,8 +527,9 @@ void acrobot_step_rk4_f64(const acrobot_constants_f64 *constants, double q_1, do
     const double t49 = constants->k1 * t0;
     const double t48 = q_1_dot * t0;
     const double t80 = q_1 + t48;
-    const double t84 = sin(t80);
-    const double t95 = cos(t80);
+    const acrobot_sines_f64 t84_both = acrobot_sine_cosine_f64(t80);
+    const double t84 = t84_both.sine;
+    const double t95 = t84_both.cosine;
     const double t85 = t84 * constants->k1;
     const double t132 = t84 * t49;
     const double t54 = constants->twice_m_2_l_1_c_2 * t0;
@@ -491,9 +539,10 @@ void acrobot_step_rk4_f64(const acrobot_constants_f64 *constants, double q_1, do
     const double t71 = constants->I_2 * t0;
     const double t77 = q_2_dot * t0;
     const double t82 = q_2 + t77;
-    const double t86 = sin(t82);
+    const acrobot_sines_f64 t86_both = acrobot_sine_cosine_f64(t82);
+    const double t86 = t86_both.sine;
     const double t96 = t86 * t95;
-    const double t98 = cos(t82);
+    const double t98 = t86_both.cosine;
     const double t99 = t98 * t84;
     const double t100 = t99 * constants->m_2_c_2_g;
     const double t138 = t99 * t57;
@@ -530,10 +579,12 @@ void acrobot_step_rk4_f64(const acrobot_constants_f64 *constants, double q_1, do
     const double t148 = t147 + t71;
     const double t149 = t148 * constants->pivot;
     const double t78 = constants->k4 * t0;
-    const double t1 = sin(q_1);
+    const acrobot_sines_f64 t1_both = acrobot_sine_cosine_f64(q_1);
+    const double t1 = t1_both.sine;
     const double t2 = t1 * constants->k1;
     const double t50 = t1 * t49;
-    const double t3 = sin(q_2);
+    const acrobot_sines_f64 t3_both = acrobot_sine_cosine_f64(q_2);
+    const double t3 = t3_both.sine;
     const double t4 = t3 * q_2_dot;
     const double t5 = t4 * q_2_dot;
     const double t6 = t5 * constants->m_2_l_1_c_2;
@@ -555,11 +606,11 @@ void acrobot_step_rk4_f64(const acrobot_constants_f64 *constants, double q_1, do
     const double t63 = t3 * t62;
     const double t64 = t3 * t63;
     const double t65 = t64 * constants->m_2_c_2;
-    const double t12 = cos(q_1);
+    const double t12 = t1_both.cosine;
     const double t13 = t3 * t12;
     const double t14 = t13 * constants->m_2_c_2_g;
     const double t58 = t13 * t57;
-    const double t15 = cos(q_2);
+    const double t15 = t3_both.cosine;
     const double t16 = t15 * t1;
     const double t17 = t16 * constants->m_2_c_2_g;
     const double t18 = t14 + t17;
@@ -599,8 +650,9 @@ void acrobot_step_rk4_f64(const acrobot_constants_f64 *constants, double q_1, do
     const double t134 = t132 + t133;
     const double t153 = t83 * t0;
     const double t157 = q_2 + t153;
-    const double t161 = sin(t157);
-    const double t173 = cos(t157);
+    const acrobot_sines_f64 t161_both = acrobot_sine_cosine_f64(t157);
+    const double t161 = t161_both.sine;
+    const double t173 = t161_both.cosine;
     const double t181 = t173 * constants->c_2;
     const double t182 = t181 + constants->l_1;
     const double t183 = t173 * constants->m_2_c_2;
@@ -649,9 +701,10 @@ void acrobot_step_rk4_f64(const acrobot_constants_f64 *constants, double q_1, do
     const double t150 = t149 * t116;
     const double t131 = t81 * t0;
     const double t155 = q_1 + t131;
-    const double t159 = sin(t155);
+    const acrobot_sines_f64 t159_both = acrobot_sine_cosine_f64(t155);
+    const double t159 = t159_both.sine;
     const double t174 = t173 * t159;
-    const double t170 = cos(t155);
+    const double t170 = t159_both.cosine;
     const double t171 = t161 * t170;
     const double t172 = t171 * constants->m_2_c_2_g;
     const double t212 = t171 * t57;
@@ -682,8 +735,9 @@ void acrobot_step_rk4_f64(const acrobot_constants_f64 *constants, double q_1, do
     const double t321 = t77 + t320;
     const double t232 = t228 * 2.0;
     const double t236 = q_2 + t232;
-    const double t240 = sin(t236);
-    const double t252 = cos(t236);
+    const acrobot_sines_f64 t240_both = acrobot_sine_cosine_f64(t236);
+    const double t240 = t240_both.sine;
+    const double t252 = t240_both.cosine;
     const double t260 = t252 * constants->c_2;
     const double t261 = t260 + constants->l_1;
     const double t262 = t252 * constants->m_2_c_2;
@@ -732,11 +786,12 @@ void acrobot_step_rk4_f64(const acrobot_constants_f64 *constants, double q_1, do
     const double t311 = t48 + t310;
     const double t230 = t206 * 2.0;
     const double t234 = q_1 + t230;
-    const double t238 = sin(t234);
+    const acrobot_sines_f64 t238_both = acrobot_sine_cosine_f64(t234);
+    const double t238 = t238_both.sine;
     const double t253 = t252 * t238;
     const double t286 = t238 * t49;
     const double t239 = t238 * constants->k1;
-    const double t249 = cos(t234);
+    const double t249 = t238_both.cosine;
     const double t250 = t240 * t249;
     const double t251 = t250 * constants->m_2_c_2_g;
     const double t291 = t250 * t57;

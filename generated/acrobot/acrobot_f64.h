@@ -25,7 +25,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 83b5237c31bcd54a.
+ * Body of these files: sha256 d94dbe27966665f5.
  */
 #ifndef ACROBOT_F64_H
 #define ACROBOT_F64_H
@@ -77,7 +77,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 32 operations on pairs.
- * On Cortex-M0+, -O2: 128636 to 135048 instructions, 4016 B of code, 1336 B of stack.
+ * On Cortex-M0+, -O2: 128636 to 135047 instructions, 4016 B of code, 1336 B of stack.
  */
 int acrobot_setup_f64(double m_1, double m_2, double l_1, double c_1, double c_2, double I_1,
     double I_2, double g, acrobot_constants_f64 *constants);
@@ -111,11 +111,11 @@ int acrobot_setup_f64(double m_1, double m_2, double l_1, double c_1, double c_2
  * In this scene: q_1_dot_rate = ((I_2 + m_2*c_2^2)*h + b*(I_2 + m_2*(c_2 +
  *            l_1*cos(q_2))*c_2))/Delta
  * In this scene: q_2_dot_rate = -(b*mu + (I_2 + m_2*(c_2 + l_1*cos(q_2))*c_2)*h)/Delta
- * Error: median 0.84, largest 14 u of the largest product or sum in the equation (of q_2_dot_rate;
+ * Error: median 0.84, largest 13 u of the largest product or sum in the equation (of q_1_dot_rate;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: 12 add, 4 sub, 27 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 25539 to 35649 instructions, 688 B of code, 312 B of stack.
+ * On Cortex-M0+, -O2: 30221 to 33586 instructions, 1584 B of code, 288 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -145,11 +145,11 @@ void acrobot_state_rate_f64(const acrobot_constants_f64 *constants, double q_1, 
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.86, largest 19 u of the largest product or sum in the equation (of jacobian;
+ * Error: median 0.85, largest 15 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: 24 add, 13 sub, 70 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 41460 to 51391 instructions, 1752 B of code, 448 B of stack.
+ * On Cortex-M0+, -O2: 45989 to 49478 instructions, 2612 B of code, 416 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -159,7 +159,7 @@ void acrobot_state_rate_jacobian_f64(const acrobot_constants_f64 *constants, dou
     double *q_2_rate, double *q_2_dot_rate, double jacobian[12]);
 
 /* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 41812 to 51747 instructions, 1856 B of code, 12 B of tables, 624 B of stack.
+ * On Cortex-M0+, -O2: 46294 to 49774 instructions, 2716 B of code, 12 B of tables, 592 B of stack.
  */
 void acrobot_state_rate_jacobian_dense_f64(const acrobot_constants_f64 *constants, double q_1,
     double q_1_dot, double q_2, double q_2_dot, double T, double *q_1_rate, double *q_1_dot_rate,
@@ -192,7 +192,7 @@ void acrobot_state_rate_jacobian_dense_f64(const acrobot_constants_f64 *constant
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: no operations.
- * On Cortex-M0+, -O2: 53 to 54 instructions, 108 B of code, 20 B of stack.
+ * On Cortex-M0+, -O2: 54 instructions, 108 B of code, 20 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -220,11 +220,11 @@ void acrobot_linearised_f64(const acrobot_constants_f64 *constants, double mass_
  * Energy: The potential energy is the sum of -m g . r_G of each weight, r_G from the inertial
  *            origin to the mass centre (from that of a frame which carries it, where of this only
  *            the motion is given).
- * Error: median 0.82, largest 28 u of the largest product or sum in the equation (of energy;
+ * Error: median 0.83, largest 30 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: 6 add, 1 sub, 10 mul, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 18214 to 28784 instructions, 308 B of code, 272 B of stack.
+ * On Cortex-M0+, -O2: 22980 to 26413 instructions, 1192 B of code, 216 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, constant_mass, further_axes_are_right_handed, rate_seen_from_N,
  *            rigid.
@@ -253,11 +253,11 @@ void acrobot_energy_f64(const acrobot_constants_f64 *constants, double q_1, doub
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.39, largest 1.4e+02 u of the largest component, before or after, or of the
- *            largest product of what the step adds, by rounding alone (of q_2_dot_next; 200000
- *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
+ * Error: median 0.39, largest 2e+02 u of the largest component, before or after, or of the largest
+ *            product of what the step adds, by rounding alone (of q_1_dot_next; 200000 samples of
+ *            the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Cost: 104 add, 20 sub, 185 mul, 8 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 133780 to 175722 instructions, 4336 B of code, 656 B of stack.
+ * On Cortex-M0+, -O2: 152577 to 166456 instructions, 5168 B of code, 672 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

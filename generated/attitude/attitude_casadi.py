@@ -34,6 +34,41 @@ def _kept(x):
     return ca.remainder(x, float("inf"))
 
 
+
+def _sine_cosine(angle):
+    """Return sine and cosine by the operations of the C; their slopes are those of CasADi's own."""
+    k = _kept(angle * 0.6366197723675814 + 6755399441055744.0) - 6755399441055744.0
+    r0 = angle - k * 1.5707963267923333
+    off1 = k * 2.5633441515839558e-12
+    r1 = _kept(r0 - off1)
+    low1 = _kept(r0 - r1) - off1
+    off = k * 1.0562999066987426e-23 - low1
+    r = _kept(r1 - off)
+    low = _kept(r1 - r) - off
+    z = r * r
+    cube = z * r
+    odd = 0.00833333333332184 + (z * (-0.00019841269829358528 + (z * (2.7557313538514204e-06 + (z * (-2.5050734389242796e-08 + (z * 1.5895433287554087e-10)))))))
+    even = 0.041666666666666595 + (z * (-0.0013888888888873338 + (z * (2.480158728899748e-05 + (z * (-2.755731421529914e-07 + (z * (2.0875705115002216e-09 + (z * -1.1358732776766006e-11)))))))))
+    half = 0.5 * z
+    one_less = _kept(1.0 - half)
+    sine = r - ((z * (0.5 * low - cube * odd) - low) - cube * -0.1666666666666663)
+    cosine = one_less + (((1.0 - one_less) - half) + (z * (z * even) - r * low))
+    halves = ca.floor(0.5 * k)
+    across = k - 2.0 * halves
+    along, sign = 1.0 - across, 1.0 - 2.0 * (halves - 2.0 * ca.floor(0.5 * halves))
+    served = ca.fabs(angle) <= 25735.0
+
+    def set_right(other, own):
+        """Return CasADi's own, and what ours differs by as a floor, which has no slope."""
+        off = ca.if_else(served, own - other, 0.0)
+        return other + ca.floor(off * 2.0**200) * 2.0**-200
+
+    return (
+        set_right(ca.sin(angle), sign * (along * sine + across * cosine)),
+        set_right(ca.cos(angle), sign * (1.0 - 2.0 * across) * (along * cosine + across * sine)),
+    )
+
+
 def quaternion_product():
     """product of two quaternions: the rotation of the second, then that of the first Inputs: left, right."""
     return _built(_quaternion_product)
@@ -212,8 +247,9 @@ def _quaternion_exp():
     t68 = t66 / t67
     t69 = t11 * 0.5
     t70 = t56 * t69
-    t71 = ca.sin(t70)
-    t72 = ca.cos(t70)
+    t71_both = _sine_cosine(t70)
+    t71 = t71_both[0]
+    t72 = t71_both[1]
     t73 = t68 * t69
     t74 = ca.if_else(t73 < 0.0, -1.0, 1.0) * t73
     t75 = t74 * t56
@@ -692,14 +728,17 @@ def quaternion_from_euler_zyx():
 def _quaternion_from_euler_zyx():
     angles = ca.SX.sym("angles", 3)
     t0 = angles[0] * 0.5
-    t1 = ca.cos(t0)
-    t2 = ca.sin(t0)
+    t1_both = _sine_cosine(t0)
+    t1 = t1_both[1]
+    t2 = t1_both[0]
     t3 = angles[1] * 0.5
-    t4 = ca.cos(t3)
-    t5 = ca.sin(t3)
+    t4_both = _sine_cosine(t3)
+    t4 = t4_both[1]
+    t5 = t4_both[0]
     t6 = angles[2] * 0.5
-    t7 = ca.cos(t6)
-    t8 = ca.sin(t6)
+    t7_both = _sine_cosine(t6)
+    t7 = t7_both[1]
+    t8 = t7_both[0]
     t9 = t1 * t4
     t10 = t2 * t5
     t11 = -t10
@@ -802,14 +841,17 @@ def quaternion_from_euler_zxz():
 def _quaternion_from_euler_zxz():
     angles = ca.SX.sym("angles", 3)
     t0 = angles[0] * 0.5
-    t1 = ca.cos(t0)
-    t2 = ca.sin(t0)
+    t1_both = _sine_cosine(t0)
+    t1 = t1_both[1]
+    t2 = t1_both[0]
     t3 = angles[1] * 0.5
-    t4 = ca.cos(t3)
-    t5 = ca.sin(t3)
+    t4_both = _sine_cosine(t3)
+    t4 = t4_both[1]
+    t5 = t4_both[0]
     t6 = angles[2] * 0.5
-    t7 = ca.cos(t6)
-    t8 = ca.sin(t6)
+    t7_both = _sine_cosine(t6)
+    t7 = t7_both[1]
+    t8 = t7_both[0]
     t9 = t1 * t4
     t10 = t1 * t5
     t11 = t2 * t5

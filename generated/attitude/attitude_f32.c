@@ -36,6 +36,48 @@
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 804; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    float sine;
+    float cosine;
+} attitude_sines_f32;
+
+static attitude_sines_f32 attitude_sine_cosine_f32(float angle)
+{
+    attitude_sines_f32 found;
+    if (fabsf(angle) <= 804.0F) {
+        const float k = ((angle * 0.636619747F) + 12582912.0F) - 12582912.0F;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const float r0 = angle - (k * 1.57067871F);
+        const float off1 = k * 0.000117614865F;
+        const float r1 = r0 - off1;
+        const float low1 = (r0 - r1) - off1;
+        const float off2 = k * 9.92088189e-10F;
+        const float r2 = r1 - off2;
+        const float low2 = low1 + ((r1 - r2) - off2);
+        const float off = (k * 5.39030253e-15F) - low2;
+        const float r = r2 - off;
+        const float low = (r2 - r) - off;
+        const float z = r * r;
+        const float cube = z * r;
+        const float odd = 0.00833218917F + (z * (-0.000195182845F));
+        const float even = 0.0416666456F + (z * ((-0.00138873095F) + (z * 2.44323273e-05F)));
+        const float half = 0.5F * z;
+        const float one_less = 1.0F - half;
+        const float sine = r - (((z * ((0.5F * low) - (cube * odd))) - low) - (cube * (-0.166666552F)));
+        const float cosine = one_less + (((1.0F - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const float first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const float second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sinf(angle);
+        found.cosine = cosf(angle);
+    }
+    return found;
+}
+
 /* product of two quaternions: the rotation of the second, then that of the first */
 void attitude_quaternion_product_f32(const float left[4], const float right[4], float attitude[4])
 {
@@ -191,8 +233,9 @@ void attitude_quaternion_exp_f32(const float rotation_vector[3], float attitude[
     const float t68 = t66 / t67;
     const float t69 = t11 * 0.5F;
     const float t70 = t56 * t69;
-    const float t71 = sinf(t70);
-    const float t72 = cosf(t70);
+    const attitude_sines_f32 t71_both = attitude_sine_cosine_f32(t70);
+    const float t71 = t71_both.sine;
+    const float t72 = t71_both.cosine;
     const float t73 = t68 * t69;
     const float t74 = fabsf(t73);
     const float t75 = t74 * t56;
@@ -583,14 +626,17 @@ void attitude_quaternion_to_euler_zyx_f32(const float attitude[4], float angles[
 void attitude_quaternion_from_euler_zyx_f32(const float angles[3], float attitude[4])
 {
     const float t0 = angles[0] * 0.5F;
-    const float t1 = cosf(t0);
-    const float t2 = sinf(t0);
+    const attitude_sines_f32 t1_both = attitude_sine_cosine_f32(t0);
+    const float t1 = t1_both.cosine;
+    const float t2 = t1_both.sine;
     const float t3 = angles[1] * 0.5F;
-    const float t4 = cosf(t3);
-    const float t5 = sinf(t3);
+    const attitude_sines_f32 t4_both = attitude_sine_cosine_f32(t3);
+    const float t4 = t4_both.cosine;
+    const float t5 = t4_both.sine;
     const float t6 = angles[2] * 0.5F;
-    const float t7 = cosf(t6);
-    const float t8 = sinf(t6);
+    const attitude_sines_f32 t7_both = attitude_sine_cosine_f32(t6);
+    const float t7 = t7_both.cosine;
+    const float t8 = t7_both.sine;
     const float t9 = t1 * t4;
     const float t10 = t2 * t5;
     const float t11 = -t10;
@@ -673,14 +719,17 @@ void attitude_quaternion_to_euler_zxz_f32(const float attitude[4], float angles[
 void attitude_quaternion_from_euler_zxz_f32(const float angles[3], float attitude[4])
 {
     const float t0 = angles[0] * 0.5F;
-    const float t1 = cosf(t0);
-    const float t2 = sinf(t0);
+    const attitude_sines_f32 t1_both = attitude_sine_cosine_f32(t0);
+    const float t1 = t1_both.cosine;
+    const float t2 = t1_both.sine;
     const float t3 = angles[1] * 0.5F;
-    const float t4 = cosf(t3);
-    const float t5 = sinf(t3);
+    const attitude_sines_f32 t4_both = attitude_sine_cosine_f32(t3);
+    const float t4 = t4_both.cosine;
+    const float t5 = t4_both.sine;
     const float t6 = angles[2] * 0.5F;
-    const float t7 = cosf(t6);
-    const float t8 = sinf(t6);
+    const attitude_sines_f32 t7_both = attitude_sine_cosine_f32(t6);
+    const float t7 = t7_both.cosine;
+    const float t8 = t7_both.sine;
     const float t9 = t1 * t4;
     const float t10 = t1 * t5;
     const float t11 = t2 * t5;

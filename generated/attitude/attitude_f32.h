@@ -14,7 +14,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 14fa2af1f1546f54.
+ * Body of these files: sha256 497b52ae99f0326a.
  */
 #ifndef ATTITUDE_F32_H
 #define ATTITUDE_F32_H
@@ -50,13 +50,13 @@ void attitude_quaternion_normalise_f32(const float quaternion[4], float attitude
 /* unit quaternion of a rotation vector
  * Given:     rotation_vector[3]  rad  along B  -3.14159 .. 3.14159  axis times angle, the same along N's and B's axes
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
- * Error: median 0.23, largest 3.5 u of the largest component, by rounding alone (of attitude;
+ * Error: median 0.24, largest 3.5 u of the largest component, by rounding alone (of attitude;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
  *            more.
  * Cost: 20 add, 21 sub, 23 mul, 5 div, 1 sqrt, 1 sin, 1 cos, 4 abs, 5 less, 1 power_of_two, 7
  *            select, 1 splitter.
- * On Cortex-M0+, -O2: 9869 to 12212 instructions, 956 B of code, 184 B of stack.
- * On Cortex-M4F, -O2: 187 to 321 instructions, 612 B of code, 72 B of stack.
+ * On Cortex-M0+, -O2: 10089 to 10957 instructions, 1440 B of code, 160 B of stack.
+ * On Cortex-M4F, -O2: 203 to 204 instructions, 984 B of code, 68 B of stack.
  */
 void attitude_quaternion_exp_f32(const float rotation_vector[3], float attitude[4]);
 
@@ -67,7 +67,7 @@ void attitude_quaternion_exp_f32(const float rotation_vector[3], float attitude[
  *            rotation_vector; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8246 hard samples no more.
  * Cost: 2 add, 14 mul, 4 div, 1 neg, 1 sqrt, 8 abs, 1 atan2, 9 less, 1 power_of_two, 11 select.
- * On Cortex-M0+, -O2: 7801 to 8271 instructions, 560 B of code, 136 B of stack.
+ * On Cortex-M0+, -O2: 7800 to 8271 instructions, 560 B of code, 136 B of stack.
  * On Cortex-M4F, -O2: 207 to 210 instructions, 432 B of code, 80 B of stack.
  */
 void attitude_quaternion_log_f32(const float quaternion[4], float rotation_vector[3]);
@@ -161,12 +161,12 @@ void attitude_quaternion_to_euler_zyx_f32(const float attitude[4], float angles[
  * Given:     angles[3]  rad  N from B  -3.14159 .. 3.14159  angles about z, y, x, each about the axis as the ones
  *   before left it
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
- * Error: median 0.34, largest 4.2 u of the largest component, by rounding alone (of attitude;
+ * Error: median 0.34, largest 5.1 u of the largest component, by rounding alone (of attitude;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
  *            more.
  * Cost: 3 add, 1 sub, 15 mul, 2 neg, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 11897 to 15946 instructions, 280 B of code, 152 B of stack.
- * On Cortex-M4F, -O2: 243 to 565 instructions, 192 B of code, 80 B of stack.
+ * On Cortex-M0+, -O2: 12820 to 14895 instructions, 816 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 303 to 306 instructions, 580 B of code, 68 B of stack.
  */
 void attitude_quaternion_from_euler_zyx_f32(const float angles[3], float attitude[4]);
 
@@ -186,12 +186,12 @@ void attitude_quaternion_to_euler_zxz_f32(const float attitude[4], float angles[
  * Given:     angles[3]  rad  N from B  -3.14159 .. 3.14159  angles about z, x, z, each about the axis as the ones
  *   before left it
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
- * Error: median 0.28, largest 4.1 u of the largest component, by rounding alone (of attitude;
+ * Error: median 0.28, largest 4.2 u of the largest component, by rounding alone (of attitude;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
  *            more.
  * Cost: 3 add, 1 sub, 15 mul, 1 neg, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 11859 to 16009 instructions, 272 B of code, 152 B of stack.
- * On Cortex-M4F, -O2: 243 to 572 instructions, 192 B of code, 72 B of stack.
+ * On Cortex-M0+, -O2: 12789 to 14930 instructions, 808 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 303 to 305 instructions, 580 B of code, 68 B of stack.
  */
 void attitude_quaternion_from_euler_zxz_f32(const float angles[3], float attitude[4]);
 

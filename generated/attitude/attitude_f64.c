@@ -36,6 +36,47 @@
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 25735; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    double sine;
+    double cosine;
+} attitude_sines_f64;
+
+static attitude_sines_f64 attitude_sine_cosine_f64(double angle)
+{
+    attitude_sines_f64 found;
+    if (fabs(angle) <= 25735.0) {
+        const double k = ((angle * 0.6366197723675814) + 6755399441055744.0) - 6755399441055744.0;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const double r0 = angle - (k * 1.5707963267923333);
+        const double off1 = k * 2.5633441515839558e-12;
+        const double r1 = r0 - off1;
+        const double low1 = (r0 - r1) - off1;
+        const double off = (k * 1.0562999066987426e-23) - low1;
+        const double r = r1 - off;
+        const double low = (r1 - r) - off;
+        const double z = r * r;
+        const double cube = z * r;
+        const double odd = 0.00833333333332184 + (z * ((-0.00019841269829358528) + (z * (2.7557313538514204e-06 + (z *
+            ((-2.5050734389242796e-08) + (z * 1.5895433287554087e-10)))))));
+        const double even = 0.041666666666666595 + (z * ((-0.0013888888888873338) + (z * (2.480158728899748e-05 + (z *
+            ((-2.755731421529914e-07) + (z * (2.0875705115002216e-09 + (z * (-1.1358732776766006e-11))))))))));
+        const double half = 0.5 * z;
+        const double one_less = 1.0 - half;
+        const double sine = r - (((z * ((0.5 * low) - (cube * odd))) - low) - (cube * (-0.1666666666666663)));
+        const double cosine = one_less + (((1.0 - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const double first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const double second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sin(angle);
+        found.cosine = cos(angle);
+    }
+    return found;
+}
+
 /* product of two quaternions: the rotation of the second, then that of the first */
 void attitude_quaternion_product_f64(const double left[4], const double right[4],
     double attitude[4])
@@ -192,8 +233,9 @@ void attitude_quaternion_exp_f64(const double rotation_vector[3], double attitud
     const double t68 = t66 / t67;
     const double t69 = t11 * 0.5;
     const double t70 = t56 * t69;
-    const double t71 = sin(t70);
-    const double t72 = cos(t70);
+    const attitude_sines_f64 t71_both = attitude_sine_cosine_f64(t70);
+    const double t71 = t71_both.sine;
+    const double t72 = t71_both.cosine;
     const double t73 = t68 * t69;
     const double t74 = fabs(t73);
     const double t75 = t74 * t56;
@@ -584,14 +626,17 @@ void attitude_quaternion_to_euler_zyx_f64(const double attitude[4], double angle
 void attitude_quaternion_from_euler_zyx_f64(const double angles[3], double attitude[4])
 {
     const double t0 = angles[0] * 0.5;
-    const double t1 = cos(t0);
-    const double t2 = sin(t0);
+    const attitude_sines_f64 t1_both = attitude_sine_cosine_f64(t0);
+    const double t1 = t1_both.cosine;
+    const double t2 = t1_both.sine;
     const double t3 = angles[1] * 0.5;
-    const double t4 = cos(t3);
-    const double t5 = sin(t3);
+    const attitude_sines_f64 t4_both = attitude_sine_cosine_f64(t3);
+    const double t4 = t4_both.cosine;
+    const double t5 = t4_both.sine;
     const double t6 = angles[2] * 0.5;
-    const double t7 = cos(t6);
-    const double t8 = sin(t6);
+    const attitude_sines_f64 t7_both = attitude_sine_cosine_f64(t6);
+    const double t7 = t7_both.cosine;
+    const double t8 = t7_both.sine;
     const double t9 = t1 * t4;
     const double t10 = t2 * t5;
     const double t11 = -t10;
@@ -674,14 +719,17 @@ void attitude_quaternion_to_euler_zxz_f64(const double attitude[4], double angle
 void attitude_quaternion_from_euler_zxz_f64(const double angles[3], double attitude[4])
 {
     const double t0 = angles[0] * 0.5;
-    const double t1 = cos(t0);
-    const double t2 = sin(t0);
+    const attitude_sines_f64 t1_both = attitude_sine_cosine_f64(t0);
+    const double t1 = t1_both.cosine;
+    const double t2 = t1_both.sine;
     const double t3 = angles[1] * 0.5;
-    const double t4 = cos(t3);
-    const double t5 = sin(t3);
+    const attitude_sines_f64 t4_both = attitude_sine_cosine_f64(t3);
+    const double t4 = t4_both.cosine;
+    const double t5 = t4_both.sine;
     const double t6 = angles[2] * 0.5;
-    const double t7 = cos(t6);
-    const double t8 = sin(t6);
+    const attitude_sines_f64 t7_both = attitude_sine_cosine_f64(t6);
+    const double t7 = t7_both.cosine;
+    const double t8 = t7_both.sine;
     const double t9 = t1 * t4;
     const double t10 = t1 * t5;
     const double t11 = t2 * t5;

@@ -14,7 +14,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 058be07f9f4b6b75.
+ * Body of these files: sha256 c9afe11adb817c58.
  */
 #ifndef ATTITUDE_F64_H
 #define ATTITUDE_F64_H
@@ -43,7 +43,7 @@ void attitude_quaternion_product_f64(const double left[4], const double right[4]
  *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
  *            more.
  * Cost: 3 add, 5 mul, 8 div, 1 sqrt, 4 abs, 5 less, 1 power_of_two, 6 select.
- * On Cortex-M0+, -O2: 8371 to 8730 instructions, 728 B of code, 152 B of stack.
+ * On Cortex-M0+, -O2: 8370 to 8730 instructions, 728 B of code, 152 B of stack.
  */
 void attitude_quaternion_normalise_f64(const double quaternion[4], double attitude[4]);
 
@@ -55,7 +55,7 @@ void attitude_quaternion_normalise_f64(const double quaternion[4], double attitu
  *            more.
  * Cost: 20 add, 21 sub, 23 mul, 5 div, 1 sqrt, 1 sin, 1 cos, 4 abs, 5 less, 1 power_of_two, 7
  *            select, 1 splitter.
- * On Cortex-M0+, -O2: 21622 to 26487 instructions, 1416 B of code, 320 B of stack.
+ * On Cortex-M0+, -O2: 23743 to 25692 instructions, 2236 B of code, 280 B of stack.
  */
 void attitude_quaternion_exp_f64(const double rotation_vector[3], double attitude[4]);
 
@@ -152,11 +152,10 @@ void attitude_quaternion_to_euler_zyx_f64(const double attitude[4], double angle
  * Given:     angles[3]  rad  N from B  -3.14159 .. 3.14159  angles about z, y, x, each about the axis as the ones
  *   before left it
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
- * Error: median 0.34, largest 4.7 u of the largest component, by rounding alone (of attitude;
- *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
- *            more.
+ * Error: median 0.34, largest 5 u of the largest component, by rounding alone (of attitude; 200000
+ *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
  * Cost: 3 add, 1 sub, 15 mul, 2 neg, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 26971 to 35142 instructions, 432 B of code, 280 B of stack.
+ * On Cortex-M0+, -O2: 33760 to 38663 instructions, 1312 B of code, 256 B of stack.
  */
 void attitude_quaternion_from_euler_zyx_f64(const double angles[3], double attitude[4]);
 
@@ -179,7 +178,7 @@ void attitude_quaternion_to_euler_zxz_f64(const double attitude[4], double angle
  *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
  *            more.
  * Cost: 3 add, 1 sub, 15 mul, 1 neg, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 26916 to 35182 instructions, 412 B of code, 264 B of stack.
+ * On Cortex-M0+, -O2: 33785 to 38690 instructions, 1308 B of code, 248 B of stack.
  */
 void attitude_quaternion_from_euler_zxz_f64(const double angles[3], double attitude[4]);
 

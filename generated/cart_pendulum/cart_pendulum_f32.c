@@ -211,19 +211,62 @@ int cart_pendulum_setup_f32(float M, float m, float l, float I, float b, float g
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 804; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    float sine;
+    float cosine;
+} cart_pendulum_sines_f32;
+
+static cart_pendulum_sines_f32 cart_pendulum_sine_cosine_f32(float angle)
+{
+    cart_pendulum_sines_f32 found;
+    if (fabsf(angle) <= 804.0F) {
+        const float k = ((angle * 0.636619747F) + 12582912.0F) - 12582912.0F;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const float r0 = angle - (k * 1.57067871F);
+        const float off1 = k * 0.000117614865F;
+        const float r1 = r0 - off1;
+        const float low1 = (r0 - r1) - off1;
+        const float off2 = k * 9.92088189e-10F;
+        const float r2 = r1 - off2;
+        const float low2 = low1 + ((r1 - r2) - off2);
+        const float off = (k * 5.39030253e-15F) - low2;
+        const float r = r2 - off;
+        const float low = (r2 - r) - off;
+        const float z = r * r;
+        const float cube = z * r;
+        const float odd = 0.00833218917F + (z * (-0.000195182845F));
+        const float even = 0.0416666456F + (z * ((-0.00138873095F) + (z * 2.44323273e-05F)));
+        const float half = 0.5F * z;
+        const float one_less = 1.0F - half;
+        const float sine = r - (((z * ((0.5F * low) - (cube * odd))) - low) - (cube * (-0.166666552F)));
+        const float cosine = one_less + (((1.0F - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const float first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const float second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sinf(angle);
+        found.cosine = cosf(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void cart_pendulum_state_rate_f32(const cart_pendulum_constants_f32 *constants, float x_dot,
     float theta, float theta_dot, float F, float *x_rate, float *x_dot_rate, float *theta_rate,
     float *theta_dot_rate)
 {
     const float t0 = theta_dot * theta_dot;
-    const float t1 = sinf(theta);
+    const cart_pendulum_sines_f32 t1_both = cart_pendulum_sine_cosine_f32(theta);
+    const float t1 = t1_both.sine;
     const float t2 = t0 * t1;
     const float t3 = t2 * constants->m_l;
     const float t4 = F + t3;
     const float t5 = x_dot * constants->b;
     const float t6 = t4 - t5;
-    const float t7 = cosf(theta);
+    const float t7 = t1_both.cosine;
     const float t8 = t7 * constants->m_l;
     const float t9 = t8 * constants->pivot;
     const float t10 = t1 * constants->m_l_g;
@@ -246,7 +289,8 @@ void cart_pendulum_state_rate_jacobian_f32(const cart_pendulum_constants_f32 *co
     float x_dot, float theta, float theta_dot, float F, float *x_rate, float *x_dot_rate,
     float *theta_rate, float *theta_dot_rate, float jacobian[10])
 {
-    const float t0 = cosf(theta);
+    const cart_pendulum_sines_f32 t0_both = cart_pendulum_sine_cosine_f32(theta);
+    const float t0 = t0_both.cosine;
     const float t1 = t0 * constants->minus_m_l;
     const float t2 = t1 * constants->pivot;
     const float t3 = t1 * t2;
@@ -254,7 +298,7 @@ void cart_pendulum_state_rate_jacobian_f32(const cart_pendulum_constants_f32 *co
     const float t5 = 1.0F / t4;
     const float t6 = x_dot * constants->minus_b;
     const float t7 = F + t6;
-    const float t8 = sinf(theta);
+    const float t8 = t0_both.sine;
     const float t9 = t8 * constants->m_l_g;
     const float t10 = t2 * t9;
     const float t11 = t7 + t10;
@@ -353,7 +397,8 @@ void cart_pendulum_linearised_f32(const cart_pendulum_constants_f32 *constants,
 void cart_pendulum_energy_f32(const cart_pendulum_constants_f32 *constants, float x_dot,
     float theta, float theta_dot, float *energy)
 {
-    const float t0 = cosf(theta);
+    const cart_pendulum_sines_f32 t0_both = cart_pendulum_sine_cosine_f32(theta);
+    const float t0 = t0_both.cosine;
     const float t1 = t0 * constants->m_l_g;
     const float t2 = theta_dot * theta_dot;
     const float t3 = t2 * constants->k6;
@@ -371,7 +416,8 @@ void cart_pendulum_energy_f32(const cart_pendulum_constants_f32 *constants, floa
 void cart_pendulum_rail_f32(const cart_pendulum_constants_f32 *constants, float x_dot, float theta,
     float theta_dot, float F, float *rail)
 {
-    const float t0 = cosf(theta);
+    const cart_pendulum_sines_f32 t0_both = cart_pendulum_sine_cosine_f32(theta);
+    const float t0 = t0_both.cosine;
     const float t1 = t0 * constants->m_l;
     const float t2 = t1 * constants->factor;
     const float t3 = t0 * constants->M;
@@ -379,7 +425,7 @@ void cart_pendulum_rail_f32(const cart_pendulum_constants_f32 *constants, float 
     const float t5 = t3 + t4;
     const float t6 = t2 - t5;
     const float t7 = t0 * t6;
-    const float t8 = sinf(theta);
+    const float t8 = t0_both.sine;
     const float t9 = t8 * constants->M;
     const float t10 = t8 * constants->m;
     const float t11 = t9 + t10;
@@ -413,8 +459,9 @@ void cart_pendulum_step_rk4_f32(const cart_pendulum_constants_f32 *constants, fl
     const float t17 = x_dot * t0;
     const float t19 = theta_dot * t0;
     const float t28 = theta + t19;
-    const float t31 = sinf(t28);
-    const float t37 = cosf(t28);
+    const cart_pendulum_sines_f32 t31_both = cart_pendulum_sine_cosine_f32(t28);
+    const float t31 = t31_both.sine;
+    const float t37 = t31_both.cosine;
     const float t38 = t37 * constants->m_l;
     const float t39 = t38 * constants->pivot;
     const float t43 = t38 * t39;
@@ -426,7 +473,8 @@ void cart_pendulum_step_rk4_f32(const cart_pendulum_constants_f32 *constants, fl
     const float t22 = constants->m_l * t0;
     const float t50 = t37 * t22;
     const float t1 = theta_dot * theta_dot;
-    const float t2 = sinf(theta);
+    const cart_pendulum_sines_f32 t2_both = cart_pendulum_sine_cosine_f32(theta);
+    const float t2 = t2_both.sine;
     const float t3 = t1 * t2;
     const float t4 = t3 * constants->m_l;
     const float t5 = F + t4;
@@ -434,7 +482,7 @@ void cart_pendulum_step_rk4_f32(const cart_pendulum_constants_f32 *constants, fl
     const float t21 = t2 * t20;
     const float t6 = x_dot * constants->b;
     const float t7 = t5 - t6;
-    const float t8 = cosf(theta);
+    const float t8 = t2_both.cosine;
     const float t9 = t8 * constants->m_l;
     const float t23 = t8 * t22;
     const float t10 = t9 * constants->pivot;
@@ -464,8 +512,9 @@ void cart_pendulum_step_rk4_f32(const cart_pendulum_constants_f32 *constants, fl
     const float t47 = t45 * t0;
     const float t48 = t29 * t0;
     const float t55 = theta + t48;
-    const float t58 = sinf(t55);
-    const float t64 = cosf(t55);
+    const cart_pendulum_sines_f32 t58_both = cart_pendulum_sine_cosine_f32(t55);
+    const float t58 = t58_both.sine;
+    const float t64 = t58_both.cosine;
     const float t65 = t64 * constants->m_l;
     const float t77 = t64 * t22;
     const float t66 = t65 * constants->pivot;
@@ -513,9 +562,10 @@ void cart_pendulum_step_rk4_f32(const cart_pendulum_constants_f32 *constants, fl
     const float t123 = t19 + t122;
     const float t82 = t75 * 2.0F;
     const float t85 = theta + t82;
-    const float t88 = sinf(t85);
+    const cart_pendulum_sines_f32 t88_both = cart_pendulum_sine_cosine_f32(t85);
+    const float t88 = t88_both.sine;
     const float t106 = t88 * t20;
-    const float t94 = cosf(t85);
+    const float t94 = t88_both.cosine;
     const float t107 = t94 * t22;
     const float t95 = t94 * constants->m_l;
     const float t96 = t95 * constants->pivot;

@@ -27,7 +27,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 c3a3571b601e73b7.
+ * Body of these files: sha256 5b1b474f8adac84a.
  */
 #ifndef CART_PENDULUM_F32_H
 #define CART_PENDULUM_F32_H
@@ -107,12 +107,12 @@ int cart_pendulum_setup_f32(float M, float m, float l, float I, float b, float g
  * In this scene: Delta = (m*(cos(theta)^2 - 1) - M)*m*l^2 - (M + m)*I
  * In this scene: x_dot_rate = ((m*g*cos(theta)*sin(theta) - beta)*m*l^2 - beta*I)/Delta
  * In this scene: theta_dot_rate = ((beta*cos(theta) - (M + m)*g*sin(theta))*m*l)/Delta
- * Error: median 0.73, largest 7.9 u of the largest product or sum in the equation (of x_dot_rate;
+ * Error: median 0.73, largest 8.3 u of the largest product or sum in the equation (of x_dot_rate;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: 1 add, 4 sub, 11 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 5322 to 7830 instructions, 208 B of code, 160 B of stack.
- * On Cortex-M4F, -O2: 107 to 260 instructions, 168 B of code, 80 B of stack.
+ * On Cortex-M0+, -O2: 5628 to 6416 instructions, 764 B of code, 128 B of stack.
+ * On Cortex-M4F, -O2: 130 to 131 instructions, 580 B of code, 60 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -140,8 +140,8 @@ void cart_pendulum_state_rate_f32(const cart_pendulum_constants_f32 *constants, 
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: 5 add, 6 sub, 35 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 8659 to 11188 instructions, 540 B of code, 208 B of stack.
- * On Cortex-M4F, -O2: 154 to 307 instructions, 352 B of code, 96 B of stack.
+ * On Cortex-M0+, -O2: 9040 to 9925 instructions, 1076 B of code, 168 B of stack.
+ * On Cortex-M4F, -O2: 178 to 179 instructions, 768 B of code, 60 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -150,8 +150,8 @@ void cart_pendulum_state_rate_jacobian_f32(const cart_pendulum_constants_f32 *co
     float *theta_rate, float *theta_dot_rate, float jacobian[10]);
 
 /* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 8822 to 11376 instructions, 612 B of code, 10 B of tables, 288 B of stack.
- * On Cortex-M4F, -O2: 296 to 449 instructions, 416 B of code, 10 B of tables, 160 B of stack.
+ * On Cortex-M0+, -O2: 9205 to 10032 instructions, 1148 B of code, 10 B of tables, 248 B of stack.
+ * On Cortex-M4F, -O2: 320 to 321 instructions, 832 B of code, 10 B of tables, 124 B of stack.
  */
 void cart_pendulum_state_rate_jacobian_dense_f32(const cart_pendulum_constants_f32 *constants,
     float x_dot, float theta, float theta_dot, float F, float *x_rate, float *x_dot_rate,
@@ -205,8 +205,8 @@ void cart_pendulum_linearised_f32(const cart_pendulum_constants_f32 *constants,
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: 3 add, 7 mul, 1 cos.
- * On Cortex-M0+, -O2: 2744 to 4020 instructions, 112 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 59 to 137 instructions, 92 B of code, 56 B of stack.
+ * On Cortex-M0+, -O2: 4513 to 5409 instructions, 668 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 114 to 115 instructions, 520 B of code, 44 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass,
  *            rate_seen_from_N, rigid.
  */
@@ -234,8 +234,8 @@ void cart_pendulum_energy_f32(const cart_pendulum_constants_f32 *constants, floa
  * Error: median 0.85, largest 9.4 u of the largest product or sum in the equation (of rail; 200000
  *            samples of the ranges, 65536 searched from the worst); at 120 hard samples no more.
  * Cost: 5 add, 3 sub, 18 mul, 1 div, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 6359 to 8868 instructions, 288 B of code, 152 B of stack.
- * On Cortex-M4F, -O2: 115 to 268 instructions, 204 B of code, 72 B of stack.
+ * On Cortex-M0+, -O2: 6694 to 7532 instructions, 836 B of code, 120 B of stack.
+ * On Cortex-M4F, -O2: 139 to 140 instructions, 620 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -263,8 +263,8 @@ void cart_pendulum_rail_f32(const cart_pendulum_constants_f32 *constants, float 
  *            largest product of what the step adds, by rounding alone (of x_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Cost: 29 add, 16 sub, 78 mul, 4 div, 4 sin, 4 cos.
- * On Cortex-M0+, -O2: 26403 to 36305 instructions, 1200 B of code, 248 B of stack.
- * On Cortex-M4F, -O2: 454 to 1066 instructions, 812 B of code, 168 B of stack.
+ * On Cortex-M0+, -O2: 27832 to 30946 instructions, 1740 B of code, 232 B of stack.
+ * On Cortex-M4F, -O2: 534 to 538 instructions, 1156 B of code, 164 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */

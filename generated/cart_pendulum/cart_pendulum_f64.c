@@ -211,19 +211,61 @@ int cart_pendulum_setup_f64(double M, double m, double l, double I, double b, do
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 25735; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    double sine;
+    double cosine;
+} cart_pendulum_sines_f64;
+
+static cart_pendulum_sines_f64 cart_pendulum_sine_cosine_f64(double angle)
+{
+    cart_pendulum_sines_f64 found;
+    if (fabs(angle) <= 25735.0) {
+        const double k = ((angle * 0.6366197723675814) + 6755399441055744.0) - 6755399441055744.0;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const double r0 = angle - (k * 1.5707963267923333);
+        const double off1 = k * 2.5633441515839558e-12;
+        const double r1 = r0 - off1;
+        const double low1 = (r0 - r1) - off1;
+        const double off = (k * 1.0562999066987426e-23) - low1;
+        const double r = r1 - off;
+        const double low = (r1 - r) - off;
+        const double z = r * r;
+        const double cube = z * r;
+        const double odd = 0.00833333333332184 + (z * ((-0.00019841269829358528) + (z * (2.7557313538514204e-06 + (z *
+            ((-2.5050734389242796e-08) + (z * 1.5895433287554087e-10)))))));
+        const double even = 0.041666666666666595 + (z * ((-0.0013888888888873338) + (z * (2.480158728899748e-05 + (z *
+            ((-2.755731421529914e-07) + (z * (2.0875705115002216e-09 + (z * (-1.1358732776766006e-11))))))))));
+        const double half = 0.5 * z;
+        const double one_less = 1.0 - half;
+        const double sine = r - (((z * ((0.5 * low) - (cube * odd))) - low) - (cube * (-0.1666666666666663)));
+        const double cosine = one_less + (((1.0 - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const double first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const double second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sin(angle);
+        found.cosine = cos(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void cart_pendulum_state_rate_f64(const cart_pendulum_constants_f64 *constants, double x_dot,
     double theta, double theta_dot, double F, double *x_rate, double *x_dot_rate,
     double *theta_rate, double *theta_dot_rate)
 {
     const double t0 = theta_dot * theta_dot;
-    const double t1 = sin(theta);
+    const cart_pendulum_sines_f64 t1_both = cart_pendulum_sine_cosine_f64(theta);
+    const double t1 = t1_both.sine;
     const double t2 = t0 * t1;
     const double t3 = t2 * constants->m_l;
     const double t4 = F + t3;
     const double t5 = x_dot * constants->b;
     const double t6 = t4 - t5;
-    const double t7 = cos(theta);
+    const double t7 = t1_both.cosine;
     const double t8 = t7 * constants->m_l;
     const double t9 = t8 * constants->pivot;
     const double t10 = t1 * constants->m_l_g;
@@ -246,7 +288,8 @@ void cart_pendulum_state_rate_jacobian_f64(const cart_pendulum_constants_f64 *co
     double x_dot, double theta, double theta_dot, double F, double *x_rate, double *x_dot_rate,
     double *theta_rate, double *theta_dot_rate, double jacobian[10])
 {
-    const double t0 = cos(theta);
+    const cart_pendulum_sines_f64 t0_both = cart_pendulum_sine_cosine_f64(theta);
+    const double t0 = t0_both.cosine;
     const double t1 = t0 * constants->minus_m_l;
     const double t2 = t1 * constants->pivot;
     const double t3 = t1 * t2;
@@ -254,7 +297,7 @@ void cart_pendulum_state_rate_jacobian_f64(const cart_pendulum_constants_f64 *co
     const double t5 = 1.0 / t4;
     const double t6 = x_dot * constants->minus_b;
     const double t7 = F + t6;
-    const double t8 = sin(theta);
+    const double t8 = t0_both.sine;
     const double t9 = t8 * constants->m_l_g;
     const double t10 = t2 * t9;
     const double t11 = t7 + t10;
@@ -353,7 +396,8 @@ void cart_pendulum_linearised_f64(const cart_pendulum_constants_f64 *constants,
 void cart_pendulum_energy_f64(const cart_pendulum_constants_f64 *constants, double x_dot,
     double theta, double theta_dot, double *energy)
 {
-    const double t0 = cos(theta);
+    const cart_pendulum_sines_f64 t0_both = cart_pendulum_sine_cosine_f64(theta);
+    const double t0 = t0_both.cosine;
     const double t1 = t0 * constants->m_l_g;
     const double t2 = theta_dot * theta_dot;
     const double t3 = t2 * constants->k6;
@@ -371,7 +415,8 @@ void cart_pendulum_energy_f64(const cart_pendulum_constants_f64 *constants, doub
 void cart_pendulum_rail_f64(const cart_pendulum_constants_f64 *constants, double x_dot,
     double theta, double theta_dot, double F, double *rail)
 {
-    const double t0 = cos(theta);
+    const cart_pendulum_sines_f64 t0_both = cart_pendulum_sine_cosine_f64(theta);
+    const double t0 = t0_both.cosine;
     const double t1 = t0 * constants->m_l;
     const double t2 = t1 * constants->factor;
     const double t3 = t0 * constants->M;
@@ -379,7 +424,7 @@ void cart_pendulum_rail_f64(const cart_pendulum_constants_f64 *constants, double
     const double t5 = t3 + t4;
     const double t6 = t2 - t5;
     const double t7 = t0 * t6;
-    const double t8 = sin(theta);
+    const double t8 = t0_both.sine;
     const double t9 = t8 * constants->M;
     const double t10 = t8 * constants->m;
     const double t11 = t9 + t10;
@@ -413,8 +458,9 @@ void cart_pendulum_step_rk4_f64(const cart_pendulum_constants_f64 *constants, do
     const double t17 = x_dot * t0;
     const double t19 = theta_dot * t0;
     const double t28 = theta + t19;
-    const double t31 = sin(t28);
-    const double t37 = cos(t28);
+    const cart_pendulum_sines_f64 t31_both = cart_pendulum_sine_cosine_f64(t28);
+    const double t31 = t31_both.sine;
+    const double t37 = t31_both.cosine;
     const double t38 = t37 * constants->m_l;
     const double t39 = t38 * constants->pivot;
     const double t43 = t38 * t39;
@@ -426,7 +472,8 @@ void cart_pendulum_step_rk4_f64(const cart_pendulum_constants_f64 *constants, do
     const double t22 = constants->m_l * t0;
     const double t50 = t37 * t22;
     const double t1 = theta_dot * theta_dot;
-    const double t2 = sin(theta);
+    const cart_pendulum_sines_f64 t2_both = cart_pendulum_sine_cosine_f64(theta);
+    const double t2 = t2_both.sine;
     const double t3 = t1 * t2;
     const double t4 = t3 * constants->m_l;
     const double t5 = F + t4;
@@ -434,7 +481,7 @@ void cart_pendulum_step_rk4_f64(const cart_pendulum_constants_f64 *constants, do
     const double t21 = t2 * t20;
     const double t6 = x_dot * constants->b;
     const double t7 = t5 - t6;
-    const double t8 = cos(theta);
+    const double t8 = t2_both.cosine;
     const double t9 = t8 * constants->m_l;
     const double t23 = t8 * t22;
     const double t10 = t9 * constants->pivot;
@@ -464,8 +511,9 @@ void cart_pendulum_step_rk4_f64(const cart_pendulum_constants_f64 *constants, do
     const double t47 = t45 * t0;
     const double t48 = t29 * t0;
     const double t55 = theta + t48;
-    const double t58 = sin(t55);
-    const double t64 = cos(t55);
+    const cart_pendulum_sines_f64 t58_both = cart_pendulum_sine_cosine_f64(t55);
+    const double t58 = t58_both.sine;
+    const double t64 = t58_both.cosine;
     const double t65 = t64 * constants->m_l;
     const double t77 = t64 * t22;
     const double t66 = t65 * constants->pivot;
@@ -513,9 +561,10 @@ void cart_pendulum_step_rk4_f64(const cart_pendulum_constants_f64 *constants, do
     const double t123 = t19 + t122;
     const double t82 = t75 * 2.0;
     const double t85 = theta + t82;
-    const double t88 = sin(t85);
+    const cart_pendulum_sines_f64 t88_both = cart_pendulum_sine_cosine_f64(t85);
+    const double t88 = t88_both.sine;
     const double t106 = t88 * t20;
-    const double t94 = cos(t85);
+    const double t94 = t88_both.cosine;
     const double t107 = t94 * t22;
     const double t95 = t94 * constants->m_l;
     const double t96 = t95 * constants->pivot;

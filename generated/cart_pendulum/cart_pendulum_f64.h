@@ -25,7 +25,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 8f4e1c9f68a790c1.
+ * Body of these files: sha256 adddbec36050b064.
  */
 #ifndef CART_PENDULUM_F64_H
 #define CART_PENDULUM_F64_H
@@ -108,7 +108,7 @@ int cart_pendulum_setup_f64(double M, double m, double l, double I, double b, do
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: 1 add, 4 sub, 11 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 11869 to 17141 instructions, 304 B of code, 256 B of stack.
+ * On Cortex-M0+, -O2: 14226 to 16006 instructions, 1216 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -132,11 +132,11 @@ void cart_pendulum_state_rate_f64(const cart_pendulum_constants_f64 *constants, 
  * Follows from, for each body: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.75, largest 15 u of the largest product or sum in the equation (of jacobian;
+ * Error: median 0.75, largest 16 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: 5 add, 6 sub, 35 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 19993 to 25237 instructions, 872 B of code, 344 B of stack.
+ * On Cortex-M0+, -O2: 22255 to 24107 instructions, 1760 B of code, 296 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -145,7 +145,7 @@ void cart_pendulum_state_rate_jacobian_f64(const cart_pendulum_constants_f64 *co
     double *theta_rate, double *theta_dot_rate, double jacobian[10]);
 
 /* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 20142 to 25472 instructions, 968 B of code, 10 B of tables, 496 B of stack.
+ * On Cortex-M0+, -O2: 22549 to 24369 instructions, 1856 B of code, 10 B of tables, 448 B of stack.
  */
 void cart_pendulum_state_rate_jacobian_dense_f64(const cart_pendulum_constants_f64 *constants,
     double x_dot, double theta, double theta_dot, double F, double *x_rate, double *x_dot_rate,
@@ -194,11 +194,11 @@ void cart_pendulum_linearised_f64(const cart_pendulum_constants_f64 *constants,
  * Energy: The potential energy is the sum of -m g . r_G of each weight, r_G from the inertial
  *            origin to the mass centre (from that of a frame which carries it, where of this only
  *            the motion is given).
- * Error: median 0.64, largest 8.1 u of the largest product or sum in the equation (of energy;
+ * Error: median 0.63, largest 11 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: 3 add, 7 mul, 1 cos.
- * On Cortex-M0+, -O2: 6413 to 8903 instructions, 172 B of code, 232 B of stack.
+ * On Cortex-M0+, -O2: 12010 to 13772 instructions, 1084 B of code, 184 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass,
  *            rate_seen_from_N, rigid.
  */
@@ -223,10 +223,10 @@ void cart_pendulum_energy_f64(const cart_pendulum_constants_f64 *constants, doub
  * In this scene: c = beta*((M + m)*I + M*m*l^2)*cos(theta) + ((m*g*sin(theta) - beta_2)*m*l^2 -
  *            beta_2*I)*(M + m)*sin(theta)
  * In this scene: rail = c/Delta
- * Error: median 0.86, largest 8.8 u of the largest product or sum in the equation (of rail; 200000
+ * Error: median 0.85, largest 8.8 u of the largest product or sum in the equation (of rail; 200000
  *            samples of the ranges, 65536 searched from the worst); at 120 hard samples no more.
  * Cost: 5 add, 3 sub, 18 mul, 1 div, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 14369 to 19624 instructions, 480 B of code, 280 B of stack.
+ * On Cortex-M0+, -O2: 16586 to 18465 instructions, 1384 B of code, 232 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -254,7 +254,7 @@ void cart_pendulum_rail_f64(const cart_pendulum_constants_f64 *constants, double
  *            largest product of what the step adds, by rounding alone (of theta_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Cost: 29 add, 16 sub, 78 mul, 4 div, 4 sin, 4 cos.
- * On Cortex-M0+, -O2: 59758 to 80370 instructions, 1820 B of code, 416 B of stack.
+ * On Cortex-M0+, -O2: 68936 to 75888 instructions, 2740 B of code, 408 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */

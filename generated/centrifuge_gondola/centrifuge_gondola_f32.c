@@ -206,20 +206,65 @@ int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, fl
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 804; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    float sine;
+    float cosine;
+} centrifuge_gondola_sines_f32;
+
+static centrifuge_gondola_sines_f32 centrifuge_gondola_sine_cosine_f32(float angle)
+{
+    centrifuge_gondola_sines_f32 found;
+    if (fabsf(angle) <= 804.0F) {
+        const float k = ((angle * 0.636619747F) + 12582912.0F) - 12582912.0F;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const float r0 = angle - (k * 1.57067871F);
+        const float off1 = k * 0.000117614865F;
+        const float r1 = r0 - off1;
+        const float low1 = (r0 - r1) - off1;
+        const float off2 = k * 9.92088189e-10F;
+        const float r2 = r1 - off2;
+        const float low2 = low1 + ((r1 - r2) - off2);
+        const float off = (k * 5.39030253e-15F) - low2;
+        const float r = r2 - off;
+        const float low = (r2 - r) - off;
+        const float z = r * r;
+        const float cube = z * r;
+        const float odd = 0.00833218917F + (z * (-0.000195182845F));
+        const float even = 0.0416666456F + (z * ((-0.00138873095F) + (z * 2.44323273e-05F)));
+        const float half = 0.5F * z;
+        const float one_less = 1.0F - half;
+        const float sine = r - (((z * ((0.5F * low) - (cube * odd))) - low) - (cube * (-0.166666552F)));
+        const float cosine = one_less + (((1.0F - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const float first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const float second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sinf(angle);
+        found.cosine = cosf(angle);
+    }
+    return found;
+}
+
 /* Force of pivot on gondola. */
 void centrifuge_gondola_F_f32(const centrifuge_gondola_constants_f32 *constants, float yaw,
     float yaw_dot, float yaw_ddot, float pitch, float pitch_dot, float pitch_ddot, float spin,
     float spin_dot, float spin_ddot, float a_x, float a_y, float F[3])
 {
     const float t0 = a_x * constants->m;
-    const float t1 = cosf(yaw);
-    const float t2 = sinf(spin);
-    const float t3 = sinf(pitch);
+    const centrifuge_gondola_sines_f32 t1_both = centrifuge_gondola_sine_cosine_f32(yaw);
+    const float t1 = t1_both.cosine;
+    const centrifuge_gondola_sines_f32 t2_both = centrifuge_gondola_sine_cosine_f32(spin);
+    const float t2 = t2_both.sine;
+    const centrifuge_gondola_sines_f32 t3_both = centrifuge_gondola_sine_cosine_f32(pitch);
+    const float t3 = t3_both.sine;
     const float t4 = t3 * yaw_dot;
     const float t5 = spin_dot - t4;
-    const float t6 = cosf(spin);
+    const float t6 = t2_both.cosine;
     const float t7 = pitch_dot * t6;
-    const float t8 = cosf(pitch);
+    const float t8 = t3_both.cosine;
     const float t9 = yaw_dot * t8;
     const float t10 = t2 * t9;
     const float t11 = t7 + t10;
@@ -277,7 +322,7 @@ void centrifuge_gondola_F_f32(const centrifuge_gondola_constants_f32 *constants,
     const float t63 = t55 + t62;
     const float t64 = t1 * t63;
     const float t65 = t0 + t64;
-    const float t66 = sinf(yaw);
+    const float t66 = t1_both.sine;
     const float t67 = t35 * t6;
     const float t68 = t2 * t51;
     const float t69 = t67 - t68;
@@ -302,18 +347,21 @@ void centrifuge_gondola_M_f32(const centrifuge_gondola_constants_f32 *constants,
     float yaw_dot, float yaw_ddot, float pitch, float pitch_dot, float pitch_ddot, float spin,
     float spin_dot, float spin_ddot, float a_x, float a_y, float M[3])
 {
-    const float t0 = cosf(yaw);
-    const float t1 = cosf(pitch);
-    const float t2 = sinf(pitch);
+    const centrifuge_gondola_sines_f32 t0_both = centrifuge_gondola_sine_cosine_f32(yaw);
+    const float t0 = t0_both.cosine;
+    const centrifuge_gondola_sines_f32 t1_both = centrifuge_gondola_sine_cosine_f32(pitch);
+    const float t1 = t1_both.cosine;
+    const float t2 = t1_both.sine;
     const float t3 = yaw_ddot * t2;
     const float t4 = spin_ddot - t3;
     const float t5 = t1 * yaw_dot;
     const float t6 = pitch_dot * t5;
     const float t7 = t4 - t6;
     const float t8 = t7 * constants->k1;
-    const float t9 = cosf(spin);
+    const centrifuge_gondola_sines_f32 t9_both = centrifuge_gondola_sine_cosine_f32(spin);
+    const float t9 = t9_both.cosine;
     const float t10 = pitch_dot * t9;
-    const float t11 = sinf(spin);
+    const float t11 = t9_both.sine;
     const float t12 = t11 * t5;
     const float t13 = t10 + t12;
     const float t14 = spin_dot * t13;
@@ -337,7 +385,7 @@ void centrifuge_gondola_M_f32(const centrifuge_gondola_constants_f32 *constants,
     const float t32 = t13 * t31;
     const float t33 = t24 - t32;
     const float t34 = t0 * a_y;
-    const float t35 = sinf(yaw);
+    const float t35 = t0_both.sine;
     const float t36 = a_x * t35;
     const float t37 = t34 - t36;
     const float t38 = t9 * t37;

@@ -24,7 +24,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 1966e3491be43514.
+ * Body of these files: sha256 13b2e261395f3c8c.
  */
 #ifndef CENTRIFUGE_GONDOLA_F32_H
 #define CENTRIFUGE_GONDOLA_F32_H
@@ -87,11 +87,10 @@ int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, fl
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.63, largest 18 u of the largest product or sum in the equation (of F; 200000
- *            samples of the ranges, 65536 searched from the worst); at 8342 hard samples 19 u (of
- *            F, thin rod).
+ *            samples of the ranges, 65536 searched from the worst); at 8342 hard samples no more.
  * Cost: 11 add, 16 sub, 48 mul, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 17472 to 21786 instructions, 824 B of code, 216 B of stack.
- * On Cortex-M4F, -O2: 300 to 622 instructions, 448 B of code, 112 B of stack.
+ * On Cortex-M0+, -O2: 18516 to 20701 instructions, 1360 B of code, 200 B of stack.
+ * On Cortex-M4F, -O2: 368 to 371 instructions, 840 B of code, 108 B of stack.
  * Rests on: axes_are_orthonormal, composed_turns, constant_mass, further_axes_are_right_handed,
  *            newton, rate_seen_from_N, third_law.
  */
@@ -116,11 +115,11 @@ void centrifuge_gondola_F_f32(const centrifuge_gondola_constants_f32 *constants,
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
  *            step moving_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Error: median 0.96, largest 21 u of the largest product or sum in the equation (of M; 200000
+ * Error: median 0.97, largest 23 u of the largest product or sum in the equation (of M; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8342 hard samples no more.
  * Cost: 15 add, 18 sub, 56 mul, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 19073 to 24173 instructions, 976 B of code, 232 B of stack.
- * On Cortex-M4F, -O2: 334 to 692 instructions, 552 B of code, 128 B of stack.
+ * On Cortex-M0+, -O2: 19988 to 22112 instructions, 1484 B of code, 216 B of stack.
+ * On Cortex-M4F, -O2: 388 to 390 instructions, 920 B of code, 108 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N, rigid,
  *            strong_third_law, third_law.

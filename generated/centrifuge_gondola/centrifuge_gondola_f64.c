@@ -206,20 +206,64 @@ int centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 25735; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    double sine;
+    double cosine;
+} centrifuge_gondola_sines_f64;
+
+static centrifuge_gondola_sines_f64 centrifuge_gondola_sine_cosine_f64(double angle)
+{
+    centrifuge_gondola_sines_f64 found;
+    if (fabs(angle) <= 25735.0) {
+        const double k = ((angle * 0.6366197723675814) + 6755399441055744.0) - 6755399441055744.0;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const double r0 = angle - (k * 1.5707963267923333);
+        const double off1 = k * 2.5633441515839558e-12;
+        const double r1 = r0 - off1;
+        const double low1 = (r0 - r1) - off1;
+        const double off = (k * 1.0562999066987426e-23) - low1;
+        const double r = r1 - off;
+        const double low = (r1 - r) - off;
+        const double z = r * r;
+        const double cube = z * r;
+        const double odd = 0.00833333333332184 + (z * ((-0.00019841269829358528) + (z * (2.7557313538514204e-06 + (z *
+            ((-2.5050734389242796e-08) + (z * 1.5895433287554087e-10)))))));
+        const double even = 0.041666666666666595 + (z * ((-0.0013888888888873338) + (z * (2.480158728899748e-05 + (z *
+            ((-2.755731421529914e-07) + (z * (2.0875705115002216e-09 + (z * (-1.1358732776766006e-11))))))))));
+        const double half = 0.5 * z;
+        const double one_less = 1.0 - half;
+        const double sine = r - (((z * ((0.5 * low) - (cube * odd))) - low) - (cube * (-0.1666666666666663)));
+        const double cosine = one_less + (((1.0 - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const double first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const double second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sin(angle);
+        found.cosine = cos(angle);
+    }
+    return found;
+}
+
 /* Force of pivot on gondola. */
 void centrifuge_gondola_F_f64(const centrifuge_gondola_constants_f64 *constants, double yaw,
     double yaw_dot, double yaw_ddot, double pitch, double pitch_dot, double pitch_ddot, double spin,
     double spin_dot, double spin_ddot, double a_x, double a_y, double F[3])
 {
     const double t0 = a_x * constants->m;
-    const double t1 = cos(yaw);
-    const double t2 = sin(spin);
-    const double t3 = sin(pitch);
+    const centrifuge_gondola_sines_f64 t1_both = centrifuge_gondola_sine_cosine_f64(yaw);
+    const double t1 = t1_both.cosine;
+    const centrifuge_gondola_sines_f64 t2_both = centrifuge_gondola_sine_cosine_f64(spin);
+    const double t2 = t2_both.sine;
+    const centrifuge_gondola_sines_f64 t3_both = centrifuge_gondola_sine_cosine_f64(pitch);
+    const double t3 = t3_both.sine;
     const double t4 = t3 * yaw_dot;
     const double t5 = spin_dot - t4;
-    const double t6 = cos(spin);
+    const double t6 = t2_both.cosine;
     const double t7 = pitch_dot * t6;
-    const double t8 = cos(pitch);
+    const double t8 = t3_both.cosine;
     const double t9 = yaw_dot * t8;
     const double t10 = t2 * t9;
     const double t11 = t7 + t10;
@@ -277,7 +321,7 @@ void centrifuge_gondola_F_f64(const centrifuge_gondola_constants_f64 *constants,
     const double t63 = t55 + t62;
     const double t64 = t1 * t63;
     const double t65 = t0 + t64;
-    const double t66 = sin(yaw);
+    const double t66 = t1_both.sine;
     const double t67 = t35 * t6;
     const double t68 = t2 * t51;
     const double t69 = t67 - t68;
@@ -302,18 +346,21 @@ void centrifuge_gondola_M_f64(const centrifuge_gondola_constants_f64 *constants,
     double yaw_dot, double yaw_ddot, double pitch, double pitch_dot, double pitch_ddot, double spin,
     double spin_dot, double spin_ddot, double a_x, double a_y, double M[3])
 {
-    const double t0 = cos(yaw);
-    const double t1 = cos(pitch);
-    const double t2 = sin(pitch);
+    const centrifuge_gondola_sines_f64 t0_both = centrifuge_gondola_sine_cosine_f64(yaw);
+    const double t0 = t0_both.cosine;
+    const centrifuge_gondola_sines_f64 t1_both = centrifuge_gondola_sine_cosine_f64(pitch);
+    const double t1 = t1_both.cosine;
+    const double t2 = t1_both.sine;
     const double t3 = yaw_ddot * t2;
     const double t4 = spin_ddot - t3;
     const double t5 = t1 * yaw_dot;
     const double t6 = pitch_dot * t5;
     const double t7 = t4 - t6;
     const double t8 = t7 * constants->k1;
-    const double t9 = cos(spin);
+    const centrifuge_gondola_sines_f64 t9_both = centrifuge_gondola_sine_cosine_f64(spin);
+    const double t9 = t9_both.cosine;
     const double t10 = pitch_dot * t9;
-    const double t11 = sin(spin);
+    const double t11 = t9_both.sine;
     const double t12 = t11 * t5;
     const double t13 = t10 + t12;
     const double t14 = spin_dot * t13;
@@ -337,7 +384,7 @@ void centrifuge_gondola_M_f64(const centrifuge_gondola_constants_f64 *constants,
     const double t32 = t13 * t31;
     const double t33 = t24 - t32;
     const double t34 = t0 * a_y;
-    const double t35 = sin(yaw);
+    const double t35 = t0_both.sine;
     const double t36 = a_x * t35;
     const double t37 = t34 - t36;
     const double t38 = t9 * t37;

@@ -23,7 +23,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 ef4319a4b722cfa4.
+ * Body of these files: sha256 f136c905b75f467d.
  */
 #ifndef CENTRIFUGE_GONDOLA_F64_H
 #define CENTRIFUGE_GONDOLA_F64_H
@@ -84,10 +84,10 @@ int centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.64, largest 18 u of the largest product or sum in the equation (of F; 200000
+ * Error: median 0.64, largest 20 u of the largest product or sum in the equation (of F; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8342 hard samples no more.
  * Cost: 11 add, 16 sub, 48 mul, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 39961 to 48486 instructions, 1208 B of code, 376 B of stack.
+ * On Cortex-M0+, -O2: 46893 to 51953 instructions, 2120 B of code, 360 B of stack.
  * Rests on: axes_are_orthonormal, composed_turns, constant_mass, further_axes_are_right_handed,
  *            newton, rate_seen_from_N, third_law.
  */
@@ -112,10 +112,11 @@ void centrifuge_gondola_F_f64(const centrifuge_gondola_constants_f64 *constants,
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega) + rho_G x (m a_A)   [lecture
  *            step moving_point_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Error: median 0.96, largest 18 u of the largest product or sum in the equation (of M; 200000
- *            samples of the ranges, 65536 searched from the worst); at 8342 hard samples no more.
+ * Error: median 0.97, largest 17 u of the largest product or sum in the equation (of M; 200000
+ *            samples of the ranges, 65536 searched from the worst); at 8342 hard samples 18 u (of
+ *            M, thin rod).
  * Cost: 15 add, 18 sub, 56 mul, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 43442 to 53973 instructions, 1452 B of code, 408 B of stack.
+ * On Cortex-M0+, -O2: 50213 to 55244 instructions, 2340 B of code, 392 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N, rigid,
  *            strong_third_law, third_law.

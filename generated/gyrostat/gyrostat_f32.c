@@ -330,23 +330,67 @@ int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_x
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 804; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    float sine;
+    float cosine;
+} gyrostat_sines_f32;
+
+static gyrostat_sines_f32 gyrostat_sine_cosine_f32(float angle)
+{
+    gyrostat_sines_f32 found;
+    if (fabsf(angle) <= 804.0F) {
+        const float k = ((angle * 0.636619747F) + 12582912.0F) - 12582912.0F;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const float r0 = angle - (k * 1.57067871F);
+        const float off1 = k * 0.000117614865F;
+        const float r1 = r0 - off1;
+        const float low1 = (r0 - r1) - off1;
+        const float off2 = k * 9.92088189e-10F;
+        const float r2 = r1 - off2;
+        const float low2 = low1 + ((r1 - r2) - off2);
+        const float off = (k * 5.39030253e-15F) - low2;
+        const float r = r2 - off;
+        const float low = (r2 - r) - off;
+        const float z = r * r;
+        const float cube = z * r;
+        const float odd = 0.00833218917F + (z * (-0.000195182845F));
+        const float even = 0.0416666456F + (z * ((-0.00138873095F) + (z * 2.44323273e-05F)));
+        const float half = 0.5F * z;
+        const float one_less = 1.0F - half;
+        const float sine = r - (((z * ((0.5F * low) - (cube * odd))) - low) - (cube * (-0.166666552F)));
+        const float cosine = one_less + (((1.0F - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const float first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const float second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sinf(angle);
+        found.cosine = cosf(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float theta, float phi,
     const float omega[3], const float wheel_speeds[3], const float moment[3],
     const float wheel_torques[3], float coordinate_rates[3], float omega_dot[3],
     float wheel_accelerations[3])
 {
-    const float t0 = sinf(phi);
+    const gyrostat_sines_f32 t0_both = gyrostat_sine_cosine_f32(phi);
+    const float t0 = t0_both.sine;
     const float t1 = omega[1] * t0;
-    const float t2 = cosf(phi);
+    const float t2 = t0_both.cosine;
     const float t3 = omega[2] * t2;
     const float t4 = t1 + t3;
-    const float t5 = cosf(theta);
+    const gyrostat_sines_f32 t5_both = gyrostat_sine_cosine_f32(theta);
+    const float t5 = t5_both.cosine;
     const float t6 = t4 / t5;
     const float t7 = omega[1] * t2;
     const float t8 = t0 * omega[2];
     const float t9 = t7 - t8;
-    const float t10 = sinf(theta);
+    const float t10 = t5_both.sine;
     const float t11 = t6 * t10;
     const float t12 = omega[0] + t11;
     const float t13 = omega[0] * constants->I_xz;
@@ -421,18 +465,20 @@ void gyrostat_state_rate_jacobian_f32(const gyrostat_constants_f32 *constants, f
     const float wheel_torques[3], float coordinate_rates[3], float omega_dot[3],
     float wheel_accelerations[3], float jacobian[84])
 {
-    const float t0 = cosf(theta);
+    const gyrostat_sines_f32 t0_both = gyrostat_sine_cosine_f32(theta);
+    const float t0 = t0_both.cosine;
     const float t1 = 1.0F / t0;
-    const float t2 = sinf(phi);
+    const gyrostat_sines_f32 t2_both = gyrostat_sine_cosine_f32(phi);
+    const float t2 = t2_both.sine;
     const float t3 = omega[1] * t2;
-    const float t4 = cosf(phi);
+    const float t4 = t2_both.cosine;
     const float t5 = omega[2] * t4;
     const float t6 = t3 + t5;
     const float t7 = t6 * t1;
     const float t8 = omega[1] * t4;
     const float t9 = t2 * omega[2];
     const float t10 = t8 - t9;
-    const float t11 = sinf(theta);
+    const float t11 = t0_both.sine;
     const float t12 = t1 * t11;
     const float t13 = t6 * t12;
     const float t14 = omega[0] + t13;

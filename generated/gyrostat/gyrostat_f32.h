@@ -29,7 +29,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 375539a1554c7cd9.
+ * Body of these files: sha256 f599d01fc8c0e54c.
  */
 #ifndef GYROSTAT_F32_H
 #define GYROSTAT_F32_H
@@ -137,8 +137,8 @@ int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_x
  *            more.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot infinite, no number or beyond all measure.
  * Cost: 15 add, 14 sub, 34 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 13138 to 17022 instructions, 752 B of code, 200 B of stack.
- * On Cortex-M4F, -O2: 250 to 515 instructions, 496 B of code, 80 B of stack.
+ * On Cortex-M0+, -O2: 13758 to 15339 instructions, 1288 B of code, 176 B of stack.
+ * On Cortex-M4F, -O2: 296 to 298 instructions, 892 B of code, 76 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -169,8 +169,8 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 33 add, 37 sub, 96 mul, 1 div, 20 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 24093 to 28124 instructions, 2488 B of code, 288 B of stack.
- * On Cortex-M4F, -O2: 543 to 808 instructions, 1628 B of code, 184 B of stack.
+ * On Cortex-M0+, -O2: 24746 to 26429 instructions, 3052 B of code, 272 B of stack.
+ * On Cortex-M4F, -O2: 588 to 590 instructions, 2028 B of code, 180 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -181,8 +181,8 @@ void gyrostat_state_rate_jacobian_f32(const gyrostat_constants_f32 *constants, f
     float wheel_accelerations[3], float jacobian[84]);
 
 /* The same, the whole matrix: 135 entries.
- * On Cortex-M0+, -O2: 24970 to 29003 instructions, 2568 B of code, 84 B of tables, 680 B of stack.
- * On Cortex-M4F, -O2: 1341 to 1606 instructions, 1704 B of code, 84 B of tables, 560 B of stack.
+ * On Cortex-M0+, -O2: 25617 to 27380 instructions, 3132 B of code, 84 B of tables, 656 B of stack.
+ * On Cortex-M4F, -O2: 1386 to 1388 instructions, 2104 B of code, 84 B of tables, 556 B of stack.
  */
 void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *constants, float theta,
     float phi, const float omega[3], const float wheel_speeds[3], const float moment[3],

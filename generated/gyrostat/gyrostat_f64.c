@@ -330,23 +330,66 @@ int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doubl
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 25735; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    double sine;
+    double cosine;
+} gyrostat_sines_f64;
+
+static gyrostat_sines_f64 gyrostat_sine_cosine_f64(double angle)
+{
+    gyrostat_sines_f64 found;
+    if (fabs(angle) <= 25735.0) {
+        const double k = ((angle * 0.6366197723675814) + 6755399441055744.0) - 6755399441055744.0;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const double r0 = angle - (k * 1.5707963267923333);
+        const double off1 = k * 2.5633441515839558e-12;
+        const double r1 = r0 - off1;
+        const double low1 = (r0 - r1) - off1;
+        const double off = (k * 1.0562999066987426e-23) - low1;
+        const double r = r1 - off;
+        const double low = (r1 - r) - off;
+        const double z = r * r;
+        const double cube = z * r;
+        const double odd = 0.00833333333332184 + (z * ((-0.00019841269829358528) + (z * (2.7557313538514204e-06 + (z *
+            ((-2.5050734389242796e-08) + (z * 1.5895433287554087e-10)))))));
+        const double even = 0.041666666666666595 + (z * ((-0.0013888888888873338) + (z * (2.480158728899748e-05 + (z *
+            ((-2.755731421529914e-07) + (z * (2.0875705115002216e-09 + (z * (-1.1358732776766006e-11))))))))));
+        const double half = 0.5 * z;
+        const double one_less = 1.0 - half;
+        const double sine = r - (((z * ((0.5 * low) - (cube * odd))) - low) - (cube * (-0.1666666666666663)));
+        const double cosine = one_less + (((1.0 - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const double first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const double second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sin(angle);
+        found.cosine = cos(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void gyrostat_state_rate_f64(const gyrostat_constants_f64 *constants, double theta, double phi,
     const double omega[3], const double wheel_speeds[3], const double moment[3],
     const double wheel_torques[3], double coordinate_rates[3], double omega_dot[3],
     double wheel_accelerations[3])
 {
-    const double t0 = sin(phi);
+    const gyrostat_sines_f64 t0_both = gyrostat_sine_cosine_f64(phi);
+    const double t0 = t0_both.sine;
     const double t1 = omega[1] * t0;
-    const double t2 = cos(phi);
+    const double t2 = t0_both.cosine;
     const double t3 = omega[2] * t2;
     const double t4 = t1 + t3;
-    const double t5 = cos(theta);
+    const gyrostat_sines_f64 t5_both = gyrostat_sine_cosine_f64(theta);
+    const double t5 = t5_both.cosine;
     const double t6 = t4 / t5;
     const double t7 = omega[1] * t2;
     const double t8 = t0 * omega[2];
     const double t9 = t7 - t8;
-    const double t10 = sin(theta);
+    const double t10 = t5_both.sine;
     const double t11 = t6 * t10;
     const double t12 = omega[0] + t11;
     const double t13 = omega[0] * constants->I_xz;
@@ -421,18 +464,20 @@ void gyrostat_state_rate_jacobian_f64(const gyrostat_constants_f64 *constants, d
     const double wheel_torques[3], double coordinate_rates[3], double omega_dot[3],
     double wheel_accelerations[3], double jacobian[84])
 {
-    const double t0 = cos(theta);
+    const gyrostat_sines_f64 t0_both = gyrostat_sine_cosine_f64(theta);
+    const double t0 = t0_both.cosine;
     const double t1 = 1.0 / t0;
-    const double t2 = sin(phi);
+    const gyrostat_sines_f64 t2_both = gyrostat_sine_cosine_f64(phi);
+    const double t2 = t2_both.sine;
     const double t3 = omega[1] * t2;
-    const double t4 = cos(phi);
+    const double t4 = t2_both.cosine;
     const double t5 = omega[2] * t4;
     const double t6 = t3 + t5;
     const double t7 = t6 * t1;
     const double t8 = omega[1] * t4;
     const double t9 = t2 * omega[2];
     const double t10 = t8 - t9;
-    const double t11 = sin(theta);
+    const double t11 = t0_both.sine;
     const double t12 = t1 * t11;
     const double t13 = t6 * t12;
     const double t14 = omega[0] + t13;

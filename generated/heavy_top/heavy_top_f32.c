@@ -140,13 +140,56 @@ int heavy_top_setup_f32(float A, float C, float m, float g, float l,
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 804; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    float sine;
+    float cosine;
+} heavy_top_sines_f32;
+
+static heavy_top_sines_f32 heavy_top_sine_cosine_f32(float angle)
+{
+    heavy_top_sines_f32 found;
+    if (fabsf(angle) <= 804.0F) {
+        const float k = ((angle * 0.636619747F) + 12582912.0F) - 12582912.0F;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const float r0 = angle - (k * 1.57067871F);
+        const float off1 = k * 0.000117614865F;
+        const float r1 = r0 - off1;
+        const float low1 = (r0 - r1) - off1;
+        const float off2 = k * 9.92088189e-10F;
+        const float r2 = r1 - off2;
+        const float low2 = low1 + ((r1 - r2) - off2);
+        const float off = (k * 5.39030253e-15F) - low2;
+        const float r = r2 - off;
+        const float low = (r2 - r) - off;
+        const float z = r * r;
+        const float cube = z * r;
+        const float odd = 0.00833218917F + (z * (-0.000195182845F));
+        const float even = 0.0416666456F + (z * ((-0.00138873095F) + (z * 2.44323273e-05F)));
+        const float half = 0.5F * z;
+        const float one_less = 1.0F - half;
+        const float sine = r - (((z * ((0.5F * low) - (cube * odd))) - low) - (cube * (-0.166666552F)));
+        const float cosine = one_less + (((1.0F - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const float first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const float second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sinf(angle);
+        found.cosine = cosf(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3])
 {
-    const float t0 = sinf(theta);
+    const heavy_top_sines_f32 t0_both = heavy_top_sine_cosine_f32(theta);
+    const float t0 = t0_both.sine;
     const float t1 = omega[1] / t0;
-    const float t2 = cosf(theta);
+    const float t2 = t0_both.cosine;
     const float t3 = t1 * t2;
     const float t4 = omega[2] - t3;
     const float t5 = t0 * constants->m_g_l_over_A;
@@ -168,10 +211,11 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
 void heavy_top_state_rate_jacobian_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[13])
 {
-    const float t0 = sinf(theta);
+    const heavy_top_sines_f32 t0_both = heavy_top_sine_cosine_f32(theta);
+    const float t0 = t0_both.sine;
     const float t1 = 1.0F / t0;
     const float t2 = omega[1] * t1;
-    const float t3 = cosf(theta);
+    const float t3 = t0_both.cosine;
     const float t4 = t1 * t3;
     const float t5 = omega[1] * t4;
     const float t6 = omega[2] - t5;

@@ -21,7 +21,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 99be3b03273dd1db.
+ * Body of these files: sha256 a400ab785208221b.
  */
 #ifndef HEAVY_TOP_F32_H
 #define HEAVY_TOP_F32_H
@@ -78,8 +78,8 @@ int heavy_top_setup_f32(float A, float C, float m, float g, float l,
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y infinite, no number or
  *            beyond all measure.
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 4434 to 6945 instructions, 172 B of code, 160 B of stack.
- * On Cortex-M4F, -O2: 96 to 237 instructions, 120 B of code, 72 B of stack.
+ * On Cortex-M0+, -O2: 4769 to 5615 instructions, 708 B of code, 136 B of stack.
+ * On Cortex-M4F, -O2: 117 to 118 instructions, 524 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -102,8 +102,8 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y, jacobian infinite, no
  *            number or beyond all measure.
  * Cost: 1 add, 5 sub, 15 mul, 1 div, 4 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 5884 to 8408 instructions, 352 B of code, 176 B of stack.
- * On Cortex-M4F, -O2: 125 to 266 instructions, 236 B of code, 72 B of stack.
+ * On Cortex-M0+, -O2: 6218 to 7079 instructions, 896 B of code, 152 B of stack.
+ * On Cortex-M4F, -O2: 146 to 147 instructions, 640 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -112,8 +112,8 @@ void heavy_top_state_rate_jacobian_f32(const heavy_top_constants_f32 *constants,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[13]);
 
 /* The same, the whole matrix: 36 entries.
- * On Cortex-M0+, -O2: 6095 to 8610 instructions, 408 B of code, 13 B of tables, 264 B of stack.
- * On Cortex-M4F, -O2: 311 to 452 instructions, 296 B of code, 13 B of tables, 152 B of stack.
+ * On Cortex-M0+, -O2: 6417 to 7289 instructions, 952 B of code, 13 B of tables, 232 B of stack.
+ * On Cortex-M4F, -O2: 332 to 333 instructions, 700 B of code, 13 B of tables, 124 B of stack.
  */
 void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[36]);

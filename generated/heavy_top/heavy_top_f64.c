@@ -140,13 +140,55 @@ int heavy_top_setup_f64(double A, double C, double m, double g, double l,
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 25735; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    double sine;
+    double cosine;
+} heavy_top_sines_f64;
+
+static heavy_top_sines_f64 heavy_top_sine_cosine_f64(double angle)
+{
+    heavy_top_sines_f64 found;
+    if (fabs(angle) <= 25735.0) {
+        const double k = ((angle * 0.6366197723675814) + 6755399441055744.0) - 6755399441055744.0;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const double r0 = angle - (k * 1.5707963267923333);
+        const double off1 = k * 2.5633441515839558e-12;
+        const double r1 = r0 - off1;
+        const double low1 = (r0 - r1) - off1;
+        const double off = (k * 1.0562999066987426e-23) - low1;
+        const double r = r1 - off;
+        const double low = (r1 - r) - off;
+        const double z = r * r;
+        const double cube = z * r;
+        const double odd = 0.00833333333332184 + (z * ((-0.00019841269829358528) + (z * (2.7557313538514204e-06 + (z *
+            ((-2.5050734389242796e-08) + (z * 1.5895433287554087e-10)))))));
+        const double even = 0.041666666666666595 + (z * ((-0.0013888888888873338) + (z * (2.480158728899748e-05 + (z *
+            ((-2.755731421529914e-07) + (z * (2.0875705115002216e-09 + (z * (-1.1358732776766006e-11))))))))));
+        const double half = 0.5 * z;
+        const double one_less = 1.0 - half;
+        const double sine = r - (((z * ((0.5 * low) - (cube * odd))) - low) - (cube * (-0.1666666666666663)));
+        const double cosine = one_less + (((1.0 - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const double first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const double second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sin(angle);
+        found.cosine = cos(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double theta,
     const double omega[3], double coordinate_rates[3], double omega_dot[3])
 {
-    const double t0 = sin(theta);
+    const heavy_top_sines_f64 t0_both = heavy_top_sine_cosine_f64(theta);
+    const double t0 = t0_both.sine;
     const double t1 = omega[1] / t0;
-    const double t2 = cos(theta);
+    const double t2 = t0_both.cosine;
     const double t3 = t1 * t2;
     const double t4 = omega[2] - t3;
     const double t5 = t0 * constants->m_g_l_over_A;
@@ -168,10 +210,11 @@ void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double t
 void heavy_top_state_rate_jacobian_f64(const heavy_top_constants_f64 *constants, double theta,
     const double omega[3], double coordinate_rates[3], double omega_dot[3], double jacobian[13])
 {
-    const double t0 = sin(theta);
+    const heavy_top_sines_f64 t0_both = heavy_top_sine_cosine_f64(theta);
+    const double t0 = t0_both.sine;
     const double t1 = 1.0 / t0;
     const double t2 = omega[1] * t1;
-    const double t3 = cos(theta);
+    const double t3 = t0_both.cosine;
     const double t4 = t1 * t3;
     const double t5 = omega[1] * t4;
     const double t6 = omega[2] - t5;

@@ -262,21 +262,65 @@ int rattleback_setup_f32(float m, float a, float b, float c, float h, float A, f
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 804; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    float sine;
+    float cosine;
+} rattleback_sines_f32;
+
+static rattleback_sines_f32 rattleback_sine_cosine_f32(float angle)
+{
+    rattleback_sines_f32 found;
+    if (fabsf(angle) <= 804.0F) {
+        const float k = ((angle * 0.636619747F) + 12582912.0F) - 12582912.0F;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const float r0 = angle - (k * 1.57067871F);
+        const float off1 = k * 0.000117614865F;
+        const float r1 = r0 - off1;
+        const float low1 = (r0 - r1) - off1;
+        const float off2 = k * 9.92088189e-10F;
+        const float r2 = r1 - off2;
+        const float low2 = low1 + ((r1 - r2) - off2);
+        const float off = (k * 5.39030253e-15F) - low2;
+        const float r = r2 - off;
+        const float low = (r2 - r) - off;
+        const float z = r * r;
+        const float cube = z * r;
+        const float odd = 0.00833218917F + (z * (-0.000195182845F));
+        const float even = 0.0416666456F + (z * ((-0.00138873095F) + (z * 2.44323273e-05F)));
+        const float half = 0.5F * z;
+        const float one_less = 1.0F - half;
+        const float sine = r - (((z * ((0.5F * low) - (cube * odd))) - low) - (cube * (-0.166666552F)));
+        const float cosine = one_less + (((1.0F - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const float first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const float second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sinf(angle);
+        found.cosine = cosf(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void rattleback_state_rate_f32(const rattleback_constants_f32 *constants, float alpha,
     float alpha_dot, float beta, float beta_dot, float W, float *alpha_rate, float *alpha_dot_rate,
     float *beta_rate, float *beta_dot_rate, float *W_rate)
 {
-    const float t0 = sinf(alpha);
+    const rattleback_sines_f32 t0_both = rattleback_sine_cosine_f32(alpha);
+    const float t0 = t0_both.sine;
     const float t1 = t0 * constants->b_b;
     const float t2 = t0 * t1;
-    const float t3 = cosf(alpha);
-    const float t4 = sinf(beta);
+    const float t3 = t0_both.cosine;
+    const rattleback_sines_f32 t4_both = rattleback_sine_cosine_f32(beta);
+    const float t4 = t4_both.sine;
     const float t5 = t3 * t4;
     const float t6 = t5 * constants->a_a;
     const float t7 = t5 * t6;
     const float t8 = t2 + t7;
-    const float t9 = cosf(beta);
+    const float t9 = t4_both.cosine;
     const float t10 = t9 * t3;
     const float t11 = t10 * constants->c_c;
     const float t12 = t10 * t11;
@@ -629,16 +673,18 @@ void rattleback_linearised_f32(const rattleback_constants_f32 *constants, float 
 void rattleback_energy_of_all_f32(const rattleback_constants_f32 *constants, float alpha,
     float alpha_dot, float beta, float beta_dot, float W, float *energy_of_all)
 {
-    const float t0 = sinf(alpha);
+    const rattleback_sines_f32 t0_both = rattleback_sine_cosine_f32(alpha);
+    const float t0 = t0_both.sine;
     const float t1 = t0 * constants->b_b;
     const float t2 = t0 * t1;
-    const float t3 = sinf(beta);
-    const float t4 = cosf(alpha);
+    const rattleback_sines_f32 t3_both = rattleback_sine_cosine_f32(beta);
+    const float t3 = t3_both.sine;
+    const float t4 = t0_both.cosine;
     const float t5 = t3 * t4;
     const float t6 = t5 * constants->a_a;
     const float t7 = t5 * t6;
     const float t8 = t2 + t7;
-    const float t9 = cosf(beta);
+    const float t9 = t3_both.cosine;
     const float t10 = t9 * t4;
     const float t11 = t10 * constants->c_c;
     const float t12 = t10 * t11;
@@ -704,8 +750,9 @@ void rattleback_step_rk4_f32(const rattleback_constants_f32 *constants, float al
     const float t249 = constants->C * t0;
     const float t248 = alpha_dot * t0;
     const float t333 = alpha + t248;
-    const float t338 = sinf(t333);
-    const float t341 = cosf(t333);
+    const rattleback_sines_f32 t338_both = rattleback_sine_cosine_f32(t333);
+    const float t338 = t338_both.sine;
+    const float t341 = t338_both.cosine;
     const float t455 = t341 * constants->b_b;
     const float t339 = t338 * constants->b_b;
     const float t340 = t338 * t339;
@@ -722,8 +769,9 @@ void rattleback_step_rk4_f32(const rattleback_constants_f32 *constants, float al
     const float t291 = constants->a_a * t0;
     const float t320 = beta_dot * t0;
     const float t335 = beta + t320;
-    const float t342 = sinf(t335);
-    const float t347 = cosf(t335);
+    const rattleback_sines_f32 t342_both = rattleback_sine_cosine_f32(t335);
+    const float t342 = t342_both.sine;
+    const float t347 = t342_both.cosine;
     const float t348 = t347 * t341;
     const float t349 = t348 * constants->c_c;
     const float t350 = t348 * t349;
@@ -877,7 +925,8 @@ void rattleback_step_rk4_f32(const rattleback_constants_f32 *constants, float al
     const float t466 = t463 * t465;
     const float t507 = t349 * t466;
     const float t508 = t506 + t507;
-    const float t1 = sinf(alpha);
+    const rattleback_sines_f32 t1_both = rattleback_sine_cosine_f32(alpha);
+    const float t1 = t1_both.sine;
     const float t2 = t1 * constants->b_b;
     const float t3 = t1 * t2;
     const float t63 = t1 * constants->B;
@@ -888,10 +937,11 @@ void rattleback_step_rk4_f32(const rattleback_constants_f32 *constants, float al
     const float t282 = t104 * t255;
     const float t117 = t1 * constants->m_g;
     const float t272 = t1 * t271;
-    const float t4 = cosf(alpha);
+    const float t4 = t1_both.cosine;
     const float t118 = t4 * constants->b_b;
     const float t121 = t4 * t2;
-    const float t5 = sinf(beta);
+    const rattleback_sines_f32 t5_both = rattleback_sine_cosine_f32(beta);
+    const float t5 = t5_both.sine;
     const float t6 = t4 * t5;
     const float t7 = t6 * constants->a_a;
     const float t8 = t6 * t7;
@@ -909,7 +959,7 @@ void rattleback_step_rk4_f32(const rattleback_constants_f32 *constants, float al
     const float t109 = t1 * t5;
     const float t122 = t7 * t109;
     const float t123 = t121 - t122;
-    const float t10 = cosf(beta);
+    const float t10 = t5_both.cosine;
     const float t11 = t10 * t4;
     const float t12 = t11 * constants->c_c;
     const float t13 = t11 * t12;
@@ -1202,8 +1252,9 @@ void rattleback_step_rk4_f32(const rattleback_constants_f32 *constants, float al
     const float t336 = beta_dot - t326;
     const float t649 = t336 * t0;
     const float t664 = beta + t649;
-    const float t671 = sinf(t664);
-    const float t676 = cosf(t664);
+    const rattleback_sines_f32 t671_both = rattleback_sine_cosine_f32(t664);
+    const float t671 = t671_both.sine;
+    const float t676 = t671_both.cosine;
     const float t701 = t676 * constants->A;
     const float t754 = t676 * constants->D;
     const float t720 = t671 * constants->C;
@@ -1297,8 +1348,9 @@ void rattleback_step_rk4_f32(const rattleback_constants_f32 *constants, float al
     const float t564 = t444 * t496;
     const float t585 = t334 * t0;
     const float t662 = alpha + t585;
-    const float t667 = sinf(t662);
-    const float t670 = cosf(t662);
+    const rattleback_sines_f32 t667_both = rattleback_sine_cosine_f32(t662);
+    const float t667 = t667_both.sine;
+    const float t670 = t667_both.cosine;
     const float t672 = t670 * t671;
     const float t673 = t672 * constants->a_a;
     const float t674 = t672 * t673;
@@ -1535,8 +1587,9 @@ void rattleback_step_rk4_f32(const rattleback_constants_f32 *constants, float al
     const float t1337 = t320 + t1336;
     const float t993 = t978 * 2.0F;
     const float t998 = beta + t993;
-    const float t1005 = sinf(t998);
-    const float t1010 = cosf(t998);
+    const rattleback_sines_f32 t1005_both = rattleback_sine_cosine_f32(t998);
+    const float t1005 = t1005_both.sine;
+    const float t1010 = t1005_both.cosine;
     const float t1035 = t1010 * constants->A;
     const float t1088 = t1010 * constants->D;
     const float t1054 = t1005 * constants->C;
@@ -1634,9 +1687,10 @@ void rattleback_step_rk4_f32(const rattleback_constants_f32 *constants, float al
     const float t1327 = t248 + t1326;
     const float t991 = t914 * 2.0F;
     const float t996 = alpha + t991;
-    const float t1001 = sinf(t996);
+    const rattleback_sines_f32 t1001_both = rattleback_sine_cosine_f32(t996);
+    const float t1001 = t1001_both.sine;
     const float t1265 = t1001 * t271;
-    const float t1004 = cosf(t996);
+    const float t1004 = t1001_both.cosine;
     const float t1006 = t1004 * t1005;
     const float t1284 = t1006 * t291;
     const float t1007 = t1006 * constants->a_a;

@@ -33,7 +33,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 99bad5f0ccb438c3.
+ * Body of these files: sha256 3bd6200fd298ab8d.
  */
 #ifndef RATTLEBACK_F32_H
 #define RATTLEBACK_F32_H
@@ -112,13 +112,13 @@ int rattleback_setup_f32(float m, float a, float b, float c, float h, float A, f
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
- * Error: median 1.5, largest 24 u of the largest product or sum in the equation (of W_rate; 200000
+ * Error: median 1.5, largest 22 u of the largest product or sum in the equation (of W_rate; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8336 hard samples no more.
  * Singular: at alpha = pi/2 + k pi, beta_dot_rate, W_rate infinite, no number or beyond all
  *            measure.
  * Cost: 54 add, 52 sub, 201 mul, 3 div, 3 neg, 1 sqrt, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 39995 to 40541 instructions, 3020 B of code, 304 B of stack.
- * On Cortex-M4F, -O2: 534 instructions, 1660 B of code, 160 B of stack.
+ * On Cortex-M0+, -O2: 40771 to 41349 instructions, 3560 B of code, 320 B of stack.
+ * On Cortex-M4F, -O2: 579 instructions, 2056 B of code, 188 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -177,8 +177,8 @@ void rattleback_linearised_f32(const rattleback_constants_f32 *constants, float 
  *            energy_of_all; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
  * Cost: 12 add, 5 sub, 39 mul, 1 div, 1 sqrt, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 13028 to 13274 instructions, 592 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 220 instructions, 384 B of code, 64 B of stack.
+ * On Cortex-M0+, -O2: 13781 to 14014 instructions, 1128 B of code, 160 B of stack.
+ * On Cortex-M4F, -O2: 266 instructions, 804 B of code, 92 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, rigid.
  */
@@ -205,15 +205,15 @@ void rattleback_energy_of_all_f32(const rattleback_constants_f32 *constants, flo
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
- * Error: median 0.38, largest 7.9 u of the largest component, before or after, or of the largest
- *            product of what the step adds, by rounding alone (of alpha_dot_next; 200000 samples
- *            of the ranges, 65536 searched from the worst); at 8264 hard samples 6.8e+02 u (of
+ * Error: median 0.38, largest 8.7 u of the largest component, before or after, or of the largest
+ *            product of what the step adds, by rounding alone (of beta_dot_next; 200000 samples of
+ *            the ranges, 65536 searched from the worst); at 8264 hard samples 3.2e+03 u (of
  *            W_next, thin rod).
  * Singular: at alpha = pi/2 + k pi, alpha_dot_next, beta_next, beta_dot_next, W_next infinite, no
  *            number or beyond all measure.
  * Cost: 239 add, 224 sub, 860 mul, 12 div, 4 sqrt, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 168703 to 170751 instructions, 12556 B of code, 576 B of stack.
- * On Cortex-M4F, -O2: 2403 instructions, 7876 B of code, 400 B of stack.
+ * On Cortex-M0+, -O2: 172007 to 173915 instructions, 13104 B of code, 624 B of stack.
+ * On Cortex-M4F, -O2: 2582 instructions, 8232 B of code, 476 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

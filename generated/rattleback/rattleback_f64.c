@@ -257,21 +257,64 @@ int rattleback_setup_f64(double m, double a, double b, double c, double h, doubl
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 25735; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    double sine;
+    double cosine;
+} rattleback_sines_f64;
+
+static rattleback_sines_f64 rattleback_sine_cosine_f64(double angle)
+{
+    rattleback_sines_f64 found;
+    if (fabs(angle) <= 25735.0) {
+        const double k = ((angle * 0.6366197723675814) + 6755399441055744.0) - 6755399441055744.0;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const double r0 = angle - (k * 1.5707963267923333);
+        const double off1 = k * 2.5633441515839558e-12;
+        const double r1 = r0 - off1;
+        const double low1 = (r0 - r1) - off1;
+        const double off = (k * 1.0562999066987426e-23) - low1;
+        const double r = r1 - off;
+        const double low = (r1 - r) - off;
+        const double z = r * r;
+        const double cube = z * r;
+        const double odd = 0.00833333333332184 + (z * ((-0.00019841269829358528) + (z * (2.7557313538514204e-06 + (z *
+            ((-2.5050734389242796e-08) + (z * 1.5895433287554087e-10)))))));
+        const double even = 0.041666666666666595 + (z * ((-0.0013888888888873338) + (z * (2.480158728899748e-05 + (z *
+            ((-2.755731421529914e-07) + (z * (2.0875705115002216e-09 + (z * (-1.1358732776766006e-11))))))))));
+        const double half = 0.5 * z;
+        const double one_less = 1.0 - half;
+        const double sine = r - (((z * ((0.5 * low) - (cube * odd))) - low) - (cube * (-0.1666666666666663)));
+        const double cosine = one_less + (((1.0 - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const double first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const double second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sin(angle);
+        found.cosine = cos(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void rattleback_state_rate_f64(const rattleback_constants_f64 *constants, double alpha,
     double alpha_dot, double beta, double beta_dot, double W, double *alpha_rate,
     double *alpha_dot_rate, double *beta_rate, double *beta_dot_rate, double *W_rate)
 {
-    const double t0 = sin(alpha);
+    const rattleback_sines_f64 t0_both = rattleback_sine_cosine_f64(alpha);
+    const double t0 = t0_both.sine;
     const double t1 = t0 * constants->b_b;
     const double t2 = t0 * t1;
-    const double t3 = cos(alpha);
-    const double t4 = sin(beta);
+    const double t3 = t0_both.cosine;
+    const rattleback_sines_f64 t4_both = rattleback_sine_cosine_f64(beta);
+    const double t4 = t4_both.sine;
     const double t5 = t3 * t4;
     const double t6 = t5 * constants->a_a;
     const double t7 = t5 * t6;
     const double t8 = t2 + t7;
-    const double t9 = cos(beta);
+    const double t9 = t4_both.cosine;
     const double t10 = t9 * t3;
     const double t11 = t10 * constants->c_c;
     const double t12 = t10 * t11;
@@ -624,16 +667,18 @@ void rattleback_linearised_f64(const rattleback_constants_f64 *constants, double
 void rattleback_energy_of_all_f64(const rattleback_constants_f64 *constants, double alpha,
     double alpha_dot, double beta, double beta_dot, double W, double *energy_of_all)
 {
-    const double t0 = sin(alpha);
+    const rattleback_sines_f64 t0_both = rattleback_sine_cosine_f64(alpha);
+    const double t0 = t0_both.sine;
     const double t1 = t0 * constants->b_b;
     const double t2 = t0 * t1;
-    const double t3 = sin(beta);
-    const double t4 = cos(alpha);
+    const rattleback_sines_f64 t3_both = rattleback_sine_cosine_f64(beta);
+    const double t3 = t3_both.sine;
+    const double t4 = t0_both.cosine;
     const double t5 = t3 * t4;
     const double t6 = t5 * constants->a_a;
     const double t7 = t5 * t6;
     const double t8 = t2 + t7;
-    const double t9 = cos(beta);
+    const double t9 = t3_both.cosine;
     const double t10 = t9 * t4;
     const double t11 = t10 * constants->c_c;
     const double t12 = t10 * t11;
@@ -699,8 +744,9 @@ void rattleback_step_rk4_f64(const rattleback_constants_f64 *constants, double a
     const double t249 = constants->C * t0;
     const double t248 = alpha_dot * t0;
     const double t333 = alpha + t248;
-    const double t338 = sin(t333);
-    const double t341 = cos(t333);
+    const rattleback_sines_f64 t338_both = rattleback_sine_cosine_f64(t333);
+    const double t338 = t338_both.sine;
+    const double t341 = t338_both.cosine;
     const double t455 = t341 * constants->b_b;
     const double t339 = t338 * constants->b_b;
     const double t340 = t338 * t339;
@@ -717,8 +763,9 @@ void rattleback_step_rk4_f64(const rattleback_constants_f64 *constants, double a
     const double t291 = constants->a_a * t0;
     const double t320 = beta_dot * t0;
     const double t335 = beta + t320;
-    const double t342 = sin(t335);
-    const double t347 = cos(t335);
+    const rattleback_sines_f64 t342_both = rattleback_sine_cosine_f64(t335);
+    const double t342 = t342_both.sine;
+    const double t347 = t342_both.cosine;
     const double t348 = t347 * t341;
     const double t349 = t348 * constants->c_c;
     const double t350 = t348 * t349;
@@ -872,7 +919,8 @@ void rattleback_step_rk4_f64(const rattleback_constants_f64 *constants, double a
     const double t466 = t463 * t465;
     const double t507 = t349 * t466;
     const double t508 = t506 + t507;
-    const double t1 = sin(alpha);
+    const rattleback_sines_f64 t1_both = rattleback_sine_cosine_f64(alpha);
+    const double t1 = t1_both.sine;
     const double t2 = t1 * constants->b_b;
     const double t3 = t1 * t2;
     const double t63 = t1 * constants->B;
@@ -883,10 +931,11 @@ void rattleback_step_rk4_f64(const rattleback_constants_f64 *constants, double a
     const double t282 = t104 * t255;
     const double t117 = t1 * constants->m_g;
     const double t272 = t1 * t271;
-    const double t4 = cos(alpha);
+    const double t4 = t1_both.cosine;
     const double t118 = t4 * constants->b_b;
     const double t121 = t4 * t2;
-    const double t5 = sin(beta);
+    const rattleback_sines_f64 t5_both = rattleback_sine_cosine_f64(beta);
+    const double t5 = t5_both.sine;
     const double t6 = t4 * t5;
     const double t7 = t6 * constants->a_a;
     const double t8 = t6 * t7;
@@ -904,7 +953,7 @@ void rattleback_step_rk4_f64(const rattleback_constants_f64 *constants, double a
     const double t109 = t1 * t5;
     const double t122 = t7 * t109;
     const double t123 = t121 - t122;
-    const double t10 = cos(beta);
+    const double t10 = t5_both.cosine;
     const double t11 = t10 * t4;
     const double t12 = t11 * constants->c_c;
     const double t13 = t11 * t12;
@@ -1197,8 +1246,9 @@ void rattleback_step_rk4_f64(const rattleback_constants_f64 *constants, double a
     const double t336 = beta_dot - t326;
     const double t649 = t336 * t0;
     const double t664 = beta + t649;
-    const double t671 = sin(t664);
-    const double t676 = cos(t664);
+    const rattleback_sines_f64 t671_both = rattleback_sine_cosine_f64(t664);
+    const double t671 = t671_both.sine;
+    const double t676 = t671_both.cosine;
     const double t701 = t676 * constants->A;
     const double t754 = t676 * constants->D;
     const double t720 = t671 * constants->C;
@@ -1292,8 +1342,9 @@ void rattleback_step_rk4_f64(const rattleback_constants_f64 *constants, double a
     const double t564 = t444 * t496;
     const double t585 = t334 * t0;
     const double t662 = alpha + t585;
-    const double t667 = sin(t662);
-    const double t670 = cos(t662);
+    const rattleback_sines_f64 t667_both = rattleback_sine_cosine_f64(t662);
+    const double t667 = t667_both.sine;
+    const double t670 = t667_both.cosine;
     const double t672 = t670 * t671;
     const double t673 = t672 * constants->a_a;
     const double t674 = t672 * t673;
@@ -1530,8 +1581,9 @@ void rattleback_step_rk4_f64(const rattleback_constants_f64 *constants, double a
     const double t1337 = t320 + t1336;
     const double t993 = t978 * 2.0;
     const double t998 = beta + t993;
-    const double t1005 = sin(t998);
-    const double t1010 = cos(t998);
+    const rattleback_sines_f64 t1005_both = rattleback_sine_cosine_f64(t998);
+    const double t1005 = t1005_both.sine;
+    const double t1010 = t1005_both.cosine;
     const double t1035 = t1010 * constants->A;
     const double t1088 = t1010 * constants->D;
     const double t1054 = t1005 * constants->C;
@@ -1629,9 +1681,10 @@ void rattleback_step_rk4_f64(const rattleback_constants_f64 *constants, double a
     const double t1327 = t248 + t1326;
     const double t991 = t914 * 2.0;
     const double t996 = alpha + t991;
-    const double t1001 = sin(t996);
+    const rattleback_sines_f64 t1001_both = rattleback_sine_cosine_f64(t996);
+    const double t1001 = t1001_both.sine;
     const double t1265 = t1001 * t271;
-    const double t1004 = cos(t996);
+    const double t1004 = t1001_both.cosine;
     const double t1006 = t1004 * t1005;
     const double t1284 = t1006 * t291;
     const double t1007 = t1006 * constants->a_a;

@@ -182,24 +182,68 @@ int rolling_disc_setup_f32(float m, float r, float n, float g,
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 804; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    float sine;
+    float cosine;
+} rolling_disc_sines_f32;
+
+static rolling_disc_sines_f32 rolling_disc_sine_cosine_f32(float angle)
+{
+    rolling_disc_sines_f32 found;
+    if (fabsf(angle) <= 804.0F) {
+        const float k = ((angle * 0.636619747F) + 12582912.0F) - 12582912.0F;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const float r0 = angle - (k * 1.57067871F);
+        const float off1 = k * 0.000117614865F;
+        const float r1 = r0 - off1;
+        const float low1 = (r0 - r1) - off1;
+        const float off2 = k * 9.92088189e-10F;
+        const float r2 = r1 - off2;
+        const float low2 = low1 + ((r1 - r2) - off2);
+        const float off = (k * 5.39030253e-15F) - low2;
+        const float r = r2 - off;
+        const float low = (r2 - r) - off;
+        const float z = r * r;
+        const float cube = z * r;
+        const float odd = 0.00833218917F + (z * (-0.000195182845F));
+        const float even = 0.0416666456F + (z * ((-0.00138873095F) + (z * 2.44323273e-05F)));
+        const float half = 0.5F * z;
+        const float one_less = 1.0F - half;
+        const float sine = r - (((z * ((0.5F * low) - (cube * odd))) - low) - (cube * (-0.166666552F)));
+        const float cosine = one_less + (((1.0F - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const float first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const float second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sinf(angle);
+        found.cosine = cosf(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void rolling_disc_state_rate_f32(const rolling_disc_constants_f32 *constants, float lean,
     float lean_dot, float yaw, float W, float s, float *lean_rate, float *lean_dot_rate,
     float *yaw_rate, float *x_rate, float *y_rate, float *W_rate, float *s_rate)
 {
-    const float t0 = sinf(lean);
+    const rolling_disc_sines_f32 t0_both = rolling_disc_sine_cosine_f32(lean);
+    const float t0 = t0_both.sine;
     const float t1 = t0 * constants->k1;
     const float t2 = s * 1.20000005F;
     const float t3 = t0 * W;
     const float t4 = t2 + t3;
-    const float t5 = cosf(lean);
+    const float t5 = t0_both.cosine;
     const float t6 = W * t5;
     const float t7 = t4 * t6;
     const float t8 = t1 + t7;
-    const float t9 = cosf(yaw);
+    const rolling_disc_sines_f32 t9_both = rolling_disc_sine_cosine_f32(yaw);
+    const float t9 = t9_both.cosine;
     const float t10 = s * constants->r;
     const float t11 = t9 * t10;
-    const float t12 = sinf(yaw);
+    const float t12 = t9_both.sine;
     const float t13 = t12 * t10;
     const float t14 = lean_dot * s;
     const float t15 = t14 * 2.0F;
@@ -223,9 +267,10 @@ void rolling_disc_state_rate_jacobian_f32(const rolling_disc_constants_f32 *cons
     float lean_dot, float yaw, float W, float s, float *lean_rate, float *lean_dot_rate,
     float *yaw_rate, float *x_rate, float *y_rate, float *W_rate, float *s_rate, float jacobian[16])
 {
-    const float t0 = cosf(lean);
+    const rolling_disc_sines_f32 t0_both = rolling_disc_sine_cosine_f32(lean);
+    const float t0 = t0_both.cosine;
     const float t1 = 1.0F / t0;
-    const float t2 = sinf(lean);
+    const float t2 = t0_both.sine;
     const float t3 = t2 * constants->k1;
     const float t4 = s * 1.20000005F;
     const float t5 = t2 * W;
@@ -233,10 +278,11 @@ void rolling_disc_state_rate_jacobian_f32(const rolling_disc_constants_f32 *cons
     const float t7 = W * t0;
     const float t8 = t6 * t7;
     const float t9 = t3 + t8;
-    const float t10 = cosf(yaw);
+    const rolling_disc_sines_f32 t10_both = rolling_disc_sine_cosine_f32(yaw);
+    const float t10 = t10_both.cosine;
     const float t11 = s * constants->r;
     const float t12 = t10 * t11;
-    const float t13 = sinf(yaw);
+    const float t13 = t10_both.sine;
     const float t14 = t13 * t11;
     const float t15 = s * t1;
     const float t16 = t15 * (-2.0F);
@@ -358,8 +404,9 @@ void rolling_disc_linearised_f32(const rolling_disc_constants_f32 *constants, fl
 void rolling_disc_steady_f32(const rolling_disc_constants_f32 *constants, float lean, float W,
     float s, float *steady)
 {
-    const float t0 = sinf(lean);
-    const float t1 = cosf(lean);
+    const rolling_disc_sines_f32 t0_both = rolling_disc_sine_cosine_f32(lean);
+    const float t0 = t0_both.sine;
+    const float t1 = t0_both.cosine;
     const float t2 = W * t1;
     const float t3 = W * t2;
     const float t4 = t3 + constants->k1;
@@ -374,12 +421,13 @@ void rolling_disc_steady_f32(const rolling_disc_constants_f32 *constants, float 
 void rolling_disc_ground_f32(const rolling_disc_constants_f32 *constants, float lean,
     float lean_dot, float W, float s, float ground[3])
 {
-    const float t0 = cosf(lean);
+    const rolling_disc_sines_f32 t0_both = rolling_disc_sine_cosine_f32(lean);
+    const float t0 = t0_both.cosine;
     const float t1 = 1.0F / t0;
     const float t2 = W * t0;
     const float t3 = lean_dot * t2;
     const float t4 = t3 * constants->k6;
-    const float t5 = sinf(lean);
+    const float t5 = t0_both.sine;
     const float t6 = t0 * constants->k7;
     const float t7 = W * t5;
     const float t8 = s + t7;
@@ -412,7 +460,8 @@ void rolling_disc_energy_of_all_f32(const rolling_disc_constants_f32 *constants,
 {
     const float t0 = lean_dot * lean_dot;
     const float t1 = t0 * constants->k9;
-    const float t2 = cosf(lean);
+    const rolling_disc_sines_f32 t2_both = rolling_disc_sine_cosine_f32(lean);
+    const float t2 = t2_both.cosine;
     const float t3 = W * t2;
     const float t4 = t3 * t3;
     const float t5 = t4 * constants->k10;
@@ -422,7 +471,7 @@ void rolling_disc_energy_of_all_f32(const rolling_disc_constants_f32 *constants,
     const float t9 = s * s;
     const float t10 = t9 * constants->k11;
     const float t11 = t8 + t10;
-    const float t12 = sinf(lean);
+    const float t12 = t2_both.sine;
     const float t13 = W * t12;
     const float t14 = s * t13;
     const float t15 = t14 * constants->k4;
@@ -442,23 +491,26 @@ void rolling_disc_step_rk4_f32(const rolling_disc_constants_f32 *constants, floa
     const float t0 = time_step * 0.5F;
     const float t14 = lean_dot * t0;
     const float t28 = lean + t14;
-    const float t33 = sinf(t28);
-    const float t38 = cosf(t28);
+    const rolling_disc_sines_f32 t33_both = rolling_disc_sine_cosine_f32(t28);
+    const float t33 = t33_both.sine;
+    const float t38 = t33_both.cosine;
     const float t34 = t33 * constants->k1;
     const float t16 = W * t0;
     const float t30 = yaw + t16;
-    const float t42 = cosf(t30);
-    const float t43 = sinf(t30);
+    const rolling_disc_sines_f32 t42_both = rolling_disc_sine_cosine_f32(t30);
+    const float t42 = t42_both.cosine;
+    const float t43 = t42_both.sine;
     const float t17 = constants->r * t0;
     const float t18 = s * t17;
     const float t21 = t0 * 2.0F;
     const float t25 = t0 * 1.66666663F;
-    const float t1 = sinf(lean);
+    const rolling_disc_sines_f32 t1_both = rolling_disc_sine_cosine_f32(lean);
+    const float t1 = t1_both.sine;
     const float t2 = t1 * constants->k1;
     const float t4 = t1 * W;
     const float t3 = s * 1.20000005F;
     const float t5 = t3 + t4;
-    const float t6 = cosf(lean);
+    const float t6 = t1_both.cosine;
     const float t7 = W * t6;
     const float t8 = t5 * t7;
     const float t9 = t2 + t8;
@@ -468,12 +520,14 @@ void rolling_disc_step_rk4_f32(const rolling_disc_constants_f32 *constants, floa
     const float t29 = lean_dot + t15;
     const float t46 = t29 * t0;
     const float t57 = lean + t46;
-    const float t62 = sinf(t57);
-    const float t67 = cosf(t57);
+    const rolling_disc_sines_f32 t62_both = rolling_disc_sine_cosine_f32(t57);
+    const float t62 = t62_both.sine;
+    const float t67 = t62_both.cosine;
     const float t63 = t62 * constants->k1;
-    const float t10 = cosf(yaw);
+    const rolling_disc_sines_f32 t10_both = rolling_disc_sine_cosine_f32(yaw);
+    const float t10 = t10_both.cosine;
     const float t19 = t10 * t18;
-    const float t11 = sinf(yaw);
+    const float t11 = t10_both.sine;
     const float t20 = t11 * t18;
     const float t12 = lean_dot * s;
     const float t22 = t12 * t21;
@@ -495,8 +549,9 @@ void rolling_disc_step_rk4_f32(const rolling_disc_constants_f32 *constants, floa
     const float t77 = t60 * t0;
     const float t88 = t77 * 2.0F;
     const float t93 = yaw + t88;
-    const float t105 = cosf(t93);
-    const float t106 = sinf(t93);
+    const rolling_disc_sines_f32 t105_both = rolling_disc_sine_cosine_f32(t93);
+    const float t105 = t105_both.cosine;
+    const float t106 = t105_both.sine;
     const float t31 = W - t23;
     const float t36 = t33 * t31;
     const float t37 = t35 + t36;
@@ -512,8 +567,9 @@ void rolling_disc_step_rk4_f32(const rolling_disc_constants_f32 *constants, floa
     const float t131 = t130 * 2.0F;
     const float t132 = t16 + t131;
     const float t59 = yaw + t48;
-    const float t71 = cosf(t59);
-    const float t72 = sinf(t59);
+    const rolling_disc_sines_f32 t71_both = rolling_disc_sine_cosine_f32(t59);
+    const float t71 = t71_both.cosine;
+    const float t72 = t71_both.sine;
     const float t58 = lean_dot + t47;
     const float t74 = t58 * t68;
     const float t84 = t74 * t25;
@@ -523,8 +579,9 @@ void rolling_disc_step_rk4_f32(const rolling_disc_constants_f32 *constants, floa
     const float t122 = t14 + t121;
     const float t86 = t75 * 2.0F;
     const float t91 = lean + t86;
-    const float t96 = sinf(t91);
-    const float t101 = cosf(t91);
+    const rolling_disc_sines_f32 t96_both = rolling_disc_sine_cosine_f32(t91);
+    const float t96 = t96_both.sine;
+    const float t101 = t96_both.cosine;
     const float t97 = t96 * constants->k1;
     const float t61 = s + t56;
     const float t73 = t58 * t61;

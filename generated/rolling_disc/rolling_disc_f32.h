@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 9f8f1d704bad0d92.
+ * Body of these files: sha256 5f4b9e53140d0e71.
  */
 #ifndef ROLLING_DISC_F32_H
 #define ROLLING_DISC_F32_H
@@ -96,13 +96,13 @@ int rolling_disc_setup_f32(float m, float r, float n, float g,
  * In this scene: y_rate = r*s*sin(yaw)
  * In this scene: W_rate = -(2*lean_rate*s)/cos(lean)
  * In this scene: s_rate = -W_rate*sin(lean) - 5/3*lean_rate*W*cos(lean)
- * Error: median 0.68, largest 8.3 u of the largest product or sum in the equation (of
- *            lean_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 8318
- *            hard samples no more.
+ * Error: median 0.68, largest 7 u of the largest product or sum in the equation (of lean_dot_rate;
+ *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
+ *            more.
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate infinite, no number or beyond all measure.
  * Cost: 2 add, 1 sub, 13 mul, 1 div, 1 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 8506 to 12422 instructions, 268 B of code, 160 B of stack.
- * On Cortex-M4F, -O2: 179 to 444 instructions, 212 B of code, 96 B of stack.
+ * On Cortex-M0+, -O2: 9168 to 10664 instructions, 788 B of code, 128 B of stack.
+ * On Cortex-M4F, -O2: 225 to 227 instructions, 616 B of code, 84 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -133,14 +133,14 @@ void rolling_disc_state_rate_f32(const rolling_disc_constants_f32 *constants, fl
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
- * Error: median 0.68, largest 8 u of the largest product or sum in the equation (of lean_dot_rate;
+ * Error: median 0.68, largest 7.7 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 7 add, 4 sub, 35 mul, 1 div, 2 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 11832 to 15658 instructions, 600 B of code, 208 B of stack.
- * On Cortex-M4F, -O2: 227 to 485 instructions, 408 B of code, 104 B of stack.
+ * On Cortex-M0+, -O2: 12506 to 14003 instructions, 1156 B of code, 192 B of stack.
+ * On Cortex-M4F, -O2: 273 to 275 instructions, 808 B of code, 108 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -150,8 +150,8 @@ void rolling_disc_state_rate_jacobian_f32(const rolling_disc_constants_f32 *cons
     float *yaw_rate, float *x_rate, float *y_rate, float *W_rate, float *s_rate, float jacobian[16]);
 
 /* The same, the whole matrix: 49 entries.
- * On Cortex-M0+, -O2: 12178 to 15900 instructions, 688 B of code, 16 B of tables, 328 B of stack.
- * On Cortex-M4F, -O2: 471 to 729 instructions, 484 B of code, 16 B of tables, 208 B of stack.
+ * On Cortex-M0+, -O2: 12773 to 14210 instructions, 1244 B of code, 16 B of tables, 312 B of stack.
+ * On Cortex-M4F, -O2: 510 to 512 instructions, 884 B of code, 16 B of tables, 212 B of stack.
  */
 void rolling_disc_state_rate_jacobian_dense_f32(const rolling_disc_constants_f32 *constants,
     float lean, float lean_dot, float yaw, float W, float s, float *lean_rate, float *lean_dot_rate,
@@ -203,12 +203,12 @@ void rolling_disc_linearised_f32(const rolling_disc_constants_f32 *constants, fl
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
  * In this scene: steady = (4*(g*sin(lean) + 1/4*r*(6*s + 5*W*sin(lean))*W*cos(lean)))/(5*r)
- * Error: median 0.71, largest 7.1 u of the largest product or sum in the equation (of steady;
- *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
- *            more.
+ * Error: median 0.72, largest 8 u of the largest product or sum in the equation (of steady; 200000
+ *            samples of the ranges, 65536 searched from the worst); at 8318 hard samples 8.2 u (of
+ *            steady, thin disc).
  * Cost: 2 add, 5 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 3931 to 5440 instructions, 100 B of code, 104 B of stack.
- * On Cortex-M4F, -O2: 85 to 197 instructions, 88 B of code, 32 B of stack.
+ * On Cortex-M0+, -O2: 4258 to 5062 instructions, 632 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 108 to 109 instructions, 500 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -239,12 +239,12 @@ void rolling_disc_steady_f32(const rolling_disc_constants_f32 *constants, float 
  * In this scene: c = ground[1]*sin(lean) - m*(r*(lean_dot^2 + (s + W*sin(lean))*W*sin(lean)) -
  *            g*cos(lean))
  * In this scene: ground[2] = c/cos(lean)
- * Error: median 0.25, largest 7.7 u of the largest product or sum in the equation (of ground;
+ * Error: median 0.25, largest 7.9 u of the largest product or sum in the equation (of ground;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Cost: 3 add, 3 sub, 17 mul, 1 div, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 6084 to 7637 instructions, 276 B of code, 160 B of stack.
- * On Cortex-M4F, -O2: 110 to 222 instructions, 184 B of code, 72 B of stack.
+ * On Cortex-M0+, -O2: 6428 to 7250 instructions, 816 B of code, 136 B of stack.
+ * On Cortex-M4F, -O2: 133 to 134 instructions, 596 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -268,8 +268,8 @@ void rolling_disc_ground_f32(const rolling_disc_constants_f32 *constants, float 
  *            energy_of_all; 200000 samples of the ranges, 65536 searched from the worst); at 8318
  *            hard samples no more.
  * Cost: 5 add, 13 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 5095 to 6570 instructions, 196 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 100 to 212 instructions, 144 B of code, 72 B of stack.
+ * On Cortex-M0+, -O2: 5453 to 6252 instructions, 736 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 122 to 123 instructions, 552 B of code, 52 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, rigid.
  */
@@ -314,8 +314,8 @@ void rolling_disc_energy_of_all_f32(const rolling_disc_constants_f32 *constants,
  * Singular: where a divisor vanishes, as at lean = 1.551, lean_dot = 3.815, W = 1.724, s = -11.62,
  *            time_step = 0.005105, W_next, s_next infinite, no number or beyond all measure.
  * Cost: 47 add, 8 sub, 87 mul, 4 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 40352 to 55677 instructions, 1448 B of code, 296 B of stack.
- * On Cortex-M4F, -O2: 779 to 1811 instructions, 1120 B of code, 224 B of stack.
+ * On Cortex-M0+, -O2: 43236 to 49143 instructions, 1964 B of code, 296 B of stack.
+ * On Cortex-M4F, -O2: 956 to 964 instructions, 1452 B of code, 260 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

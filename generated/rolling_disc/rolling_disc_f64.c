@@ -181,24 +181,67 @@ int rolling_disc_setup_f64(double m, double r, double n, double g,
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 25735; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    double sine;
+    double cosine;
+} rolling_disc_sines_f64;
+
+static rolling_disc_sines_f64 rolling_disc_sine_cosine_f64(double angle)
+{
+    rolling_disc_sines_f64 found;
+    if (fabs(angle) <= 25735.0) {
+        const double k = ((angle * 0.6366197723675814) + 6755399441055744.0) - 6755399441055744.0;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const double r0 = angle - (k * 1.5707963267923333);
+        const double off1 = k * 2.5633441515839558e-12;
+        const double r1 = r0 - off1;
+        const double low1 = (r0 - r1) - off1;
+        const double off = (k * 1.0562999066987426e-23) - low1;
+        const double r = r1 - off;
+        const double low = (r1 - r) - off;
+        const double z = r * r;
+        const double cube = z * r;
+        const double odd = 0.00833333333332184 + (z * ((-0.00019841269829358528) + (z * (2.7557313538514204e-06 + (z *
+            ((-2.5050734389242796e-08) + (z * 1.5895433287554087e-10)))))));
+        const double even = 0.041666666666666595 + (z * ((-0.0013888888888873338) + (z * (2.480158728899748e-05 + (z *
+            ((-2.755731421529914e-07) + (z * (2.0875705115002216e-09 + (z * (-1.1358732776766006e-11))))))))));
+        const double half = 0.5 * z;
+        const double one_less = 1.0 - half;
+        const double sine = r - (((z * ((0.5 * low) - (cube * odd))) - low) - (cube * (-0.1666666666666663)));
+        const double cosine = one_less + (((1.0 - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const double first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const double second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sin(angle);
+        found.cosine = cos(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void rolling_disc_state_rate_f64(const rolling_disc_constants_f64 *constants, double lean,
     double lean_dot, double yaw, double W, double s, double *lean_rate, double *lean_dot_rate,
     double *yaw_rate, double *x_rate, double *y_rate, double *W_rate, double *s_rate)
 {
-    const double t0 = sin(lean);
+    const rolling_disc_sines_f64 t0_both = rolling_disc_sine_cosine_f64(lean);
+    const double t0 = t0_both.sine;
     const double t1 = t0 * constants->k1;
     const double t2 = s * 1.2;
     const double t3 = t0 * W;
     const double t4 = t2 + t3;
-    const double t5 = cos(lean);
+    const double t5 = t0_both.cosine;
     const double t6 = W * t5;
     const double t7 = t4 * t6;
     const double t8 = t1 + t7;
-    const double t9 = cos(yaw);
+    const rolling_disc_sines_f64 t9_both = rolling_disc_sine_cosine_f64(yaw);
+    const double t9 = t9_both.cosine;
     const double t10 = s * constants->r;
     const double t11 = t9 * t10;
-    const double t12 = sin(yaw);
+    const double t12 = t9_both.sine;
     const double t13 = t12 * t10;
     const double t14 = lean_dot * s;
     const double t15 = t14 * 2.0;
@@ -223,9 +266,10 @@ void rolling_disc_state_rate_jacobian_f64(const rolling_disc_constants_f64 *cons
     double *yaw_rate, double *x_rate, double *y_rate, double *W_rate, double *s_rate,
     double jacobian[16])
 {
-    const double t0 = cos(lean);
+    const rolling_disc_sines_f64 t0_both = rolling_disc_sine_cosine_f64(lean);
+    const double t0 = t0_both.cosine;
     const double t1 = 1.0 / t0;
-    const double t2 = sin(lean);
+    const double t2 = t0_both.sine;
     const double t3 = t2 * constants->k1;
     const double t4 = s * 1.2;
     const double t5 = t2 * W;
@@ -233,10 +277,11 @@ void rolling_disc_state_rate_jacobian_f64(const rolling_disc_constants_f64 *cons
     const double t7 = W * t0;
     const double t8 = t6 * t7;
     const double t9 = t3 + t8;
-    const double t10 = cos(yaw);
+    const rolling_disc_sines_f64 t10_both = rolling_disc_sine_cosine_f64(yaw);
+    const double t10 = t10_both.cosine;
     const double t11 = s * constants->r;
     const double t12 = t10 * t11;
-    const double t13 = sin(yaw);
+    const double t13 = t10_both.sine;
     const double t14 = t13 * t11;
     const double t15 = s * t1;
     const double t16 = t15 * (-2.0);
@@ -359,8 +404,9 @@ void rolling_disc_linearised_f64(const rolling_disc_constants_f64 *constants, do
 void rolling_disc_steady_f64(const rolling_disc_constants_f64 *constants, double lean, double W,
     double s, double *steady)
 {
-    const double t0 = sin(lean);
-    const double t1 = cos(lean);
+    const rolling_disc_sines_f64 t0_both = rolling_disc_sine_cosine_f64(lean);
+    const double t0 = t0_both.sine;
+    const double t1 = t0_both.cosine;
     const double t2 = W * t1;
     const double t3 = W * t2;
     const double t4 = t3 + constants->k1;
@@ -375,12 +421,13 @@ void rolling_disc_steady_f64(const rolling_disc_constants_f64 *constants, double
 void rolling_disc_ground_f64(const rolling_disc_constants_f64 *constants, double lean,
     double lean_dot, double W, double s, double ground[3])
 {
-    const double t0 = cos(lean);
+    const rolling_disc_sines_f64 t0_both = rolling_disc_sine_cosine_f64(lean);
+    const double t0 = t0_both.cosine;
     const double t1 = 1.0 / t0;
     const double t2 = W * t0;
     const double t3 = lean_dot * t2;
     const double t4 = t3 * constants->k6;
-    const double t5 = sin(lean);
+    const double t5 = t0_both.sine;
     const double t6 = t0 * constants->k7;
     const double t7 = W * t5;
     const double t8 = s + t7;
@@ -413,7 +460,8 @@ void rolling_disc_energy_of_all_f64(const rolling_disc_constants_f64 *constants,
 {
     const double t0 = lean_dot * lean_dot;
     const double t1 = t0 * constants->k9;
-    const double t2 = cos(lean);
+    const rolling_disc_sines_f64 t2_both = rolling_disc_sine_cosine_f64(lean);
+    const double t2 = t2_both.cosine;
     const double t3 = W * t2;
     const double t4 = t3 * t3;
     const double t5 = t4 * constants->k10;
@@ -423,7 +471,7 @@ void rolling_disc_energy_of_all_f64(const rolling_disc_constants_f64 *constants,
     const double t9 = s * s;
     const double t10 = t9 * constants->k11;
     const double t11 = t8 + t10;
-    const double t12 = sin(lean);
+    const double t12 = t2_both.sine;
     const double t13 = W * t12;
     const double t14 = s * t13;
     const double t15 = t14 * constants->k4;
@@ -443,23 +491,26 @@ void rolling_disc_step_rk4_f64(const rolling_disc_constants_f64 *constants, doub
     const double t0 = time_step * 0.5;
     const double t14 = lean_dot * t0;
     const double t28 = lean + t14;
-    const double t33 = sin(t28);
-    const double t38 = cos(t28);
+    const rolling_disc_sines_f64 t33_both = rolling_disc_sine_cosine_f64(t28);
+    const double t33 = t33_both.sine;
+    const double t38 = t33_both.cosine;
     const double t34 = t33 * constants->k1;
     const double t16 = W * t0;
     const double t30 = yaw + t16;
-    const double t42 = cos(t30);
-    const double t43 = sin(t30);
+    const rolling_disc_sines_f64 t42_both = rolling_disc_sine_cosine_f64(t30);
+    const double t42 = t42_both.cosine;
+    const double t43 = t42_both.sine;
     const double t17 = constants->r * t0;
     const double t18 = s * t17;
     const double t21 = t0 * 2.0;
     const double t25 = t0 * 1.6666666666666667;
-    const double t1 = sin(lean);
+    const rolling_disc_sines_f64 t1_both = rolling_disc_sine_cosine_f64(lean);
+    const double t1 = t1_both.sine;
     const double t2 = t1 * constants->k1;
     const double t4 = t1 * W;
     const double t3 = s * 1.2;
     const double t5 = t3 + t4;
-    const double t6 = cos(lean);
+    const double t6 = t1_both.cosine;
     const double t7 = W * t6;
     const double t8 = t5 * t7;
     const double t9 = t2 + t8;
@@ -469,12 +520,14 @@ void rolling_disc_step_rk4_f64(const rolling_disc_constants_f64 *constants, doub
     const double t29 = lean_dot + t15;
     const double t46 = t29 * t0;
     const double t57 = lean + t46;
-    const double t62 = sin(t57);
-    const double t67 = cos(t57);
+    const rolling_disc_sines_f64 t62_both = rolling_disc_sine_cosine_f64(t57);
+    const double t62 = t62_both.sine;
+    const double t67 = t62_both.cosine;
     const double t63 = t62 * constants->k1;
-    const double t10 = cos(yaw);
+    const rolling_disc_sines_f64 t10_both = rolling_disc_sine_cosine_f64(yaw);
+    const double t10 = t10_both.cosine;
     const double t19 = t10 * t18;
-    const double t11 = sin(yaw);
+    const double t11 = t10_both.sine;
     const double t20 = t11 * t18;
     const double t12 = lean_dot * s;
     const double t22 = t12 * t21;
@@ -496,8 +549,9 @@ void rolling_disc_step_rk4_f64(const rolling_disc_constants_f64 *constants, doub
     const double t77 = t60 * t0;
     const double t88 = t77 * 2.0;
     const double t93 = yaw + t88;
-    const double t105 = cos(t93);
-    const double t106 = sin(t93);
+    const rolling_disc_sines_f64 t105_both = rolling_disc_sine_cosine_f64(t93);
+    const double t105 = t105_both.cosine;
+    const double t106 = t105_both.sine;
     const double t31 = W - t23;
     const double t36 = t33 * t31;
     const double t37 = t35 + t36;
@@ -513,8 +567,9 @@ void rolling_disc_step_rk4_f64(const rolling_disc_constants_f64 *constants, doub
     const double t131 = t130 * 2.0;
     const double t132 = t16 + t131;
     const double t59 = yaw + t48;
-    const double t71 = cos(t59);
-    const double t72 = sin(t59);
+    const rolling_disc_sines_f64 t71_both = rolling_disc_sine_cosine_f64(t59);
+    const double t71 = t71_both.cosine;
+    const double t72 = t71_both.sine;
     const double t58 = lean_dot + t47;
     const double t74 = t58 * t68;
     const double t84 = t74 * t25;
@@ -524,8 +579,9 @@ void rolling_disc_step_rk4_f64(const rolling_disc_constants_f64 *constants, doub
     const double t122 = t14 + t121;
     const double t86 = t75 * 2.0;
     const double t91 = lean + t86;
-    const double t96 = sin(t91);
-    const double t101 = cos(t91);
+    const rolling_disc_sines_f64 t96_both = rolling_disc_sine_cosine_f64(t91);
+    const double t96 = t96_both.sine;
+    const double t101 = t96_both.cosine;
     const double t97 = t96 * constants->k1;
     const double t61 = s + t56;
     const double t73 = t58 * t61;

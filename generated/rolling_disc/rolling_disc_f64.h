@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 9ec68b8b261a3dc5.
+ * Body of these files: sha256 c359893dfa88e131.
  */
 #ifndef ROLLING_DISC_F64_H
 #define ROLLING_DISC_F64_H
@@ -101,7 +101,7 @@ int rolling_disc_setup_f64(double m, double r, double n, double g,
  *            hard samples no more.
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate infinite, no number or beyond all measure.
  * Cost: 2 add, 1 sub, 13 mul, 1 div, 1 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 19103 to 27161 instructions, 380 B of code, 264 B of stack.
+ * On Cortex-M0+, -O2: 23876 to 27200 instructions, 1260 B of code, 224 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -138,7 +138,7 @@ void rolling_disc_state_rate_f64(const rolling_disc_constants_f64 *constants, do
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 7 add, 4 sub, 35 mul, 1 div, 2 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 26968 to 34969 instructions, 944 B of code, 368 B of stack.
+ * On Cortex-M0+, -O2: 31689 to 34974 instructions, 1860 B of code, 336 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -149,7 +149,7 @@ void rolling_disc_state_rate_jacobian_f64(const rolling_disc_constants_f64 *cons
     double jacobian[16]);
 
 /* The same, the whole matrix: 49 entries.
- * On Cortex-M0+, -O2: 27514 to 35368 instructions, 1064 B of code, 16 B of tables, 576 B of stack.
+ * On Cortex-M0+, -O2: 32003 to 35380 instructions, 1980 B of code, 16 B of tables, 544 B of stack.
  */
 void rolling_disc_state_rate_jacobian_dense_f64(const rolling_disc_constants_f64 *constants,
     double lean, double lean_dot, double yaw, double W, double s, double *lean_rate,
@@ -201,11 +201,10 @@ void rolling_disc_linearised_f64(const rolling_disc_constants_f64 *constants, do
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
  * In this scene: steady = (4*(g*sin(lean) + 1/4*r*(6*s + 5*W*sin(lean))*W*cos(lean)))/(5*r)
- * Error: median 0.66, largest 6.7 u of the largest product or sum in the equation (of steady;
- *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples
- *            6.8 u (of steady, thin disc).
+ * Error: median 0.66, largest 8 u of the largest product or sum in the equation (of steady; 200000
+ *            samples of the ranges, 65536 searched from the worst); at 8318 hard samples no more.
  * Cost: 2 add, 5 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 8897 to 11876 instructions, 136 B of code, 184 B of stack.
+ * On Cortex-M0+, -O2: 11250 to 13014 instructions, 1024 B of code, 168 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -240,7 +239,7 @@ void rolling_disc_steady_f64(const rolling_disc_constants_f64 *constants, double
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Cost: 3 add, 3 sub, 17 mul, 1 div, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 13739 to 16760 instructions, 392 B of code, 256 B of stack.
+ * On Cortex-M0+, -O2: 16069 to 17903 instructions, 1284 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -260,11 +259,11 @@ void rolling_disc_ground_f64(const rolling_disc_constants_f64 *constants, double
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * In this scene: energy_of_all = m*(g*cos(lean) + 1/8*r*(5*lean_dot^2 + 6*(s + W*sin(lean))^2 +
  *            W^2*cos(lean)^2))*r
- * Error: median 0.68, largest 8 u of the largest product or sum in the equation (of energy_of_all;
- *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
- *            more.
+ * Error: median 0.68, largest 8.8 u of the largest product or sum in the equation (of
+ *            energy_of_all; 200000 samples of the ranges, 65536 searched from the worst); at 8318
+ *            hard samples no more.
  * Cost: 5 add, 13 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 11682 to 14685 instructions, 288 B of code, 240 B of stack.
+ * On Cortex-M0+, -O2: 14045 to 15813 instructions, 1200 B of code, 200 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, rigid.
  */
@@ -309,7 +308,7 @@ void rolling_disc_energy_of_all_f64(const rolling_disc_constants_f64 *constants,
  * Singular: where a divisor vanishes, as at lean = 1.551, lean_dot = 3.815, W = 1.724, s = -11.62,
  *            time_step = 0.005105, W_next, s_next infinite, no number or beyond all measure.
  * Cost: 47 add, 8 sub, 87 mul, 4 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 90804 to 122566 instructions, 2212 B of code, 544 B of stack.
+ * On Cortex-M0+, -O2: 109860 to 123210 instructions, 2996 B of code, 544 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

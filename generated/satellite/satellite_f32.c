@@ -220,6 +220,48 @@ int satellite_setup_f32(float I_xx, float I_yy, float I_zz, satellite_constants_
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 804; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    float sine;
+    float cosine;
+} satellite_sines_f32;
+
+static satellite_sines_f32 satellite_sine_cosine_f32(float angle)
+{
+    satellite_sines_f32 found;
+    if (fabsf(angle) <= 804.0F) {
+        const float k = ((angle * 0.636619747F) + 12582912.0F) - 12582912.0F;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const float r0 = angle - (k * 1.57067871F);
+        const float off1 = k * 0.000117614865F;
+        const float r1 = r0 - off1;
+        const float low1 = (r0 - r1) - off1;
+        const float off2 = k * 9.92088189e-10F;
+        const float r2 = r1 - off2;
+        const float low2 = low1 + ((r1 - r2) - off2);
+        const float off = (k * 5.39030253e-15F) - low2;
+        const float r = r2 - off;
+        const float low = (r2 - r) - off;
+        const float z = r * r;
+        const float cube = z * r;
+        const float odd = 0.00833218917F + (z * (-0.000195182845F));
+        const float even = 0.0416666456F + (z * ((-0.00138873095F) + (z * 2.44323273e-05F)));
+        const float half = 0.5F * z;
+        const float one_less = 1.0F - half;
+        const float sine = r - (((z * ((0.5F * low) - (cube * odd))) - low) - (cube * (-0.166666552F)));
+        const float cosine = one_less + (((1.0F - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const float first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const float second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sinf(angle);
+        found.cosine = cosf(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void satellite_state_rate_f32(const satellite_constants_f32 *constants, const float attitude[4],
     const float omega[3], const float moment[3], float attitude_rate[4], float omega_dot[3])
@@ -3539,8 +3581,9 @@ void satellite_step_lie_f32(const satellite_constants_f32 *constants, const floa
     const float t271 = t269 / t270;
     const float t276 = t271 * t272;
     const float t273 = t259 * t272;
-    const float t274 = sinf(t273);
-    const float t275 = cosf(t273);
+    const satellite_sines_f32 t274_both = satellite_sine_cosine_f32(t273);
+    const float t274 = t274_both.sine;
+    const float t275 = t274_both.cosine;
     const float t277 = fabsf(t276);
     const float t278 = t277 * t259;
     const _Bool t279 = t278 < 1.0F;
@@ -3624,8 +3667,9 @@ void satellite_step_lie_f32(const satellite_constants_f32 *constants, const floa
     const float t183 = t181 / t182;
     const float t188 = t183 * t184;
     const float t185 = t171 * t184;
-    const float t186 = sinf(t185);
-    const float t187 = cosf(t185);
+    const satellite_sines_f32 t186_both = satellite_sine_cosine_f32(t185);
+    const float t186 = t186_both.sine;
+    const float t187 = t186_both.cosine;
     const float t189 = fabsf(t188);
     const float t190 = t189 * t171;
     const _Bool t191 = t190 < 1.0F;

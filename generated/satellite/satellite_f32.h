@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 0ae72012e17912c6.
+ * Body of these files: sha256 9e593471b4b9686f.
  */
 #ifndef SATELLITE_F32_H
 #define SATELLITE_F32_H
@@ -147,7 +147,7 @@ void satellite_step_rk4_f32(const satellite_constants_f32 *constants, const floa
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 328 add, 110 sub, 458 mul, 2 div, 12 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 83924 to 87083 instructions, 8636 B of code, 632 B of stack.
+ * On Cortex-M0+, -O2: 83925 to 87084 instructions, 8636 B of code, 632 B of stack.
  * On Cortex-M4F, -O2: 1445 instructions, 5876 B of code, 384 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -183,7 +183,7 @@ void satellite_step_rk4_jacobian_dense_f32(const satellite_constants_f32 *consta
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 304 add, 89 sub, 394 mul, 6 div, 1 sqrt.
- * On Cortex-M0+, -O2: 74297 to 75905 instructions, 7480 B of code, 648 B of stack.
+ * On Cortex-M0+, -O2: 74296 to 75905 instructions, 7480 B of code, 648 B of stack.
  * On Cortex-M4F, -O2: 1247 instructions, 5036 B of code, 384 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -219,7 +219,7 @@ void satellite_step_rk4_tangent_dense_f32(const satellite_constants_f32 *constan
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 254 add, 170 sub, 479 mul, 2 div, 3 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 86741 to 89025 instructions, 8348 B of code, 696 B of stack.
+ * On Cortex-M0+, -O2: 86741 to 89026 instructions, 8348 B of code, 696 B of stack.
  * On Cortex-M4F, -O2: 1307 instructions, 5308 B of code, 504 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -230,7 +230,7 @@ void satellite_step_rk4_sensitivity_f32(const satellite_constants_f32 *constants
     float attitude_next[4], float omega_next[3], float jacobian[21]);
 
 /* The same, the whole matrix: 21 entries.
- * On Cortex-M0+, -O2: 87462 to 89316 instructions, 8412 B of code, 21 B of tables, 816 B of stack.
+ * On Cortex-M0+, -O2: 87463 to 89316 instructions, 8412 B of code, 21 B of tables, 816 B of stack.
  * On Cortex-M4F, -O2: 1521 instructions, 5376 B of code, 21 B of tables, 620 B of stack.
  */
 void satellite_step_rk4_sensitivity_dense_f32(const satellite_constants_f32 *constants,
@@ -254,8 +254,8 @@ void satellite_step_rk4_sensitivity_dense_f32(const satellite_constants_f32 *con
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 95 add, 61 sub, 156 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * On Cortex-M0+, -O2: 37814 to 38730 instructions, 3552 B of code, 200 B of stack.
- * On Cortex-M4F, -O2: 560 instructions, 2044 B of code, 88 B of stack.
+ * On Cortex-M0+, -O2: 38591 to 39496 instructions, 4120 B of code, 216 B of stack.
+ * On Cortex-M4F, -O2: 601 instructions, 2440 B of code, 116 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -301,7 +301,7 @@ void satellite_step_split_f32(const satellite_constants_f32 *constants, const fl
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Cost: 2396 add, 916 sub, 3419 mul, 22 div, 20 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * On Cortex-M0+, -O2: 562899 to 684948 instructions, 2644 B of code, 1104 B of stack.
+ * On Cortex-M0+, -O2: 562900 to 684948 instructions, 2644 B of code, 1104 B of stack.
  * On Cortex-M4F, -O2: 13877 instructions, 2176 B of code, 1072 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,

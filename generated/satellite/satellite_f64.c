@@ -220,6 +220,47 @@ int satellite_setup_f64(double I_xx, double I_yy, double I_zz, satellite_constan
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 25735; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    double sine;
+    double cosine;
+} satellite_sines_f64;
+
+static satellite_sines_f64 satellite_sine_cosine_f64(double angle)
+{
+    satellite_sines_f64 found;
+    if (fabs(angle) <= 25735.0) {
+        const double k = ((angle * 0.6366197723675814) + 6755399441055744.0) - 6755399441055744.0;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const double r0 = angle - (k * 1.5707963267923333);
+        const double off1 = k * 2.5633441515839558e-12;
+        const double r1 = r0 - off1;
+        const double low1 = (r0 - r1) - off1;
+        const double off = (k * 1.0562999066987426e-23) - low1;
+        const double r = r1 - off;
+        const double low = (r1 - r) - off;
+        const double z = r * r;
+        const double cube = z * r;
+        const double odd = 0.00833333333332184 + (z * ((-0.00019841269829358528) + (z * (2.7557313538514204e-06 + (z *
+            ((-2.5050734389242796e-08) + (z * 1.5895433287554087e-10)))))));
+        const double even = 0.041666666666666595 + (z * ((-0.0013888888888873338) + (z * (2.480158728899748e-05 + (z *
+            ((-2.755731421529914e-07) + (z * (2.0875705115002216e-09 + (z * (-1.1358732776766006e-11))))))))));
+        const double half = 0.5 * z;
+        const double one_less = 1.0 - half;
+        const double sine = r - (((z * ((0.5 * low) - (cube * odd))) - low) - (cube * (-0.1666666666666663)));
+        const double cosine = one_less + (((1.0 - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const double first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const double second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sin(angle);
+        found.cosine = cos(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void satellite_state_rate_f64(const satellite_constants_f64 *constants, const double attitude[4],
     const double omega[3], const double moment[3], double attitude_rate[4], double omega_dot[3])
@@ -3539,8 +3580,9 @@ void satellite_step_lie_f64(const satellite_constants_f64 *constants, const doub
     const double t271 = t269 / t270;
     const double t276 = t271 * t272;
     const double t273 = t259 * t272;
-    const double t274 = sin(t273);
-    const double t275 = cos(t273);
+    const satellite_sines_f64 t274_both = satellite_sine_cosine_f64(t273);
+    const double t274 = t274_both.sine;
+    const double t275 = t274_both.cosine;
     const double t277 = fabs(t276);
     const double t278 = t277 * t259;
     const _Bool t279 = t278 < 1.0;
@@ -3624,8 +3666,9 @@ void satellite_step_lie_f64(const satellite_constants_f64 *constants, const doub
     const double t183 = t181 / t182;
     const double t188 = t183 * t184;
     const double t185 = t171 * t184;
-    const double t186 = sin(t185);
-    const double t187 = cos(t185);
+    const satellite_sines_f64 t186_both = satellite_sine_cosine_f64(t185);
+    const double t186 = t186_both.sine;
+    const double t187 = t186_both.cosine;
     const double t189 = fabs(t188);
     const double t190 = t189 * t171;
     const _Bool t191 = t190 < 1.0;

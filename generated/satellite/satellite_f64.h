@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 db6392959bcd9323.
+ * Body of these files: sha256 6dfc04030622d151.
  */
 #ifndef SATELLITE_F64_H
 #define SATELLITE_F64_H
@@ -143,7 +143,7 @@ void satellite_step_rk4_f64(const satellite_constants_f64 *constants, const doub
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 328 add, 110 sub, 458 mul, 2 div, 12 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 196035 to 198457 instructions, 14180 B of code, 1432 B of stack.
+ * On Cortex-M0+, -O2: 196035 to 198458 instructions, 14180 B of code, 1432 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -153,7 +153,7 @@ void satellite_step_rk4_jacobian_f64(const satellite_constants_f64 *constants,
     double attitude_next[4], double omega_next[3], double jacobian[58]);
 
 /* The same, the whole matrix: 70 entries.
- * On Cortex-M0+, -O2: 197311 to 199259 instructions, 14256 B of code, 58 B of tables, 1936 B of
+ * On Cortex-M0+, -O2: 197312 to 199259 instructions, 14256 B of code, 58 B of tables, 1936 B of
  *            stack.
  */
 void satellite_step_rk4_jacobian_dense_f64(const satellite_constants_f64 *constants,
@@ -179,7 +179,7 @@ void satellite_step_rk4_jacobian_dense_f64(const satellite_constants_f64 *consta
  *            omega_next, thin rod).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 304 add, 89 sub, 394 mul, 6 div, 1 sqrt.
- * On Cortex-M0+, -O2: 169898 to 171660 instructions, 12844 B of code, 1424 B of stack.
+ * On Cortex-M0+, -O2: 169897 to 171660 instructions, 12844 B of code, 1424 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -189,7 +189,7 @@ void satellite_step_rk4_tangent_f64(const satellite_constants_f64 *constants,
     double attitude_next[4], double omega_next[3], double jacobian[45]);
 
 /* The same, the whole matrix: 54 entries.
- * On Cortex-M0+, -O2: 170269 to 172582 instructions, 12920 B of code, 45 B of tables, 1824 B of
+ * On Cortex-M0+, -O2: 170268 to 172581 instructions, 12920 B of code, 45 B of tables, 1824 B of
  *            stack.
  */
 void satellite_step_rk4_tangent_dense_f64(const satellite_constants_f64 *constants,
@@ -224,7 +224,7 @@ void satellite_step_rk4_sensitivity_f64(const satellite_constants_f64 *constants
     double attitude_next[4], double omega_next[3], double jacobian[21]);
 
 /* The same, the whole matrix: 21 entries.
- * On Cortex-M0+, -O2: 201901 to 204152 instructions, 13392 B of code, 21 B of tables, 1616 B of
+ * On Cortex-M0+, -O2: 201902 to 204152 instructions, 13392 B of code, 21 B of tables, 1616 B of
  *            stack.
  */
 void satellite_step_rk4_sensitivity_dense_f64(const satellite_constants_f64 *constants,
@@ -248,7 +248,7 @@ void satellite_step_rk4_sensitivity_dense_f64(const satellite_constants_f64 *con
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 95 add, 61 sub, 156 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * On Cortex-M0+, -O2: 85250 to 86732 instructions, 5384 B of code, 424 B of stack.
+ * On Cortex-M0+, -O2: 90088 to 91572 instructions, 6344 B of code, 432 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

@@ -181,6 +181,48 @@ int sleeping_top_setup_f32(float m, float r, float l, float n, float g,
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 804; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    float sine;
+    float cosine;
+} sleeping_top_sines_f32;
+
+static sleeping_top_sines_f32 sleeping_top_sine_cosine_f32(float angle)
+{
+    sleeping_top_sines_f32 found;
+    if (fabsf(angle) <= 804.0F) {
+        const float k = ((angle * 0.636619747F) + 12582912.0F) - 12582912.0F;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const float r0 = angle - (k * 1.57067871F);
+        const float off1 = k * 0.000117614865F;
+        const float r1 = r0 - off1;
+        const float low1 = (r0 - r1) - off1;
+        const float off2 = k * 9.92088189e-10F;
+        const float r2 = r1 - off2;
+        const float low2 = low1 + ((r1 - r2) - off2);
+        const float off = (k * 5.39030253e-15F) - low2;
+        const float r = r2 - off;
+        const float low = (r2 - r) - off;
+        const float z = r * r;
+        const float cube = z * r;
+        const float odd = 0.00833218917F + (z * (-0.000195182845F));
+        const float even = 0.0416666456F + (z * ((-0.00138873095F) + (z * 2.44323273e-05F)));
+        const float half = 0.5F * z;
+        const float one_less = 1.0F - half;
+        const float sine = r - (((z * ((0.5F * low) - (cube * odd))) - low) - (cube * (-0.166666552F)));
+        const float cosine = one_less + (((1.0F - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const float first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const float second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sinf(angle);
+        found.cosine = cosf(angle);
+    }
+    return found;
+}
+
 /* Mass, damping and stiffness matrices of small motion. */
 void sleeping_top_linearised_f32(const sleeping_top_constants_f32 *constants, float mass_matrix[4],
     float damping_matrix[4], float stiffness_matrix[4])
@@ -203,18 +245,20 @@ void sleeping_top_linearised_f32(const sleeping_top_constants_f32 *constants, fl
 void sleeping_top_accelerations_f32(const sleeping_top_constants_f32 *constants, float alpha,
     float alpha_dot, float beta, float beta_dot, float *alpha_ddot, float *beta_ddot)
 {
-    const float t0 = sinf(alpha);
+    const sleeping_top_sines_f32 t0_both = sleeping_top_sine_cosine_f32(alpha);
+    const float t0 = t0_both.sine;
     const float t1 = t0 * constants->l_g;
-    const float t2 = sinf(beta);
+    const sleeping_top_sines_f32 t2_both = sleeping_top_sine_cosine_f32(beta);
+    const float t2 = t2_both.sine;
     const float t3 = alpha_dot * t2;
     const float t4 = t3 * constants->k3;
     const float t5 = constants->half_r_r_n - t4;
     const float t6 = beta_dot * t5;
     const float t7 = t1 - t6;
-    const float t8 = cosf(beta);
+    const float t8 = t2_both.cosine;
     const float t9 = t8 * constants->k4;
     const float t10 = t7 / t9;
-    const float t11 = cosf(alpha);
+    const float t11 = t0_both.cosine;
     const float t12 = t2 * t11;
     const float t13 = t12 * constants->k5;
     const float t14 = t8 * alpha_dot;
@@ -229,8 +273,10 @@ void sleeping_top_accelerations_f32(const sleeping_top_constants_f32 *constants,
 void sleeping_top_energy_f32(const sleeping_top_constants_f32 *constants, float alpha,
     float alpha_dot, float beta, float beta_dot, float *energy)
 {
-    const float t0 = cosf(beta);
-    const float t1 = cosf(alpha);
+    const sleeping_top_sines_f32 t0_both = sleeping_top_sine_cosine_f32(beta);
+    const float t0 = t0_both.cosine;
+    const sleeping_top_sines_f32 t1_both = sleeping_top_sine_cosine_f32(alpha);
+    const float t1 = t1_both.cosine;
     const float t2 = t0 * t1;
     const float t3 = t2 * constants->m_l_g;
     const float t4 = beta_dot * beta_dot;
@@ -251,29 +297,33 @@ void sleeping_top_step_rk4_f32(const sleeping_top_constants_f32 *constants, floa
     const float t0 = time_step * 0.5F;
     const float t13 = alpha_dot * t0;
     const float t25 = alpha + t13;
-    const float t29 = sinf(t25);
-    const float t34 = cosf(t25);
+    const sleeping_top_sines_f32 t29_both = sleeping_top_sine_cosine_f32(t25);
+    const float t29 = t29_both.sine;
+    const float t34 = t29_both.cosine;
     const float t14 = constants->l_g * t0;
     const float t42 = t29 * t14;
     const float t16 = constants->half_r_r_n * t0;
     const float t17 = constants->k3 * t0;
     const float t23 = beta_dot * t0;
     const float t27 = beta + t23;
-    const float t30 = sinf(t27);
+    const sleeping_top_sines_f32 t30_both = sleeping_top_sine_cosine_f32(t27);
+    const float t30 = t30_both.sine;
     const float t35 = t30 * t34;
     const float t36 = t35 * constants->k5;
-    const float t32 = cosf(t27);
+    const float t32 = t30_both.cosine;
     const float t33 = t32 * constants->k4;
-    const float t1 = sinf(alpha);
+    const sleeping_top_sines_f32 t1_both = sleeping_top_sine_cosine_f32(alpha);
+    const float t1 = t1_both.sine;
     const float t15 = t1 * t14;
-    const float t2 = sinf(beta);
+    const sleeping_top_sines_f32 t2_both = sleeping_top_sine_cosine_f32(beta);
+    const float t2 = t2_both.sine;
     const float t3 = alpha_dot * t2;
     const float t10 = t3 - constants->k6;
     const float t18 = t3 * t17;
     const float t19 = t16 - t18;
     const float t20 = beta_dot * t19;
     const float t21 = t15 - t20;
-    const float t4 = cosf(beta);
+    const float t4 = t2_both.cosine;
     const float t5 = t4 * constants->k4;
     const float t22 = t21 / t5;
     const float t9 = alpha_dot * t4;
@@ -283,9 +333,10 @@ void sleeping_top_step_rk4_f32(const sleeping_top_constants_f32 *constants, floa
     const float t37 = t26 * t32;
     const float t41 = t26 * t0;
     const float t50 = alpha + t41;
-    const float t54 = sinf(t50);
+    const sleeping_top_sines_f32 t54_both = sleeping_top_sine_cosine_f32(t50);
+    const float t54 = t54_both.sine;
     const float t67 = t54 * t14;
-    const float t59 = cosf(t50);
+    const float t59 = t54_both.cosine;
     const float t38 = t31 - constants->k6;
     const float t39 = t37 * t38;
     const float t40 = t36 - t39;
@@ -296,10 +347,11 @@ void sleeping_top_step_rk4_f32(const sleeping_top_constants_f32 *constants, floa
     const float t73 = t53 * t0;
     const float t77 = t73 * 2.0F;
     const float t81 = beta + t77;
-    const float t84 = sinf(t81);
-    const float t86 = cosf(t81);
+    const sleeping_top_sines_f32 t84_both = sleeping_top_sine_cosine_f32(t81);
+    const float t84 = t84_both.sine;
+    const float t86 = t84_both.cosine;
     const float t87 = t86 * constants->k4;
-    const float t6 = cosf(alpha);
+    const float t6 = t1_both.cosine;
     const float t7 = t2 * t6;
     const float t8 = t7 * constants->k5;
     const float t12 = t8 - t11;
@@ -313,10 +365,11 @@ void sleeping_top_step_rk4_f32(const sleeping_top_constants_f32 *constants, floa
     const float t115 = t114 * 2.0F;
     const float t116 = t23 + t115;
     const float t52 = beta + t48;
-    const float t55 = sinf(t52);
+    const sleeping_top_sines_f32 t55_both = sleeping_top_sine_cosine_f32(t52);
+    const float t55 = t55_both.sine;
     const float t60 = t55 * t59;
     const float t61 = t60 * constants->k5;
-    const float t57 = cosf(t52);
+    const float t57 = t55_both.cosine;
     const float t58 = t57 * constants->k4;
     const float t51 = alpha_dot + t47;
     const float t56 = t51 * t55;
@@ -327,9 +380,10 @@ void sleeping_top_step_rk4_f32(const sleeping_top_constants_f32 *constants, floa
     const float t106 = t13 + t105;
     const float t75 = t66 * 2.0F;
     const float t79 = alpha + t75;
-    const float t83 = sinf(t79);
+    const sleeping_top_sines_f32 t83_both = sleeping_top_sine_cosine_f32(t79);
+    const float t83 = t83_both.sine;
     const float t96 = t83 * t14;
-    const float t88 = cosf(t79);
+    const float t88 = t83_both.cosine;
     const float t89 = t84 * t88;
     const float t90 = t89 * constants->k5;
     const float t63 = t56 - constants->k6;

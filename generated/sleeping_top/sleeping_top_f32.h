@@ -21,7 +21,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 e89725b0423e3d83.
+ * Body of these files: sha256 bb918dcb4577bfd7.
  */
 #ifndef SLEEPING_TOP_F32_H
 #define SLEEPING_TOP_F32_H
@@ -59,7 +59,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
- * On Cortex-M0+, -O2: 52200 to 53568 instructions, 1628 B of code, 536 B of stack.
+ * On Cortex-M0+, -O2: 52199 to 53568 instructions, 1628 B of code, 536 B of stack.
  * On Cortex-M4F, -O2: 1025 instructions, 1316 B of code, 448 B of stack.
  */
 int sleeping_top_setup_f32(float m, float r, float l, float n, float g,
@@ -106,13 +106,13 @@ void sleeping_top_linearised_f32(const sleeping_top_constants_f32 *constants, fl
  *            r^2*n)*beta_dot)/((1/4*r^2 + l^2)*cos(beta))
  * In this scene: beta_ddot = (l*g*cos(alpha)*sin(beta) + (1/2*r^2*n*alpha_dot - (1/4*r^2 +
  *            l^2)*alpha_dot^2*sin(beta))*cos(beta))/(1/4*r^2 + l^2)
- * Error: median 0.73, largest 7.5 u of the largest product or sum in the equation (of beta_ddot;
+ * Error: median 0.73, largest 6.7 u of the largest product or sum in the equation (of beta_ddot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Singular: at beta = pi/2 + k pi, alpha_ddot infinite, no number or beyond all measure.
  * Cost: 4 sub, 9 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 8155 to 8330 instructions, 192 B of code, 112 B of stack.
- * On Cortex-M4F, -O2: 167 instructions, 164 B of code, 48 B of stack.
+ * On Cortex-M0+, -O2: 8909 to 9072 instructions, 728 B of code, 128 B of stack.
+ * On Cortex-M4F, -O2: 213 instructions, 568 B of code, 60 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -139,8 +139,8 @@ void sleeping_top_accelerations_f32(const sleeping_top_constants_f32 *constants,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Cost: 3 add, 6 mul, 2 cos.
- * On Cortex-M0+, -O2: 4445 to 4522 instructions, 112 B of code, 104 B of stack.
- * On Cortex-M4F, -O2: 95 instructions, 100 B of code, 32 B of stack.
+ * On Cortex-M0+, -O2: 8041 to 8188 instructions, 656 B of code, 120 B of stack.
+ * On Cortex-M4F, -O2: 203 instructions, 528 B of code, 60 B of stack.
  * Rests on: A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, further_axes_are_right_handed, rigid.
  */
@@ -160,14 +160,14 @@ void sleeping_top_energy_f32(const sleeping_top_constants_f32 *constants, float 
  *            beta_dot_next  rad/s  rate of beta, next
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Error: median 0.4, largest 6.1 u of the largest component, before or after, or of the largest
- *            product of what the step adds, by rounding alone (of beta_dot_next; 200000 samples of
- *            the ranges, 65536 searched from the worst); at 8246 hard samples no more.
+ * Error: median 0.41, largest 7.7 u of the largest component, before or after, or of the largest
+ *            product of what the step adds, by rounding alone (of alpha_dot_next; 200000 samples
+ *            of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
  * Singular: at beta = pi/2 + k pi, alpha_next, alpha_dot_next, beta_next, beta_dot_next infinite,
  *            no number or beyond all measure.
  * Cost: 28 add, 16 sub, 64 mul, 4 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 37217 to 37894 instructions, 1136 B of code, 224 B of stack.
- * On Cortex-M4F, -O2: 720 instructions, 884 B of code, 152 B of stack.
+ * On Cortex-M0+, -O2: 40255 to 40920 instructions, 1644 B of code, 264 B of stack.
+ * On Cortex-M4F, -O2: 888 instructions, 1180 B of code, 220 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

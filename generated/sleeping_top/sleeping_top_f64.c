@@ -181,6 +181,47 @@ int sleeping_top_setup_f64(double m, double r, double l, double n, double g,
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 25735; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    double sine;
+    double cosine;
+} sleeping_top_sines_f64;
+
+static sleeping_top_sines_f64 sleeping_top_sine_cosine_f64(double angle)
+{
+    sleeping_top_sines_f64 found;
+    if (fabs(angle) <= 25735.0) {
+        const double k = ((angle * 0.6366197723675814) + 6755399441055744.0) - 6755399441055744.0;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const double r0 = angle - (k * 1.5707963267923333);
+        const double off1 = k * 2.5633441515839558e-12;
+        const double r1 = r0 - off1;
+        const double low1 = (r0 - r1) - off1;
+        const double off = (k * 1.0562999066987426e-23) - low1;
+        const double r = r1 - off;
+        const double low = (r1 - r) - off;
+        const double z = r * r;
+        const double cube = z * r;
+        const double odd = 0.00833333333332184 + (z * ((-0.00019841269829358528) + (z * (2.7557313538514204e-06 + (z *
+            ((-2.5050734389242796e-08) + (z * 1.5895433287554087e-10)))))));
+        const double even = 0.041666666666666595 + (z * ((-0.0013888888888873338) + (z * (2.480158728899748e-05 + (z *
+            ((-2.755731421529914e-07) + (z * (2.0875705115002216e-09 + (z * (-1.1358732776766006e-11))))))))));
+        const double half = 0.5 * z;
+        const double one_less = 1.0 - half;
+        const double sine = r - (((z * ((0.5 * low) - (cube * odd))) - low) - (cube * (-0.1666666666666663)));
+        const double cosine = one_less + (((1.0 - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const double first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const double second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sin(angle);
+        found.cosine = cos(angle);
+    }
+    return found;
+}
+
 /* Mass, damping and stiffness matrices of small motion. */
 void sleeping_top_linearised_f64(const sleeping_top_constants_f64 *constants, double mass_matrix[4],
     double damping_matrix[4], double stiffness_matrix[4])
@@ -203,18 +244,20 @@ void sleeping_top_linearised_f64(const sleeping_top_constants_f64 *constants, do
 void sleeping_top_accelerations_f64(const sleeping_top_constants_f64 *constants, double alpha,
     double alpha_dot, double beta, double beta_dot, double *alpha_ddot, double *beta_ddot)
 {
-    const double t0 = sin(alpha);
+    const sleeping_top_sines_f64 t0_both = sleeping_top_sine_cosine_f64(alpha);
+    const double t0 = t0_both.sine;
     const double t1 = t0 * constants->l_g;
-    const double t2 = sin(beta);
+    const sleeping_top_sines_f64 t2_both = sleeping_top_sine_cosine_f64(beta);
+    const double t2 = t2_both.sine;
     const double t3 = alpha_dot * t2;
     const double t4 = t3 * constants->k3;
     const double t5 = constants->half_r_r_n - t4;
     const double t6 = beta_dot * t5;
     const double t7 = t1 - t6;
-    const double t8 = cos(beta);
+    const double t8 = t2_both.cosine;
     const double t9 = t8 * constants->k4;
     const double t10 = t7 / t9;
-    const double t11 = cos(alpha);
+    const double t11 = t0_both.cosine;
     const double t12 = t2 * t11;
     const double t13 = t12 * constants->k5;
     const double t14 = t8 * alpha_dot;
@@ -229,8 +272,10 @@ void sleeping_top_accelerations_f64(const sleeping_top_constants_f64 *constants,
 void sleeping_top_energy_f64(const sleeping_top_constants_f64 *constants, double alpha,
     double alpha_dot, double beta, double beta_dot, double *energy)
 {
-    const double t0 = cos(beta);
-    const double t1 = cos(alpha);
+    const sleeping_top_sines_f64 t0_both = sleeping_top_sine_cosine_f64(beta);
+    const double t0 = t0_both.cosine;
+    const sleeping_top_sines_f64 t1_both = sleeping_top_sine_cosine_f64(alpha);
+    const double t1 = t1_both.cosine;
     const double t2 = t0 * t1;
     const double t3 = t2 * constants->m_l_g;
     const double t4 = beta_dot * beta_dot;
@@ -251,29 +296,33 @@ void sleeping_top_step_rk4_f64(const sleeping_top_constants_f64 *constants, doub
     const double t0 = time_step * 0.5;
     const double t13 = alpha_dot * t0;
     const double t25 = alpha + t13;
-    const double t29 = sin(t25);
-    const double t34 = cos(t25);
+    const sleeping_top_sines_f64 t29_both = sleeping_top_sine_cosine_f64(t25);
+    const double t29 = t29_both.sine;
+    const double t34 = t29_both.cosine;
     const double t14 = constants->l_g * t0;
     const double t42 = t29 * t14;
     const double t16 = constants->half_r_r_n * t0;
     const double t17 = constants->k3 * t0;
     const double t23 = beta_dot * t0;
     const double t27 = beta + t23;
-    const double t30 = sin(t27);
+    const sleeping_top_sines_f64 t30_both = sleeping_top_sine_cosine_f64(t27);
+    const double t30 = t30_both.sine;
     const double t35 = t30 * t34;
     const double t36 = t35 * constants->k5;
-    const double t32 = cos(t27);
+    const double t32 = t30_both.cosine;
     const double t33 = t32 * constants->k4;
-    const double t1 = sin(alpha);
+    const sleeping_top_sines_f64 t1_both = sleeping_top_sine_cosine_f64(alpha);
+    const double t1 = t1_both.sine;
     const double t15 = t1 * t14;
-    const double t2 = sin(beta);
+    const sleeping_top_sines_f64 t2_both = sleeping_top_sine_cosine_f64(beta);
+    const double t2 = t2_both.sine;
     const double t3 = alpha_dot * t2;
     const double t10 = t3 - constants->k6;
     const double t18 = t3 * t17;
     const double t19 = t16 - t18;
     const double t20 = beta_dot * t19;
     const double t21 = t15 - t20;
-    const double t4 = cos(beta);
+    const double t4 = t2_both.cosine;
     const double t5 = t4 * constants->k4;
     const double t22 = t21 / t5;
     const double t9 = alpha_dot * t4;
@@ -283,9 +332,10 @@ void sleeping_top_step_rk4_f64(const sleeping_top_constants_f64 *constants, doub
     const double t37 = t26 * t32;
     const double t41 = t26 * t0;
     const double t50 = alpha + t41;
-    const double t54 = sin(t50);
+    const sleeping_top_sines_f64 t54_both = sleeping_top_sine_cosine_f64(t50);
+    const double t54 = t54_both.sine;
     const double t67 = t54 * t14;
-    const double t59 = cos(t50);
+    const double t59 = t54_both.cosine;
     const double t38 = t31 - constants->k6;
     const double t39 = t37 * t38;
     const double t40 = t36 - t39;
@@ -296,10 +346,11 @@ void sleeping_top_step_rk4_f64(const sleeping_top_constants_f64 *constants, doub
     const double t73 = t53 * t0;
     const double t77 = t73 * 2.0;
     const double t81 = beta + t77;
-    const double t84 = sin(t81);
-    const double t86 = cos(t81);
+    const sleeping_top_sines_f64 t84_both = sleeping_top_sine_cosine_f64(t81);
+    const double t84 = t84_both.sine;
+    const double t86 = t84_both.cosine;
     const double t87 = t86 * constants->k4;
-    const double t6 = cos(alpha);
+    const double t6 = t1_both.cosine;
     const double t7 = t2 * t6;
     const double t8 = t7 * constants->k5;
     const double t12 = t8 - t11;
@@ -313,10 +364,11 @@ void sleeping_top_step_rk4_f64(const sleeping_top_constants_f64 *constants, doub
     const double t115 = t114 * 2.0;
     const double t116 = t23 + t115;
     const double t52 = beta + t48;
-    const double t55 = sin(t52);
+    const sleeping_top_sines_f64 t55_both = sleeping_top_sine_cosine_f64(t52);
+    const double t55 = t55_both.sine;
     const double t60 = t55 * t59;
     const double t61 = t60 * constants->k5;
-    const double t57 = cos(t52);
+    const double t57 = t55_both.cosine;
     const double t58 = t57 * constants->k4;
     const double t51 = alpha_dot + t47;
     const double t56 = t51 * t55;
@@ -327,9 +379,10 @@ void sleeping_top_step_rk4_f64(const sleeping_top_constants_f64 *constants, doub
     const double t106 = t13 + t105;
     const double t75 = t66 * 2.0;
     const double t79 = alpha + t75;
-    const double t83 = sin(t79);
+    const sleeping_top_sines_f64 t83_both = sleeping_top_sine_cosine_f64(t79);
+    const double t83 = t83_both.sine;
     const double t96 = t83 * t14;
-    const double t88 = cos(t79);
+    const double t88 = t83_both.cosine;
     const double t89 = t84 * t88;
     const double t90 = t89 * constants->k5;
     const double t63 = t56 - constants->k6;

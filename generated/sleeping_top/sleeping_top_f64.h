@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 5d7a385617b7beb6.
+ * Body of these files: sha256 e3b2f5108d57d33b.
  */
 #ifndef SLEEPING_TOP_F64_H
 #define SLEEPING_TOP_F64_H
@@ -103,12 +103,12 @@ void sleeping_top_linearised_f64(const sleeping_top_constants_f64 *constants, do
  *            r^2*n)*beta_dot)/((1/4*r^2 + l^2)*cos(beta))
  * In this scene: beta_ddot = (l*g*cos(alpha)*sin(beta) + (1/2*r^2*n*alpha_dot - (1/4*r^2 +
  *            l^2)*alpha_dot^2*sin(beta))*cos(beta))/(1/4*r^2 + l^2)
- * Error: median 0.72, largest 7.4 u of the largest product or sum in the equation (of beta_ddot;
+ * Error: median 0.72, largest 6.8 u of the largest product or sum in the equation (of beta_ddot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Singular: at beta = pi/2 + k pi, alpha_ddot infinite, no number or beyond all measure.
  * Cost: 4 sub, 9 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 18270 to 18598 instructions, 276 B of code, 208 B of stack.
+ * On Cortex-M0+, -O2: 23011 to 23468 instructions, 1168 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -131,11 +131,11 @@ void sleeping_top_accelerations_f64(const sleeping_top_constants_f64 *constants,
  * Energy: The potential energy is the sum of -m g . r_G of each weight, r_G from the inertial
  *            origin to the mass centre (from that of a frame which carries it, where of this only
  *            the motion is given).
- * Error: median 0.42, largest 4.1 u of the largest product or sum in the equation (of energy;
+ * Error: median 0.42, largest 3.8 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Cost: 3 add, 6 mul, 2 cos.
- * On Cortex-M0+, -O2: 10005 to 10143 instructions, 168 B of code, 200 B of stack.
+ * On Cortex-M0+, -O2: 21284 to 21615 instructions, 1076 B of code, 200 B of stack.
  * Rests on: A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, further_axes_are_right_handed, rigid.
  */
@@ -155,13 +155,13 @@ void sleeping_top_energy_f64(const sleeping_top_constants_f64 *constants, double
  *            beta_dot_next  rad/s  rate of beta, next
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Error: median 0.4, largest 5.2 u of the largest component, before or after, or of the largest
- *            product of what the step adds, by rounding alone (of beta_next; 200000 samples of the
- *            ranges, 65536 searched from the worst); at 8246 hard samples no more.
+ * Error: median 0.4, largest 6.1 u of the largest component, before or after, or of the largest
+ *            product of what the step adds, by rounding alone (of alpha_dot_next; 200000 samples
+ *            of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
  * Singular: at beta = pi/2 + k pi, alpha_next, alpha_dot_next, beta_next, beta_dot_next infinite,
  *            no number or beyond all measure.
  * Cost: 28 add, 16 sub, 64 mul, 4 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 83579 to 84669 instructions, 1740 B of code, 408 B of stack.
+ * On Cortex-M0+, -O2: 103071 to 104133 instructions, 2580 B of code, 480 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -273,6 +273,48 @@ int t_handle_flip_setup_f32(float I_xx, float I_yy, float I_zz,
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 804; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    float sine;
+    float cosine;
+} t_handle_flip_sines_f32;
+
+static t_handle_flip_sines_f32 t_handle_flip_sine_cosine_f32(float angle)
+{
+    t_handle_flip_sines_f32 found;
+    if (fabsf(angle) <= 804.0F) {
+        const float k = ((angle * 0.636619747F) + 12582912.0F) - 12582912.0F;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const float r0 = angle - (k * 1.57067871F);
+        const float off1 = k * 0.000117614865F;
+        const float r1 = r0 - off1;
+        const float low1 = (r0 - r1) - off1;
+        const float off2 = k * 9.92088189e-10F;
+        const float r2 = r1 - off2;
+        const float low2 = low1 + ((r1 - r2) - off2);
+        const float off = (k * 5.39030253e-15F) - low2;
+        const float r = r2 - off;
+        const float low = (r2 - r) - off;
+        const float z = r * r;
+        const float cube = z * r;
+        const float odd = 0.00833218917F + (z * (-0.000195182845F));
+        const float even = 0.0416666456F + (z * ((-0.00138873095F) + (z * 2.44323273e-05F)));
+        const float half = 0.5F * z;
+        const float one_less = 1.0F - half;
+        const float sine = r - (((z * ((0.5F * low) - (cube * odd))) - low) - (cube * (-0.166666552F)));
+        const float cosine = one_less + (((1.0F - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const float first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const float second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sinf(angle);
+        found.cosine = cosf(angle);
+    }
+    return found;
+}
+
 /* Kinetic energy of turning about the centre of mass. */
 void t_handle_flip_kinetic_energy_f32(const t_handle_flip_constants_f32 *constants,
     const float omega[3], float *kinetic_energy)
@@ -463,8 +505,9 @@ void t_handle_flip_flow_exact_f32(const t_handle_flip_constants_f32 *constants,
     const float t159 = t158 * 0.5F;
     const float t162 = t159 * t105;
     const float t163 = t162 * t112;
-    const float t164 = sinf(t163);
-    const float t165 = cosf(t163);
+    const t_handle_flip_sines_f32 t164_both = t_handle_flip_sine_cosine_f32(t163);
+    const float t164 = t164_both.sine;
+    const float t165 = t164_both.cosine;
     const float t166 = t164 * t164;
     const float t167 = t159 * t165;
     const float t168 = t159 * t166;
@@ -1007,8 +1050,9 @@ void t_handle_flip_flow_exact_f32(const t_handle_flip_constants_f32 *constants,
     const float t725 = t114 * t103;
     const float t726 = t724 + t725;
     const float t727 = t723 * t726;
-    const float t728 = cosf(t727);
-    const float t729 = sinf(t727);
+    const t_handle_flip_sines_f32 t728_both = t_handle_flip_sine_cosine_f32(t727);
+    const float t728 = t728_both.cosine;
+    const float t729 = t728_both.sine;
     const float t730 = t686 * t728;
     const float t731 = t689 * t729;
     const float t732 = t730 - t731;

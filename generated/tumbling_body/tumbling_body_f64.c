@@ -764,6 +764,47 @@ int tumbling_body_setup_f64(double I_xx, double I_yy, double I_zz,
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 25735; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    double sine;
+    double cosine;
+} tumbling_body_sines_f64;
+
+static tumbling_body_sines_f64 tumbling_body_sine_cosine_f64(double angle)
+{
+    tumbling_body_sines_f64 found;
+    if (fabs(angle) <= 25735.0) {
+        const double k = ((angle * 0.6366197723675814) + 6755399441055744.0) - 6755399441055744.0;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const double r0 = angle - (k * 1.5707963267923333);
+        const double off1 = k * 2.5633441515839558e-12;
+        const double r1 = r0 - off1;
+        const double low1 = (r0 - r1) - off1;
+        const double off = (k * 1.0562999066987426e-23) - low1;
+        const double r = r1 - off;
+        const double low = (r1 - r) - off;
+        const double z = r * r;
+        const double cube = z * r;
+        const double odd = 0.00833333333332184 + (z * ((-0.00019841269829358528) + (z * (2.7557313538514204e-06 + (z *
+            ((-2.5050734389242796e-08) + (z * 1.5895433287554087e-10)))))));
+        const double even = 0.041666666666666595 + (z * ((-0.0013888888888873338) + (z * (2.480158728899748e-05 + (z *
+            ((-2.755731421529914e-07) + (z * (2.0875705115002216e-09 + (z * (-1.1358732776766006e-11))))))))));
+        const double half = 0.5 * z;
+        const double one_less = 1.0 - half;
+        const double sine = r - (((z * ((0.5 * low) - (cube * odd))) - low) - (cube * (-0.1666666666666663)));
+        const double cosine = one_less + (((1.0 - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const double first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const double second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sin(angle);
+        found.cosine = cos(angle);
+    }
+    return found;
+}
+
 /* Kinetic energy of turning about the centre of mass. */
 void tumbling_body_kinetic_energy_f64(const tumbling_body_constants_f64 *constants,
     const double omega[3], double *kinetic_energy)
@@ -942,8 +983,9 @@ void tumbling_body_flow_exact_f64(const tumbling_body_constants_f64 *constants,
     const double t159 = t158 * 0.5;
     const double t162 = t159 * t105;
     const double t163 = t162 * t112;
-    const double t164 = sin(t163);
-    const double t165 = cos(t163);
+    const tumbling_body_sines_f64 t164_both = tumbling_body_sine_cosine_f64(t163);
+    const double t164 = t164_both.sine;
+    const double t165 = t164_both.cosine;
     const double t166 = t164 * t164;
     const double t167 = t159 * t165;
     const double t168 = t159 * t166;
@@ -1486,8 +1528,9 @@ void tumbling_body_flow_exact_f64(const tumbling_body_constants_f64 *constants,
     const double t725 = t114 * t103;
     const double t726 = t724 + t725;
     const double t727 = t723 * t726;
-    const double t728 = cos(t727);
-    const double t729 = sin(t727);
+    const tumbling_body_sines_f64 t728_both = tumbling_body_sine_cosine_f64(t727);
+    const double t728 = t728_both.cosine;
+    const double t729 = t728_both.sine;
     const double t730 = t686 * t728;
     const double t731 = t689 * t729;
     const double t732 = t730 - t731;
@@ -5374,8 +5417,9 @@ void tumbling_body_step_lie_f64(const tumbling_body_constants_f64 *constants,
     const double t253 = t251 / t252;
     const double t258 = t253 * t254;
     const double t255 = t241 * t254;
-    const double t256 = sin(t255);
-    const double t257 = cos(t255);
+    const tumbling_body_sines_f64 t256_both = tumbling_body_sine_cosine_f64(t255);
+    const double t256 = t256_both.sine;
+    const double t257 = t256_both.cosine;
     const double t259 = fabs(t258);
     const double t260 = t259 * t241;
     const _Bool t261 = t260 < 1.0;
@@ -5459,8 +5503,9 @@ void tumbling_body_step_lie_f64(const tumbling_body_constants_f64 *constants,
     const double t165 = t163 / t164;
     const double t170 = t165 * t166;
     const double t167 = t153 * t166;
-    const double t168 = sin(t167);
-    const double t169 = cos(t167);
+    const tumbling_body_sines_f64 t168_both = tumbling_body_sine_cosine_f64(t167);
+    const double t168 = t168_both.sine;
+    const double t169 = t168_both.cosine;
     const double t171 = fabs(t170);
     const double t172 = t171 * t153;
     const _Bool t173 = t172 < 1.0;

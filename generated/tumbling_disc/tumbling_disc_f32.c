@@ -141,6 +141,48 @@ int tumbling_disc_setup_f32(float A, float C, tumbling_disc_constants_f32 *const
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 804; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    float sine;
+    float cosine;
+} tumbling_disc_sines_f32;
+
+static tumbling_disc_sines_f32 tumbling_disc_sine_cosine_f32(float angle)
+{
+    tumbling_disc_sines_f32 found;
+    if (fabsf(angle) <= 804.0F) {
+        const float k = ((angle * 0.636619747F) + 12582912.0F) - 12582912.0F;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const float r0 = angle - (k * 1.57067871F);
+        const float off1 = k * 0.000117614865F;
+        const float r1 = r0 - off1;
+        const float low1 = (r0 - r1) - off1;
+        const float off2 = k * 9.92088189e-10F;
+        const float r2 = r1 - off2;
+        const float low2 = low1 + ((r1 - r2) - off2);
+        const float off = (k * 5.39030253e-15F) - low2;
+        const float r = r2 - off;
+        const float low = (r2 - r) - off;
+        const float z = r * r;
+        const float cube = z * r;
+        const float odd = 0.00833218917F + (z * (-0.000195182845F));
+        const float even = 0.0416666456F + (z * ((-0.00138873095F) + (z * 2.44323273e-05F)));
+        const float half = 0.5F * z;
+        const float one_less = 1.0F - half;
+        const float sine = r - (((z * ((0.5F * low) - (cube * odd))) - low) - (cube * (-0.166666552F)));
+        const float cosine = one_less + (((1.0F - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const float first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const float second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sinf(angle);
+        found.cosine = cosf(angle);
+    }
+    return found;
+}
+
 /* Attitude and angular velocity after any time without torque (exact solution). */
 void tumbling_disc_flow_exact_f32(const tumbling_disc_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time, float attitude_next[4],
@@ -166,8 +208,9 @@ void tumbling_disc_flow_exact_f32(const tumbling_disc_constants_f32 *constants,
     const float t16 = constants->lag * t12;
     const float t17 = t16 * t14;
     const float t18 = t17 / 2.0F;
-    const float t19 = cosf(t18);
-    const float t20 = sinf(t18);
+    const tumbling_disc_sines_f32 t19_both = tumbling_disc_sine_cosine_f32(t18);
+    const float t19 = t19_both.cosine;
+    const float t20 = t19_both.sine;
     const float t21 = fabsf(t13);
     const float t22 = fabsf(t11);
     const float t23 = fabsf(t15);
@@ -187,9 +230,10 @@ void tumbling_disc_flow_exact_f32(const tumbling_disc_constants_f32 *constants,
     const float t37 = t27 * t36;
     const float t38 = t37 * t14;
     const float t39 = t38 / 2.0F;
-    const float t40 = sinf(t39);
+    const tumbling_disc_sines_f32 t40_both = tumbling_disc_sine_cosine_f32(t39);
+    const float t40 = t40_both.sine;
     const float t41 = t40 / t37;
-    const float t42 = cosf(t39);
+    const float t42 = t40_both.cosine;
     const float t43 = t41 * t13;
     const float t44 = t41 * t11;
     const float t45 = t41 * t15;
@@ -271,11 +315,13 @@ void tumbling_disc_plan_dmv_f32(const tumbling_disc_constants_f32 *constants, co
     const _Bool t7 = 0.0F < t6;
     const float t8 = time_step * t6;
     const float t9 = t8 * 0.5F;
-    const float t10 = sinf(t9);
+    const tumbling_disc_sines_f32 t10_both = tumbling_disc_sine_cosine_f32(t9);
+    const float t10 = t10_both.sine;
     const float t11 = t7 ? t6 : 1.0F;
     const float t12 = t10 / t11;
     const float t13 = t8 * 0.25F;
-    const float t14 = sinf(t13);
+    const tumbling_disc_sines_f32 t14_both = tumbling_disc_sine_cosine_f32(t13);
+    const float t14 = t14_both.sine;
     const float t15 = time_step * 0.5F;
     const float t16 = t7 ? t12 : t15;
     const float t17 = t14 * 2.0F;
@@ -283,9 +329,11 @@ void tumbling_disc_plan_dmv_f32(const tumbling_disc_constants_f32 *constants, co
     const float t19 = constants->lag * omega[2];
     const float t20 = time_step * t19;
     const float t21 = t20 * 0.5F;
-    const float t22 = sinf(t21);
+    const tumbling_disc_sines_f32 t22_both = tumbling_disc_sine_cosine_f32(t21);
+    const float t22 = t22_both.sine;
     const float t23 = t20 * 0.25F;
-    const float t24 = sinf(t23);
+    const tumbling_disc_sines_f32 t24_both = tumbling_disc_sine_cosine_f32(t23);
+    const float t24 = t24_both.sine;
     const float t25 = t24 * 2.0F;
     const float t26 = t25 * t24;
     const float t27 = 1.0F - t18;
@@ -300,7 +348,7 @@ void tumbling_disc_plan_dmv_f32(const tumbling_disc_constants_f32 *constants, co
     const float t36 = t30 * t28;
     const float t37 = t35 + t36;
     const float t38 = t22 * 2.0F;
-    const float t39 = cosf(t21);
+    const float t39 = t22_both.cosine;
     const float t40 = t38 * t39;
     const float t41 = t38 * t22;
     plan[0] = t33;

@@ -141,6 +141,47 @@ int tumbling_disc_setup_f64(double A, double C, tumbling_disc_constants_f64 *con
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 25735; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    double sine;
+    double cosine;
+} tumbling_disc_sines_f64;
+
+static tumbling_disc_sines_f64 tumbling_disc_sine_cosine_f64(double angle)
+{
+    tumbling_disc_sines_f64 found;
+    if (fabs(angle) <= 25735.0) {
+        const double k = ((angle * 0.6366197723675814) + 6755399441055744.0) - 6755399441055744.0;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const double r0 = angle - (k * 1.5707963267923333);
+        const double off1 = k * 2.5633441515839558e-12;
+        const double r1 = r0 - off1;
+        const double low1 = (r0 - r1) - off1;
+        const double off = (k * 1.0562999066987426e-23) - low1;
+        const double r = r1 - off;
+        const double low = (r1 - r) - off;
+        const double z = r * r;
+        const double cube = z * r;
+        const double odd = 0.00833333333332184 + (z * ((-0.00019841269829358528) + (z * (2.7557313538514204e-06 + (z *
+            ((-2.5050734389242796e-08) + (z * 1.5895433287554087e-10)))))));
+        const double even = 0.041666666666666595 + (z * ((-0.0013888888888873338) + (z * (2.480158728899748e-05 + (z *
+            ((-2.755731421529914e-07) + (z * (2.0875705115002216e-09 + (z * (-1.1358732776766006e-11))))))))));
+        const double half = 0.5 * z;
+        const double one_less = 1.0 - half;
+        const double sine = r - (((z * ((0.5 * low) - (cube * odd))) - low) - (cube * (-0.1666666666666663)));
+        const double cosine = one_less + (((1.0 - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const double first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const double second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sin(angle);
+        found.cosine = cos(angle);
+    }
+    return found;
+}
+
 /* Attitude and angular velocity after any time without torque (exact solution). */
 void tumbling_disc_flow_exact_f64(const tumbling_disc_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time, double attitude_next[4],
@@ -166,8 +207,9 @@ void tumbling_disc_flow_exact_f64(const tumbling_disc_constants_f64 *constants,
     const double t16 = constants->lag * t12;
     const double t17 = t16 * t14;
     const double t18 = t17 / 2.0;
-    const double t19 = cos(t18);
-    const double t20 = sin(t18);
+    const tumbling_disc_sines_f64 t19_both = tumbling_disc_sine_cosine_f64(t18);
+    const double t19 = t19_both.cosine;
+    const double t20 = t19_both.sine;
     const double t21 = fabs(t13);
     const double t22 = fabs(t11);
     const double t23 = fabs(t15);
@@ -187,9 +229,10 @@ void tumbling_disc_flow_exact_f64(const tumbling_disc_constants_f64 *constants,
     const double t37 = t27 * t36;
     const double t38 = t37 * t14;
     const double t39 = t38 / 2.0;
-    const double t40 = sin(t39);
+    const tumbling_disc_sines_f64 t40_both = tumbling_disc_sine_cosine_f64(t39);
+    const double t40 = t40_both.sine;
     const double t41 = t40 / t37;
-    const double t42 = cos(t39);
+    const double t42 = t40_both.cosine;
     const double t43 = t41 * t13;
     const double t44 = t41 * t11;
     const double t45 = t41 * t15;
@@ -271,11 +314,13 @@ void tumbling_disc_plan_dmv_f64(const tumbling_disc_constants_f64 *constants, co
     const _Bool t7 = 0.0 < t6;
     const double t8 = time_step * t6;
     const double t9 = t8 * 0.5;
-    const double t10 = sin(t9);
+    const tumbling_disc_sines_f64 t10_both = tumbling_disc_sine_cosine_f64(t9);
+    const double t10 = t10_both.sine;
     const double t11 = t7 ? t6 : 1.0;
     const double t12 = t10 / t11;
     const double t13 = t8 * 0.25;
-    const double t14 = sin(t13);
+    const tumbling_disc_sines_f64 t14_both = tumbling_disc_sine_cosine_f64(t13);
+    const double t14 = t14_both.sine;
     const double t15 = time_step * 0.5;
     const double t16 = t7 ? t12 : t15;
     const double t17 = t14 * 2.0;
@@ -283,9 +328,11 @@ void tumbling_disc_plan_dmv_f64(const tumbling_disc_constants_f64 *constants, co
     const double t19 = constants->lag * omega[2];
     const double t20 = time_step * t19;
     const double t21 = t20 * 0.5;
-    const double t22 = sin(t21);
+    const tumbling_disc_sines_f64 t22_both = tumbling_disc_sine_cosine_f64(t21);
+    const double t22 = t22_both.sine;
     const double t23 = t20 * 0.25;
-    const double t24 = sin(t23);
+    const tumbling_disc_sines_f64 t24_both = tumbling_disc_sine_cosine_f64(t23);
+    const double t24 = t24_both.sine;
     const double t25 = t24 * 2.0;
     const double t26 = t25 * t24;
     const double t27 = 1.0 - t18;
@@ -300,7 +347,7 @@ void tumbling_disc_plan_dmv_f64(const tumbling_disc_constants_f64 *constants, co
     const double t36 = t30 * t28;
     const double t37 = t35 + t36;
     const double t38 = t22 * 2.0;
-    const double t39 = cos(t21);
+    const double t39 = t22_both.cosine;
     const double t40 = t38 * t39;
     const double t41 = t38 * t22;
     plan[0] = t33;

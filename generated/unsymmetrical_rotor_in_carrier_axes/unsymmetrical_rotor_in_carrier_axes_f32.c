@@ -152,14 +152,58 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float 
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 804; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    float sine;
+    float cosine;
+} unsymmetrical_rotor_in_carrier_axes_sines_f32;
+
+static unsymmetrical_rotor_in_carrier_axes_sines_f32 unsymmetrical_rotor_in_carrier_axes_sine_cosine_f32(float angle)
+{
+    unsymmetrical_rotor_in_carrier_axes_sines_f32 found;
+    if (fabsf(angle) <= 804.0F) {
+        const float k = ((angle * 0.636619747F) + 12582912.0F) - 12582912.0F;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const float r0 = angle - (k * 1.57067871F);
+        const float off1 = k * 0.000117614865F;
+        const float r1 = r0 - off1;
+        const float low1 = (r0 - r1) - off1;
+        const float off2 = k * 9.92088189e-10F;
+        const float r2 = r1 - off2;
+        const float low2 = low1 + ((r1 - r2) - off2);
+        const float off = (k * 5.39030253e-15F) - low2;
+        const float r = r2 - off;
+        const float low = (r2 - r) - off;
+        const float z = r * r;
+        const float cube = z * r;
+        const float odd = 0.00833218917F + (z * (-0.000195182845F));
+        const float even = 0.0416666456F + (z * ((-0.00138873095F) + (z * 2.44323273e-05F)));
+        const float half = 0.5F * z;
+        const float one_less = 1.0F - half;
+        const float sine = r - (((z * ((0.5F * low) - (cube * odd))) - low) - (cube * (-0.166666552F)));
+        const float cosine = one_less + (((1.0F - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const float first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const float second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sinf(angle);
+        found.cosine = cosf(angle);
+    }
+    return found;
+}
+
 /* External moment that the motion needs (inverse dynamics). */
 void unsymmetrical_rotor_in_carrier_axes_moment_f32(const unsymmetrical_rotor_in_carrier_axes_constants_f32 *constants,
     float gamma, float gamma_dot, float gamma_ddot, float W, float W_dot, float moment[3])
 {
     const float t0 = gamma_ddot * constants->I_xx;
     const float t1 = W * W;
-    const float t2 = sinf(gamma);
-    const float t3 = cosf(gamma);
+    const unsymmetrical_rotor_in_carrier_axes_sines_f32 t2_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f32(
+        gamma);
+    const float t2 = t2_both.sine;
+    const float t3 = t2_both.cosine;
     const float t4 = t3 * constants->I_yy_minus_I_zz;
     const float t5 = t2 * t4;
     const float t6 = t1 * t5;
@@ -189,8 +233,10 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f32(
     float jacobian[11])
 {
     const float t0 = gamma_ddot * constants->I_xx;
-    const float t1 = sinf(gamma);
-    const float t2 = cosf(gamma);
+    const unsymmetrical_rotor_in_carrier_axes_sines_f32 t1_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f32(
+        gamma);
+    const float t1 = t1_both.sine;
+    const float t2 = t1_both.cosine;
     const float t3 = t1 * t2;
     const float t4 = W * constants->I_yy_minus_I_zz;
     const float t5 = W * t4;
@@ -274,8 +320,10 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f32(
     float gamma, float gamma_dot, float W, float angular_momentum[3])
 {
     const float t0 = gamma_dot * constants->I_xx;
-    const float t1 = sinf(gamma);
-    const float t2 = cosf(gamma);
+    const unsymmetrical_rotor_in_carrier_axes_sines_f32 t1_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f32(
+        gamma);
+    const float t1 = t1_both.sine;
+    const float t2 = t1_both.cosine;
     const float t3 = W * constants->I_yy_minus_I_zz;
     const float t4 = t2 * t3;
     const float t5 = t1 * t4;
@@ -294,12 +342,14 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f32(
     float rate_absolute[3])
 {
     const float t0 = gamma_ddot * constants->I_xx;
-    const float t1 = cosf(gamma);
+    const unsymmetrical_rotor_in_carrier_axes_sines_f32 t1_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f32(
+        gamma);
+    const float t1 = t1_both.cosine;
     const float t2 = gamma_dot * W;
     const float t3 = t1 * constants->twice_I_yy_minus_I_zz;
     const float t4 = t2 * t3;
     const float t5 = t1 * t4;
-    const float t6 = sinf(gamma);
+    const float t6 = t1_both.sine;
     const float t7 = t1 * constants->I_yy_minus_I_zz;
     const float t8 = W_dot * t7;
     const float t9 = t6 * t8;
@@ -335,7 +385,9 @@ void unsymmetrical_rotor_in_carrier_axes_kinetic_energy_f32(
     const float t2 = W * W;
     const float t3 = t2 * constants->half_I_yy;
     const float t4 = t1 + t3;
-    const float t5 = cosf(gamma);
+    const unsymmetrical_rotor_in_carrier_axes_sines_f32 t5_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f32(
+        gamma);
+    const float t5 = t5_both.cosine;
     const float t6 = t5 * t5;
     const float t7 = t6 * t2;
     const float t8 = t7 * constants->half_I_yy_minus_I_zz;

@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 8251984b5daba06c.
+ * Body of these files: sha256 763fa91d2a69b08d.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
@@ -74,10 +74,10 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float 
  *            I_zz)*gamma_dot*W*cos(gamma)*sin(gamma)
  * Error: median 0.54, largest 19 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
- *            5.1e+05 u (of moment, thin rod).
+ *            6e+05 u (of moment, thin rod).
  * Cost: 3 add, 2 sub, 14 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 5290 to 7776 instructions, 236 B of code, 160 B of stack.
- * On Cortex-M4F, -O2: 104 to 257 instructions, 160 B of code, 72 B of stack.
+ * On Cortex-M0+, -O2: 5644 to 6405 instructions, 780 B of code, 136 B of stack.
+ * On Cortex-M4F, -O2: 126 to 127 instructions, 568 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -96,12 +96,12 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f32(const unsymmetrical_rotor_in
  *            jacobian[11]  nonzeros of the Jacobian, in compressed-column order, each in its own unit
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
- * Error: median 0.53, largest 17 u of the largest product or sum in the equation (of moment;
+ * Error: median 0.54, largest 18 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            5.3e+05 u (of moment, thin rod).
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 7414 to 9984 instructions, 488 B of code, 208 B of stack.
- * On Cortex-M4F, -O2: 139 to 292 instructions, 296 B of code, 72 B of stack.
+ * On Cortex-M0+, -O2: 7767 to 8627 instructions, 1028 B of code, 176 B of stack.
+ * On Cortex-M4F, -O2: 161 to 162 instructions, 704 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -112,8 +112,8 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f32(
     float jacobian[11]);
 
 /* The same, the whole matrix: 15 entries.
- * On Cortex-M0+, -O2: 7608 to 10133 instructions, 552 B of code, 11 B of tables, 288 B of stack.
- * On Cortex-M4F, -O2: 280 to 433 instructions, 356 B of code, 11 B of tables, 128 B of stack.
+ * On Cortex-M0+, -O2: 7965 to 8786 instructions, 1092 B of code, 11 B of tables, 256 B of stack.
+ * On Cortex-M4F, -O2: 302 to 303 instructions, 764 B of code, 11 B of tables, 108 B of stack.
  */
 void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f32(
     const unsymmetrical_rotor_in_carrier_axes_constants_f32 *constants,
@@ -135,8 +135,8 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f32(
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8342 hard samples 8.3e+05 u (of angular_momentum, thin rod).
  * Cost: 1 sub, 6 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 4042 to 6497 instructions, 124 B of code, 152 B of stack.
- * On Cortex-M4F, -O2: 88 to 241 instructions, 96 B of code, 64 B of stack.
+ * On Cortex-M0+, -O2: 4358 to 5142 instructions, 660 B of code, 120 B of stack.
+ * On Cortex-M4F, -O2: 110 to 111 instructions, 504 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */
@@ -169,10 +169,10 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f32(
  *            I_zz)*gamma_dot*W*cos(gamma)*sin(gamma)
  * Error: median 0.57, largest 27 u of the largest product or sum in the equation (of rate_in_axes;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
- *            1.1e+06 u (of rate_in_axes, thin rod).
+ *            1.2e+06 u (of rate_in_axes, thin rod).
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 5624 to 8095 instructions, 276 B of code, 176 B of stack.
- * On Cortex-M4F, -O2: 110 to 263 instructions, 184 B of code, 80 B of stack.
+ * On Cortex-M0+, -O2: 5932 to 6728 instructions, 824 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 133 to 134 instructions, 596 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rate_seen_from_N, rigid.
  */
@@ -194,8 +194,8 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f32(
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
  * Cost: 1 add, 1 sub, 7 mul, 1 cos.
- * On Cortex-M0+, -O2: 2735 to 3928 instructions, 96 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 55 to 133 instructions, 76 B of code, 56 B of stack.
+ * On Cortex-M0+, -O2: 4523 to 5277 instructions, 648 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 109 to 110 instructions, 500 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

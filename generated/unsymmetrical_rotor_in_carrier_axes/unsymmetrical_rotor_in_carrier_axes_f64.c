@@ -152,14 +152,57 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, doub
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 25735; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    double sine;
+    double cosine;
+} unsymmetrical_rotor_in_carrier_axes_sines_f64;
+
+static unsymmetrical_rotor_in_carrier_axes_sines_f64 unsymmetrical_rotor_in_carrier_axes_sine_cosine_f64(double angle)
+{
+    unsymmetrical_rotor_in_carrier_axes_sines_f64 found;
+    if (fabs(angle) <= 25735.0) {
+        const double k = ((angle * 0.6366197723675814) + 6755399441055744.0) - 6755399441055744.0;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const double r0 = angle - (k * 1.5707963267923333);
+        const double off1 = k * 2.5633441515839558e-12;
+        const double r1 = r0 - off1;
+        const double low1 = (r0 - r1) - off1;
+        const double off = (k * 1.0562999066987426e-23) - low1;
+        const double r = r1 - off;
+        const double low = (r1 - r) - off;
+        const double z = r * r;
+        const double cube = z * r;
+        const double odd = 0.00833333333332184 + (z * ((-0.00019841269829358528) + (z * (2.7557313538514204e-06 + (z *
+            ((-2.5050734389242796e-08) + (z * 1.5895433287554087e-10)))))));
+        const double even = 0.041666666666666595 + (z * ((-0.0013888888888873338) + (z * (2.480158728899748e-05 + (z *
+            ((-2.755731421529914e-07) + (z * (2.0875705115002216e-09 + (z * (-1.1358732776766006e-11))))))))));
+        const double half = 0.5 * z;
+        const double one_less = 1.0 - half;
+        const double sine = r - (((z * ((0.5 * low) - (cube * odd))) - low) - (cube * (-0.1666666666666663)));
+        const double cosine = one_less + (((1.0 - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const double first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const double second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sin(angle);
+        found.cosine = cos(angle);
+    }
+    return found;
+}
+
 /* External moment that the motion needs (inverse dynamics). */
 void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants,
     double gamma, double gamma_dot, double gamma_ddot, double W, double W_dot, double moment[3])
 {
     const double t0 = gamma_ddot * constants->I_xx;
     const double t1 = W * W;
-    const double t2 = sin(gamma);
-    const double t3 = cos(gamma);
+    const unsymmetrical_rotor_in_carrier_axes_sines_f64 t2_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f64(
+        gamma);
+    const double t2 = t2_both.sine;
+    const double t3 = t2_both.cosine;
     const double t4 = t3 * constants->I_yy_minus_I_zz;
     const double t5 = t2 * t4;
     const double t6 = t1 * t5;
@@ -189,8 +232,10 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f64(
     double jacobian[11])
 {
     const double t0 = gamma_ddot * constants->I_xx;
-    const double t1 = sin(gamma);
-    const double t2 = cos(gamma);
+    const unsymmetrical_rotor_in_carrier_axes_sines_f64 t1_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f64(
+        gamma);
+    const double t1 = t1_both.sine;
+    const double t2 = t1_both.cosine;
     const double t3 = t1 * t2;
     const double t4 = W * constants->I_yy_minus_I_zz;
     const double t5 = W * t4;
@@ -274,8 +319,10 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(
     double gamma, double gamma_dot, double W, double angular_momentum[3])
 {
     const double t0 = gamma_dot * constants->I_xx;
-    const double t1 = sin(gamma);
-    const double t2 = cos(gamma);
+    const unsymmetrical_rotor_in_carrier_axes_sines_f64 t1_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f64(
+        gamma);
+    const double t1 = t1_both.sine;
+    const double t2 = t1_both.cosine;
     const double t3 = W * constants->I_yy_minus_I_zz;
     const double t4 = t2 * t3;
     const double t5 = t1 * t4;
@@ -294,12 +341,14 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(
     double rate_in_axes[3], double rate_absolute[3])
 {
     const double t0 = gamma_ddot * constants->I_xx;
-    const double t1 = cos(gamma);
+    const unsymmetrical_rotor_in_carrier_axes_sines_f64 t1_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f64(
+        gamma);
+    const double t1 = t1_both.cosine;
     const double t2 = gamma_dot * W;
     const double t3 = t1 * constants->twice_I_yy_minus_I_zz;
     const double t4 = t2 * t3;
     const double t5 = t1 * t4;
-    const double t6 = sin(gamma);
+    const double t6 = t1_both.sine;
     const double t7 = t1 * constants->I_yy_minus_I_zz;
     const double t8 = W_dot * t7;
     const double t9 = t6 * t8;
@@ -335,7 +384,9 @@ void unsymmetrical_rotor_in_carrier_axes_kinetic_energy_f64(
     const double t2 = W * W;
     const double t3 = t2 * constants->half_I_yy;
     const double t4 = t1 + t3;
-    const double t5 = cos(gamma);
+    const unsymmetrical_rotor_in_carrier_axes_sines_f64 t5_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f64(
+        gamma);
+    const double t5 = t5_both.cosine;
     const double t6 = t5 * t5;
     const double t7 = t6 * t2;
     const double t8 = t7 * constants->half_I_yy_minus_I_zz;

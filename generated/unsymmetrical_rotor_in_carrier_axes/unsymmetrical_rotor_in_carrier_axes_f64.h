@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 6ad5f136b6a8d320.
+ * Body of these files: sha256 cde7cb858dffa647.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
@@ -50,7 +50,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
- * On Cortex-M0+, -O2: 20251 to 22247 instructions, 1516 B of code, 496 B of stack.
+ * On Cortex-M0+, -O2: 20250 to 22247 instructions, 1516 B of code, 496 B of stack.
  */
 int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, double I_zz,
     unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants);
@@ -74,7 +74,7 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, doub
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            7.4e+05 u (of moment, thin rod).
  * Cost: 3 add, 2 sub, 14 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 12097 to 17367 instructions, 352 B of code, 256 B of stack.
+ * On Cortex-M0+, -O2: 14436 to 16164 instructions, 1260 B of code, 232 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -95,9 +95,9 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.54, largest 17 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
- *            7.5e+05 u (of moment, thin rod).
+ *            5.8e+05 u (of moment, thin rod).
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 17094 to 22456 instructions, 744 B of code, 352 B of stack.
+ * On Cortex-M0+, -O2: 19553 to 21366 instructions, 1660 B of code, 312 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -108,7 +108,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f64(
     double jacobian[11]);
 
 /* The same, the whole matrix: 15 entries.
- * On Cortex-M0+, -O2: 17362 to 22638 instructions, 836 B of code, 11 B of tables, 504 B of stack.
+ * On Cortex-M0+, -O2: 19783 to 21496 instructions, 1752 B of code, 11 B of tables, 464 B of stack.
  */
 void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(
     const unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants,
@@ -130,7 +130,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8342 hard samples 9e+05 u (of angular_momentum, thin rod).
  * Cost: 1 sub, 6 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 9159 to 14341 instructions, 176 B of code, 240 B of stack.
+ * On Cortex-M0+, -O2: 11498 to 13204 instructions, 1076 B of code, 208 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */
@@ -163,9 +163,9 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(
  *            I_zz)*gamma_dot*W*cos(gamma)*sin(gamma)
  * Error: median 0.57, largest 23 u of the largest product or sum in the equation (of rate_in_axes;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
- *            1.3e+06 u (of rate_in_axes, thin rod).
+ *            1.2e+06 u (of rate_in_axes, thin rod).
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 12917 to 18109 instructions, 432 B of code, 296 B of stack.
+ * On Cortex-M0+, -O2: 15210 to 16928 instructions, 1332 B of code, 248 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rate_seen_from_N, rigid.
  */
@@ -187,7 +187,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
  * Cost: 1 add, 1 sub, 7 mul, 1 cos.
- * On Cortex-M0+, -O2: 6298 to 8764 instructions, 156 B of code, 232 B of stack.
+ * On Cortex-M0+, -O2: 11937 to 13594 instructions, 1060 B of code, 184 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

@@ -178,11 +178,54 @@ int wheel_pendulum_setup_f32(float m_p, float m_r, float l_p, float l_r, float J
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 804; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    float sine;
+    float cosine;
+} wheel_pendulum_sines_f32;
+
+static wheel_pendulum_sines_f32 wheel_pendulum_sine_cosine_f32(float angle)
+{
+    wheel_pendulum_sines_f32 found;
+    if (fabsf(angle) <= 804.0F) {
+        const float k = ((angle * 0.636619747F) + 12582912.0F) - 12582912.0F;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const float r0 = angle - (k * 1.57067871F);
+        const float off1 = k * 0.000117614865F;
+        const float r1 = r0 - off1;
+        const float low1 = (r0 - r1) - off1;
+        const float off2 = k * 9.92088189e-10F;
+        const float r2 = r1 - off2;
+        const float low2 = low1 + ((r1 - r2) - off2);
+        const float off = (k * 5.39030253e-15F) - low2;
+        const float r = r2 - off;
+        const float low = (r2 - r) - off;
+        const float z = r * r;
+        const float cube = z * r;
+        const float odd = 0.00833218917F + (z * (-0.000195182845F));
+        const float even = 0.0416666456F + (z * ((-0.00138873095F) + (z * 2.44323273e-05F)));
+        const float half = 0.5F * z;
+        const float one_less = 1.0F - half;
+        const float sine = r - (((z * ((0.5F * low) - (cube * odd))) - low) - (cube * (-0.166666552F)));
+        const float cosine = one_less + (((1.0F - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const float first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const float second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sinf(angle);
+        found.cosine = cosf(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void wheel_pendulum_state_rate_f32(const wheel_pendulum_constants_f32 *constants, float theta,
     float theta_dot, float T, float *theta_rate, float *theta_dot_rate, float *s_rate)
 {
-    const float t0 = sinf(theta);
+    const wheel_pendulum_sines_f32 t0_both = wheel_pendulum_sine_cosine_f32(theta);
+    const float t0 = t0_both.sine;
     const float t1 = t0 * constants->k1;
     const float t2 = T - t1;
     const float t3 = t2 * constants->J_r_inverse_det;
@@ -199,14 +242,15 @@ void wheel_pendulum_state_rate_jacobian_f32(const wheel_pendulum_constants_f32 *
     float theta, float theta_dot, float T, float *theta_rate, float *theta_dot_rate, float *s_rate,
     float jacobian[5])
 {
-    const float t0 = sinf(theta);
+    const wheel_pendulum_sines_f32 t0_both = wheel_pendulum_sine_cosine_f32(theta);
+    const float t0 = t0_both.sine;
     const float t1 = t0 * constants->k1;
     const float t2 = T - t1;
     const float t3 = t2 * constants->J_r_inverse_det;
     const float t4 = t0 * constants->k2;
     const float t5 = T * constants->k3;
     const float t6 = t4 - t5;
-    const float t7 = cosf(theta);
+    const float t7 = t0_both.cosine;
     const float t8 = t7 * constants->k2;
     const float t9 = -t8;
     *theta_rate = theta_dot;
@@ -264,7 +308,8 @@ void wheel_pendulum_energy_f32(const wheel_pendulum_constants_f32 *constants, fl
     const float t0 = theta_dot + s;
     const float t1 = t0 * t0;
     const float t2 = t1 * constants->half_J_r;
-    const float t3 = cosf(theta);
+    const wheel_pendulum_sines_f32 t3_both = wheel_pendulum_sine_cosine_f32(theta);
+    const float t3 = t3_both.cosine;
     const float t4 = t3 * constants->k1;
     const float t5 = t2 + t4;
     const float t6 = theta_dot * theta_dot;
@@ -281,7 +326,8 @@ void wheel_pendulum_step_rk4_f32(const wheel_pendulum_constants_f32 *constants, 
     const float t0 = time_step * 0.5F;
     const float t4 = theta_dot * t0;
     const float t12 = theta + t4;
-    const float t14 = sinf(t12);
+    const wheel_pendulum_sines_f32 t14_both = wheel_pendulum_sine_cosine_f32(t12);
+    const float t14 = t14_both.sine;
     const float t15 = t14 * constants->k1;
     const float t16 = T - t15;
     const float t5 = constants->J_r_inverse_det * t0;
@@ -290,7 +336,8 @@ void wheel_pendulum_step_rk4_f32(const wheel_pendulum_constants_f32 *constants, 
     const float t26 = t22 * t0;
     const float t30 = t26 * 2.0F;
     const float t32 = theta + t30;
-    const float t34 = sinf(t32);
+    const wheel_pendulum_sines_f32 t34_both = wheel_pendulum_sine_cosine_f32(t32);
+    const float t34 = t34_both.sine;
     const float t35 = t34 * constants->k1;
     const float t36 = T - t35;
     const float t38 = t36 * t5;
@@ -301,7 +348,8 @@ void wheel_pendulum_step_rk4_f32(const wheel_pendulum_constants_f32 *constants, 
     const float t10 = T * t9;
     const float t20 = t19 - t10;
     const float t40 = t39 - t10;
-    const float t1 = sinf(theta);
+    const wheel_pendulum_sines_f32 t1_both = wheel_pendulum_sine_cosine_f32(theta);
+    const float t1 = t1_both.sine;
     const float t2 = t1 * constants->k1;
     const float t3 = T - t2;
     const float t6 = t3 * t5;
@@ -313,7 +361,8 @@ void wheel_pendulum_step_rk4_f32(const wheel_pendulum_constants_f32 *constants, 
     const float t42 = t41 * 2.0F;
     const float t43 = t4 + t42;
     const float t21 = theta + t17;
-    const float t23 = sinf(t21);
+    const wheel_pendulum_sines_f32 t23_both = wheel_pendulum_sine_cosine_f32(t21);
+    const float t23 = t23_both.sine;
     const float t28 = t23 * t7;
     const float t29 = t28 - t10;
     const float t51 = t20 + t29;

@@ -25,7 +25,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 3a9ea7d099d9273e.
+ * Body of these files: sha256 aba595426a47430c.
  */
 #ifndef WHEEL_PENDULUM_F32_H
 #define WHEEL_PENDULUM_F32_H
@@ -88,8 +88,8 @@ int wheel_pendulum_setup_f32(float m_p, float m_r, float l_p, float l_r, float J
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
  * Cost: 2 sub, 4 mul, 1 sin.
- * On Cortex-M0+, -O2: 2064 to 3407 instructions, 84 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 52 to 127 instructions, 84 B of code, 64 B of stack.
+ * On Cortex-M0+, -O2: 4161 to 4980 instructions, 636 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 113 to 114 instructions, 512 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -113,8 +113,8 @@ void wheel_pendulum_state_rate_f32(const wheel_pendulum_constants_f32 *constants
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
  * Cost: 2 sub, 5 mul, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 3983 to 6467 instructions, 152 B of code, 152 B of stack.
- * On Cortex-M4F, -O2: 100 to 253 instructions, 128 B of code, 80 B of stack.
+ * On Cortex-M0+, -O2: 4298 to 5109 instructions, 692 B of code, 120 B of stack.
+ * On Cortex-M4F, -O2: 124 to 125 instructions, 544 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -123,8 +123,8 @@ void wheel_pendulum_state_rate_jacobian_f32(const wheel_pendulum_constants_f32 *
     float jacobian[5]);
 
 /* The same, the whole matrix: 12 entries.
- * On Cortex-M0+, -O2: 4080 to 6581 instructions, 192 B of code, 5 B of tables, 176 B of stack.
- * On Cortex-M4F, -O2: 190 to 343 instructions, 172 B of code, 5 B of tables, 104 B of stack.
+ * On Cortex-M0+, -O2: 4452 to 5248 instructions, 728 B of code, 5 B of tables, 144 B of stack.
+ * On Cortex-M4F, -O2: 214 to 215 instructions, 592 B of code, 5 B of tables, 76 B of stack.
  */
 void wheel_pendulum_state_rate_jacobian_dense_f32(const wheel_pendulum_constants_f32 *constants,
     float theta, float theta_dot, float T, float *theta_rate, float *theta_dot_rate, float *s_rate,
@@ -149,7 +149,7 @@ void wheel_pendulum_state_rate_jacobian_dense_f32(const wheel_pendulum_constants
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: no operations.
- * On Cortex-M0+, -O2: 19 instructions, 40 B of code, 12 B of stack.
+ * On Cortex-M0+, -O2: 19 to 20 instructions, 40 B of code, 12 B of stack.
  * On Cortex-M4F, -O2: 18 instructions, 52 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -173,12 +173,12 @@ void wheel_pendulum_linearised_f32(const wheel_pendulum_constants_f32 *constants
  * Energy: The potential energy is the sum of -m g . r_G of each weight, r_G from the inertial
  *            origin to the mass centre (from that of a frame which carries it, where of this only
  *            the motion is given).
- * Error: median 0.75, largest 11 u of the largest product or sum in the equation (of energy;
+ * Error: median 0.75, largest 12 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: 3 add, 5 mul, 1 cos.
- * On Cortex-M0+, -O2: 2562 to 3776 instructions, 88 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 54 to 132 instructions, 72 B of code, 56 B of stack.
+ * On Cortex-M0+, -O2: 4346 to 5127 instructions, 636 B of code, 104 B of stack.
+ * On Cortex-M4F, -O2: 109 to 110 instructions, 500 B of code, 44 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            constant_mass, rate_seen_from_N, rigid.
  */
@@ -199,12 +199,12 @@ void wheel_pendulum_energy_f32(const wheel_pendulum_constants_f32 *constants, fl
  *            to G: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Follows from, for each body, M about any point, M_G about G: M = M_G + rho_G x (m a_G)
  *            [lecture step any_point_form]
- * Error: median 0.36, largest 9.1e+02 u of the largest component, before or after, or of the
+ * Error: median 0.36, largest 5.2e+02 u of the largest component, before or after, or of the
  *            largest product of what the step adds, by rounding alone (of theta_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Cost: 18 add, 8 sub, 29 mul, 4 sin.
- * On Cortex-M0+, -O2: 10592 to 15926 instructions, 508 B of code, 192 B of stack.
- * On Cortex-M4F, -O2: 200 to 500 instructions, 340 B of code, 128 B of stack.
+ * On Cortex-M0+, -O2: 19143 to 22152 instructions, 1064 B of code, 192 B of stack.
+ * On Cortex-M4F, -O2: 434 to 438 instructions, 756 B of code, 140 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -178,11 +178,53 @@ int wheel_pendulum_setup_f64(double m_p, double m_r, double l_p, double l_r, dou
 #endif
 #endif
 
+/* Sine and cosine of an angle in rad, by + - * alone up to 25735; of larger ones the library is asked.
+ * Quarter turns, k of them, are taken off in parts whose products with k are exact: r + low is left. */
+typedef struct {
+    double sine;
+    double cosine;
+} wheel_pendulum_sines_f64;
+
+static wheel_pendulum_sines_f64 wheel_pendulum_sine_cosine_f64(double angle)
+{
+    wheel_pendulum_sines_f64 found;
+    if (fabs(angle) <= 25735.0) {
+        const double k = ((angle * 0.6366197723675814) + 6755399441055744.0) - 6755399441055744.0;
+        const unsigned int quarters = (unsigned int)(int)k;
+        const double r0 = angle - (k * 1.5707963267923333);
+        const double off1 = k * 2.5633441515839558e-12;
+        const double r1 = r0 - off1;
+        const double low1 = (r0 - r1) - off1;
+        const double off = (k * 1.0562999066987426e-23) - low1;
+        const double r = r1 - off;
+        const double low = (r1 - r) - off;
+        const double z = r * r;
+        const double cube = z * r;
+        const double odd = 0.00833333333332184 + (z * ((-0.00019841269829358528) + (z * (2.7557313538514204e-06 + (z *
+            ((-2.5050734389242796e-08) + (z * 1.5895433287554087e-10)))))));
+        const double even = 0.041666666666666595 + (z * ((-0.0013888888888873338) + (z * (2.480158728899748e-05 + (z *
+            ((-2.755731421529914e-07) + (z * (2.0875705115002216e-09 + (z * (-1.1358732776766006e-11))))))))));
+        const double half = 0.5 * z;
+        const double one_less = 1.0 - half;
+        const double sine = r - (((z * ((0.5 * low) - (cube * odd))) - low) - (cube * (-0.1666666666666663)));
+        const double cosine = one_less + (((1.0 - one_less) - half) + ((z * (z * even)) - (r * low)));
+        const double first = ((quarters & 1U) != 0U) ? cosine : sine;
+        const double second = ((quarters & 1U) != 0U) ? sine : cosine;
+        found.sine = ((quarters & 2U) != 0U) ? -first : first;
+        found.cosine = (((quarters + 1U) & 2U) != 0U) ? -second : second;
+    } else {
+        found.sine = sin(angle);
+        found.cosine = cos(angle);
+    }
+    return found;
+}
+
 /* Rate of the state from the state and the inputs (forward dynamics). */
 void wheel_pendulum_state_rate_f64(const wheel_pendulum_constants_f64 *constants, double theta,
     double theta_dot, double T, double *theta_rate, double *theta_dot_rate, double *s_rate)
 {
-    const double t0 = sin(theta);
+    const wheel_pendulum_sines_f64 t0_both = wheel_pendulum_sine_cosine_f64(theta);
+    const double t0 = t0_both.sine;
     const double t1 = t0 * constants->k1;
     const double t2 = T - t1;
     const double t3 = t2 * constants->J_r_inverse_det;
@@ -199,14 +241,15 @@ void wheel_pendulum_state_rate_jacobian_f64(const wheel_pendulum_constants_f64 *
     double theta, double theta_dot, double T, double *theta_rate, double *theta_dot_rate,
     double *s_rate, double jacobian[5])
 {
-    const double t0 = sin(theta);
+    const wheel_pendulum_sines_f64 t0_both = wheel_pendulum_sine_cosine_f64(theta);
+    const double t0 = t0_both.sine;
     const double t1 = t0 * constants->k1;
     const double t2 = T - t1;
     const double t3 = t2 * constants->J_r_inverse_det;
     const double t4 = t0 * constants->k2;
     const double t5 = T * constants->k3;
     const double t6 = t4 - t5;
-    const double t7 = cos(theta);
+    const double t7 = t0_both.cosine;
     const double t8 = t7 * constants->k2;
     const double t9 = -t8;
     *theta_rate = theta_dot;
@@ -264,7 +307,8 @@ void wheel_pendulum_energy_f64(const wheel_pendulum_constants_f64 *constants, do
     const double t0 = theta_dot + s;
     const double t1 = t0 * t0;
     const double t2 = t1 * constants->half_J_r;
-    const double t3 = cos(theta);
+    const wheel_pendulum_sines_f64 t3_both = wheel_pendulum_sine_cosine_f64(theta);
+    const double t3 = t3_both.cosine;
     const double t4 = t3 * constants->k1;
     const double t5 = t2 + t4;
     const double t6 = theta_dot * theta_dot;
@@ -281,7 +325,8 @@ void wheel_pendulum_step_rk4_f64(const wheel_pendulum_constants_f64 *constants, 
     const double t0 = time_step * 0.5;
     const double t4 = theta_dot * t0;
     const double t12 = theta + t4;
-    const double t14 = sin(t12);
+    const wheel_pendulum_sines_f64 t14_both = wheel_pendulum_sine_cosine_f64(t12);
+    const double t14 = t14_both.sine;
     const double t15 = t14 * constants->k1;
     const double t16 = T - t15;
     const double t5 = constants->J_r_inverse_det * t0;
@@ -290,7 +335,8 @@ void wheel_pendulum_step_rk4_f64(const wheel_pendulum_constants_f64 *constants, 
     const double t26 = t22 * t0;
     const double t30 = t26 * 2.0;
     const double t32 = theta + t30;
-    const double t34 = sin(t32);
+    const wheel_pendulum_sines_f64 t34_both = wheel_pendulum_sine_cosine_f64(t32);
+    const double t34 = t34_both.sine;
     const double t35 = t34 * constants->k1;
     const double t36 = T - t35;
     const double t38 = t36 * t5;
@@ -301,7 +347,8 @@ void wheel_pendulum_step_rk4_f64(const wheel_pendulum_constants_f64 *constants, 
     const double t10 = T * t9;
     const double t20 = t19 - t10;
     const double t40 = t39 - t10;
-    const double t1 = sin(theta);
+    const wheel_pendulum_sines_f64 t1_both = wheel_pendulum_sine_cosine_f64(theta);
+    const double t1 = t1_both.sine;
     const double t2 = t1 * constants->k1;
     const double t3 = T - t2;
     const double t6 = t3 * t5;
@@ -313,7 +360,8 @@ void wheel_pendulum_step_rk4_f64(const wheel_pendulum_constants_f64 *constants, 
     const double t42 = t41 * 2.0;
     const double t43 = t4 + t42;
     const double t21 = theta + t17;
-    const double t23 = sin(t21);
+    const wheel_pendulum_sines_f64 t23_both = wheel_pendulum_sine_cosine_f64(t21);
+    const double t23 = t23_both.sine;
     const double t28 = t23 * t7;
     const double t29 = t28 - t10;
     const double t51 = t20 + t29;

@@ -24,7 +24,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 38cd62fbb0a732d6.
+ * Body of these files: sha256 ff3163f2297cc321.
  */
 #ifndef WHEEL_PENDULUM_F64_H
 #define WHEEL_PENDULUM_F64_H
@@ -82,11 +82,11 @@ int wheel_pendulum_setup_f64(double m_p, double m_r, double l_p, double l_r, dou
  * In this scene: Delta = -(J_p + m_p*l_p^2 + m_r*l_r^2)*J_r
  * In this scene: theta_dot_rate = ((T - b)*J_r)/Delta
  * In this scene: s_rate = (b*J_r - (J_p + J_r + m_p*l_p^2 + m_r*l_r^2)*T)/Delta
- * Error: median 0.63, largest 4.6 u of the largest product or sum in the equation (of
+ * Error: median 0.63, largest 4.7 u of the largest product or sum in the equation (of
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
  * Cost: 2 sub, 4 mul, 1 sin.
- * On Cortex-M0+, -O2: 4750 to 7535 instructions, 128 B of code, 224 B of stack.
+ * On Cortex-M0+, -O2: 11102 to 12749 instructions, 1044 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -110,7 +110,7 @@ void wheel_pendulum_state_rate_f64(const wheel_pendulum_constants_f64 *constants
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
  * Cost: 2 sub, 5 mul, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 9006 to 14214 instructions, 228 B of code, 248 B of stack.
+ * On Cortex-M0+, -O2: 11374 to 13091 instructions, 1128 B of code, 192 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -119,7 +119,7 @@ void wheel_pendulum_state_rate_jacobian_f64(const wheel_pendulum_constants_f64 *
     double *s_rate, double jacobian[5]);
 
 /* The same, the whole matrix: 12 entries.
- * On Cortex-M0+, -O2: 9157 to 14437 instructions, 312 B of code, 5 B of tables, 344 B of stack.
+ * On Cortex-M0+, -O2: 11530 to 13305 instructions, 1212 B of code, 5 B of tables, 288 B of stack.
  */
 void wheel_pendulum_state_rate_jacobian_dense_f64(const wheel_pendulum_constants_f64 *constants,
     double theta, double theta_dot, double T, double *theta_rate, double *theta_dot_rate,
@@ -171,7 +171,7 @@ void wheel_pendulum_linearised_f64(const wheel_pendulum_constants_f64 *constants
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Cost: 3 add, 5 mul, 1 cos.
- * On Cortex-M0+, -O2: 5810 to 8295 instructions, 144 B of code, 224 B of stack.
+ * On Cortex-M0+, -O2: 11426 to 13138 instructions, 1040 B of code, 176 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            constant_mass, rate_seen_from_N, rigid.
  */
@@ -196,7 +196,7 @@ void wheel_pendulum_energy_f64(const wheel_pendulum_constants_f64 *constants, do
  *            largest product of what the step adds, by rounding alone (of theta_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Cost: 18 add, 8 sub, 29 mul, 4 sin.
- * On Cortex-M0+, -O2: 24228 to 35359 instructions, 716 B of code, 328 B of stack.
+ * On Cortex-M0+, -O2: 49582 to 56059 instructions, 1648 B of code, 328 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
