@@ -6,6 +6,7 @@ from math import isfinite
 
 from markupsafe import Markup
 
+from derive.emit.on_target import UNKNOWN, Cost, OnTarget
 from derive.emit.templates import TEMPLATES
 from derive.motion.runge_kutta.system import FLOW
 from derive.report.courses import StepErrors
@@ -63,10 +64,11 @@ class FunctionRow:
     instructions: dict[str, str]
 
 
-def report_page(found: SceneReport, pages: Mapping[str, str]) -> str:
+def report_page(found: SceneReport, pages: Mapping[str, str], on_target: OnTarget = UNKNOWN) -> str:
     """Return the text of ``<scene>_report.html``.
 
-    pages : what it leads to, as seen from it, with the words to say
+    pages     : what it leads to, as seen from it, with the words to say
+    on_target : what functions cost on cores
     """
     motion = found.motion
     moving = [] if motion is None else list(motion_plots(found, motion))
@@ -74,6 +76,7 @@ def report_page(found: SceneReport, pages: Mapping[str, str]) -> str:
     page = TEMPLATES.get_template("scene_report.html.jinja").render(
         report=found,
         pages=pages,
+        on_target=by_function(on_target),
         scene=found.library.scene,
         argument=argument(found.library.scene),
         motion=motion,
@@ -97,6 +100,12 @@ def report_page(found: SceneReport, pages: Mapping[str, str]) -> str:
     )
     others = [one for _, whole, more in moving for one in (whole, *more)]
     return shared(page, [*others, *standing])
+
+
+def by_function(on_target: OnTarget) -> list[Cost]:
+    """Return what functions cost on cores, those of one function beside each other."""
+    order = list(dict.fromkeys(c.function for c in on_target.each))
+    return sorted(on_target.each, key=lambda c: order.index(c.function))
 
 
 def motion_plots(found: SceneReport, motion: StepErrors) -> Iterator[tuple[str, Slim, list[Slim]]]:

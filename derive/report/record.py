@@ -5,14 +5,15 @@ from dataclasses import asdict
 from math import isfinite
 from typing import Any
 
+from derive.emit.on_target import UNKNOWN, OnTarget
 from derive.report.courses import StepErrors
 from derive.report.price import LIBM_COSTS, PAIR_COSTS
 from derive.report.sentence import MARGIN, said_of
 from derive.report.whole import SceneReport
 
 
-def report_json(found: SceneReport) -> str:
-    """Return the text of ``<scene>_report.json``."""
+def report_json(found: SceneReport, on_target: OnTarget = UNKNOWN) -> str:
+    """Return the text of ``<scene>_report.json``; ``on_target`` is what functions cost on cores."""
     scene = found.library.scene
     whole = {
         "scene": scene.name,
@@ -25,6 +26,7 @@ def report_json(found: SceneReport) -> str:
         "hard": [asdict(h) for h in found.hard],
         "nanoseconds": [asdict(t) for t in found.times],
         "instructions": [asdict(c) for c in found.instructions],
+        "targets": [asdict(c) for c in on_target.each],
         "without": list(found.without),
         "counted_as": {"libm": LIBM_COSTS, "pairs": PAIR_COSTS},
         "machine": asdict(found.machine),

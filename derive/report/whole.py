@@ -146,5 +146,4 @@ def without(times: Sequence[Nanoseconds], counts: Sequence[Instructions]) -> tup
     """Return what was not measured, and why."""
     slow = [] if times else [f"nanoseconds: not measured, {HOW_TO_GET_ONE}"]
     uncounted = [] if counts or not times else [WITHOUT]
-    return (*slow, *uncounted,
-            "a Cortex-M: not measured, as nothing of this scene was run on one")  # fmt: skip
+    return (*slow, *uncounted)
