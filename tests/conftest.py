@@ -16,8 +16,8 @@ from derive.scene import catalogue
 
 settings.register_profile("derive", deadline=None)
 settings.load_profile("derive")
-MANY, PART = 6, 5
-"""Of a test with more than ``MANY`` long cases, continuous integration runs a fifth."""
+MANY, PART = 6, 8
+"""Of a test with more than ``MANY`` long cases, continuous integration runs an eighth."""
 SLOW = {"acrobot", "quadrotor", "rattleback"}
 """Scenes that take seconds to derive: their rows run with ``-m long``."""
 SCENES = {*catalogue(), *(path.stem for path in Path(__file__).parent.rglob("*.toml"))}
