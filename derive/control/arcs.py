@@ -12,7 +12,8 @@ from typing import Any
 import casadi
 import numpy as np
 
-from derive.control.direct import QUIET, Grid, quietly
+from derive.control.continuous import continuous, solver
+from derive.control.direct import Grid
 from derive.control.plant import NDFloat, Plant
 from derive.control.structure import Arc
 from derive.control.task import Task
@@ -20,12 +21,6 @@ from derive.control.task import Task
 DEGREE = 6
 LOOKED = 21  # points of an element at which its inputs are held against their limits
 LEAST, MORE = 3, 13  # elements of an arc: at least, and so many more of one that lasts all the time
-TOLERANCE = 1e-11
-OPTIONS = {
-    "print_level": 0, "sb": "yes", "max_iter": 150, "tol": TOLERANCE, "mu_init": 1e-5,
-    "max_cpu_time": 20.0,  # s: where it does not converge, it can search long
-    "constr_viol_tol": TOLERANCE, "acceptable_tol": 1e-8, "bound_relax_factor": 0.0,
-}  # fmt: skip
 GAUSS = np.array(casadi.collocation_points(DEGREE, "legendre"))
 SLOPES, ENDS, WEIGHTS = (np.array(m) for m in casadi.collocation_coeff(GAUSS.tolist()))
 
@@ -125,17 +120,22 @@ def refined(
     zero = casadi.vertcat(*(p.gaps for p in parts), *ends)
     if zero.numel() > w.numel() - len(last):
         return None
-    edges = casadi.vertcat(*(p.edges for p in parts))
-    problem = {"x": w, "f": cost / unit + spare**2, "g": casadi.vertcat(zero, edges)}
-    options: dict[str, Any] = {**QUIET, "expand": True, "ipopt": OPTIONS}
-    solver = casadi.nlpsol("arcs", "ipopt", problem, options)
-    kept = [np.concatenate([np.zeros(zero.numel()), *(p.kept[k] for p in parts)]) for k in (0, 1)]
-    found = quietly(solver, x0=begins, lbx=least, ubx=most, lbg=kept[0], ubg=kept[1])
-    told = solver.stats()
-    read = casadi.Function("read", [w], [lengths, casadi.horzcat(*x)])(found["x"])
+    goal = cost / unit + spare**2
+    box = (begins, least, most)
+    jumps = _jumps(asked, arcs, parts, each, inputs) if asked.cost["energy"] else None
+    if jumps is None:
+        edges = casadi.vertcat(*(p.edges for p in parts))
+        kept = [
+            np.concatenate([np.zeros(zero.numel()), *(p.kept[k] for p in parts)]) for k in (0, 1)
+        ]
+        found = solver({"x": w, "f": goal, "g": casadi.vertcat(zero, edges)})(box, kept)
+    else:
+        found = continuous({"x": w, "f": goal, "g": zero}, box, lengths, jumps)
+    at, multipliers, turns, why = found
+    read = casadi.Function("read", [w], [lengths, casadi.horzcat(*x), cost])(at)
     lasting = np.array(read[0]).ravel() * guess.until
-    u = np.array([*_inputs_of(np.array(found["x"]).ravel(), len(arcs), len(own.x), parts, inputs)])
-    adjoint = _adjoint(np.array(found["lam_g"]).ravel(), len(own.x), len(parts))
+    u = np.array([*_inputs_of(at, len(arcs), len(own.x), parts, inputs)])
+    adjoint = _adjoint(multipliers, len(own.x), len(parts))
     return Refined(
         np.concatenate([np.full(n, d / n) for d, n in zip(lasting, each, strict=True)]),
         np.array(read[1]) * sizes[:, None],
@@ -143,10 +143,34 @@ def refined(
         tuple(Arc(arc.stays, float(d)) for arc, d in zip(arcs, lasting, strict=True)),
         tuple(each),
         adjoint * unit / sizes[:, None],
-        float(found["f"]) * unit,
-        told["iter_count"],
-        "" if told["success"] else str(told["return_status"]).replace("_", " ").lower(),
+        float(read[2]),
+        turns,
+        why,
     )
+
+
+def _jumps(
+    asked: Task, arcs: Sequence[Arc], parts: Sequence[Span], each: Sequence[int], inputs: NDFloat
+) -> Any:
+    """Return by how much inputs jump between arcs; None where one goes from limit to limit.
+
+    Of inputs that come to limits, or leave them, at one time, the first is looked at.
+    """
+    found, last = list[Any](), -1
+    limits = [side[-len(inputs) :] / inputs for side in (asked.low, asked.high)]
+    for before, after, count in zip(arcs[:-1], arcs[1:], each[:-1], strict=True):
+        last += count
+        changed = [
+            i for i, (a, b) in enumerate(zip(before.stays, after.stays, strict=True)) if a != b
+        ]
+        if any(before.stays[i] * after.stays[i] for i in changed):
+            return None
+        i = changed[0]
+        leaves = before.stays[i] == 0
+        span = parts[last] if leaves else parts[last + 1]
+        value = span.edges[span.moving.index(i) + leaves * len(span.moving)]
+        found.append(value - limits[max(before.stays[i] + after.stays[i], 0)][i])
+    return casadi.vertcat(*found) if found else casadi.MX(0, 1)
 
 
 def _parts(

@@ -56,6 +56,32 @@ def test_a_turn_costs_the_energy_that_is_known(name: str) -> None:
     assert trajectory.conditions.worst < 1e-8
 
 
+@pytest.mark.parametrize(
+    ("moments", "turn", "limit", "cost", "until"),
+    [
+        ((1, 1, 1), "1,1,1 2", 0.6, {"energy": 1}, 3),
+        pytest.param((1, 2, 3), "1,2,2 2", 0.5, {"energy": 1}, 5, marks=pytest.mark.long),
+        pytest.param(
+            (1, 2, 2), "1,2,2 2", 0.4, {"energy": 0.1, "time": 1}, None, marks=pytest.mark.long
+        ),
+    ],
+)
+def test_a_cheap_turn_whose_inputs_come_to_their_limits_costs_what_grids_tend_to(
+    moments, turn, limit, cost, until
+) -> None:
+    """Inputs held over a step cost more by the step's square; what is left of that by its cube."""
+    given = {"limits": {"moment": limit}, "cost": cost, "until": until, "starts": 1}
+    found, coarse = (
+        derive.steer(craft(), inertia(moments), turn, steps=n, **given) for n in (160, 80)
+    )
+    assert any(where != "between" for _, _, where in found.switches)
+    assert found.missed < 1e-9
+    assert found.conditions is not None
+    assert found.conditions.worst < 1e-8
+    tends_to = (4 * found.grid.cost - coarse.grid.cost) / 3
+    assert abs(found.cost - tends_to) < 0.1 * (found.grid.cost - tends_to)
+
+
 @pytest.mark.long
 def test_taylor_steps_lead_to_the_end() -> None:
     trajectory = slewed("sym180", 3)
