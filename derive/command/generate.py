@@ -15,7 +15,7 @@ from derive.command.scenes import samples_argument, scene_argument
 from derive.command.solve import values_named
 from derive.command.terminal import OUT, complain, console, error_console, progress
 from derive.scene.escape import visible
-from derive.solve.fixed import fix
+from derive.solve.fixed import fix, try_ranges
 from derive.solve.generation import CASADI, STATED
 from derive.solve.handle import Handle
 
@@ -65,6 +65,14 @@ def options(command: argparse.ArgumentParser) -> None:
     )
     samples_argument(command, STATED, "samples that each stated error is looked for at")
     command.add_argument(
+        "--check-ranges",
+        action="store_const",
+        dest="ranges",
+        const="tried",
+        default="told",
+        help="set-up also refuses parameters outside of their declared ranges, of scenes named",
+    )
+    command.add_argument(
         "--fixed",
         action="append",
         default=[],
@@ -103,6 +111,10 @@ def generate(given: argparse.Namespace) -> int:
 def _scenes(given: argparse.Namespace) -> list[Handle]:
     """Return the scenes that were named, one of them with fixed parameters if any are."""
     scenes = [derive.load(source) for source in given.scenes]
+    if given.ranges == "tried":
+        if not scenes:
+            raise derive.DeriveError("generate: --check-ranges takes scenes, but none was named")
+        scenes = [try_ranges(scene) for scene in scenes]
     if not given.fixed:
         return scenes
     if len(scenes) != 1:
@@ -162,7 +174,8 @@ def _mending(given: argparse.Namespace, found: Sequence[derive.Difference]) -> l
         few = given.samples != STATED
         samples = ["--samples", str(given.samples)] if few else []
         wider = [f"--{CASADI}"] if given.parts != "usual" else []
-        more = [*samples, *(f"--fixed={text}" for text in given.fixed), *out, *wider]
+        tried = ["--check-ranges"] if given.ranges == "tried" else []
+        more = [*samples, *tried, *(f"--fixed={text}" for text in given.fixed), *out, *wider]
         commands.append(shlex.join(["derive", "generate", *given.scenes, *more]))
     left = [str(given.out / difference.name) for difference in found if difference.left_over]
     return [*commands, *([shlex.join(["rm", *left])] if left else [])]

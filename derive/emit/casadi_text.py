@@ -35,7 +35,8 @@ from derive.program.program import (
 from derive.program.status import possible, tried
 
 KEPT = "_kept("
-BROKEN = {"finite": "_endless({})", "positive": "{} <= 0.0", "not negative": "{} < 0.0"}
+BROKEN = {"finite": "_endless({})", "positive": "{} <= 0.0", "not negative": "{} < 0.0",
+          "within": "ca.logic_not(ca.logic_and({1} <= {0}, {0} <= {2}))"}  # fmt: skip
 
 
 def casadi_file(
@@ -191,7 +192,10 @@ def _setup(program: Program, scene: str) -> dict[str, object]:
 def _status(program: Program, stored: Callable[[Operand], str]) -> Iterator[str]:
     """Yield the lines that find the status; the rule that counts most is tried last."""
     for number, kept in reversed(tried(program)):
-        tests = (BROKEN[relation].format(stored(value)) for relation, value in kept)
+        tests = (
+            BROKEN[relation].format(stored(value), *map(stored, ends))
+            for relation, value, ends in kept
+        )
         yield f"status = _refused(status, {number}, {', '.join(tests)})"
 
 

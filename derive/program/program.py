@@ -98,15 +98,17 @@ Line = Op | Indexed
 
 @dataclass(frozen=True)
 class Precondition:
-    """What set-up's parameters must keep: a value above zero, or not below it.
+    """What set-up's parameters must keep: a value above zero, not below it, or within its range.
 
     status : what set-up returns if not        says : the rule in words, with its quantity
+    ends   : of the range
     """
 
     status: int
     says: str
     value: Operand
-    relation: Literal["positive", "not negative"]
+    relation: Literal["positive", "not negative", "within"]
+    ends: tuple[Fraction, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -2,18 +2,21 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.program.arithmetic import extended, paired
+from derive.program.arithmetic import extended, paired, rounded
 from derive.program.program import Operand, Program
 from derive.program.run import run
 from derive.scene.escape import at_place
 
-Kept = Literal["finite", "positive", "not negative"]
-RIGHT, PARAMETER, MASS, LENGTH, INERTIA, CONSTANT = range(6)
+Kept = Literal["finite", "positive", "not negative", "within"]
+Test = tuple[Kept, Operand, tuple[Fraction, ...]]
+"""What a value must keep: of a range its ends, too."""
+RIGHT, PARAMETER, MASS, LENGTH, INERTIA, CONSTANT, RANGE = range(7)
 SAYS = {
     RIGHT: "all is right",
     PARAMETER: "a parameter is not finite",
@@ -21,6 +24,7 @@ SAYS = {
     LENGTH: "a length of a body is not positive",
     INERTIA: "an inertia is none that a body can have",
     CONSTANT: "a constant is not finite",
+    RANGE: "a parameter is outside of its range",
 }
 """Each status in words. The first rule that is broken counts, in this order."""
 OF_KIND = {"mass": MASS, "length": LENGTH, "inertia": INERTIA}
@@ -30,7 +34,7 @@ def possible(program: Program) -> dict[int, str]:
     """Return every status that ``program``, a set-up, can return, with its words."""
     found = {RIGHT, PARAMETER, CONSTANT} if program.inputs else {RIGHT}
     found |= {rule.status for rule in program.rules}
-    if computed(program) or program.rules:
+    if computed(program) or any(rule.relation != "within" for rule in program.rules):
         found |= {CONSTANT}
     else:
         found -= {CONSTANT}  # parameters alone, and those are finite
@@ -44,24 +48,25 @@ def computed(program: Program) -> tuple[Operand, ...]:
     return tuple(own)
 
 
-def tried(program: Program) -> list[tuple[int, list[tuple[Kept, Operand]]]]:
+def tried(program: Program) -> list[tuple[int, list[Test]]]:
     """Return each status but the first with what must be kept for it not to be; what counts first.
 
-    What set-up makes is tried last, and the values that rules speak of with it.
+    What set-up makes is tried after the rules, and the values that they speak of with it.
     """
     names = [c for q in program.inputs for c in q.components]
     made = dict.fromkeys((*(rule.value for rule in program.rules), *computed(program)))
-    found: dict[int, list[tuple[Kept, Operand]]] = {PARAMETER: [("finite", c) for c in names]}
-    for rule in sorted(program.rules, key=lambda rule: rule.status):
-        found.setdefault(rule.status, []).append((rule.relation, rule.value))
-    found[CONSTANT] = [("finite", value) for value in made if value not in names]
-    return [(number, kept) for number, kept in found.items() if kept]
+    found: dict[int, list[Test]] = {PARAMETER: [("finite", c, ()) for c in names]}
+    for rule in program.rules:
+        found.setdefault(rule.status, []).append((rule.relation, rule.value, rule.ends))
+    found[CONSTANT] = [("finite", value, ()) for value in made if value not in names]
+    return [(number, kept) for number, kept in sorted(found.items()) if kept]
 
 
-_BROKEN: Mapping[Kept, Callable[[NDArray[Any]], NDArray[Any]]] = {
+_BROKEN: Mapping[Kept, Callable[..., NDArray[Any]]] = {
     "finite": lambda x: ~np.isfinite(x),
     "positive": lambda x: x <= 0,
     "not negative": lambda x: x < 0,
+    "within": lambda x, low, high: ~((low <= x) & (x <= high)),
 }
 
 
@@ -71,15 +76,16 @@ def statuses(program: Program, given: Sequence[NDArray[Any]], dtype: type) -> ND
     given : a column of each component of the program's inputs, in order
     """
     every = tried(program)
-    asked = tuple(dict.fromkeys(value for _, kept in every for _, value in kept))
+    asked = tuple(dict.fromkeys(value for _, kept in every for _, value, _ in kept))
     columns = np.array([np.asarray(column, dtype) for column in given])
     status = np.zeros(columns.shape[1] if len(columns) else 1, int)
     with np.errstate(all="ignore"):
         found = run(replace(program, results=asked), extended(dtype), paired(columns))
         values = {value: pair[0] for value, pair in zip(asked, found, strict=True)}
         for number, kept in reversed(every):
-            for relation, value in kept:
-                status = np.where(_BROKEN[relation](values[value]), number, status)
+            for relation, value, ends in kept:
+                limits = (rounded(end, dtype) for end in ends)
+                status = np.where(_BROKEN[relation](values[value], *limits), number, status)
     return status
 
 

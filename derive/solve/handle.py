@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, lru_cache, partial, reduce
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,6 @@ from derive.check import check
 from derive.check.verdict import Verdict
 from derive.emit.equations import FORMS, equations
 from derive.emit.files import require_folder, require_writable, write
-from derive.library.fixed import with_fixed
 from derive.library.library import Library, library
 from derive.program.program import Quantity
 from derive.report import SceneReport, report, report_files
@@ -45,6 +44,7 @@ KEPT = 64
 FRESH = 4096
 """Samples that take a second a scene; a release is tried with a million."""
 STEP = 1e-3  # s
+Alterations = tuple[Callable[[Library], Library], ...]
 
 
 def silent(_: str) -> None:
@@ -59,13 +59,13 @@ class Handle:
     component. What is refused is refused by a DeriveError, with the sentence of the command line.
 
     scene : what was declared         source : what it was loaded by
-    fixed : values of parameters for which C has a table in the place of set-up
+    changes : what is made of its programs: parameters fixed, ranges tried
     """
 
     scene: Scene
     source: str
     kernels: dict[tuple[str, str, str], Kernel] = field(default_factory=dict)
-    fixed: Mapping[str, float] = field(default_factory=dict)
+    changes: Alterations = ()
 
     @property
     def name(self) -> str:
@@ -90,7 +90,7 @@ class Handle:
     @cached_property
     def library(self) -> Library:
         """Return the programs of the scene. Raises DeriveError if there can be none."""
-        return with_fixed(library(self.scene), self.fixed)
+        return reduce(lambda made, change: change(made), self.changes, library(self.scene))
 
     @cached_property
     def _instrument(self) -> Instrument:
@@ -252,7 +252,7 @@ class Handle:
 
     def __reduce__(self) -> Any:
         """Return how another process loads the same scene, by its text."""
-        return handle, (self.scene.text, self.name, self.source, (*self.fixed.items(),))
+        return handle, (self.scene.text, self.name, self.source, self.changes)
 
     def __repr__(self) -> str:
         """Return what the scene is, what it wants, and what may be given to it."""
@@ -267,12 +267,12 @@ class Handle:
 
 
 @lru_cache(KEPT)
-def handle(text: str, name: str, source: str, fixed: tuple[tuple[str, float], ...] = ()) -> Handle:
-    """Return the scene that a text declares, its fixed parameters; the same text is read once."""
+def handle(text: str, name: str, source: str, changes: Alterations = ()) -> Handle:
+    """Return the scene that a text declares; the same text is read once."""
     scene = parse_scene(text, name)
     if scene.text != text:
-        return handle(scene.text, name, source, fixed)
-    return Handle(scene, source, fixed=dict(fixed))
+        return handle(scene.text, name, source, changes)
+    return Handle(scene, source, changes=changes)
 
 
 def load(source: str | Path | Mapping[str, object], name: str = "") -> Handle:

@@ -4,6 +4,7 @@ import json
 import re
 import struct
 import subprocess
+from copy import copy
 from pathlib import Path
 
 import pytest
@@ -131,6 +132,7 @@ def test_values_outside_of_their_ranges_are_warned_of(capsys, tmp_path: Path) ->
 def test_a_scene_is_fixed_from_python_too_and_values_are_told_as_they_are_taken() -> None:
     fixed = fix(derive.load(NAME), VALUES)
     assert fixed.library.fixed == VALUES
+    assert copy(fixed).library.fixed == VALUES
     assert fixed_text(VALUES) == TEXT
     assert fixed_constants(fixed.library, F64)["I_yy"] == 1.5
     assert derive.load(NAME).library.fixed == {}

@@ -49,7 +49,9 @@ def comment(
     if program.makes("constants"):
         says = "; ".join(f"{number} {words}" for number, words in possible(program).items())
         lines += _labelled("Returns:", f"{says}.") + _labelled("Error:", f"{SETUP_ERROR}.")
-        lines += _labelled("Cost:", f"once; {program.flops()} operations on pairs.")
+        more = 2 * sum(rule.relation == "within" for rule in program.rules)
+        compared = f", and {more} comparisons with the ends of ranges" if more else ""
+        lines += _labelled("Cost:", f"once; {program.flops()} operations on pairs{compared}.")
         lines += _on_cores(costs)
     else:
         lines += _labelled("Error:", _error(program, figures))

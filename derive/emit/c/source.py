@@ -20,6 +20,7 @@ from derive.emit.operators import literal
 from derive.emit.templates import TEMPLATES
 from derive.library.fixed import fixed_text, unstated_values
 from derive.library.library import Library
+from derive.library.ranges import tries_ranges
 from derive.program.arithmetic import pair_of, rounded
 from derive.program.pair_sine import PI, coefficients, quarter_turn
 from derive.program.pairs import splitter
@@ -82,6 +83,7 @@ def command(library: Library, figures: Sequence[Measurement], options: Sequence[
         "derive generate",
         argument(library.scene),
         *(f"--samples {n}" for n in other),
+        *(["--check-ranges"] if tries_ranges(library) else []),
         *([f"--fixed {fixed_text(library.fixed)}"] if library.fixed else []),
         *options,
     ]

@@ -13,13 +13,17 @@ BROKEN = {
     "finite": "!(({0} - {0}) >= {1})",
     "positive": "({0} <= {1})",
     "not negative": "({0} < {1})",
+    "within": "!(({2} <= {0}) && ({0} <= {3}))",
 }
 
 
 def status(program: Program, rounded: Callable[[Operand], str], zero: str) -> Iterator[str]:
     """Yield the C lines by which set-up tells whether its parameters are admissible."""
     for number, kept in tried(program):
-        tests = (BROKEN[relation].format(rounded(value), zero) for relation, value in kept)
+        tests = (
+            BROKEN[relation].format(rounded(value), zero, *map(rounded, ends))
+            for relation, value, ends in kept
+        )
         condition = "\n    || ".join(tests)
         yield from (f"if ({condition}) {{", f"    return {number};", "}")
     yield f"return {RIGHT};"
