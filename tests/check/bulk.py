@@ -99,6 +99,8 @@ def _bits(table: Any) -> Any:
 
 
 STATEMENT = re.compile(r"^ {4,}(?:const \w+ )?\*?[\w\[\]>-]+ = [^;]*;$", re.MULTILINE)
+TEMPLATES = re.compile(r"^(?:\w+ )?static [^;]*?\)\n\{.*?^\}", re.MULTILINE | re.DOTALL)
+"""Functions that templates hold: operations on pairs, sines."""
 FLIPS = (
     (r" \+ ", " - "), (r" - ", " + "), (r" \* ", " / "), (r" / ", " * "), (r" < ", " > "),
     (r"_add_", "_sub_"), (r"_sub_", "_add_"), (r"_mul_", "_div_"), (r"_div_", "_mul_"),
@@ -115,11 +117,11 @@ def mutants(text: str, dice: Random) -> Iterator[tuple[str, str]]:
     """Yield texts with one statement of a function wrong, and that statement; without an end.
 
     An operator is another, operands or results are exchanged, a number or an index is the next.
-    Operations on pairs of floats, which templates hold, are left as they are.
+    What templates hold is left as it is: a last place of pi in a sine may change no bit.
     """
-    start = re.search(r"^(int|void) \w+\(", text, re.MULTILINE)
-    assert start
-    places = [m.span() for m in STATEMENT.finditer(text, start.start())]
+    own = [m.span() for m in TEMPLATES.finditer(text)]
+    every = [m.span() for m in STATEMENT.finditer(text)]
+    places = [(a, b) for a, b in every if not any(low < a < high for low, high in own)]
     while True:
         begin, end = dice.choice(places)
         wrong = _wrong(text[begin:end], dice)

@@ -15,6 +15,7 @@ from derive.emit.files import write
 from derive.emit.package.files import package_files
 from derive.emit.package.kinds import BUILD_TOOLS, OURS
 from derive.emit.package.vectors import VECTORS
+from derive.library.fixed import with_fixed
 from derive.library.library import library
 from derive.program.precision import F32, PRECISIONS
 from derive.scene import catalogue, parse_scene
@@ -144,6 +145,14 @@ def test_every_tool_is_told_of_in_the_readme_of_a_package_and_in_the_docs() -> N
         assert f"| {word} |" in own
         assert word in page
     assert "--package" in (root / "README.md").read_text(encoding="utf-8")
+
+
+def test_fixed_parameters_are_in_the_test_too(tmp_path: Path) -> None:
+    made = with_fixed(library_of(NAME), {"I_xx": 1.0, "I_yy": 2.0, "I_zz": 2.5})
+    texts = package_files(made, c_files(made, ()), (), ("make",), (F32,))
+    assert "setup" not in "".join(texts.values()).replace("set-up", "")
+    write(tmp_path, texts)
+    assert status(tmp_path, *units(NAME, texts)) == 0
 
 
 def test_a_title_with_signs_of_other_languages_stays_a_title() -> None:
