@@ -163,7 +163,8 @@ def direct(own: Plant, asked: Task, count: int, method: str, solver: str) -> Dir
 
 
 def _cost_scale(asked: Task, inputs: NDFloat) -> float:
-    energy = asked.cost["energy"] * float(inputs @ inputs)
+    with np.errstate(over="ignore"):
+        energy = asked.cost["energy"] * float(inputs @ inputs)
     return asked.until * (asked.cost["time"] + energy) or 1.0
 
 
