@@ -53,6 +53,7 @@ def steer(
     solver: str = "ipopt",
     folder: str | Path | None = None,
     told: Listener = silent,
+    guess: Trajectory | None = None,
 ) -> Trajectory:
     """Return the cheapest trajectory, with its inputs, that brings a scene where it is to go.
 
@@ -66,11 +67,14 @@ def steer(
     until  : s, the time at the end, or where the cost counts it the first guess
     steps  : of the grid, at least      starts : the first straight, the others perturbed
     method : "shooting", "collocation"   solver : "ipopt", "fatrop"       told : hears how far it is
+    guess  : a trajectory that was found before, of the same states and inputs: the first start
     folder : where a table (CSV) and a plot (SVG) of it are written, None for nowhere
     Raises DeriveError for what makes no sense, and if no start leads to an end.
     """
     if not isinstance(scene, Handle):
         raise SceneError(f"scene must be what derive.load returns, not {met(scene)}")
+    if not isinstance(guess, Trajectory | None):
+        raise SceneError(f"guess must be what derive.steer returns, not {met(guess)}")
     most = count("steps", steps, range(1, FINEST + 1))
     many = count("starts", starts, range(1, MOST_STARTS + 1))
     by = one_of(method, "method", TRANSCRIPTIONS), one_of(solver, "solver", tuple(SOLVERS))
@@ -85,7 +89,10 @@ def steer(
     hears("deriving")
     own, given = plant(scene.scene, values)
     asked = task(own, given, turn, end or {}, limits or {}, cones, cost or {"time": 1}, until)
-    tried = _tried(own, asked, min(COARSE, most), many, by, hears)
+    first = first_guesses(own, asked, min(COARSE, most), many)
+    if guess is not None:
+        first = [_from_before(own, guess, min(COARSE, most)), *first[1:]]
+    tried = _tried(own, asked, first, by, hears)
     best = min((g for g in tried if g.is_found), key=lambda g: g.cost, default=None)
     if best is None:
         raise SceneError(
@@ -117,13 +124,20 @@ def _require_words(turn: object, avoid: object, named: Mapping[str, object]) -> 
         by_name(what, values or {})
 
 
+def _from_before(own: Plant, guess: Trajectory, steps: int) -> Grid:
+    if (guess.x, guess.u) != (own.x, own.u):
+        rule = f"guess must be of the states and inputs {', '.join((*own.x, *own.u))}"
+        raise SceneError(f"scene '{own.name}': {rule}, not {', '.join((*guess.x, *guess.u))}")
+    return guess.grid.finer(steps)
+
+
 def _tried(
-    own: Plant, asked: Task, steps: int, many: int, by: tuple[str, str], told: Listener
+    own: Plant, asked: Task, first: Sequence[Grid], by: tuple[str, str], told: Listener
 ) -> list[Grid]:
-    problem = direct(own, asked, steps, *by)
+    problem = direct(own, asked, first[0].u.shape[1], *by)
     found = []
-    for number, start in enumerate(first_guesses(own, asked, steps, many), 1):
-        told(f"start {number} of {many}")
+    for number, start in enumerate(first, 1):
+        told(f"start {number} of {len(first)}")
         found.append(problem.solved(start))
     return found
 

@@ -86,3 +86,16 @@ def test_other_methods_and_solvers_find_the_same(
     values = inertia((1, 2, 3))
     other = derive.steer(craft(), values, TURN, limits=LIMITS, starts=2, method=by[0], solver=by[1])
     assert other.cost == pytest.approx(trajectory.cost, rel=1e-10)
+
+
+def test_a_trajectory_from_before_is_a_start(trajectory: derive.Trajectory) -> None:
+    """Straight, this start leads to the turn about one axis, which takes longer."""
+    turn, values = "z 180deg", inertia((1, 1, 1))
+    given = {"limits": {"moment": 1}, "starts": 1, "steps": 40}
+    straight = derive.steer(craft(), values, turn, **given)
+    better = derive.steer(craft(), values, turn, **given | {"starts": 2})
+    again = derive.steer(craft(), inertia((1, 1, 1.01)), turn, guess=better, **given)
+    assert better.cost < again.cost < 1.01 * better.cost < straight.cost
+    for wrong in (values, replace(trajectory, u=("F",))):
+        with pytest.raises(derive.DeriveError, match=r"^(guess|scene 'craft': guess) must be"):
+            derive.steer(craft(), values, turn, guess=wrong, **given)

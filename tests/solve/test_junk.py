@@ -50,7 +50,7 @@ TAKEN: Mapping[str, set[str]] = {
     "source": set(), "scenes": {"list"}, "folder": PATHS, "plot": PATHS | {"none"},
     "samples": {"whole"}, "until": NUMBERS | {"none"}, "step": {"whole"},
     "told": {"function", "type"}, "parameters": {"none", "dict"}, "values": {"dict"},
-    "tensor": set(), "omega": {"no number"}, "omega_dot": {"no number"},
+    "tensor": set(), "omega": {"no number"}, "omega_dot": {"no number"}, "guess": {"none"},
 }  # fmt: skip
 """What makes sense as an argument of a name, or whose range other tests try."""
 
@@ -75,6 +75,7 @@ def good(folder: Path) -> dict[str, Any]:
         "omega": [1, 2, 3], "omega_dot": [1, 2, 3],
         "scene": derive.load(BALL, "ball"), "turn": "z 1", "end": {}, "limits": {}, "avoid": (),
         "cost": {"time": 1}, "steps": 10, "starts": 1, "method": "shooting", "solver": "ipopt",
+        "guess": None,
     }  # fmt: skip
 
 
