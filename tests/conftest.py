@@ -14,6 +14,7 @@ from hypothesis import settings
 
 from derive.scene import catalogue
 
+collect_ignore_glob = ["data/*"]
 settings.register_profile("derive", deadline=None)
 settings.load_profile("derive")
 MANY, PART = 6, 8

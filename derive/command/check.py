@@ -40,6 +40,8 @@ def check(given: argparse.Namespace) -> int:
     """Compile the emitted files and compare them with ball arithmetic and with each other."""
     scenes = [derive.load(source) for source in given.scenes]
     if given.target:
+        if given.samples != FRESH:
+            raise derive.DeriveError("check: --samples does not go with --target")
         return _on_target(scenes, given)
     if given.keep:
         raise derive.DeriveError(f"check: --keep needs --target, {' or '.join(TARGETS)}")

@@ -80,7 +80,7 @@ def _beginning(stem: str, names: Iterable[str]) -> tuple[str, ...]:
 def _start(own: Plant, given: Mapping[str, float]) -> NDFloat:
     start = np.array([given.get(n, 0.0) for n in own.x])
     place = list(own.attitude)
-    if place and not start[place].any():
+    if place and not any(own.x[k] in given for k in place):
         start[place] = (1, 0, 0, 0)
     if place:
         require_unit(f"scene '{own.name}': an attitude at the start", start[place])

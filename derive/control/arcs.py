@@ -19,6 +19,7 @@ from derive.control.structure import Arc
 from derive.control.task import Task
 
 DEGREE = 6
+ROUNDED = 1e-12  # of a limit, that rounding may lead an input beyond it
 LOOKED = 21  # points of an element at which its inputs are held against their limits
 LEAST, MORE = 3, 13  # elements of an arc: at least, and so many more of one that lasts all the time
 GAUSS = np.array(casadi.collocation_points(DEGREE, "legendre"))
@@ -135,6 +136,9 @@ def refined(
     read = casadi.Function("read", [w], [lengths, casadi.horzcat(*x), cost])(at)
     lasting = np.array(read[0]).ravel() * guess.until
     u = np.array([*_inputs_of(at, len(arcs), len(own.x), parts, inputs)])
+    low, high = (side[len(own.x) :, None] for side in (asked.low, asked.high))
+    near = np.clip(u, low, high)
+    u = np.where(np.abs(u - near) <= ROUNDED * np.abs(near), near, u)
     adjoint = _adjoint(multipliers, len(own.x), len(parts))
     return Refined(
         np.concatenate([np.full(n, d / n) for d, n in zip(lasting, each, strict=True)]),

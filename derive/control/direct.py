@@ -6,7 +6,7 @@ all stages, so that every constraint is of neighbouring stages: the order that f
 
 import signal
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass, replace
 from io import StringIO
@@ -48,6 +48,12 @@ def quietly(solver: Any, **values: Any) -> Any:
     if stopped:
         raise KeyboardInterrupt
     return found
+
+
+def status(told: Mapping[str, Any]) -> str:
+    """Return in words how a solver ended that found nothing; fatrop gives a number."""
+    says = str(told["return_status"]).replace("_", " ").lower()
+    return "no convergence" if says.lstrip("-").isdecimal() else says
 
 
 @dataclass(frozen=True)
@@ -103,11 +109,17 @@ class Direct:
         body = w[: n * self.count].reshape(self.count, n).T
         x = np.column_stack([body[:states], w[n * self.count :][:states]])
         until = float(w[n * self.count :][states]) if free else self.asked.until
-        why = "" if told["success"] else str(told["return_status"]).replace("_", " ").lower()
+        why = "" if told["success"] else status(told)
         if free and not NEAREST * self.asked.until < until < FARTHEST * self.asked.until:
             why = why or f"a time of {until:.3g} s"
+        within = (side[states:, None] for side in (self.asked.low, self.asked.high))
         return Grid(
-            x, body[len(tall) :], until, float(found["f"]) * self.unit, told["iter_count"], why
+            x,
+            np.clip(body[len(tall) :], *within),
+            until,
+            float(found["f"]) * self.unit,
+            told["iter_count"],
+            why,
         )
 
 

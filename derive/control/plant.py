@@ -91,6 +91,9 @@ def plant(scene: Scene, values: NamedValues) -> tuple[Plant, dict[str, float]]:
     parameters = {c for q in wished.vocabulary.parameters for c in q.components}
     u = tuple(n for n in needed if n not in parameters and n not in given)
     missing = [n for n in needed if n in parameters and n not in given]
+    if strange := [n for n in given if n not in (*needed, *x, *parameters)]:
+        rule = "a value is of a parameter, an input that is held, or a state at the start"
+        raise SceneError(f"scene '{scene.name}': {rule}, not of '{strange[0]}'")
     if missing:
         raise SceneError(f"scene '{scene.name}': set values by --set: {', '.join(missing)}")
     if not u:

@@ -14,7 +14,6 @@ from derive.scene.table import shown
 from derive.solve.settings import number
 
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-LEAST = 1e-9  # of an axis: what is shorter is none
 UNIT = 1e-6  # that the length of a quaternion may be off 1
 product: Callable[[Any, Any], list[Any]] = quaternion.product
 conjugate: Callable[[Any], list[Any]] = quaternion.conjugate
@@ -32,8 +31,10 @@ def axis_of(label: str, text: str) -> NDFloat:
         found = AXES.get(text) or tuple(number(label, t.strip(), "1") for t in parts)
     except SceneError:
         found = ()
+    largest = max(map(abs, found), default=0.0) or 1.0
+    found = tuple(c / largest for c in found)  # so that no square is beyond all numbers
     length = np.linalg.norm(found)
-    if len(found) != 3 or not length > LEAST:
+    if len(found) != 3 or not any(found):
         raise SceneError(
             f"{label}: an axis is x, y, z or three numbers as 1,2,2, not {shown(text)}"
         )
@@ -71,13 +72,18 @@ def turn_error(own: Plant, goal: NDFloat, x: Any) -> Any:
 def outside(own: Plant, says: str, text: str, x: Any) -> Any:
     """Return what is above 0 where an axis of the body points into a cone."""
     words = text.split()
-    if len(words) != 3 or not own.attitude:
-        rule = 'an axis of a body with an attitude, a direction, an angle, as "x 0,0,1 30deg"'
+    if not own.attitude:
+        rule = 'an axis of an attitude (attitude = "quaternion")'
+        raise SceneError(f"{says}: to avoid a cone is for {rule}, and this scene has none")
+    if len(words) != 3:
+        rule = 'an axis of a body, a direction, an angle, as "x 0,0,1 30deg"'
         raise SceneError(f"{says}: to avoid is {rule}, not {shown(text)}")
     own_axis, direction = (axis_of(f"{says}: avoid", w) for w in words[:2])
     angle = number(f"{says}: avoid", words[2], "rad")
     if not 0 < angle < pi:
-        raise SceneError(f"{says}: a cone to avoid is of 0 to 180deg, not {words[2]}")
+        raise SceneError(
+            f"{says}: a cone to avoid is of more than 0 and less than 180deg, not {words[2]}"
+        )
     q = [x[k] for k in own.attitude]
     seen = product(product(q, [0, *own_axis]), conjugate(q))[1:]
     return casadi.dot(casadi.vertcat(*seen), casadi.DM(direction)) - cos(angle)

@@ -25,6 +25,8 @@ from derive.solve.told import count, listener, met, path
 Listener = Callable[[str], None]
 COARSE = 40  # steps from which the several starts begin
 FINEST = 800
+DEARER = 1.05  # times the cost on fewer steps: what costs more is another trajectory
+ASTRAY = 1e-4  # at the end, inputs flown: of so much a warning is given
 HELPS = 4  # times less of a miss by halved steps, which are of order four
 CLOSE = 1e-6  # to what should vanish at the end, inputs flown
 SHORTEST = 1e-7  # of the time: an arc that is shorter is none
@@ -107,7 +109,11 @@ def steer(
         scene.name, own.x, own.u, own.units, last.until, last.cost, missed(own, asked, last),
         grid, found, why, holds, tuple(g.cost if g.is_found else None for g in tried), (),
     )  # fmt: skip
-    made = replace(made, doubts=beyond_ranges(own, made.states, made.inputs[1]))
+    doubts = beyond_ranges(own, made.states, made.inputs[1])
+    if made.missed > ASTRAY:
+        says = f"flown from the start, the inputs miss the end by {made.missed:.2g}"
+        doubts = (f"{says}; take more steps, a longer time or wider limits", *doubts)
+    made = replace(made, doubts=doubts)
     if into is not None:
         write(into, made.files())
     return made
@@ -153,7 +159,7 @@ def _again(
     """Return the trajectory on another grid, or the one that is there, if the solver fails."""
     told(f"{steps} steps")
     found = direct(own, asked, steps, *by).solved(guess.finer(steps))
-    return found if found.is_found else guess
+    return found if found.is_found and found.cost <= DEARER * guess.cost else guess
 
 
 def _finer(own: Plant, asked: Task, guess: Grid, by: tuple[str, str], told: Listener) -> Grid:

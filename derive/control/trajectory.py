@@ -12,6 +12,7 @@ from derive.control.plant import NDFloat, Plant
 from derive.solve.simulation import Simulation, plot_of
 
 DRAWN = 601  # points of a line
+OVER = 1e-6  # of a range's width, that is not told
 SAME = 1e-4  # of a cost: what differs by less is one local minimum
 
 
@@ -153,8 +154,7 @@ def beyond_ranges(
         if name in [own.x[k] for k in own.attitude]:
             continue
         worst = max(values, key=lambda v: max(low - v, v - high))
-        if not low * (1 + 1e-9) - 1e-12 <= worst <= high * (1 + 1e-9) + 1e-12:
-            found.append(
-                f"{name} comes to {worst:.6g}, outside of its declared range, {low:g} to {high:g}"
-            )
+        if not -OVER <= (worst - low) / (high - low) <= 1 + OVER:
+            rule = f"outside of its range, {low:g} to {high:g}, for which its errors are stated"
+            found.append(f"{name} comes to {worst:.6g}, {rule}")
     return tuple(found)

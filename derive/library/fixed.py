@@ -45,7 +45,10 @@ def with_fixed(library: Library, values: Mapping[str, float]) -> Library:
         status = int(statuses(setup, columns, precision.dtype)[0])
         if status != RIGHT:
             by = f"set-up in {precision.scalar} refuses these values"
-            raise SceneError(f"scene '{scene}': {by}: {SAYS[status]}")
+            odd = [f"{c} = {values[c]:g} is {x[0]:g}" for c, x in zip(names, columns, strict=True)
+                   if not np.isfinite(x[0]) or (x[0] == 0) != (values[c] == 0)]  # fmt: skip
+            shown = odd or [f"{c} = {values[c]:g}" for c in names]
+            raise SceneError(f"scene '{scene}': {by}: {SAYS[status]}; there {', '.join(shown)}")
     return replace(library, fixed={c: values[c] for c in names})
 
 

@@ -267,7 +267,7 @@ class Handle:
 
 
 @lru_cache(KEPT)
-def handle(text: str, name: str, source: str, changes: Alterations = ()) -> Handle:
+def handle(text: str, name: str, source: str, changes: Alterations) -> Handle:
     """Return the scene that a text declares; the same text is read once."""
     scene = parse_scene(text, name)
     if scene.text != text:
@@ -291,10 +291,10 @@ def load(source: str | Path | Mapping[str, object], name: str = "") -> Handle:
     if isinstance(source, Mapping):
         if not name:
             raise SceneError("a scene that is a dict needs a name: load(..., name='rotor')")
-        return handle(document_text(source, name), name, f"{name}.toml")
+        return handle(document_text(source, name), name, f"{name}.toml", ())
     if not isinstance(source, str | Path):
         raise SceneError(f"a scene is a name, a path or a dict, not {type(source).__name__}")
     text, stem = contents(source)
     if name not in ("", stem):
         raise SceneError(f"scene '{stem}': a file names its scene; rename it to '{name}.toml'")
-    return handle(text, stem, str(source))
+    return handle(text, stem, str(source), ())

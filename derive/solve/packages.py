@@ -17,6 +17,8 @@ TOOLS = tuple(BUILD_TOOLS)
 """The build tools that a package can be for."""
 TYPES_OF_C = {p.scalar: (p,) for p in PRECISIONS} | {"both": PRECISIONS}
 """In which types of C a package computes, by word."""
+ROOMS = ("*", "src/*", "single/*", "test/*", "examples/*", "examples/*/*", "zephyr/*")
+"""Where files of packages lie."""
 
 
 def package(
@@ -49,11 +51,17 @@ def package(
 
 
 def _require_ours(folder: Path, texts: dict[str, str]) -> None:
-    """Refuse to write over a file that no package left there."""
+    """Refuse to write over a file that no package left there, or beside those of another one."""
+    rule = f"package '{folder}' must be a folder of its own, but holds"
     for name, text in texts.items():
-        file = folder / name
-        if file.is_file():
-            there = file.read_bytes().decode(errors="replace")
-            if not any(mark in text and mark in there for mark in OURS):
-                rule = "must be a folder of its own"
-                raise OutputError(f"package '{folder}' {rule}, but holds another '{name}'")
+        if (folder / name).is_file() and not _marks(folder / name) & {m for m in OURS if m in text}:
+            raise OutputError(f"{rule} another '{name}'")
+    for file in sorted(f for own in ROOMS for f in folder.glob(own)):
+        name = file.relative_to(folder).as_posix()
+        if name not in texts and file.is_file() and _marks(file):
+            raise OutputError(f"{rule} '{name}' of another package, or of other options; remove it")
+
+
+def _marks(file: Path) -> set[str]:
+    there = file.read_bytes().decode(errors="replace")
+    return {mark for mark in OURS if mark in there}

@@ -51,8 +51,9 @@ def settable(scene: str, quantities: Sequence[Quantity], name: str) -> Quantity:
     found = next((q for q in quantities if name == q.name or name in q.components), None)
     if found is None:
         names = [c for q in quantities for c in q.components]
-        few = f" (known: {', '.join(names[:MANY])} and {len(names) - MANY} more)"
-        hint = nearest(str(name), names) or few
+        few = [*names[:MANY], *([f"{len(names) - MANY} more"] if len(names) > MANY else [])]
+        told = f" (known: {', '.join(few)})" if names else ", nor anything else"
+        hint = nearest(str(name), names) or told
         raise SceneError(f"scene '{scene}' has no {shown(name)} to set{hint}")
     return found
 

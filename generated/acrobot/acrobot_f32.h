@@ -27,7 +27,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 fe3045f93050a4db.
+ * Body of these files: sha256 152fce8473fb47b1.
  */
 #ifndef ACROBOT_F32_H
 #define ACROBOT_F32_H

@@ -25,7 +25,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 d94dbe27966665f5.
+ * Body of these files: sha256 e594c3a25c60b754.
  */
 #ifndef ACROBOT_F64_H
 #define ACROBOT_F64_H

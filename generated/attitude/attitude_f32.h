@@ -14,7 +14,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 497b52ae99f0326a.
+ * Body of these files: sha256 73a8f90d1be4f1e1.
  */
 #ifndef ATTITUDE_F32_H
 #define ATTITUDE_F32_H

@@ -14,7 +14,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 c9afe11adb817c58.
+ * Body of these files: sha256 d77b49eb6e9a1425.
  */
 #ifndef ATTITUDE_F64_H
 #define ATTITUDE_F64_H

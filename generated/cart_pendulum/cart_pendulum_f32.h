@@ -27,7 +27,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 5b1b474f8adac84a.
+ * Body of these files: sha256 149b0b3ffb48c2f1.
  */
 #ifndef CART_PENDULUM_F32_H
 #define CART_PENDULUM_F32_H

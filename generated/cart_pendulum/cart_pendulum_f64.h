@@ -25,7 +25,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 adddbec36050b064.
+ * Body of these files: sha256 8a3d4af1ab198dd7.
  */
 #ifndef CART_PENDULUM_F64_H
 #define CART_PENDULUM_F64_H

@@ -24,7 +24,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 13b2e261395f3c8c.
+ * Body of these files: sha256 f043f30734f97fa8.
  */
 #ifndef CENTRIFUGE_GONDOLA_F32_H
 #define CENTRIFUGE_GONDOLA_F32_H

@@ -23,7 +23,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 f136c905b75f467d.
+ * Body of these files: sha256 2c92d9e3a914ad3e.
  */
 #ifndef CENTRIFUGE_GONDOLA_F64_H
 #define CENTRIFUGE_GONDOLA_F64_H

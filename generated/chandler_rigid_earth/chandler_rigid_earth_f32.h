@@ -18,7 +18,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 43b966b044eb4252.
+ * Body of these files: sha256 b0255d494cc95815.
  */
 #ifndef CHANDLER_RIGID_EARTH_F32_H
 #define CHANDLER_RIGID_EARTH_F32_H

@@ -18,7 +18,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 ad9af333615d1b9a.
+ * Body of these files: sha256 9e3efacb369fa0f7.
  */
 #ifndef CHANDLER_RIGID_EARTH_F64_H
 #define CHANDLER_RIGID_EARTH_F64_H

@@ -21,7 +21,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 217ade4c1a07a7c2.
+ * Body of these files: sha256 ee7073c25b62b0c9.
  */
 #ifndef DISC_TWO_BEARINGS_F32_H
 #define DISC_TWO_BEARINGS_F32_H

@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 5709c6734d537c60.
+ * Body of these files: sha256 f959d6adbb2a54ac.
  */
 #ifndef DISC_TWO_BEARINGS_F64_H
 #define DISC_TWO_BEARINGS_F64_H

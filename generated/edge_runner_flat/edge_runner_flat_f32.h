@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 884746a8d882033e.
+ * Body of these files: sha256 0321233cba45a949.
  */
 #ifndef EDGE_RUNNER_FLAT_F32_H
 #define EDGE_RUNNER_FLAT_F32_H

@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 87ebaca4388326b2.
+ * Body of these files: sha256 1f92352e387f31aa.
  */
 #ifndef EDGE_RUNNER_FLAT_F64_H
 #define EDGE_RUNNER_FLAT_F64_H

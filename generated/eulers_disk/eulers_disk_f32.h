@@ -21,7 +21,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 78c063b3289f1c57.
+ * Body of these files: sha256 2ac93533c57175c4.
  */
 #ifndef EULERS_DISK_F32_H
 #define EULERS_DISK_F32_H

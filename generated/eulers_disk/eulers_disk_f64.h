@@ -21,7 +21,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 cc08d166a9fbe021.
+ * Body of these files: sha256 10a7f989afccc426.
  */
 #ifndef EULERS_DISK_F64_H
 #define EULERS_DISK_F64_H

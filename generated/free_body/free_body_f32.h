@@ -18,7 +18,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 71ca09e39417852f.
+ * Body of these files: sha256 1fafc28e0ad7b8f0.
  */
 #ifndef FREE_BODY_F32_H
 #define FREE_BODY_F32_H

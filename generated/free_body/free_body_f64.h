@@ -18,7 +18,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 1c8a46e2ab2b1f25.
+ * Body of these files: sha256 e4e14c0e8dbfae8e.
  */
 #ifndef FREE_BODY_F64_H
 #define FREE_BODY_F64_H

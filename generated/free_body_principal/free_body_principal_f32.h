@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 01aeb6a519388d70.
+ * Body of these files: sha256 f60af9115798f696.
  */
 #ifndef FREE_BODY_PRINCIPAL_F32_H
 #define FREE_BODY_PRINCIPAL_F32_H

@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 ca71ce61ab515ef6.
+ * Body of these files: sha256 e01c0f9b45ab3024.
  */
 #ifndef FREE_BODY_PRINCIPAL_F64_H
 #define FREE_BODY_PRINCIPAL_F64_H

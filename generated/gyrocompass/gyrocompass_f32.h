@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 96a8600c04d8b4ee.
+ * Body of these files: sha256 6174384fbcb65b3d.
  */
 #ifndef GYROCOMPASS_F32_H
 #define GYROCOMPASS_F32_H

@@ -21,7 +21,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 9dc21d5dc1859444.
+ * Body of these files: sha256 be16039da1c3810f.
  */
 #ifndef GYROCOMPASS_F64_H
 #define GYROCOMPASS_F64_H

@@ -29,7 +29,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 f599d01fc8c0e54c.
+ * Body of these files: sha256 ec4ca1e94d67d5a6.
  */
 #ifndef GYROSTAT_F32_H
 #define GYROSTAT_F32_H

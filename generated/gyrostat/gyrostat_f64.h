@@ -28,7 +28,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 4da8a27869b21a43.
+ * Body of these files: sha256 c618458111fb6cce.
  */
 #ifndef GYROSTAT_F64_H
 #define GYROSTAT_F64_H

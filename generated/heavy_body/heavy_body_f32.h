@@ -21,7 +21,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 45e1c8f8294860cf.
+ * Body of these files: sha256 6162efeddf5d84a9.
  */
 #ifndef HEAVY_BODY_F32_H
 #define HEAVY_BODY_F32_H

@@ -21,7 +21,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 145fa3364317886e.
+ * Body of these files: sha256 e6c4dc48f74a07f9.
  */
 #ifndef HEAVY_BODY_F64_H
 #define HEAVY_BODY_F64_H

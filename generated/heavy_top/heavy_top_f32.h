@@ -21,7 +21,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 a400ab785208221b.
+ * Body of these files: sha256 986a92ebd8229046.
  */
 #ifndef HEAVY_TOP_F32_H
 #define HEAVY_TOP_F32_H

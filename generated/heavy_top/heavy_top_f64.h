@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 80ce8fb2ea3f3511.
+ * Body of these files: sha256 175cbc73d9a4aa89.
  */
 #ifndef HEAVY_TOP_F64_H
 #define HEAVY_TOP_F64_H

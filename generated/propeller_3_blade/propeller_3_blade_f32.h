@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 2fed5ffca7843f5b.
+ * Body of these files: sha256 e0760b6cb33b30c2.
  */
 #ifndef PROPELLER_3_BLADE_F32_H
 #define PROPELLER_3_BLADE_F32_H

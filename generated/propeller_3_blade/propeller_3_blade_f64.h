@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 77d032e94cb0bfe3.
+ * Body of these files: sha256 2109a32e57c69966.
  */
 #ifndef PROPELLER_3_BLADE_F64_H
 #define PROPELLER_3_BLADE_F64_H

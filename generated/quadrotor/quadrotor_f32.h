@@ -48,7 +48,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 8b938851d43831bc.
+ * Body of these files: sha256 f1863e595d1ce55e.
  */
 #ifndef QUADROTOR_F32_H
 #define QUADROTOR_F32_H

@@ -48,7 +48,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 16d76f79b6f9f841.
+ * Body of these files: sha256 3835a49266a44427.
  */
 #ifndef QUADROTOR_F64_H
 #define QUADROTOR_F64_H

@@ -33,7 +33,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 3bd6200fd298ab8d.
+ * Body of these files: sha256 92529c8e93f50ce8.
  */
 #ifndef RATTLEBACK_F32_H
 #define RATTLEBACK_F32_H

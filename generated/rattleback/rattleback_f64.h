@@ -33,7 +33,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 815260320291d74c.
+ * Body of these files: sha256 1d245d4d3141b931.
  */
 #ifndef RATTLEBACK_F64_H
 #define RATTLEBACK_F64_H

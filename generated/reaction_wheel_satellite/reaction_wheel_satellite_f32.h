@@ -32,7 +32,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 4b1b4c639e410e39.
+ * Body of these files: sha256 838aefe32862e72b.
  */
 #ifndef REACTION_WHEEL_SATELLITE_F32_H
 #define REACTION_WHEEL_SATELLITE_F32_H

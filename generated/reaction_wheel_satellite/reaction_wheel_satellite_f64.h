@@ -31,7 +31,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 62db3438c1e1fc26.
+ * Body of these files: sha256 12f37c6eaa2976c6.
  */
 #ifndef REACTION_WHEEL_SATELLITE_F64_H
 #define REACTION_WHEEL_SATELLITE_F64_H

@@ -23,7 +23,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 387acc9c46070e2d.
+ * Body of these files: sha256 dddcf161c030df75.
  */
 #ifndef RIGID_BODY_F32_H
 #define RIGID_BODY_F32_H

@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 7b1681c8eaf3eb9b.
+ * Body of these files: sha256 6c7d4752e4ef98fb.
  */
 #ifndef RIGID_BODY_F64_H
 #define RIGID_BODY_F64_H

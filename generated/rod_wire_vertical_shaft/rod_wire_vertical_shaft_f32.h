@@ -23,7 +23,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 0e276146dc7bd999.
+ * Body of these files: sha256 512b9534c9b3bc6f.
  */
 #ifndef ROD_WIRE_VERTICAL_SHAFT_F32_H
 #define ROD_WIRE_VERTICAL_SHAFT_F32_H

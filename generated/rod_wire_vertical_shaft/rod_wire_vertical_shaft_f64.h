@@ -23,7 +23,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 c20175c2e23d51de.
+ * Body of these files: sha256 1cf143f97b3f9492.
  */
 #ifndef ROD_WIRE_VERTICAL_SHAFT_F64_H
 #define ROD_WIRE_VERTICAL_SHAFT_F64_H

@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 de9eb5345b414c4b.
+ * Body of these files: sha256 df2ee5a3cc5d8d9c.
  */
 #ifndef ROLLING_CONE_F32_H
 #define ROLLING_CONE_F32_H

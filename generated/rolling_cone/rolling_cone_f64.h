@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 a608f746d02a90c3.
+ * Body of these files: sha256 08c0a748bac74b7b.
  */
 #ifndef ROLLING_CONE_F64_H
 #define ROLLING_CONE_F64_H

@@ -11,6 +11,9 @@
 #error \
     "rolling_disc_f32.h: -ffast-math and its parts break the stated errors; compile without"
 #endif
+#if defined(__clang__) && __clang_major__ >= 12
+#pragma clang fp reassociate(off)
+#endif
 #if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
 #error \
     "rolling_disc_f32.h: needs arithmetic in the type's own precision (for x86: -msse2 -mfpmath=sse)"

@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 5f4b9e53140d0e71.
+ * Body of these files: sha256 d185e7e2eee32c88.
  */
 #ifndef ROLLING_DISC_F32_H
 #define ROLLING_DISC_F32_H

@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 c359893dfa88e131.
+ * Body of these files: sha256 17a66e7ac42b834d.
  */
 #ifndef ROLLING_DISC_F64_H
 #define ROLLING_DISC_F64_H

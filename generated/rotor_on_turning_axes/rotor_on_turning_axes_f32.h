@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 4bbe43f11150a46d.
+ * Body of these files: sha256 a3eef063737752e2.
  */
 #ifndef ROTOR_ON_TURNING_AXES_F32_H
 #define ROTOR_ON_TURNING_AXES_F32_H

@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 5504624445a2d3f9.
+ * Body of these files: sha256 61dac23cd8c1d241.
  */
 #ifndef ROTOR_ON_TURNING_AXES_F64_H
 #define ROTOR_ON_TURNING_AXES_F64_H

@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 9e593471b4b9686f.
+ * Body of these files: sha256 cb6b12d550e62d28.
  */
 #ifndef SATELLITE_F32_H
 #define SATELLITE_F32_H

@@ -19,7 +19,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 6dfc04030622d151.
+ * Body of these files: sha256 c3d0daa617c61c2e.
  */
 #ifndef SATELLITE_F64_H
 #define SATELLITE_F64_H

@@ -38,7 +38,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 f6910aa6c943ab4b.
+ * Body of these files: sha256 0f7a563fd87160ae.
  */
 #ifndef SHIP_TURBINE_THREE_MOTIONS_F32_H
 #define SHIP_TURBINE_THREE_MOTIONS_F32_H

@@ -38,7 +38,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 010b5a094e8e9470.
+ * Body of these files: sha256 8399acb0876cafaa.
  */
 #ifndef SHIP_TURBINE_THREE_MOTIONS_F64_H
 #define SHIP_TURBINE_THREE_MOTIONS_F64_H

@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 13013019e40d6352.
+ * Body of these files: sha256 f00e96d8e3811ad1.
  */
 #ifndef SHIP_TURBINE_TURN_PORT_F32_H
 #define SHIP_TURBINE_TURN_PORT_F32_H

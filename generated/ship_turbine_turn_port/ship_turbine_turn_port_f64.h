@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 4a1cfb60c912b24d.
+ * Body of these files: sha256 3d37c96c28bc8f6f.
  */
 #ifndef SHIP_TURBINE_TURN_PORT_F64_H
 #define SHIP_TURBINE_TURN_PORT_F64_H

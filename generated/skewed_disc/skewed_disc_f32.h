@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 3e44daf705c4c03c.
+ * Body of these files: sha256 3f3f950c921bffff.
  */
 #ifndef SKEWED_DISC_F32_H
 #define SKEWED_DISC_F32_H

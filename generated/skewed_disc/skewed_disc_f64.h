@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 9b2c1881bf595a7b.
+ * Body of these files: sha256 d4bc1823d125d728.
  */
 #ifndef SKEWED_DISC_F64_H
 #define SKEWED_DISC_F64_H

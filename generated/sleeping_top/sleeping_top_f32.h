@@ -21,7 +21,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 bb918dcb4577bfd7.
+ * Body of these files: sha256 6fdff7aec1ad1b6f.
  */
 #ifndef SLEEPING_TOP_F32_H
 #define SLEEPING_TOP_F32_H

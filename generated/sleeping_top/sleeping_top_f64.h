@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 e3b2f5108d57d33b.
+ * Body of these files: sha256 e9fba3f479710ec8.
  */
 #ifndef SLEEPING_TOP_F64_H
 #define SLEEPING_TOP_F64_H

@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 40e01b9d9ffd52f3.
+ * Body of these files: sha256 878b99727f4c81f0.
  */
 #ifndef T_HANDLE_FLIP_F32_H
 #define T_HANDLE_FLIP_F32_H

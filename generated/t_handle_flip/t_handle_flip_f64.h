@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 072a30ccfe7907a2.
+ * Body of these files: sha256 e6020a4106d6964d.
  */
 #ifndef T_HANDLE_FLIP_F64_H
 #define T_HANDLE_FLIP_F64_H

@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 ded9295986d458a2.
+ * Body of these files: sha256 fa8de77e87ed11e0.
  */
 #ifndef TOP_STEADY_PRECESSION_F32_H
 #define TOP_STEADY_PRECESSION_F32_H

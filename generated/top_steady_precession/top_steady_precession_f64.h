@@ -21,7 +21,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 a6d4cd1bb026096a.
+ * Body of these files: sha256 a36e286095ef2a8e.
  */
 #ifndef TOP_STEADY_PRECESSION_F64_H
 #define TOP_STEADY_PRECESSION_F64_H

@@ -18,7 +18,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 a3056cb381e2afcb.
+ * Body of these files: sha256 e44576dbe5175376.
  */
 #ifndef TORQUE_FREE_AXISYMMETRIC_F32_H
 #define TORQUE_FREE_AXISYMMETRIC_F32_H

@@ -18,7 +18,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 64e8f1b8d43be6cd.
+ * Body of these files: sha256 fa0ddd8de399c5f2.
  */
 #ifndef TORQUE_FREE_AXISYMMETRIC_F64_H
 #define TORQUE_FREE_AXISYMMETRIC_F64_H

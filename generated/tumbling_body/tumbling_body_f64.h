@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 975eed18d9476f1d.
+ * Body of these files: sha256 ab3adb9cb38e9916.
  */
 #ifndef TUMBLING_BODY_F64_H
 #define TUMBLING_BODY_F64_H

@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 72f21a2ac3da7d06.
+ * Body of these files: sha256 799297a869c457af.
  */
 #ifndef TUMBLING_DISC_F32_H
 #define TUMBLING_DISC_F32_H

@@ -20,7 +20,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 414f83449b872fcd.
+ * Body of these files: sha256 57fdee787b8178f8.
  */
 #ifndef TUMBLING_DISC_F64_H
 #define TUMBLING_DISC_F64_H

@@ -25,7 +25,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 aba595426a47430c.
+ * Body of these files: sha256 5a5cde80e7d57fd8.
  */
 #ifndef WHEEL_PENDULUM_F32_H
 #define WHEEL_PENDULUM_F32_H

@@ -24,7 +24,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 ff3163f2297cc321.
+ * Body of these files: sha256 e4e9ba575635f3fa.
  */
 #ifndef WHEEL_PENDULUM_F64_H
 #define WHEEL_PENDULUM_F64_H

@@ -26,14 +26,14 @@ REFUSED = [
     ({"turn": "z 1", "limits": {"momnt": 1}}, "not of 'momnt' (did you mean 'moment_"),
     ({"turn": "z 1", "limits": {"moment": 0}}, "a limit must be above 0, or LOW..HIGH, not 0"),
     ({"turn": "z 1", "limits": {"moment": "2..1"}}, "or LOW..HIGH, not 2..1"),
-    ({"turn": "z 1", "avoid": ["x 1"]}, "to avoid is an axis of a body with an attitude"),
+    ({"turn": "z 1", "avoid": ["x 1"]}, "to avoid is an axis of a body, a direction"),
     ({"end": {"attitude_w": 2}}, "an attitude at the end must have length 1, not 2"),
     ({"end": {"moment_x": 2}}, "has no 'moment_x' to set"),
     ({"end": {"attitude_w": 1}}, "the start is where the end is to be"),
     ({"turn": "z 1", "end": {"omega_x": 1}}, "a turn says what omega_x is at the end; leave one"),
     ({"turn": "z 1", "limits": {"moment": 1, "moment_x": 2}}, "moment_x is limited twice"),
     ({"turn": "z 1", "limits": {"moment": (0, 1)}}, "limit"),
-    ({"turn": "z 1", "avoid": ["x 0,0,1 1e9deg"]}, "a cone to avoid is of 0 to 180deg, not 1e9deg"),
+    ({"turn": "z 1", "avoid": ["x 0,0,1 1e9deg"]}, "more than 0 and less than 180deg, not 1e9"),
     ({"turn": "z 90deg", "avoid": ["x 1,0,0 30deg"]}, "the start lies inside of what is to be"),
     ({"turn": "z 90deg", "avoid": ["x 0,1,0 30deg"]}, "the end lies inside of what is to be"),
     (
@@ -42,6 +42,8 @@ REFUSED = [
     ),
     ({"end": {"omega": 0, "attitude_x": 0.5}, "limits": {"attitude_x": 0.1}}, "at the end must be"),
     ({"turn": "z 1", "until": "abc"}, "until"),
+    ({"turn": "1e200,1e200,1 2", "until": -1}, "until must be"),
+    ({"turn": "1e-200,1e-200,0 0.5", "until": -1}, "until must be"),
     ({"turn": "z 1", "steps": 0}, "steps must be"),
     ({"turn": "z 1", "method": "x"}, "method"),
     ({"turn": "z 1", "solver": "x"}, "solver"),
@@ -66,6 +68,26 @@ def test_scenes_that_cannot_be_steered_say_why() -> None:
         derive.steer(derive.load("cart_pendulum"), cart, "z 1")
     with pytest.raises(derive.DeriveError, match="to be steered, a scene must admit state_rate"):
         derive.steer(derive.load("attitude"), {}, "z 1")
+
+
+def test_values_that_would_be_dropped_are_refused() -> None:
+    for more, says in (
+        (
+            {"omega_dot_x": 1},
+            "an input that is held, or a state at the start, not of 'omega_dot_x'",
+        ),
+        ({"attitude_w": 0}, "an attitude at the start must have length 1, not 0"),
+    ):
+        with pytest.raises(derive.DeriveError, match=says):
+            derive.steer(craft(), {**inertia((1, 2, 3)), **more}, "z 1")
+
+
+def test_a_scene_without_an_attitude_has_no_cones() -> None:
+    cart = {"M": 0.5, "m": 0.2, "l": 0.3, "I": 0.006, "b": 0.1, "g": 9.8}
+    with pytest.raises(derive.DeriveError, match=r"to avoid a cone is for .* this scene has none"):
+        derive.steer(
+            derive.load("cart_pendulum"), cart, end={"x": 1}, avoid=["x 0,0,1 30deg"], until=1
+        )
 
 
 def test_a_start_outside_of_its_limits_is_refused() -> None:

@@ -104,7 +104,7 @@ def test_header_json_and_command_say_what_is_fixed(tmp_path: Path) -> None:
     ([NAME], f"{TEXT},q=2", "has no 'q' to set"),
     ([NAME], TEXT.replace("1.3", "much"), "a value is a finite number"),
     ([NAME], TEXT.replace("1.3", "-1.3"), "set-up refuses these values"),
-    ([NAME], TEXT.replace("1.3", "1e-60"), "set-up in float refuses these values"),
+    ([NAME], TEXT.replace("1.3", "1e-60"), "; there I_xx = 1e-60 is 0"),
     ([NAME], f"{TEXT},I_xx=1.3", "'I_xx' is set twice"),
     ([NAME], "I_xx", "--fixed takes NAME=VALUE, as m=2,d=0.06, not 'I_xx'"),
     ([NAME, "heavy_top"], TEXT, "--fixed takes one scene, but 2 were named"),

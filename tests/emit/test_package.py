@@ -178,7 +178,7 @@ REFUSED = {
     "ball.toml --package out --precision half": "generate: argument --precision: must be one of",
     "ball.toml --package file": "output folder 'file' must be writable, but: it is no folder",
     "ball.toml --package .": "package '.' must be a folder of its own, but holds another 'READ",
-    "test.toml --package out": "scene 'test': must have another name, for CMake has a target",
+    "test.toml --package out": "scene 'test': must have another name, for CMake has a 'te",
 }
 
 
@@ -209,3 +209,23 @@ def test_the_command_writes_a_package_and_then_writes_it_again(
     assert main(command) == 0
     assert first == {p: p.read_bytes() for p in Path("lib").rglob("*") if p.is_file()}
     assert not Path("generated").exists()
+
+
+@pytest.mark.parametrize(
+    "typed", ["ball.toml --precision float", "ball.toml --for make", "other.toml"]
+)
+def test_a_package_is_not_laid_beside_files_of_another(
+    typed: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("ball.toml").write_text(BALL)
+    Path("other.toml").write_text(BALL)
+    command = ["generate", "--package", "lib", "--samples", "64"]
+    assert main([*command, "ball.toml"]) == 0
+    before = {p: p.read_bytes() for p in Path("lib").rglob("*") if p.is_file()}
+    assert main([*command, *typed.split()]) == 2
+    assert "of its own, but holds" in capsys.readouterr().err
+    assert before == {p: p.read_bytes() for p in Path("lib").rglob("*") if p.is_file()}

@@ -56,7 +56,7 @@ def rendered(template: str, of: Contents, **more: object) -> str:
 
 def _cmake(of: Contents) -> dict[str, str]:
     if of.scene in TARGETS_OF_CMAKE:
-        rule = f"must have another name, for CMake has a target '{of.scene}' of its own"
+        rule = f"must have another name, for CMake has a '{of.scene}' of its own"
         raise SceneError(f"scene '{of.scene}': {rule}; or leave cmake out of --for")
     return {"CMakeLists.txt": rendered("CMakeLists.txt", of)}
 
@@ -109,5 +109,6 @@ BUILD_TOOLS: Mapping[str, Callable[[Contents], dict[str, str]]] = {
 """The build tools that a package can be for, by name."""
 TARGETS_OF_CMAKE = (
     *("all", "clean", "help", "install", "package", "test"),
-    *("ALL_BUILD", "INSTALL", "PACKAGE", "RUN_TESTS", "ZERO_CHECK"),
+    *("default_target", "depend", "edit_cache", "list_install_components", "preinstall"),
+    *("rebuild_cache", "m", "ALL_BUILD", "INSTALL", "PACKAGE", "RUN_TESTS", "ZERO_CHECK"),
 )
