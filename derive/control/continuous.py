@@ -6,7 +6,7 @@ from typing import Any
 import casadi
 import numpy as np
 
-from derive.control.direct import QUIET, quietly, status
+from derive.control.direct import QUIET, quietly, why_not
 from derive.control.plant import NDFloat
 
 TOLERANCE = 1e-11
@@ -31,7 +31,7 @@ def solver(problem: Mapping[str, Any]) -> Callable[..., Found]:
         first, least, most = box
         found = quietly(made, x0=first, lbx=least, ubx=most, lbg=kept[0], ubg=kept[1], p=parts)
         told = made.stats()
-        why = "" if told["success"] else status(told)
+        why = "" if told["success"] else why_not(told)
         at, multipliers = (np.array(found[key]).ravel() for key in ("x", "lam_g"))
         return at, multipliers, told["iter_count"], why
 

@@ -50,7 +50,7 @@ def quietly(solver: Any, **values: Any) -> Any:
     return found
 
 
-def status(told: Mapping[str, Any]) -> str:
+def why_not(told: Mapping[str, Any]) -> str:
     """Return in words how a solver ended that found nothing; fatrop gives a number."""
     says = str(told["return_status"]).replace("_", " ").lower()
     return "no convergence" if says.lstrip("-").isdecimal() else says
@@ -109,7 +109,7 @@ class Direct:
         body = w[: n * self.count].reshape(self.count, n).T
         x = np.column_stack([body[:states], w[n * self.count :][:states]])
         until = float(w[n * self.count :][states]) if free else self.asked.until
-        why = "" if told["success"] else status(told)
+        why = "" if told["success"] else why_not(told)
         if free and not NEAREST * self.asked.until < until < FARTHEST * self.asked.until:
             why = why or f"a time of {until:.3g} s"
         within = (side[states:, None] for side in (self.asked.low, self.asked.high))
