@@ -63,15 +63,24 @@ class HorizonBlock:
             return "put"
         return "put_below" if self.down else "put_sum"
 
-    def arrays(self) -> list[str]:
-        """Return its arrays as C; none is empty, as C has it."""
-        each = (("colind", self.colind), ("row", self.row), ("takes", self.takes))
-        found = list[str]()
-        for name, values in each:
-            numbers = wrap(", ".join(map(str, values or (0,))), LONGEST)
-            found.append(f"static const int {self.name}_{name}[{len(values) or 1}] = {{")
-            found += [*(f"    {line}" for line in numbers), "};"]
-        return found
+    @property
+    def pattern(self) -> str:
+        """Return what C says where CasADi asks for the matrix's pattern."""
+        many = " * STEPS"
+        size = f"3 + {self.columns}{many * self.across}"
+        size += f" + {len(self.row)}{many * (self.across or self.down)}"
+        return f"{{ static casadi_int made[{size}]; return pattern(made, &{self.name}); }}"
+
+    def declared(self) -> list[str]:
+        """Return it as C; none of its arrays is empty, as C has it."""
+        down, across = ("STEPS" if own else "1" for own in (self.down, self.across))
+        own = f"{self.rows}, {down}, {self.columns}, {across}"
+        found = [f"static const block {self.name} = {{{own},"]
+        for values in (self.colind, self.row, self.takes):
+            numbers = ", ".join(map(str, values or (0,)))
+            found += wrap(f"(const int[]){{{numbers}}},", LONGEST)
+        found[-1] = found[-1].removesuffix(",") + "};"
+        return [found[0], *(f"    {line}" for line in found[1:])]
 
 
 def first_entries(of: StepDerivatives, sizes: Sizes, names: list[str]) -> tuple[Entries, int]:

@@ -3,7 +3,7 @@
 Steps do not meet but in their length and in parameters, and values stand step after step.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from textwrap import wrap
 
 from derive.emit.c.blocks import LONGEST, Sizes, first_entries, horizon_block, second_entries
@@ -30,6 +30,8 @@ from derive.program.program import Measurement, Program, Quantity, placed
 OPTION = f"--{CASADI}"
 GIVEN = ("x", "u", "time_step", "parameters")
 SHAPES = {"x": ("NX", "STEPS"), "u": ("NU", "STEPS"), "xn": ("NX", "STEPS")}
+TAKEN = (*GIVEN, "out_xn", "adj_xn", *(f"out_adj_{q}" for q in GIVEN))
+"""What CasADi gives to the derivative of the adjoint; to the others, the first of it."""
 SHAPES |= {"time_step": ("1", "1"), "parameters": ("NP", "1")}
 
 
@@ -50,6 +52,7 @@ def external_file(
     back = {(k, i): at for (i, k), at in first.items()}
     turned = [(_place(q, "xn"), horizon_block(f"{q}_adj", back, q, "xn", known)) for q in by]
     bends = [(_place(a, b), horizon_block(f"{a}_{b}", second, a, b, known)) for a in by for b in by]
+    blocks = [*slopes, *(b for _, b in (*turned, *bends))]
     text = TEMPLATES.get_template("external.c.jinja").render(
         first_line=first_line(library, figures, (OPTION,)),
         title=library.scene.title,
@@ -69,9 +72,10 @@ def external_file(
         slopes=slopes,
         bends=bends,
         turned=turned,
-        blocks=[*slopes, *(b for _, b in turned), *(b for _, b in bends)],
-        functions=_functions(external_name(scene), {b.name for b in slopes}
-                             | {b.name for _, b in (*turned, *bends)}),
+        blocks=blocks,
+        given=_named(TAKEN),
+        given_patterns=[_dense(q) for q in TAKEN],
+        functions=_functions(external_name(scene), {b.name: b.pattern for b in blocks}),
     )  # fmt: skip
     return f"{scene}_external.c", text
 
@@ -178,40 +182,36 @@ def _part(
     }
 
 
-def _functions(name: str, blocks: set[str]) -> list[dict[str, object]]:
-    """Return what CasADi asks of each function: names and patterns of what goes in and out."""
-    back = [*GIVEN, "out_xn", "adj_xn"]
+def _functions(name: str, blocks: Mapping[str, str]) -> list[dict[str, object]]:
+    """Return what CasADi asks of each function: how much goes in, what comes out."""
+    back = TAKEN[: len(GIVEN) + 2]
     adjoint = [f"adj_{q}" for q in GIVEN]
-    outs = _matrices([*back, *(f"out_{q}" for q in adjoint)])
     return [
-        _function(name, _matrices(GIVEN), _matrices(["xn"])),
-        _function(f"jac_{name}", _matrices([*GIVEN, "out_xn"]), _blocks(["xn"], GIVEN, blocks)),
-        _function(f"adj1_{name}", _matrices(back), _matrices(adjoint)),
-        _function(f"jac_adj1_{name}", outs, _blocks(adjoint, back, blocks)),
+        _function(name, GIVEN, {"xn": _dense("xn")}),
+        _function(f"jac_{name}", TAKEN[: len(GIVEN) + 1], _blocks(["xn"], GIVEN, blocks)),
+        _function(f"adj1_{name}", back, {q: _dense(q) for q in adjoint}),
+        _function(f"jac_adj1_{name}", TAKEN, _blocks(adjoint, back, blocks)),
     ]
 
 
-Matrices = list[tuple[str, str]]
+def _function(name: str, given: Sequence[str], found: Mapping[str, str]) -> dict[str, object]:
+    patterns = list(found.values())
+    return {"name": name, "takes": len(given), "names": _named(found), "patterns": patterns}
 
 
-def _function(name: str, given: Matrices, found: Matrices) -> dict[str, object]:
-    names = {
-        way: wrap(", ".join(f'"{n}"' for n, _ in each), LONGEST)
-        for way, each in (("in", given), ("out", found))
-    }
-    return {"name": name, "given": given, "found": found, "names": names}
+def _named(names: Iterable[str]) -> list[str]:
+    return wrap(", ".join(f'"{n}"' for n in names), LONGEST)
 
 
 def _shape(name: str) -> tuple[str, str]:
     return SHAPES[name.removeprefix("out_").removeprefix("adj_")]
 
 
-def _matrices(names: Sequence[str]) -> Matrices:
-    """Return names with their patterns: dense, or without entries what holds an output's place."""
-    return [(n, _empty(*_shape(n)) if n.startswith("out_") else _dense(*_shape(n))) for n in names]
-
-
-def _dense(rows: str, columns: str) -> str:
+def _dense(name: str) -> str:
+    """Return a pattern without gaps, or without entries of what holds an output's place."""
+    rows, columns = _shape(name)
+    if name.startswith("out_"):
+        return _empty(rows, columns)
     return f"{{ static const casadi_int made[] = {{{rows}, {columns}, 1}}; return made; }}"
 
 
@@ -220,14 +220,15 @@ def _empty(rows: str, columns: str) -> str:
     return f"{{ static const casadi_int made[{size}] = {{{rows}, {columns}}}; return made; }}"
 
 
-def _blocks(rows: Sequence[str], columns: Sequence[str], blocks: set[str]) -> Matrices:
-    """Return the derivatives of each of some results by each input, with their patterns."""
-    found = []
+def _blocks(
+    rows: Sequence[str], columns: Sequence[str], blocks: Mapping[str, str]
+) -> dict[str, str]:
+    """Return the patterns of the derivatives of each of some results by each input."""
+    found = dict[str, str]()
     for row in rows:
         for column in columns:
             size = [" * ".join(x for x in _shape(q) if x != "1") or "1" for q in (row, column)]
             by = "adj" if column == "adj_xn" else column
             own = f"{row.removeprefix('adj_')}_{by}"
-            pattern = f"return pattern_{own}();" if own in blocks else _empty(*size)
-            found.append((f"jac_{row}_{column}", pattern))
+            found[f"jac_{row}_{column}"] = blocks.get(own) or _empty(*size)
     return found
