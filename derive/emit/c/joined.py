@@ -19,7 +19,7 @@ LONGEST = 112
 
 
 @dataclass(frozen=True)
-class Value:
+class Put:
     """A value as C, and how tightly it is bound; 0 if it stands in parentheses in all others.
 
     negates : what it is the negative of, if it is written so
@@ -27,7 +27,7 @@ class Value:
 
     text: str
     rank: int
-    negates: "Value | None" = None
+    negates: "Put | None" = None
 
     def within(self, rank: int) -> str:
         """Return it as an operand of what is bound so tightly."""
@@ -41,7 +41,7 @@ def joined(lines: Sequence[str]) -> list[str]:
     ['x[0] = c - a * b;']
     """
     uses = Counter(name for line in lines for name in NAME.findall(line))
-    waiting, found = dict[str, Value](), list[str]()
+    waiting, found = dict[str, Put](), list[str]()
     for line in lines:
         parts = LINE.fullmatch(line)
         head, name, told = parts.groups() if parts else ("", "", line)
@@ -61,22 +61,22 @@ def joined(lines: Sequence[str]) -> list[str]:
     return found
 
 
-def _value(told: str, waiting: Mapping[str, Value]) -> Value:
+def _value(told: str, waiting: Mapping[str, Put]) -> Put:
     """Return what a line tells with all that waits for it."""
     two = TWO.fullmatch(told)
     if told.startswith("-") and NAME.fullmatch(told[1:]):
         own = _own(told[1:], waiting)
-        return Value(f"-{own.within(WHOLE)}", 0, own)
+        return Put(f"-{own.within(WHOLE)}", 0, own)
     if two is None:
         alone = ALONE.fullmatch(told)
         text = NAME.sub(lambda m: _own(m[0], waiting).within(0 if alone else WHOLE), told)
-        return Value(text, _own(told, waiting).rank if told in waiting else WHOLE * bool(alone))
+        return Put(text, _own(told, waiting).rank if told in waiting else WHOLE * bool(alone))
     sign, rank = two[2], RANKS[two[2]]
     left, right = (_own(name, waiting) for name in (two[1], two[3]))
     if sign in TURNED and right.negates is not None:  # a + -b is a - b, to the last bit
         sign, right = TURNED[sign], right.negates
-    return Value(f"{left.within(rank)} {sign} {right.within(rank + 1)}", rank)
+    return Put(f"{left.within(rank)} {sign} {right.within(rank + 1)}", rank)
 
 
-def _own(name: str, waiting: Mapping[str, Value]) -> Value:
-    return waiting.get(name, Value(name, WHOLE))
+def _own(name: str, waiting: Mapping[str, Put]) -> Put:
+    return waiting.get(name, Put(name, WHOLE))
