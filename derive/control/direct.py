@@ -152,9 +152,12 @@ def direct(own: Plant, asked: Task, count: int, method: str, solver: str) -> Dir
     last = x[count]
     if free:
         cost += asked.cost["time"] * last[states] * asked.until
-    constraints.append(asked.ends(last[:states] * size[:states]))
-    least += [0.0] * asked.ends.numel_out(0)
-    most += [0.0] * asked.ends.numel_out(0)
+    at_end = last[:states] * size[:states]
+    still = keeps(at_end, casadi.DM(len(own.u), 1))[[*asked.keeps.last]]
+    for values, below in ((asked.ends(at_end), 0.0), (still, -np.inf)):
+        constraints.append(values)
+        least += [below] * values.numel()
+        most += [0.0] * values.numel()
     unit = _cost_scale(asked, inputs)
     stages = [part for pair in zip(x[:-1], u, strict=True) for part in pair]
     problem = {

@@ -235,5 +235,7 @@ def _held_back(own: Plant, asked: Task, grid: Grid) -> str:
     if len(asked.keeps):
         values = np.array(asked.keeps.at(grid.x[:, :-1], grid.u))
         worst = values[:, int(not asked.keeps.takes_inputs) :].max(axis=1)
+        at_end, last = np.array(asked.keeps.at(grid.x[:, -1], grid.u[:, -1])), [*asked.keeps.last]
+        worst[last] = np.maximum(worst[last], at_end[last, 0])
         return next((asked.keeps.reached[k] for k in np.flatnonzero(worst >= -HELD)), "")
     return ""

@@ -67,9 +67,10 @@ def task(
     says = f"scene '{own.name}'"
     weights = _weights(says, cost)
     to = aim(own, given, turn, end)
-    low, high, keeps = limited(own, says, limits, () if weights["energy"] else own.u, avoid)
+    ranged = () if weights["energy"] else own.u
+    low, high, keeps = limited(own, says, limits, ranged, avoid, to.named)
     require_room(own, says, to, low, high)
-    require_kept(own, says, keeps, {"start": to.start} | ({"end": to.goal} if turn else {}))
+    require_kept(own, says, keeps, to, (low[len(own.x) :], high[len(own.x) :]))
     end_time = _time(own, says, weights, until, to, low, high)
     sizes = _sizes(own, to, low, high, end_time)
     return Task(to.start, to.goal, to.ends, keeps, low, high, weights, sizes, end_time)

@@ -75,6 +75,19 @@ def test_an_axis_keeps_out_of_a_cone() -> None:
     assert (np.array([1, 1, 0]) / np.sqrt(2) @ seen).max() <= np.cos(np.radians(20)) + 1e-7
 
 
+@pytest.mark.long
+def test_an_end_that_leaves_the_attitude_open_is_outside_of_the_cone() -> None:
+    """To stop takes all the time that there is; without a cone the axis ends inside of this one."""
+    values, avoid = {**inertia((1, 1, 1)), "omega_z": 1.0}, ["x 1,1,0 20deg"]
+    given = {"end": {"omega": 0}, "cost": {"energy": 1}, "until": 1.6, "starts": 1}
+    edge = np.cos(np.radians(20))
+    for kept in ([], avoid):
+        one = derive.steer(craft(), values, limits={"moment": 2.0}, avoid=kept, **given)
+        w, x, y, z = (one.states[f"attitude_{c}"][-1] for c in "wxyz")
+        towards = w * w + x * x - y * y - z * z + 2 * (x * y + w * z)
+        assert (towards / np.sqrt(2) <= edge + 1e-7) == bool(kept)
+
+
 TENSOR = np.array([[1.2, -0.02, -0.01], [-0.02, 1.5, 0.03], [-0.01, 0.03, 0.9]])
 WHEEL = 0.002
 WHEELS = {f"J_{a}{a}": TENSOR[k, k] for k, a in enumerate("xyz")} | {"I_w": WHEEL}

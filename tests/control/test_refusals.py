@@ -96,6 +96,22 @@ def test_a_start_outside_of_its_limits_is_refused() -> None:
         derive.steer(craft(), values, "z 1", limits={"omega": 0.4})
 
 
+def test_what_a_function_tells_at_the_start_is_refused_beyond_its_limits() -> None:
+    scene, limits = derive.load("cart_pendulum"), {"rail": "2..3", "F": 1}
+    cart = {"M": 0.5, "m": 0.2, "l": 0.3, "I": 0.006, "b": 0.1, "g": 9.8}
+    least = min(float(scene.function("rail", cart)(0, 0.5, 0, F)) for F in (-1, 1))
+    says = f"rail at the start must be within its limits, 2 to 3, not {least:g} at least, whatever"
+    with pytest.raises(derive.DeriveError, match=says):
+        derive.steer(scene, {**cart, "theta": 0.5}, end={"x": 1}, until=1, limits=limits)
+    spinning = {**inertia((1, 2, 3)), "omega_x": 0.5}
+    for limits, says in (
+        ({"kinetic_energy": "0..0.1"}, "kinetic_energy at the start .* 0 to 0.1, not 0.125$"),
+        ({"kinetic_energy": "0.1..0.2"}, "kinetic_energy at the end .* 0.1 to 0.2, not 0$"),
+    ):
+        with pytest.raises(derive.DeriveError, match=says):
+            derive.steer(craft(), spinning, "z 1", limits={"moment": 1, **limits})
+
+
 def test_ctrl_c_in_a_solver_stops_the_program() -> None:
     with pytest.raises(KeyboardInterrupt):
         quietly(lambda: os.kill(os.getpid(), signal.SIGINT))
