@@ -7,11 +7,11 @@ from typing import Any
 from rich.table import Table
 
 import derive
-from derive.command.parsed import location, seconds
+from derive.command.parsed import location, seconds, whole
 from derive.command.solve import values_named
 from derive.command.terminal import complain, console, print_rows, progress
 from derive.control.direct import SOLVERS, TRANSCRIPTIONS
-from derive.control.steering import COARSE, STARTS, STEPS
+from derive.control.steering import COARSE, FINEST, MOST_STARTS, STARTS, STEPS
 from derive.control.task import costs_of
 
 
@@ -61,12 +61,12 @@ def options(command: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         help="the time at the end, or where the cost counts it the first guess of it",
     )
-    for name, kept, says in (
-        ("steps", STEPS, "steps of the grid, at least"),
-        ("starts", STARTS, "first guesses: a straight one, and others perturbed"),
+    for name, kept, most, says in (
+        ("steps", STEPS, FINEST, "steps of the grid, at least"),
+        ("starts", STARTS, MOST_STARTS, "first guesses: a straight one, and others perturbed"),
     ):
         says = f"{says} (default: {kept})"
-        command.add_argument(f"--{name}", type=int, default=kept, metavar="N", help=says)
+        command.add_argument(f"--{name}", type=whole(most), default=kept, metavar="N", help=says)
     for name, words in (("method", TRANSCRIPTIONS), ("solver", tuple(SOLVERS))):
         says = f"{' or '.join(words)} (default: {words[0]})"
         command.add_argument(f"--{name}", default=words[0], metavar="WORD", help=says)

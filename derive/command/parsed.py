@@ -75,6 +75,19 @@ def word_of(words: Iterable[str]) -> Callable[[str], str]:
     return read
 
 
+def whole(most: int) -> Callable[[str], int]:
+    """Return what reads a number of something."""
+
+    def read(text: str) -> int:
+        digits = len(str(most))
+        if not text.isdecimal() or len(text) > digits or not 0 < int(text) <= most:
+            rule = f"must be a whole number above zero, up to {most}"
+            raise argparse.ArgumentTypeError(f"{rule}, not {typed(text)}")
+        return int(text)
+
+    return read
+
+
 def seconds(text: str) -> float:
     """Return a time, which a double can hold."""
     with suppress(ValueError):

@@ -5,7 +5,7 @@ import argparse
 from rich.table import Table
 
 import derive
-from derive.command.parsed import typed
+from derive.command.parsed import whole
 from derive.command.terminal import print_rows
 from derive.solve.generation import NUMBERS
 
@@ -35,16 +35,8 @@ def samples_argument(command: argparse.ArgumentParser, default: int, says: str) 
     """Let a command be told how many samples to take."""
     command.add_argument(
         "--samples",
-        type=_samples,
+        type=whole(NUMBERS[-1]),
         default=default,
         metavar="N",
         help=f"{says} (default: {default})",
     )
-
-
-def _samples(text: str) -> int:
-    digits = len(str(NUMBERS[-1]))
-    if not text.isdecimal() or len(text) > digits or int(text) not in NUMBERS:
-        rule = f"must be a whole number above zero, up to {NUMBERS[-1]}"
-        raise argparse.ArgumentTypeError(f"{rule}, not {typed(text)}")
-    return int(text)

@@ -19,7 +19,15 @@ def _width(stream: TextIO | None) -> int | None:
     return None if stream is not None and stream.isatty() else WIDE
 
 
-console = Console(width=_width(sys.stdout), markup=False, emoji=False)
+class Output(Console):
+    """The console of a library that would end with the code of what differs where a pipe closes."""
+
+    def on_broken_pipe(self) -> None:
+        """Let the command line be told: who read has had enough."""
+        raise BrokenPipeError
+
+
+console = Output(width=_width(sys.stdout), markup=False, emoji=False)
 error_console = Console(stderr=True, width=_width(sys.stderr), markup=False, emoji=False)
 
 

@@ -108,7 +108,17 @@ def _told(rule: str) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise OutputError(f"{rule}, but: {error.strerror or error}") from error
+        raise OutputError(f"{rule}, but: {_reason(error)}") from error
+
+
+def _reason(error: OSError) -> str:
+    """Return why the system refuses, with the name of a file that lies where a folder is to be."""
+    if isinstance(error, NotADirectoryError | FileExistsError) and error.filename:
+        place = Path(error.filename)
+        for above in (place, *place.parents):
+            if above.exists() and not above.is_dir():
+                return f"'{above}' is no folder"
+    return error.strerror or str(error)
 
 
 def unfinished(folder: Path) -> tuple[str, ...]:

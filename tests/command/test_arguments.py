@@ -15,6 +15,9 @@ REFUSED = {
     " (here rad/s), as 0.5, an angle also 3deg, not '20cm'",
     "solve ball.toml --untli=3": "solve: '--untli' is no option (did you mean '--until'?)",
     "solve ball.toml --until x": "solve: argument --until: must be a number of seconds, as 0.5",
+    "control ball.toml --steps 1.5": "control: argument --steps: must be a whole number above zero,"
+    " up to 800, not '1.5'",
+    "control ball.toml --starts=-2": "control: argument --starts: must be a whole number above",
     "solve ball.toml --until=1 --plot=": "solve: argument --plot: must be a path, not ''",
     "report ball.toml --out=": "report: argument --out: must be a path, not ''",
     "solve ball.toml --until 1e400": "solve: argument --until: must be a number of seconds, as 0.5,"

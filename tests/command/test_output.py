@@ -67,6 +67,27 @@ def test_who_has_read_enough_is_told_nothing(monkeypatch, capsys):
     assert capsys.readouterr().err == ""
 
 
+@pytest.mark.parametrize("command", ["equations heavy_top", "scenes"])
+@pytest.mark.skipif(os.name != "posix", reason="the shell of POSIX has pipes")
+def test_a_pipe_that_is_closed_early_ends_the_program_quietly(command):
+    told = f'("{sys.executable}" -m derive {command}; echo $? >&2) | true'
+    done = subprocess.run(["sh", "-c", told], capture_output=True, check=False)
+    assert done.stderr == b"0\n"
+
+
+def test_where_a_file_lies_in_place_of_a_folder_it_is_named(tmp_path, capsys):
+    (tmp_path / "taken").write_text("")
+    own = str(tmp_path / "taken" / "below")
+    says = f"'{tmp_path / 'taken'}' is no folder"
+    for command in (
+        ["generate", "attitude", "--samples", "256", "--out", own],
+        ["report", "attitude", "--out", own],
+        ["solve", "heavy_top", "--until", "1", "--plot", f"{own}/x.svg", "--set", "m=1"],
+    ):
+        assert main(command) == 2
+        assert capsys.readouterr().err.strip().endswith(says), command
+
+
 def test_a_module_is_not_printed_in_another_encoding_than_its_own(monkeypatch, tmp_path, capsys):
     catalogue = Path(__file__).parents[2] / "derive" / "scene" / "catalogue"
     text = (catalogue / "free_body.toml").read_text(encoding="utf-8")
