@@ -1,6 +1,6 @@
 """A trajectory that was found: what it costs, how surely, its times, states and inputs."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -44,13 +44,7 @@ class Trajectory:
     @property
     def minima(self) -> tuple[tuple[float, int], ...]:
         """Return the costs that starts led to, cheapest first, and how many starts led there."""
-        rows = list[tuple[float, int]]()
-        for cost in sorted(c for c in self.found if c is not None):
-            if rows and cost - rows[-1][0] <= SAME * abs(rows[-1][0]):
-                rows[-1] = (rows[-1][0], rows[-1][1] + 1)
-            else:
-                rows.append((cost, 1))
-        return tuple(rows)
+        return minima(self.found)
 
     @property
     def times(self) -> NDFloat:
@@ -136,6 +130,21 @@ class Trajectory:
         part = (time - self.times[k]) / (self.refined.lasts[k] or 1.0)
         own: NDFloat = self.refined.u[:, :, k] @ lagrange(part)
         return own
+
+
+def minima(found: Iterable[float | None]) -> tuple[tuple[float, int], ...]:
+    """Return costs that are not one local minimum's, cheapest first, and how often each is there.
+
+    >>> minima((3.5, 2.0, None, 3.5001))
+    ((2.0, 1), (3.5, 2))
+    """
+    rows = list[tuple[float, int]]()
+    for cost in sorted(c for c in found if c is not None):
+        if rows and cost - rows[-1][0] <= SAME * abs(rows[-1][0]):
+            rows[-1] = (rows[-1][0], rows[-1][1] + 1)
+        else:
+            rows.append((cost, 1))
+    return tuple(rows)
 
 
 def _from_start(times: NDFloat, values: NDFloat) -> NDFloat:
