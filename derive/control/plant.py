@@ -113,7 +113,7 @@ def plant(scene: Scene, values: NamedValues) -> tuple[Plant, dict[str, float]]:
         x,
         u,
         {n: every[n].unit for n in (*x, *u)},
-        {n: (float(every[n].low or 0), float(every[n].high or 0)) for n in (*x, *u)},
+        {n: (float(every[n].low or 0), float(every[n].high or 0)) for n in (*x, *u, *given)},
         casadi.Function("rate", [X, U], [casadi.vertcat(*rates)]),
         casadi.Function("step", [X, U, h], [casadi.vertcat(*following)]),
         step_name,

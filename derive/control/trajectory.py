@@ -156,14 +156,15 @@ def _from_start(times: NDFloat, values: NDFloat) -> NDFloat:
 def beyond_ranges(
     own: Plant, states: Mapping[str, NDFloat], inputs: Mapping[str, NDFloat]
 ) -> tuple[str, ...]:
-    """Return a warning for each component that leaves its declared range on the way."""
+    """Return a warning for each component that is outside of its declared range on the way."""
     found = []
-    for name, values in (*states.items(), *inputs.items()):
+    given = {n: np.array([v]) for n, v in own.given.items() if n not in states}
+    for name, values in (*states.items(), *inputs.items(), *given.items()):
         low, high = own.ranges[name]
         if name in [own.x[k] for k in own.attitude]:
             continue
         worst = max(values, key=lambda v: max(low - v, v - high))
-        if not -OVER <= (worst - low) / (high - low) <= 1 + OVER:
+        if low < high and max(low - worst, worst - high) > OVER * (high - low):
             rule = f"outside of its range, {low:g} to {high:g}, for which its errors are stated"
-            found.append(f"{name} comes to {worst:.6g}, {rule}")
+            found.append(f"{name} {'is' if name in given else 'comes to'} {worst:.6g}, {rule}")
     return tuple(found)

@@ -132,6 +132,13 @@ def test_a_cart_swings_its_pendulum_up() -> None:
     assert trajectory.doubts[0].startswith("theta comes to 4.6")
 
 
+def test_what_is_given_outside_of_its_range_is_told() -> None:
+    told = derive.steer(craft(), inertia((0.4, 0.5, 0.6)), "x 1", limits={"moment": 1}, starts=1)
+    assert told.doubts == (
+        "I_x is 0.4, outside of its range, 0.5 to 9000, for which its errors are stated",
+    )
+
+
 def test_a_tumbling_body_is_stopped_in_the_time_that_its_moments_need() -> None:
     values = {**inertia((1, 2, 3)), "omega_x": 0.5}
     limits = {"moment": 0.8}
