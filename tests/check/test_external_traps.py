@@ -8,6 +8,7 @@ from pathlib import Path
 from types import ModuleType
 
 import casadi as ca
+import numpy as np
 import pytest
 
 
@@ -70,10 +71,19 @@ def test_a_cache_that_cannot_be_written_is_one_sentence(
         module.external(2)
 
 
-@pytest.mark.parametrize("steps", [0, -1, 1.5, True, "3"])
+@pytest.mark.parametrize("steps", [0, -1, 1.5, True, "3", np.float64(3)])
 def test_a_number_of_steps_that_is_none_is_refused(module: ModuleType, steps: object) -> None:
     with pytest.raises(ValueError, match="steps must be a whole number"):
         module.external(steps)
+
+
+def test_a_number_of_steps_of_numpys_is_one(
+    module: ModuleType, cache_of_three: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(cache_of_three))
+    before = sorted((cache_of_three / "derive").glob("*.so"))
+    assert module.external(np.int64(3)).size_in(0) == (7, 3)
+    assert sorted((cache_of_three / "derive").glob("*.so")) == before
 
 
 def test_two_processes_that_build_at_once_both_have_it(
