@@ -37,7 +37,7 @@ from derive.scene.wanted import (
     with_column,
 )
 
-LOOPED = ("step_rk4", "step_rk4_jacobian", "step_rk4_sensitivity")
+LOOPED = ("step_rk4", "step_rk4_jacobian", "step_rk4_tangent", "step_rk4_sensitivity")
 """Steps that may be printed as loops over their stages."""
 COMPENSATION = "_compensated"
 FREE_ROTATION = tuple(

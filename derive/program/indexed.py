@@ -17,22 +17,25 @@ ArrayValues = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Index:
-    """A whole number: a counter and so much more, or what a table has at that place."""
+    """A whole number: a counter and so much more, or what a table has at that place, and more."""
 
     counter: str = ""
     plus: int = 0
     table: str = ""
+    beyond: int = 0
 
     def __str__(self) -> str:
         sign = "-" if self.plus < 0 else "+"
         more = f" {sign} {abs(self.plus)}" if self.plus else ""
         inside = f"{self.counter}{more}" if self.counter else str(self.plus)
-        return f"{self.table}[{inside}]" if self.table else inside
+        if not self.table:
+            return inside
+        return f"{self.table}[{inside}]" + (f" + {self.beyond}" if self.beyond else "")
 
     def at(self, counters: Counters, tables: ArrayValues) -> int:
         """Return the number where loops have got to."""
         place = counters.get(self.counter, 0) + self.plus
-        return int(tables[self.table][place]) if self.table else place
+        return int(tables[self.table][place]) + self.beyond if self.table else place
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,12 @@ class Element:
     def at(self, counters: Counters, tables: ArrayValues) -> str:
         """Return its name where loops have got to."""
         return self.array + "".join(f"[{place.at(counters, tables)}]" for place in self.places)
+
+
+def element_at(array: str, *places: str | int) -> Element:
+    """Return a place of an array, by counters and numbers."""
+    every = (Index(p) if isinstance(p, str) else Index(plus=p) for p in places)
+    return Element(array, tuple(every))
 
 
 @dataclass(frozen=True)

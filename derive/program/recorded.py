@@ -47,18 +47,37 @@ def _without_names(loop: Loop) -> tuple[object, ...]:
 
 
 def needed(ops: Sequence[OneLine], results: Sequence[Operand | None]) -> tuple[OneLine, ...]:
-    """Return the operations without those that no result rests on."""
+    """Return the operations without those that no result rests on, and no place of an array."""
     wanted = {r for r in results if isinstance(r, str)}
     kept: list[OneLine] = []
     for line in reversed(ops):
-        if isinstance(line, Op) and line.result in wanted:
-            kept.append(line)
-        elif isinstance(line, Loop) and wanted & set(line.carried):
-            kept.append(replace(line, body=needed(line.body, (*line.then, line.done))))
-        else:
+        if isinstance(line, Op) and line.result not in wanted:
             continue
+        if isinstance(line, Assign) and line.makes and line.target not in wanted:
+            continue
+        one: Any = _needed_turns(line, wanted) if isinstance(line, Loop) else line
+        if isinstance(one, Loop) and not one.carried and not one.body:
+            continue
+        kept.append(one)
         wanted |= operands_of(kept[-1:])
     return tuple(reversed(kept))
+
+
+def _needed_turns(loop: Loop, wanted: set[str]) -> Loop:
+    """Return a loop that carries what is wanted afterwards, and what its turns need for that."""
+    live: set[str] = wanted & {*loop.carried}
+    while True:
+        rows = [
+            row for row in zip(loop.carried, loop.start, loop.then, strict=True) if row[0] in live
+        ]
+        then = tuple(t for _, _, t in rows)
+        body = needed(loop.body, (*then, loop.done if rows else None))
+        more = operands_of(body, then) & {*loop.carried} - live
+        if not more:
+            names, start = tuple(c for c, _, _ in rows), tuple(s for _, s, _ in rows)
+            done = loop.done if rows else None
+            return replace(loop, body=body, carried=names, start=start, then=then, done=done)
+        live |= more
 
 
 def called(tape: Tape, program: Program, values: Mapping[str, Number]) -> list[Number]:

@@ -24,7 +24,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 ee0351421490dc1d.
+ * Body of these files: sha256 74c2b35062c70763.
  */
 #ifndef RIGID_BODY_STEPS_F32_H
 #define RIGID_BODY_STEPS_F32_H
@@ -82,7 +82,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 119 operations on pairs.
- * On Cortex-M0+, -O2: 258024 to 263907 instructions, 5032 B of code, 1776 B of stack.
+ * On Cortex-M0+, -O2: 258025 to 263907 instructions, 5032 B of code, 1776 B of stack.
  * On Cortex-M4F, -O2: 5271 instructions, 4352 B of code, 1596 B of stack.
  */
 int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xy, float I_xz,
@@ -105,14 +105,14 @@ int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, floa
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Error: median 0.26, largest 4.6 u of the largest component, before or after, or of the largest
+ * Error: median 0.26, largest 5.4 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
- *            the ranges, 65536 searched from the worst); at 8282 hard samples 9.5 u (of
+ *            the ranges, 65536 searched from the worst); at 8282 hard samples 13 u (of
  *            attitude_next, turned, ill-conditioned).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
- * Cost: 205 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 62675 to 64069 instructions, 1456 B of code, 16 B of tables, 432 B of stack.
- * On Cortex-M4F, -O2: 1416 instructions, 1016 B of code, 16 B of tables, 356 B of stack.
+ * Cost: 204 add, 64 sub, 351 mul, 1 div, 4 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 61572 to 62879 instructions, 1540 B of code, 416 B of stack.
+ * On Cortex-M4F, -O2: 1382 instructions, 1024 B of code, 372 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -140,14 +140,14 @@ void rigid_body_steps_step_rk4_f32(const rigid_body_steps_constants_f32 *constan
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Error: median 0.26, largest 5.6 u of the largest component, before or after, or of the largest
- *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
- *            ranges, 65536 searched from the worst); at 8282 hard samples no more.
+ * Error: median 0.26, largest 5.3 u of the largest component, before or after, or of the largest
+ *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
+ *            the ranges, 65536 searched from the worst); at 8282 hard samples no more.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
- * Cost: 7608 add, 196 sub, 7986 mul, 1 div, 44 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 1206303 to 1212316 instructions, 3348 B of code, 267 B of tables, 1856 B of
+ * Cost: 2322 add, 460 sub, 3210 mul, 1 div, 250 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 508696 to 513127 instructions, 6944 B of code, 6 B of tables, 1192 B of
  *            stack.
- * On Cortex-M4F, -O2: 99583 instructions, 2640 B of code, 267 B of tables, 1788 B of stack.
+ * On Cortex-M4F, -O2: 9871 instructions, 4600 B of code, 6 B of tables, 1164 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -158,9 +158,9 @@ void rigid_body_steps_step_rk4_jacobian_f32(const rigid_body_steps_constants_f32
     float attitude_next[4], float velocity_next[3], float omega_next[3], float jacobian[145]);
 
 /* The same, the whole matrix: 247 entries.
- * On Cortex-M0+, -O2: 1206613 to 1213458 instructions, 3444 B of code, 412 B of tables, 2496 B of
+ * On Cortex-M0+, -O2: 510639 to 515291 instructions, 7040 B of code, 151 B of tables, 1832 B of
  *            stack.
- * On Cortex-M4F, -O2: 100949 instructions, 2732 B of code, 412 B of tables, 2420 B of stack.
+ * On Cortex-M4F, -O2: 11237 instructions, 4692 B of code, 151 B of tables, 1796 B of stack.
  */
 void rigid_body_steps_step_rk4_jacobian_dense_f32(const rigid_body_steps_constants_f32 *constants,
     const float position[3], const float attitude[4], const float velocity[3], const float omega[3],

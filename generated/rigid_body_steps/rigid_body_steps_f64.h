@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 f8605990248e66b8.
+ * Body of these files: sha256 c53938e3d810f1db.
  */
 #ifndef RIGID_BODY_STEPS_F64_H
 #define RIGID_BODY_STEPS_F64_H
@@ -107,9 +107,8 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  *            the ranges, 65536 searched from the worst); at 8282 hard samples 1.5e+03 u (of
  *            attitude_next, turned, ill-conditioned).
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
- * Cost: 205 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 144470 to 146069 instructions, 2300 B of code, 32 B of tables, 856 B of
- *            stack.
+ * Cost: 204 add, 64 sub, 351 mul, 1 div, 4 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 141827 to 143341 instructions, 2360 B of code, 832 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -137,12 +136,12 @@ void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constan
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Error: median 0.37, largest 6 u of the largest component, before or after, or of the largest
+ * Error: median 0.37, largest 5.5 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8282 hard samples no more.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
- * Cost: 7608 add, 196 sub, 7986 mul, 1 div, 44 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 2270852 to 2278183 instructions, 5336 B of code, 283 B of tables, 3736 B of
+ * Cost: 2322 add, 460 sub, 3210 mul, 1 div, 250 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 1080812 to 1087610 instructions, 11224 B of code, 6 B of tables, 2432 B of
  *            stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -155,7 +154,7 @@ void rigid_body_steps_step_rk4_jacobian_f64(const rigid_body_steps_constants_f64
     double jacobian[145]);
 
 /* The same, the whole matrix: 247 entries.
- * On Cortex-M0+, -O2: 2271271 to 2280357 instructions, 5480 B of code, 428 B of tables, 4960 B of
+ * On Cortex-M0+, -O2: 1084069 to 1090806 instructions, 11368 B of code, 151 B of tables, 3656 B of
  *            stack.
  */
 void rigid_body_steps_step_rk4_jacobian_dense_f64(const rigid_body_steps_constants_f64 *constants,
