@@ -24,6 +24,11 @@ class Index:
     table: str = ""
     beyond: int = 0
 
+    def __repr__(self) -> str:
+        """Return what a digest of programs reads: of the last, only what is there."""
+        more = f", beyond={self.beyond}" if self.beyond else ""
+        return f"Index(counter={self.counter!r}, plus={self.plus}, table={self.table!r}{more})"
+
     def __str__(self) -> str:
         sign = "-" if self.plus < 0 else "+"
         more = f" {sign} {abs(self.plus)}" if self.plus else ""

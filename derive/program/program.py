@@ -12,16 +12,7 @@ from functools import cached_property
 from typing import Any, Literal
 
 from derive.program.arithmetic import FLOPS
-from derive.program.indexed import (
-    Arrays,
-    Even,
-    Indexed,
-    Integers,
-    Loop,
-    Row,
-    names_in,
-    operators_in,
-)
+from derive.program.indexed import Arrays, Even, Indexed, Integers, Loop, names_in, operators_in
 
 Operand = str | Fraction
 
@@ -174,7 +165,7 @@ class Program:
     @property
     def has_arrays(self) -> bool:
         """Tell whether there are loops over places of arrays."""
-        return any(isinstance(line, Arrays | Row) for line in self.ops)
+        return any(isinstance(line, Arrays) for line in self.ops)
 
 
 def _uses(lines: Sequence[Line], at: Mapping[str, int], tables: dict[str, Any]) -> Iterator[str]:

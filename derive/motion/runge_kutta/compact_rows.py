@@ -118,7 +118,8 @@ class CarriedWay:
 
     def cost(self, rows: AlikeRows) -> int:
         """Return how many entries of A and B a row is multiplied by."""
-        return sum(len(self.reads.get(k, ())) for k in {*rows.own} | self.reached(rows.own))
+        used = {*rows.own} | self.reached(rows.own)
+        return len([row for row, _ in self.slopes if row in used])
 
     def spots(self, rows: AlikeRows) -> dict[int, list[int]]:
         """Return where a loop puts the entries of its rows, by column of the pattern."""

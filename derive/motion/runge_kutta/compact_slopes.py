@@ -126,10 +126,12 @@ def _row(back: GoingBack, rows: AlikeRows, targets: Sequence[Index]) -> None:
     for c, total in totals.items():
         full[c] = full[c] + total
     for c in asked & back.still.keys():
-        gained = (sums[k] * x for k, x in back.still[c].items() if k in sums)
-        full[c] = sum(gained, number(0))
+        for k, x in back.still[c].items():
+            if k in sums:
+                full[c] = full[c] + sums[k] * x
     if way.errors:
-        start = [back.tape.input(name) for name in way.system.names[way.errors]]
+        places = range(way.errors.start, way.errors.stop)
+        start = [back.tape.input(f"start[{k}]") for k in places]  # the input may be stored over
         (full,) = lifted(start, way.errors, [full])
     ends = full[len(full) - len(way.pattern.columns) :]
     for column, target in zip(spots, targets, strict=True):
