@@ -25,6 +25,7 @@ from derive.library.external import StepDerivatives
 from derive.library.library import Library
 from derive.program.program import Measurement
 from derive.scene.declaration import DeriveError
+from derive.verify.kept import UNDIGESTED, Digests
 
 MEASURED = ("_report.html", "_report.json", ENDING)
 """How files end that lie beside those of a scene and are measured, not generated."""
@@ -51,13 +52,13 @@ class Difference:
 def scene_files(
     library: Library,
     figures: Sequence[Measurement],
-    digest: str = "",
+    digest: Digests = UNDIGESTED,
     by: Beside = NOTHING_BESIDE,
     of: StepDerivatives | None = None,
 ) -> dict[str, str]:
     """Return the path below the output folder and the text of every file of a scene.
 
-    digest : of all that the figures depend on        by : what lies beside them
+    digest : of what errors and bounds depend on      by : what lies beside them
     of     : the derivatives of a step, where C for CasADi is to lie beside the rest
     """
     name = library.scene.name

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from derive import __version__
-from derive.emit.c.comment import SETUP_ERROR, holds, of_what
+from derive.emit.c.comment import BOUND_OF_WHAT, SETUP_ERROR, holds, of_what
 from derive.emit.c.fixed import fixed_symbol
 from derive.emit.c.signature import CNames, dense
 from derive.emit.c.source import JACOBIAN_DENSE, command
@@ -20,17 +20,18 @@ from derive.program.precision import F32, F64, PRECISIONS
 from derive.program.program import Measurement, Program, Quantity, Sparsity
 from derive.program.status import possible
 from derive.scene.wanted import JACOBIAN
+from derive.verify.kept import UNDIGESTED, Digests
 
 
 def manifest(
     library: Library,
     figures: Sequence[Measurement],
-    digest: str = "",
+    digest: Digests = UNDIGESTED,
     costs: OnTarget = UNKNOWN,
 ) -> str:
     """Return the text of ``<scene>.json``.
 
-    digest : of all that the figures depend on        costs : what functions cost on cores
+    digest : of what errors and bounds depend on      costs : what functions cost on cores
     """
     scene = library.scene
     whole = {
@@ -57,7 +58,7 @@ def manifest(
         "functions": [f | _on_cores(f["name"], costs) for f in _functions(library, figures)],
         "taken": list(library.mechanism.signs),
         "warnings": list(library.mechanism.doubts()),
-        "measured": {"digest": digest},
+        "measured": {"digest": digest.errors, "bounds": digest.bounds},
     }
     return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
 
@@ -165,6 +166,7 @@ def _function(library: Library, program: Program, figures: Sequence[Measurement]
         "arithmetic": program.arithmetic,
         "cost": {"flops": program.flops()} | program.count,
         "error": _error(program, figures),
+        "bounds": _bounds(program, figures),
         "singular": [{"where": s.where, "outputs": list(s.outputs)} for s in program.singular],
         "postconditions": [
             {"step": s, "equation": equation_text(LECTURE[s]), "holds": holds(program, s, bodies)}
@@ -227,3 +229,14 @@ def _error(program: Program, figures: Sequence[Measurement]) -> dict[str, Any]:
         "measure": f"ulps {of_what(program)}",
         "kind": "sampled",
     }
+
+
+def _bounds(program: Program, figures: Sequence[Measurement]) -> dict[str, Any]:
+    """Return what is proved of each output beside what was seen, or why it is not."""
+    own = [m.bound for m in figures if m.function == program.name and m.bound is not None]
+    found: dict[str, Any] = {}
+    for b in own:
+        row = {"why": b.why} if b.proved is None else {"proved": b.proved, "seen": b.seen}
+        found.setdefault(b.precision, {})[b.output] = row
+    assumed = dict.fromkeys(words for b in own for words in b.assumed)
+    return {"measure": BOUND_OF_WHAT, **found, "assumed": list(assumed)} if own else {}

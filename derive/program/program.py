@@ -237,6 +237,23 @@ def read_by(program: Program) -> set[str]:
 
 
 @dataclass(frozen=True)
+class Bound:
+    """How far rounding moves an output at most on the declared ranges, in its unit: absolute.
+
+    proved  : by ranges of all values; None if it is not        seen : the largest that was found
+    assumed : what the proof rests on beside the ranges         why  : there is no proof
+    """
+
+    function: str
+    precision: str
+    output: str
+    proved: float | None = None
+    seen: float = 0.0
+    assumed: tuple[str, ...] = ()
+    why: str = ""
+
+
+@dataclass(frozen=True)
 class Measurement:
     """The error of one output of one function in one precision, in u of what it is counted in.
 
@@ -244,6 +261,7 @@ class Measurement:
     worst                   : the largest of all, at bodies and motions outside them too
     sample, kind            : number of the worst sample, and which kind of sample it is
     samples, searched, hard : how many were drawn on the ranges, searched from the worst, and hard
+    bound                   : what is proved, absolute
     """
 
     function: str
@@ -257,3 +275,4 @@ class Measurement:
     samples: int
     searched: int
     hard: int
+    bound: Bound | None = None

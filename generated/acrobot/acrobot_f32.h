@@ -117,6 +117,7 @@ int acrobot_setup_f32(float m_1, float m_2, float l_1, float c_1, float c_2, flo
  * Error: median 0.83, largest 9.3 u of the largest product or sum in the equation (of
  *            q_1_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
+ * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 12 add, 4 sub, 27 mul, 1 div, 2 sin, 2 cos.
  * On Cortex-M0+, -O2: 11939 to 13477 instructions, 992 B of code, 160 B of stack.
  * On Cortex-M4F, -O2: 255 to 257 instructions, 732 B of code, 76 B of stack.
@@ -152,6 +153,7 @@ void acrobot_state_rate_f32(const acrobot_constants_f32 *constants, float q_1, f
  * Error: median 0.87, largest 14 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 24 add, 13 sub, 70 mul, 1 div, 2 sin, 2 cos.
  * On Cortex-M0+, -O2: 18761 to 20394 instructions, 1664 B of code, 224 B of stack.
  * On Cortex-M4F, -O2: 337 to 339 instructions, 1056 B of code, 108 B of stack.
@@ -197,6 +199,8 @@ void acrobot_state_rate_jacobian_dense_f32(const acrobot_constants_f32 *constant
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of mass_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 9.6e-07 (seen
+ *            9.5e-07), damping_matrix 0 (seen 0), stiffness_matrix 3.9e-06 (seen 3.8e-06).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 22 instructions, 44 B of code, 12 B of stack.
  * On Cortex-M4F, -O2: 21 instructions, 60 B of code, 0 B of stack.
@@ -230,6 +234,8 @@ void acrobot_linearised_f32(const acrobot_constants_f32 *constants, float mass_m
  * Error: median 0.82, largest 23 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 0.0004 J (seen 0.00019);
+ *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 6 add, 1 sub, 10 mul, 2 sin, 2 cos.
  * On Cortex-M0+, -O2: 8797 to 10398 instructions, 740 B of code, 128 B of stack.
  * On Cortex-M4F, -O2: 214 to 216 instructions, 572 B of code, 68 B of stack.
@@ -264,6 +270,7 @@ void acrobot_energy_f32(const acrobot_constants_f32 *constants, float q_1, float
  * Error: median 0.39, largest 1.7e+02 u of the largest component, before or after, or of the
  *            largest product of what the step adds, by rounding alone (of q_2_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
+ * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 104 add, 20 sub, 185 mul, 8 div, 8 sin, 8 cos.
  * On Cortex-M0+, -O2: 61900 to 68553 instructions, 3372 B of code, 368 B of stack.
  * On Cortex-M4F, -O2: 1202 to 1210 instructions, 2436 B of code, 300 B of stack.

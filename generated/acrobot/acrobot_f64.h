@@ -114,6 +114,7 @@ int acrobot_setup_f64(double m_1, double m_2, double l_1, double c_1, double c_2
  * Error: median 0.84, largest 13 u of the largest product or sum in the equation (of q_1_dot_rate;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 12 add, 4 sub, 27 mul, 1 div, 2 sin, 2 cos.
  * On Cortex-M0+, -O2: 30221 to 33586 instructions, 1584 B of code, 288 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -148,6 +149,7 @@ void acrobot_state_rate_f64(const acrobot_constants_f64 *constants, double q_1, 
  * Error: median 0.85, largest 15 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 24 add, 13 sub, 70 mul, 1 div, 2 sin, 2 cos.
  * On Cortex-M0+, -O2: 45989 to 49478 instructions, 2612 B of code, 416 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -191,6 +193,8 @@ void acrobot_state_rate_jacobian_dense_f64(const acrobot_constants_f64 *constant
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of mass_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 1.8e-15 (seen
+ *            1.8e-15), damping_matrix 0 (seen 0), stiffness_matrix 7.2e-15 (seen 7.1e-15).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 54 instructions, 108 B of code, 20 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -223,6 +227,8 @@ void acrobot_linearised_f64(const acrobot_constants_f64 *constants, double mass_
  * Error: median 0.83, largest 30 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 7.4e-13 J (seen
+ *            5.4e-13); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 6 add, 1 sub, 10 mul, 2 sin, 2 cos.
  * On Cortex-M0+, -O2: 22980 to 26413 instructions, 1192 B of code, 216 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
@@ -256,6 +262,7 @@ void acrobot_energy_f64(const acrobot_constants_f64 *constants, double q_1, doub
  * Error: median 0.39, largest 2e+02 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of q_1_dot_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 48 hard samples no more.
+ * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 104 add, 20 sub, 185 mul, 8 div, 8 sin, 8 cos.
  * On Cortex-M0+, -O2: 152577 to 166456 instructions, 5168 B of code, 672 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,

@@ -30,6 +30,8 @@ extern "C" {
  * Error: median 0.3, largest 3.4 u of the largest component, by rounding alone (of attitude;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude 7.2e-07 1 (seen
+ *            3.1e-07).
  * Cost: 7 add, 5 sub, 16 mul.
  * On Cortex-M0+, -O2: 2781 to 3000 instructions, 320 B of code, 88 B of stack.
  * On Cortex-M4F, -O2: 41 instructions, 164 B of code, 0 B of stack.
@@ -41,6 +43,7 @@ void attitude_quaternion_product_f32(const float left[4], const float right[4], 
  * Returned:  attitude[4]  1  N from B  attitude quaternion, scalar first, body to inertial, |q| = 1
  * Error: median 0.25, largest 3 u of the largest component, by rounding alone (of attitude; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
+ * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 3 add, 5 mul, 8 div, 1 sqrt, 4 abs, 5 less, 1 power_of_two, 6 select.
  * On Cortex-M0+, -O2: 4789 to 4911 instructions, 472 B of code, 88 B of stack.
  * On Cortex-M4F, -O2: 66 instructions, 352 B of code, 32 B of stack.
@@ -53,6 +56,7 @@ void attitude_quaternion_normalise_f32(const float quaternion[4], float attitude
  * Error: median 0.24, largest 3.5 u of the largest component, by rounding alone (of attitude;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
  *            more.
+ * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 20 add, 21 sub, 23 mul, 5 div, 1 sqrt, 1 sin, 1 cos, 4 abs, 5 less, 1 power_of_two, 7
  *            select, 1 splitter.
  * On Cortex-M0+, -O2: 10089 to 10957 instructions, 1440 B of code, 160 B of stack.
@@ -66,6 +70,7 @@ void attitude_quaternion_exp_f32(const float rotation_vector[3], float attitude[
  * Error: median 0.31, largest 3.8 u of the largest component, by rounding alone (of
  *            rotation_vector; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8246 hard samples no more.
+ * Bound: not proved: a choice between values may turn out otherwise for rounded ones.
  * Cost: 2 add, 14 mul, 4 div, 1 neg, 1 sqrt, 8 abs, 1 atan2, 9 less, 1 power_of_two, 11 select.
  * On Cortex-M0+, -O2: 7800 to 8271 instructions, 560 B of code, 136 B of stack.
  * On Cortex-M4F, -O2: 207 to 210 instructions, 432 B of code, 80 B of stack.
@@ -79,6 +84,8 @@ void attitude_quaternion_log_f32(const float quaternion[4], float rotation_vecto
  * Error: median 0.44, largest 5.9 u of the largest component, by rounding alone (of vector_N;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: vector_N 1.1e-06 1 (seen
+ *            7.3e-07); assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 11 add, 6 sub, 24 mul.
  * On Cortex-M0+, -O2: 4079 to 4370 instructions, 440 B of code, 88 B of stack.
  * On Cortex-M4F, -O2: 52 instructions, 208 B of code, 0 B of stack.
@@ -93,6 +100,8 @@ void attitude_quaternion_rotate_f32(const float attitude[4], const float vector_
  * Error: median 0.44, largest 5.9 u of the largest component, by rounding alone (of vector_B;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: vector_B 1.1e-06 1 (seen
+ *            6.5e-07); assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 11 add, 6 sub, 24 mul.
  * On Cortex-M0+, -O2: 4129 to 4371 instructions, 444 B of code, 88 B of stack.
  * On Cortex-M4F, -O2: 52 instructions, 208 B of code, 0 B of stack.
@@ -105,6 +114,8 @@ void attitude_quaternion_rotate_back_f32(const float attitude[4], const float ve
  * Returned:  matrix[9]  1  N from B  rotation matrix R_NB, column by column: v_N = R_NB v_B
  * Error: median 0.27, largest 3.4 u of the largest component, by rounding alone (of matrix; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: matrix 2.4e-07 1 (seen
+ *            2.4e-07); assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 9 add, 7 sub, 10 mul.
  * On Cortex-M0+, -O2: 2291 to 2486 instructions, 320 B of code, 88 B of stack.
  * On Cortex-M4F, -O2: 40 instructions, 160 B of code, 0 B of stack.
@@ -117,6 +128,7 @@ void attitude_quaternion_to_matrix_f32(const float attitude[4], float matrix[9])
  * Error: median 0.19, largest 4.5 u of the largest component, by rounding alone (of attitude;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
  *            more.
+ * Bound: not proved: a choice between values may turn out otherwise for rounded ones.
  * Cost: 13 add, 9 sub, 4 mul, 4 div, 1 neg, 1 sqrt, 4 less, 13 select.
  * On Cortex-M0+, -O2: 3549 to 3790 instructions, 432 B of code, 104 B of stack.
  * On Cortex-M4F, -O2: 65 to 73 instructions, 332 B of code, 32 B of stack.
@@ -128,6 +140,8 @@ void attitude_quaternion_from_matrix_f32(const float matrix[9], float attitude[4
  * Returned:  mrp[3]  1  along B  modified Rodrigues parameters: axis times tan(angle / 4)
  * Error: median 0.24, largest 2 u of the largest component, by rounding alone (of mrp; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: mrp 1.2e-07 1 (seen 8.9e-08);
+ *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 1 add, 3 div, 1 neg, 1 abs, 1 less, 1 select.
  * On Cortex-M0+, -O2: 1232 to 1309 instructions, 80 B of code, 56 B of stack.
  * On Cortex-M4F, -O2: 18 instructions, 68 B of code, 0 B of stack.
@@ -140,6 +154,8 @@ void attitude_quaternion_to_mrp_f32(const float attitude[4], float mrp[3]);
  * Error: median 0.28, largest 3.1 u of the largest component, by rounding alone (of attitude;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude 4e-07 1 (seen
+ *            1.5e-07).
  * Cost: 4 add, 1 sub, 11 mul, 5 div, 3 abs, 3 less, 1 power_of_two, 3 select.
  * On Cortex-M0+, -O2: 2619 to 2738 instructions, 340 B of code, 64 B of stack.
  * On Cortex-M4F, -O2: 40 instructions, 232 B of code, 0 B of stack.
@@ -151,6 +167,7 @@ void attitude_quaternion_from_mrp_f32(const float mrp[3], float attitude[4]);
  * Returned:  angles[3]  rad  N from B  angles about z, y, x, each about the axis as the ones before left it
  * Error: median 0.24, largest 4.1 u of the largest component, by rounding alone (of angles; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
+ * Bound: not proved: a choice between values may turn out otherwise for rounded ones.
  * Cost: 9 add, 5 sub, 11 mul, 1 sqrt, 4 abs, 2 at_most, 3 atan2, 4 select.
  * On Cortex-M0+, -O2: 11495 to 14083 instructions, 368 B of code, 136 B of stack.
  * On Cortex-M4F, -O2: 329 to 409 instructions, 256 B of code, 64 B of stack.
@@ -164,6 +181,8 @@ void attitude_quaternion_to_euler_zyx_f32(const float attitude[4], float angles[
  * Error: median 0.34, largest 5.1 u of the largest component, by rounding alone (of attitude;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude 4.1e-07 1 (seen
+ *            1.6e-07); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 1 sub, 15 mul, 2 neg, 3 sin, 3 cos.
  * On Cortex-M0+, -O2: 12820 to 14895 instructions, 816 B of code, 144 B of stack.
  * On Cortex-M4F, -O2: 303 to 306 instructions, 580 B of code, 68 B of stack.
@@ -175,6 +194,7 @@ void attitude_quaternion_from_euler_zyx_f32(const float angles[3], float attitud
  * Returned:  angles[3]  rad  N from B  angles about z, x, z, each about the axis as the ones before left it
  * Error: median 0.25, largest 3.3 u of the largest component, by rounding alone (of angles; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
+ * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 6 add, 2 sub, 13 mul, 2 div, 2 sqrt, 6 abs, 2 at_most, 3 atan2, 2 less, 1 power_of_two, 6
  *            select.
  * On Cortex-M0+, -O2: 13435 to 15572 instructions, 456 B of code, 144 B of stack.
@@ -189,6 +209,8 @@ void attitude_quaternion_to_euler_zxz_f32(const float attitude[4], float angles[
  * Error: median 0.28, largest 4.2 u of the largest component, by rounding alone (of attitude;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8246 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude 3.5e-07 1 (seen
+ *            1.6e-07); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 1 sub, 15 mul, 1 neg, 3 sin, 3 cos.
  * On Cortex-M0+, -O2: 12789 to 14930 instructions, 808 B of code, 144 B of stack.
  * On Cortex-M4F, -O2: 303 to 305 instructions, 580 B of code, 68 B of stack.

@@ -110,6 +110,10 @@ int cart_pendulum_setup_f32(float M, float m, float l, float I, float b, float g
  * Error: median 0.73, largest 8.3 u of the largest product or sum in the equation (of x_dot_rate;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: x_rate 0 m/s (seen 0),
+ *            x_dot_rate 3.6e-05 m/s^2 (seen 1.1e-05), theta_rate 0 rad/s (seen 0), theta_dot_rate
+ *            0.00015 rad/s^2 (seen 4.6e-05); assumed: sines and cosines of our own within 0.79
+ *            ulp.
  * Cost: 1 add, 4 sub, 11 mul, 1 div, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 5628 to 6416 instructions, 764 B of code, 128 B of stack.
  * On Cortex-M4F, -O2: 130 to 131 instructions, 580 B of code, 60 B of stack.
@@ -139,6 +143,10 @@ void cart_pendulum_state_rate_f32(const cart_pendulum_constants_f32 *constants, 
  * Error: median 0.75, largest 16 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: x_rate 0 m/s (seen 0),
+ *            x_dot_rate 3.8e-05 m/s^2 (seen 1e-05), theta_rate 0 rad/s (seen 0), theta_dot_rate
+ *            0.00016 rad/s^2 (seen 4.3e-05), jacobian 0.00056 (seen 5.4e-05); assumed: sines and
+ *            cosines of our own within 0.79 ulp.
  * Cost: 5 add, 6 sub, 35 mul, 1 div, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 9040 to 9925 instructions, 1076 B of code, 168 B of stack.
  * On Cortex-M4F, -O2: 178 to 179 instructions, 768 B of code, 60 B of stack.
@@ -177,6 +185,8 @@ void cart_pendulum_state_rate_jacobian_dense_f32(const cart_pendulum_constants_f
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of mass_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 6e-08 (seen 6e-08),
+ *            damping_matrix 0 (seen 0), stiffness_matrix 6e-08 (seen 6e-08).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 20 to 21 instructions, 40 B of code, 12 B of stack.
  * On Cortex-M4F, -O2: 19 instructions, 56 B of code, 0 B of stack.
@@ -204,6 +214,8 @@ void cart_pendulum_linearised_f32(const cart_pendulum_constants_f32 *constants,
  * Error: median 0.64, largest 7.2 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 2.8e-06 J (seen
+ *            1.7e-06); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 7 mul, 1 cos.
  * On Cortex-M0+, -O2: 4513 to 5409 instructions, 668 B of code, 112 B of stack.
  * On Cortex-M4F, -O2: 114 to 115 instructions, 520 B of code, 44 B of stack.
@@ -233,6 +245,8 @@ void cart_pendulum_energy_f32(const cart_pendulum_constants_f32 *constants, floa
  * In this scene: rail = c/Delta
  * Error: median 0.85, largest 9.4 u of the largest product or sum in the equation (of rail; 200000
  *            samples of the ranges, 65536 searched from the worst); at 120 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: rail 2.3e-05 N (seen 7e-06);
+ *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 5 add, 3 sub, 18 mul, 1 div, 1 neg, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 6694 to 7532 instructions, 836 B of code, 120 B of stack.
  * On Cortex-M4F, -O2: 139 to 140 instructions, 620 B of code, 52 B of stack.
@@ -262,6 +276,10 @@ void cart_pendulum_rail_f32(const cart_pendulum_constants_f32 *constants, float 
  * Error: median 0.36, largest 5.8e+02 u of the largest component, before or after, or of the
  *            largest product of what the step adds, by rounding alone (of x_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: x_next 1.6e-07 m (seen
+ *            1.3e-07), x_dot_next 2e-06 m/s (seen 3e-07), theta_next 2.2e-07 rad (seen 1.5e-07),
+ *            theta_dot_next 6.7e-06 rad/s (seen 1e-06); assumed: sines and cosines of our own
+ *            within 0.79 ulp.
  * Cost: 29 add, 16 sub, 78 mul, 4 div, 4 sin, 4 cos.
  * On Cortex-M0+, -O2: 27832 to 30946 instructions, 1740 B of code, 232 B of stack.
  * On Cortex-M4F, -O2: 534 to 538 instructions, 1156 B of code, 164 B of stack.

@@ -107,6 +107,10 @@ int cart_pendulum_setup_f64(double M, double m, double l, double I, double b, do
  * Error: median 0.74, largest 7.6 u of the largest product or sum in the equation (of x_dot_rate;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: x_rate 0 m/s (seen 0),
+ *            x_dot_rate 6.6e-14 m/s^2 (seen 1.6e-14), theta_rate 0 rad/s (seen 0), theta_dot_rate
+ *            2.8e-13 rad/s^2 (seen 8.2e-14); assumed: sines and cosines of our own within 0.79
+ *            ulp.
  * Cost: 1 add, 4 sub, 11 mul, 1 div, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 14226 to 16006 instructions, 1216 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -135,6 +139,10 @@ void cart_pendulum_state_rate_f64(const cart_pendulum_constants_f64 *constants, 
  * Error: median 0.75, largest 16 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: x_rate 0 m/s (seen 0),
+ *            x_dot_rate 6.9e-14 m/s^2 (seen 1.8e-14), theta_rate 0 rad/s (seen 0), theta_dot_rate
+ *            2.9e-13 rad/s^2 (seen 8.2e-14), jacobian 1.1e-12 (seen 1.1e-13); assumed: sines and
+ *            cosines of our own within 0.79 ulp.
  * Cost: 5 add, 6 sub, 35 mul, 1 div, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 22255 to 24107 instructions, 1760 B of code, 296 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -171,6 +179,8 @@ void cart_pendulum_state_rate_jacobian_dense_f64(const cart_pendulum_constants_f
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of mass_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 1.2e-16 (seen
+ *            1.1e-16), damping_matrix 0 (seen 0), stiffness_matrix 1.2e-16 (seen 1.1e-16).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 37 to 38 instructions, 76 B of code, 20 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -197,6 +207,8 @@ void cart_pendulum_linearised_f64(const cart_pendulum_constants_f64 *constants,
  * Error: median 0.63, largest 11 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 5.2e-15 J (seen
+ *            4.1e-15); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 7 mul, 1 cos.
  * On Cortex-M0+, -O2: 12010 to 13772 instructions, 1084 B of code, 184 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass,
@@ -225,6 +237,8 @@ void cart_pendulum_energy_f64(const cart_pendulum_constants_f64 *constants, doub
  * In this scene: rail = c/Delta
  * Error: median 0.85, largest 8.8 u of the largest product or sum in the equation (of rail; 200000
  *            samples of the ranges, 65536 searched from the worst); at 120 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: rail 4.1e-14 N (seen 1.3e-14);
+ *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 5 add, 3 sub, 18 mul, 1 div, 1 neg, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 16586 to 18465 instructions, 1384 B of code, 232 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -253,6 +267,10 @@ void cart_pendulum_rail_f64(const cart_pendulum_constants_f64 *constants, double
  * Error: median 0.36, largest 5.3e+02 u of the largest component, before or after, or of the
  *            largest product of what the step adds, by rounding alone (of theta_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: x_next 2.9e-16 m (seen
+ *            2.4e-16), x_dot_next 3.6e-15 m/s (seen 6.3e-16), theta_next 4e-16 rad (seen 2.7e-16),
+ *            theta_dot_next 1.3e-14 rad/s (seen 1.8e-15); assumed: sines and cosines of our own
+ *            within 0.79 ulp.
  * Cost: 29 add, 16 sub, 78 mul, 4 div, 4 sin, 4 cos.
  * On Cortex-M0+, -O2: 68936 to 75888 instructions, 2740 B of code, 408 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,

@@ -88,6 +88,8 @@ int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, fl
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.63, largest 18 u of the largest product or sum in the equation (of F; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8342 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: F 0.007 N (seen 0.003);
+ *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 11 add, 16 sub, 48 mul, 3 sin, 3 cos.
  * On Cortex-M0+, -O2: 18516 to 20701 instructions, 1360 B of code, 200 B of stack.
  * On Cortex-M4F, -O2: 368 to 371 instructions, 840 B of code, 108 B of stack.
@@ -117,6 +119,8 @@ void centrifuge_gondola_F_f32(const centrifuge_gondola_constants_f32 *constants,
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Error: median 0.97, largest 23 u of the largest product or sum in the equation (of M; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8342 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: M 0.031 N m (seen 0.0022);
+ *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 15 add, 18 sub, 56 mul, 3 sin, 3 cos.
  * On Cortex-M0+, -O2: 19988 to 22112 instructions, 1484 B of code, 216 B of stack.
  * On Cortex-M4F, -O2: 388 to 390 instructions, 920 B of code, 108 B of stack.

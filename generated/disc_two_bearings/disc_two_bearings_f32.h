@@ -65,6 +65,8 @@ int disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, flo
  * In this scene: couple = 1/2*d*(R_down + R_up)
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of couple; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: couple 9.6e-07 N m (seen
+ *            9.5e-07).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 2 to 3 instructions, 8 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
@@ -80,6 +82,7 @@ void disc_two_bearings_couple_f32(const disc_two_bearings_constants_f32 *constan
  * In this scene: R_up = (m*(d*g + r^2*w*W))/(2*d)
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of R_up; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: R_up 1.6e-05 N (seen 1.5e-05).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 2 to 3 instructions, 8 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
@@ -96,6 +99,8 @@ void disc_two_bearings_R_up_f32(const disc_two_bearings_constants_f32 *constants
  * Error: median 0.22, largest 0.91 u of the largest product or sum in the equation (of R_down;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8312 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: R_down 1.6e-05 N (seen
+ *            1.5e-05).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.

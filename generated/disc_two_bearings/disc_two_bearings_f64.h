@@ -63,6 +63,8 @@ int disc_two_bearings_setup_f64(double m, double r, double w, double W, double d
  * In this scene: couple = 1/2*d*(R_down + R_up)
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of couple; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: couple 1.8e-15 N m (seen
+ *            1.8e-15).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -77,6 +79,7 @@ void disc_two_bearings_couple_f64(const disc_two_bearings_constants_f64 *constan
  * In this scene: R_up = (m*(d*g + r^2*w*W))/(2*d)
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of R_up; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: R_up 2.9e-14 N (seen 2.8e-14).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -92,6 +95,8 @@ void disc_two_bearings_R_up_f64(const disc_two_bearings_constants_f64 *constants
  * Error: median 0.22, largest 0.9 u of the largest product or sum in the equation (of R_down;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8312 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: R_down 2.9e-14 N (seen
+ *            2.8e-14).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,

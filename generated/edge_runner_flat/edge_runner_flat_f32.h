@@ -66,6 +66,7 @@ int edge_runner_flat_setup_f32(float m, float r, float L, float g,
  * In this scene: N = m*(g + 1/2*r*W^2)
  * Error: median 0.42, largest 2.3 u of the largest product or sum in the equation (of N; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8329 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: N 0.0034 N (seen 0.0031).
  * Cost: 1 add, 2 mul.
  * On Cortex-M0+, -O2: 292 to 328 instructions, 28 B of code, 48 B of stack.
  * On Cortex-M4F, -O2: 7 instructions, 28 B of code, 0 B of stack.
@@ -84,6 +85,8 @@ void edge_runner_flat_N_f32(const edge_runner_flat_constants_f32 *constants, flo
  * Error: median 0.41, largest 2.2 u of the largest product or sum in the equation (of gyro_gain;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8329 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_gain 2.7e-07 1 (seen
+ *            2.5e-07).
  * Cost: 1 add, 2 mul.
  * On Cortex-M0+, -O2: 306 to 319 instructions, 32 B of code, 48 B of stack.
  * On Cortex-M4F, -O2: 7 instructions, 28 B of code, 0 B of stack.
@@ -100,6 +103,8 @@ void edge_runner_flat_gyro_gain_f32(const edge_runner_flat_constants_f32 *consta
  * In this scene: spin_rel = -(L*W)/r
  * Error: median 0.43, largest 2 u of the largest component, by rounding alone (of spin_rel; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8329 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: spin_rel 1.1e-06 rad/s (seen
+ *            1.1e-06).
  * Cost: 1 mul.
  * On Cortex-M0+, -O2: 123 to 126 instructions, 16 B of code, 40 B of stack.
  * On Cortex-M4F, -O2: 4 instructions, 16 B of code, 0 B of stack.
@@ -118,6 +123,8 @@ void edge_runner_flat_spin_rel_f32(const edge_runner_flat_constants_f32 *constan
  * Error: median 0.51, largest 3 u of the largest product or sum in the equation (of hinge_radial;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8329 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: hinge_radial 0.0054 N (seen
+ *            0.005).
  * Cost: 2 mul.
  * On Cortex-M0+, -O2: 244 to 251 instructions, 24 B of code, 48 B of stack.
  * On Cortex-M4F, -O2: 5 instructions, 20 B of code, 0 B of stack.
@@ -135,6 +142,7 @@ void edge_runner_flat_hinge_radial_f32(const edge_runner_flat_constants_f32 *con
  * Error: median 0.51, largest 2.9 u of the largest product or sum in the equation (of hinge_z;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8329 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: hinge_z 0.0019 N (seen 0.0018).
  * Cost: 2 mul.
  * On Cortex-M0+, -O2: 244 to 251 instructions, 24 B of code, 48 B of stack.
  * On Cortex-M4F, -O2: 5 instructions, 20 B of code, 0 B of stack.

@@ -66,6 +66,7 @@ int eulers_disk_setup_f32(float m, float r, float tilt, float g,
  * Error: median 0.31, largest 2.3 u of the largest product or sum in the equation (of steady;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 2.2e-06 (seen 1.9e-06).
  * Cost: 1 sub, 2 mul.
  * On Cortex-M0+, -O2: 306 to 355 instructions, 32 B of code, 48 B of stack.
  * On Cortex-M4F, -O2: 7 instructions, 28 B of code, 0 B of stack.
@@ -83,6 +84,8 @@ void eulers_disk_steady_f32(const eulers_disk_constants_f32 *constants, float W,
  * Error: median 0.39, largest 1.6 u of the largest component, by rounding alone (of spin_rel;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: spin_rel 1.4e-05 rad/s (seen
+ *            1.4e-05).
  * Cost: 1 mul.
  * On Cortex-M0+, -O2: 123 to 126 instructions, 16 B of code, 40 B of stack.
  * On Cortex-M4F, -O2: 4 instructions, 16 B of code, 0 B of stack.
@@ -98,6 +101,8 @@ void eulers_disk_spin_rel_f32(const eulers_disk_constants_f32 *constants, float 
  * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of tipping;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: tipping 7.5e-09 N m (seen
+ *            7.4e-09).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 2 to 3 instructions, 8 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.

@@ -65,6 +65,7 @@ int eulers_disk_setup_f64(double m, double r, double tilt, double g,
  * Error: median 0.31, largest 2.2 u of the largest product or sum in the equation (of steady;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 4e-15 (seen 3.6e-15).
  * Cost: 1 sub, 2 mul.
  * On Cortex-M0+, -O2: 725 to 790 instructions, 40 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -81,6 +82,8 @@ void eulers_disk_steady_f64(const eulers_disk_constants_f64 *constants, double W
  * Error: median 0.39, largest 1.6 u of the largest component, by rounding alone (of spin_rel;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: spin_rel 2.6e-14 rad/s (seen
+ *            2.5e-14).
  * Cost: 1 mul.
  * On Cortex-M0+, -O2: 299 to 306 instructions, 20 B of code, 72 B of stack.
  */
@@ -96,6 +99,8 @@ void eulers_disk_spin_rel_f64(const eulers_disk_constants_f64 *constants, double
  * Error: median 0.36, largest 1 u of the largest product or sum in the equation (of tipping;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: tipping 1.4e-17 N m (seen
+ *            1.4e-17).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: constant_mass, newton, third_law.

@@ -106,6 +106,8 @@ int free_body_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doub
  * Error: median 0.24, largest 7.3 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples
  *            8.1 u (of omega_dot, turned, ill-conditioned).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 1.4e-13 rad/s^2 (seen
+ *            4.8e-14).
  * Cost: 13 add, 4 sub, 23 mul.
  * On Cortex-M0+, -O2: 9156 to 9511 instructions, 692 B of code, 152 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -124,6 +126,8 @@ void free_body_acceleration_f64(const free_body_constants_f64 *constants, const 
  * Error: median 0.28, largest 6.6 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 9.2e-14 rad/s^2 (seen
+ *            3.2e-14), jacobian 3.9e-15 (seen 3.1e-15).
  * Cost: 21 add, 12 sub, 48 mul.
  * On Cortex-M0+, -O2: 19076 to 19592 instructions, 1608 B of code, 272 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -156,6 +160,8 @@ void free_body_acceleration_jacobian_dense_f64(const free_body_constants_f64 *co
  * Error: median 0.44, largest 11 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 1.6e-13 N m (seen
+ *            8.2e-14).
  * Cost: 7 add, 10 sub, 23 mul.
  * On Cortex-M0+, -O2: 9223 to 9527 instructions, 716 B of code, 192 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -175,6 +181,8 @@ void free_body_moment_f64(const free_body_constants_f64 *constants, const double
  * Error: median 0.48, largest 5.5 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8348 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 5.8e-15 kg
+ *            m^2/s (seen 5.5e-15).
  * Cost: 6 sub, 9 mul.
  * On Cortex-M0+, -O2: 3554 to 3776 instructions, 312 B of code, 144 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
@@ -206,6 +214,8 @@ void free_body_angular_momentum_f64(const free_body_constants_f64 *constants, co
  * Error: median 0.49, largest 11 u of the largest product or sum in the equation (of
  *            rate_absolute; 200000 samples of the ranges, 65536 searched from the worst); at 8348
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 2.4e-14 N m (seen
+ *            2.3e-14), rate_absolute 1.3e-13 N m (seen 6.9e-14).
  * Cost: 7 add, 10 sub, 23 mul.
  * On Cortex-M0+, -O2: 9244 to 9650 instructions, 744 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
@@ -224,6 +234,8 @@ void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constant
  * Error: median 0.53, largest 5.4 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8348
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.5e-13 J (seen
+ *            1e-13).
  * Cost: 2 add, 3 sub, 9 mul.
  * On Cortex-M0+, -O2: 3343 to 3493 instructions, 260 B of code, 112 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.

@@ -75,6 +75,8 @@ int free_body_principal_setup_f32(float I_xx, float I_yy, float I_zz,
  * Error: median 0.14, largest 2.9 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples
  *            4.4 u (of omega_dot, thin rod).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 1.7e-05 rad/s^2 (seen
+ *            1.2e-05).
  * Cost: 2 add, 1 sub, 9 mul.
  * On Cortex-M0+, -O2: 1267 to 1407 instructions, 132 B of code, 64 B of stack.
  * On Cortex-M4F, -O2: 28 instructions, 112 B of code, 0 B of stack.
@@ -94,6 +96,8 @@ void free_body_principal_acceleration_f32(const free_body_principal_constants_f3
  * Error: median 0.14, largest 3 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples
  *            3.3 u (of omega_dot, thin rod).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 1.2e-05 rad/s^2 (seen
+ *            8.9e-06), jacobian 5.4e-07 (seen 5.4e-07).
  * Cost: 3 add, 12 mul.
  * On Cortex-M0+, -O2: 1686 to 1797 instructions, 244 B of code, 96 B of stack.
  * On Cortex-M4F, -O2: 44 instructions, 160 B of code, 0 B of stack.
@@ -122,6 +126,8 @@ void free_body_principal_acceleration_jacobian_dense_f32(const free_body_princip
  * Error: median 0.28, largest 2 u of the largest product or sum in the equation (of moment; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8336 hard samples 3.4 u (of
  *            moment, thin rod).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 2.2e-05 N m (seen
+ *            1.8e-05).
  * Cost: 1 add, 2 sub, 9 mul.
  * On Cortex-M0+, -O2: 1307 to 1432 instructions, 152 B of code, 72 B of stack.
  * On Cortex-M4F, -O2: 28 instructions, 112 B of code, 0 B of stack.
@@ -142,6 +148,8 @@ void free_body_principal_moment_f32(const free_body_principal_constants_f32 *con
  * Error: median 0.34, largest 1 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8336 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 9.6e-07 kg
+ *            m^2/s (seen 9.5e-07).
  * Cost: 3 mul.
  * On Cortex-M0+, -O2: 371 to 380 instructions, 48 B of code, 56 B of stack.
  * On Cortex-M4F, -O2: 13 instructions, 52 B of code, 0 B of stack.
@@ -159,6 +167,8 @@ void free_body_principal_angular_momentum_f32(const free_body_principal_constant
  * Error: median 0.5, largest 3.7 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 5.7e-05 J (seen
+ *            3.5e-05).
  * Cost: 2 add, 6 mul.
  * On Cortex-M0+, -O2: 845 to 889 instructions, 88 B of code, 56 B of stack.
  * On Cortex-M4F, -O2: 16 instructions, 64 B of code, 0 B of stack.

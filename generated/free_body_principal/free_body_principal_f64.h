@@ -74,6 +74,8 @@ int free_body_principal_setup_f64(double I_xx, double I_yy, double I_zz,
  * Error: median 0.14, largest 2.9 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples
  *            4.4 u (of omega_dot, thin rod).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 3.1e-14 rad/s^2 (seen
+ *            2.1e-14).
  * Cost: 2 add, 1 sub, 9 mul.
  * On Cortex-M0+, -O2: 3043 to 3215 instructions, 204 B of code, 112 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -92,6 +94,8 @@ void free_body_principal_acceleration_f64(const free_body_principal_constants_f6
  * Error: median 0.14, largest 3 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples
  *            3.2 u (of omega_dot, thin rod).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 2.2e-14 rad/s^2 (seen
+ *            1.8e-14), jacobian 1e-15 (seen 1e-15).
  * Cost: 3 add, 12 mul.
  * On Cortex-M0+, -O2: 4029 to 4170 instructions, 380 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -118,6 +122,8 @@ void free_body_principal_acceleration_jacobian_dense_f64(const free_body_princip
  * Error: median 0.28, largest 2 u of the largest product or sum in the equation (of moment; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8336 hard samples 3.2 u (of
  *            moment, thin rod).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 4e-14 N m (seen
+ *            3.4e-14).
  * Cost: 1 add, 2 sub, 9 mul.
  * On Cortex-M0+, -O2: 3100 to 3258 instructions, 240 B of code, 120 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -137,6 +143,8 @@ void free_body_principal_moment_f64(const free_body_principal_constants_f64 *con
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8336 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 1.8e-15 kg
+ *            m^2/s (seen 1.8e-15).
  * Cost: 3 mul.
  * On Cortex-M0+, -O2: 898 to 934 instructions, 92 B of code, 96 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
@@ -153,6 +161,8 @@ void free_body_principal_angular_momentum_f64(const free_body_principal_constant
  * Error: median 0.5, largest 3.7 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.1e-13 J (seen
+ *            6.6e-14).
  * Cost: 2 add, 6 mul.
  * On Cortex-M0+, -O2: 2010 to 2078 instructions, 140 B of code, 104 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.

@@ -69,6 +69,8 @@ int gyrocompass_setup_f32(float m, float r, float w3, float lat, float we,
  * Error: median 0.55, largest 3.2 u of the largest product or sum in the equation (of alpha_ddot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8324 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_ddot 3.3e-08 rad/s^2
+ *            (seen 2.2e-08); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 sub, 2 mul, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 3839 to 3924 instructions, 572 B of code, 80 B of stack.
  * On Cortex-M4F, -O2: 92 instructions, 424 B of code, 24 B of stack.
@@ -88,6 +90,8 @@ void gyrocompass_alpha_ddot_f32(const gyrocompass_constants_f32 *constants, floa
  * Error: median 0.34, largest 1 u of the largest product or sum in the equation (of period_s;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8324 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: period_s 9.6e-07 s (seen
+ *            9.5e-07).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 2 to 3 instructions, 8 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
@@ -110,6 +114,8 @@ void gyrocompass_period_s_f32(const gyrocompass_constants_f32 *constants, float 
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of mass_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8324 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 9.4e-10 (seen
+ *            9.3e-10), damping_matrix 0 (seen 0), stiffness_matrix 4.7e-10 (seen 4.7e-10).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 8 instructions, 16 B of code, 12 B of stack.
  * On Cortex-M4F, -O2: 7 instructions, 20 B of code, 0 B of stack.

@@ -67,6 +67,8 @@ int gyrocompass_setup_f64(double m, double r, double w3, double lat, double we,
  * Error: median 0.59, largest 3.7 u of the largest product or sum in the equation (of alpha_ddot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8324 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_ddot 6e-17 rad/s^2 (seen
+ *            5.2e-17); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 sub, 2 mul, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 10212 to 10354 instructions, 936 B of code, 136 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -85,6 +87,8 @@ void gyrocompass_alpha_ddot_f64(const gyrocompass_constants_f64 *constants, doub
  * Error: median 0.34, largest 1 u of the largest product or sum in the equation (of period_s;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8324 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: period_s 1.8e-15 s (seen
+ *            1.8e-15).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 5 to 6 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -106,6 +110,8 @@ void gyrocompass_period_s_f64(const gyrocompass_constants_f64 *constants, double
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of mass_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8324 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 1.8e-18 (seen
+ *            1.7e-18), damping_matrix 0 (seen 0), stiffness_matrix 8.7e-19 (seen 8.7e-19).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 13 to 14 instructions, 28 B of code, 20 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,

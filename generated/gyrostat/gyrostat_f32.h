@@ -135,6 +135,9 @@ int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_x
  * Error: median 0.72, largest 14 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 1.5e-05 rad/s
+ *            (seen 4.3e-06), omega_dot 1.9e-05 rad/s^2 (seen 5.1e-06), wheel_accelerations 2.6e-05
+ *            rad/s^2 (seen 6.9e-06); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot infinite, no number or beyond all measure.
  * Cost: 15 add, 14 sub, 34 mul, 1 div, 2 sin, 2 cos.
  * On Cortex-M0+, -O2: 13758 to 15339 instructions, 1288 B of code, 176 B of stack.
@@ -166,6 +169,10 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
  * Error: median 0.72, largest 14 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 1.6e-05 rad/s
+ *            (seen 4.5e-06), omega_dot 2.3e-05 rad/s^2 (seen 5.2e-06), wheel_accelerations 3e-05
+ *            rad/s^2 (seen 8.8e-06), jacobian 0.00016 (seen 3.8e-05); assumed: sines and cosines
+ *            of our own within 0.79 ulp.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 33 add, 37 sub, 96 mul, 1 div, 20 neg, 2 sin, 2 cos.
@@ -205,6 +212,8 @@ void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *consta
  * Error: median 0.68, largest 8.4 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 0.0009 J (seen
+ *            0.00064).
  * Cost: 5 add, 6 sub, 17 mul.
  * On Cortex-M0+, -O2: 2840 to 3006 instructions, 316 B of code, 80 B of stack.
  * On Cortex-M4F, -O2: 47 instructions, 188 B of code, 0 B of stack.
@@ -230,6 +239,8 @@ void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const 
  * Error: median 0.51, largest 6.3 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8354 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 2e-06 kg m^2/s
+ *            (seen 1.8e-06).
  * Cost: 3 add, 6 sub, 12 mul.
  * On Cortex-M0+, -O2: 2074 to 2284 instructions, 268 B of code, 88 B of stack.
  * On Cortex-M4F, -O2: 40 instructions, 160 B of code, 0 B of stack.

@@ -133,6 +133,9 @@ int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doubl
  * Error: median 0.72, largest 12 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.7e-14 rad/s
+ *            (seen 8.2e-15), omega_dot 3.5e-14 rad/s^2 (seen 8.7e-15), wheel_accelerations 4.9e-14
+ *            rad/s^2 (seen 1.5e-14); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot infinite, no number or beyond all measure.
  * Cost: 15 add, 14 sub, 34 mul, 1 div, 2 sin, 2 cos.
  * On Cortex-M0+, -O2: 34282 to 37643 instructions, 2080 B of code, 320 B of stack.
@@ -163,6 +166,10 @@ void gyrostat_state_rate_f64(const gyrostat_constants_f64 *constants, double the
  * Error: median 0.72, largest 14 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.8e-14 rad/s
+ *            (seen 8.7e-15), omega_dot 4.3e-14 rad/s^2 (seen 9.8e-15), wheel_accelerations 5.6e-14
+ *            rad/s^2 (seen 1.3e-14), jacobian 2.9e-13 (seen 7.6e-14); assumed: sines and cosines
+ *            of our own within 0.79 ulp.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 33 add, 37 sub, 96 mul, 1 div, 20 neg, 2 sin, 2 cos.
@@ -201,6 +208,8 @@ void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *consta
  * Error: median 0.69, largest 7.6 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.7e-12 J (seen
+ *            1.1e-12).
  * Cost: 5 add, 6 sub, 17 mul.
  * On Cortex-M0+, -O2: 6613 to 6809 instructions, 488 B of code, 144 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -225,6 +234,8 @@ void gyrostat_kinetic_energy_f64(const gyrostat_constants_f64 *constants, const 
  * Error: median 0.51, largest 6.9 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8354 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 3.7e-15 kg
+ *            m^2/s (seen 3.3e-15).
  * Cost: 3 add, 6 sub, 12 mul.
  * On Cortex-M0+, -O2: 4861 to 5113 instructions, 428 B of code, 144 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,

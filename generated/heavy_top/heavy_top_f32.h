@@ -75,6 +75,9 @@ int heavy_top_setup_f32(float A, float C, float m, float g, float l,
  * Error: median 0.2, largest 8.8 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 1.2e-05 rad/s
+ *            (seen 8.1e-06), omega_dot 0.0002 rad/s^2 (seen 0.00012); assumed: sines and cosines
+ *            of our own within 0.79 ulp.
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y infinite, no number or
  *            beyond all measure.
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
@@ -99,6 +102,9 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
  * Error: median 0.32, largest 13 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 1.4e-05 rad/s
+ *            (seen 9.6e-06), omega_dot 0.00023 rad/s^2 (seen 0.00014), jacobian 0.0016 (seen
+ *            0.00087); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y, jacobian infinite, no
  *            number or beyond all measure.
  * Cost: 1 add, 5 sub, 15 mul, 1 div, 4 neg, 1 sin, 1 cos.
@@ -128,6 +134,8 @@ void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *cons
  * Error: median 0.49, largest 3.9 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 4.7e-08 J (seen
+ *            3.1e-08).
  * Cost: 2 add, 5 mul.
  * On Cortex-M0+, -O2: 723 to 767 instructions, 80 B of code, 56 B of stack.
  * On Cortex-M4F, -O2: 14 instructions, 56 B of code, 0 B of stack.
@@ -149,6 +157,8 @@ void heavy_top_kinetic_energy_f32(const heavy_top_constants_f32 *constants, cons
  * Error: median 0.27, largest 1 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8342 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 9.4e-10 kg
+ *            m^2/s (seen 9.3e-10).
  * Cost: 3 mul.
  * On Cortex-M0+, -O2: 372 to 381 instructions, 48 B of code, 56 B of stack.
  * On Cortex-M4F, -O2: 12 instructions, 48 B of code, 0 B of stack.

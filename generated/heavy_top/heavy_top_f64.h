@@ -73,6 +73,9 @@ int heavy_top_setup_f64(double A, double C, double m, double g, double l,
  * Error: median 0.2, largest 9.8 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.1e-14 rad/s
+ *            (seen 1.5e-14), omega_dot 3.7e-13 rad/s^2 (seen 2.6e-13); assumed: sines and cosines
+ *            of our own within 0.79 ulp.
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y infinite, no number or
  *            beyond all measure.
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
@@ -96,6 +99,9 @@ void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double t
  * Error: median 0.32, largest 14 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.6e-14 rad/s
+ *            (seen 1.7e-14), omega_dot 4.3e-13 rad/s^2 (seen 3e-13), jacobian 2.9e-12 (seen
+ *            1.8e-12); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y, jacobian infinite, no
  *            number or beyond all measure.
  * Cost: 1 add, 5 sub, 15 mul, 1 div, 4 neg, 1 sin, 1 cos.
@@ -123,6 +129,8 @@ void heavy_top_state_rate_jacobian_dense_f64(const heavy_top_constants_f64 *cons
  * Error: median 0.49, largest 3.7 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 8.7e-17 J (seen
+ *            5.8e-17).
  * Cost: 2 add, 5 mul.
  * On Cortex-M0+, -O2: 1704 to 1763 instructions, 128 B of code, 104 B of stack.
  * Rests on: A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
@@ -143,6 +151,8 @@ void heavy_top_kinetic_energy_f64(const heavy_top_constants_f64 *constants, cons
  * Error: median 0.26, largest 1 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8342 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 1.8e-18 kg
+ *            m^2/s (seen 1.7e-18).
  * Cost: 3 mul.
  * On Cortex-M0+, -O2: 917 to 935 instructions, 96 B of code, 96 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,

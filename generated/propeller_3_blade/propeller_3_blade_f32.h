@@ -59,6 +59,7 @@ int propeller_3_blade_setup_f32(float blade_mass, float blade_length, float p, f
  * In this scene: M[1] = blade_mass*blade_length^2*p*W
  * Error: median 0, largest 1 u of the largest product or sum in the equation (of M; 200000 samples
  *            of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: M 0.00025 N m (seen 0.00024).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 6 to 7 instructions, 12 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 6 instructions, 12 B of code, 0 B of stack.

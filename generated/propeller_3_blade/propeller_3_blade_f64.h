@@ -58,6 +58,7 @@ int propeller_3_blade_setup_f64(double blade_mass, double blade_length, double p
  * In this scene: M[1] = blade_mass*blade_length^2*p*W
  * Error: median 0, largest 1 u of the largest product or sum in the equation (of M; 200000 samples
  *            of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: M 4.6e-13 N m (seen 4.5e-13).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 12 to 13 instructions, 24 B of code, 12 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,

@@ -114,6 +114,7 @@ int rattleback_setup_f32(float m, float a, float b, float c, float h, float A, f
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
  * Error: median 1.5, largest 22 u of the largest product or sum in the equation (of W_rate; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8336 hard samples no more.
+ * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Singular: at alpha = pi/2 + k pi, beta_dot_rate, W_rate infinite, no number or beyond all
  *            measure.
  * Cost: 54 add, 52 sub, 201 mul, 3 div, 3 neg, 1 sqrt, 2 sin, 2 cos.
@@ -152,6 +153,9 @@ void rattleback_state_rate_f32(const rattleback_constants_f32 *constants, float 
  * Error: median 0, largest 1 u of the largest product or sum in the equation (of stiffness_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 5.9e-11 (seen
+ *            5.8e-11), damping_matrix 7.5e-09 (seen 7.4e-09), stiffness_matrix 9.6e-07 (seen
+ *            9.5e-07).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 41 to 42 instructions, 84 B of code, 12 B of stack.
  * On Cortex-M4F, -O2: 41 instructions, 140 B of code, 4 B of stack.
@@ -176,6 +180,8 @@ void rattleback_linearised_f32(const rattleback_constants_f32 *constants, float 
  * Error: median 0.82, largest 9.7 u of the largest product or sum in the equation (of
  *            energy_of_all; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: energy_of_all 7e-07 J (seen
+ *            3e-07); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 12 add, 5 sub, 39 mul, 1 div, 1 sqrt, 2 sin, 2 cos.
  * On Cortex-M0+, -O2: 13781 to 14014 instructions, 1128 B of code, 160 B of stack.
  * On Cortex-M4F, -O2: 266 instructions, 804 B of code, 92 B of stack.
@@ -209,6 +215,7 @@ void rattleback_energy_of_all_f32(const rattleback_constants_f32 *constants, flo
  *            product of what the step adds, by rounding alone (of beta_dot_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8264 hard samples 3.2e+03 u (of
  *            W_next, thin rod).
+ * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Singular: at alpha = pi/2 + k pi, alpha_dot_next, beta_next, beta_dot_next, W_next infinite, no
  *            number or beyond all measure.
  * Cost: 239 add, 224 sub, 860 mul, 12 div, 4 sqrt, 8 sin, 8 cos.

@@ -127,6 +127,10 @@ int rigid_body_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xy
  * Error: median 0.69, largest 9.7 u of the largest product or sum in the equation (of
  *            velocity_rate; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: position_rate 0 m/s (seen 0),
+ *            attitude_rate 1.5e-06 1/s (seen 1e-06), velocity_rate 4.7e-05 m/s^2 (seen 8.8e-06),
+ *            omega_dot 0.00014 rad/s^2 (seen 2.6e-05); assumed: quaternions given with |q|^2 in
+ *            0.999 .. 1.001.
  * Cost: 21 add, 16 sub, 59 mul, 1 neg.
  * On Cortex-M0+, -O2: 9647 to 10073 instructions, 1068 B of code, 136 B of stack.
  * On Cortex-M4F, -O2: 147 instructions, 576 B of code, 32 B of stack.
@@ -157,6 +161,10 @@ void rigid_body_state_rate_f32(const rigid_body_constants_f32 *constants, const 
  * Error: median 0.65, largest 7.5 u of the largest product or sum in the equation (of
  *            velocity_rate; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples 8.6 u (of jacobian, thin rod).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: position_rate 0 m/s (seen 0),
+ *            attitude_rate 1.7e-06 1/s (seen 1e-06), velocity_rate 6.2e-05 m/s^2 (seen 7.8e-06),
+ *            omega_dot 8.1e-05 rad/s^2 (seen 1.5e-05), jacobian 3.5e-05 (seen 1.6e-05); assumed:
+ *            quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 43 add, 30 sub, 98 mul, 11 neg.
  * On Cortex-M0+, -O2: 17451 to 18093 instructions, 2276 B of code, 256 B of stack.
  * On Cortex-M4F, -O2: 384 instructions, 1488 B of code, 160 B of stack.
@@ -190,6 +198,8 @@ void rigid_body_state_rate_jacobian_dense_f32(const rigid_body_constants_f32 *co
  * Error: median 0.72, largest 6.3 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 0.028 J (seen
+ *            0.022).
  * Cost: 5 add, 3 sub, 13 mul.
  * On Cortex-M0+, -O2: 2105 to 2217 instructions, 232 B of code, 72 B of stack.
  * On Cortex-M4F, -O2: 36 instructions, 144 B of code, 0 B of stack.
@@ -216,6 +226,8 @@ void rigid_body_kinetic_energy_f32(const rigid_body_constants_f32 *constants,
  * Error: median 0.44, largest 14 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 8.3e-05 N m (seen
+ *            4.2e-05).
  * Cost: 7 add, 10 sub, 23 mul.
  * On Cortex-M0+, -O2: 3977 to 4211 instructions, 464 B of code, 104 B of stack.
  * On Cortex-M4F, -O2: 58 instructions, 232 B of code, 0 B of stack.

@@ -125,6 +125,10 @@ int rigid_body_setup_f64(double m, double I_xx, double I_yy, double I_zz, double
  * Error: median 0.68, largest 9.9 u of the largest product or sum in the equation (of
  *            velocity_rate; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: position_rate 0 m/s (seen 0),
+ *            attitude_rate 2.7e-15 1/s (seen 2.1e-15), velocity_rate 8.8e-14 m/s^2 (seen 1.6e-14),
+ *            omega_dot 2.6e-13 rad/s^2 (seen 4.4e-14); assumed: quaternions given with |q|^2 in
+ *            0.999 .. 1.001.
  * Cost: 21 add, 16 sub, 59 mul, 1 neg.
  * On Cortex-M0+, -O2: 22392 to 22948 instructions, 1676 B of code, 280 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
@@ -154,6 +158,10 @@ void rigid_body_state_rate_f64(const rigid_body_constants_f64 *constants, const 
  * Error: median 0.66, largest 8.4 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: position_rate 0 m/s (seen 0),
+ *            attitude_rate 3.2e-15 1/s (seen 1.9e-15), velocity_rate 1.2e-13 m/s^2 (seen 1.5e-14),
+ *            omega_dot 1.5e-13 rad/s^2 (seen 2.7e-14), jacobian 6.5e-14 (seen 3e-14); assumed:
+ *            quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 43 add, 30 sub, 98 mul, 11 neg.
  * On Cortex-M0+, -O2: 40344 to 41044 instructions, 4076 B of code, 576 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
@@ -186,6 +194,8 @@ void rigid_body_state_rate_jacobian_dense_f64(const rigid_body_constants_f64 *co
  * Error: median 0.72, largest 6.5 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 5.2e-11 J (seen
+ *            4.1e-11).
  * Cost: 5 add, 3 sub, 13 mul.
  * On Cortex-M0+, -O2: 4932 to 5097 instructions, 376 B of code, 128 B of stack.
  * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
@@ -211,6 +221,8 @@ void rigid_body_kinetic_energy_f64(const rigid_body_constants_f64 *constants,
  * Error: median 0.44, largest 14 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 1.6e-13 N m (seen
+ *            8e-14).
  * Cost: 7 add, 10 sub, 23 mul.
  * On Cortex-M0+, -O2: 9243 to 9538 instructions, 724 B of code, 192 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,

@@ -71,6 +71,7 @@ int rod_wire_vertical_shaft_setup_f32(float W, float L, float beta, float w, flo
  * In this scene: T = W*(1/(2*sin(beta)) + (L*w^2)/(3*g))*cos(beta)
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of T; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: T 0.00025 N (seen 0.00024).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
@@ -95,6 +96,7 @@ void rod_wire_vertical_shaft_T_f32(const rod_wire_vertical_shaft_constants_f32 *
  * In this scene: A_x = ((A_z - 1/2*W)/sin(beta) - (W*L*w^2)/(6*g))*cos(beta)
  * Error: median 0.22, largest 0.66 u of the largest product or sum in the equation (of A_x; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: A_x 0.00013 N (seen 0.00012).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
@@ -112,6 +114,7 @@ void rod_wire_vertical_shaft_A_x_f32(const rod_wire_vertical_shaft_constants_f32
  * In this scene: A_z = W
  * Error: median 0, largest 0 u of the largest product or sum in the equation (of A_z; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: A_z 0 N (seen 0).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.

@@ -70,6 +70,7 @@ int rod_wire_vertical_shaft_setup_f64(double W, double L, double beta, double w,
  * In this scene: T = W*(1/(2*sin(beta)) + (L*w^2)/(3*g))*cos(beta)
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of T; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: T 4.6e-13 N (seen 4.5e-13).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -94,6 +95,7 @@ void rod_wire_vertical_shaft_T_f64(const rod_wire_vertical_shaft_constants_f64 *
  * In this scene: A_x = ((A_z - 1/2*W)/sin(beta) - (W*L*w^2)/(6*g))*cos(beta)
  * Error: median 0.23, largest 0.66 u of the largest product or sum in the equation (of A_x; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: A_x 2.3e-13 N (seen 2.3e-13).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -110,6 +112,7 @@ void rod_wire_vertical_shaft_A_x_f64(const rod_wire_vertical_shaft_constants_f64
  * In this scene: A_z = W
  * Error: median 0, largest 0 u of the largest product or sum in the equation (of A_z; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: A_z 0 N (seen 0).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: constant_mass, newton, third_law.

@@ -68,6 +68,8 @@ int rolling_cone_setup_f32(float m, float h, float r, float a, float g,
  * Error: median 0.52, largest 2.9 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.1e-05 J (seen
+ *            9.5e-06).
  * Cost: 2 mul.
  * On Cortex-M0+, -O2: 244 to 251 instructions, 24 B of code, 48 B of stack.
  * On Cortex-M4F, -O2: 5 instructions, 20 B of code, 0 B of stack.
@@ -89,6 +91,7 @@ void rolling_cone_kinetic_energy_f32(const rolling_cone_constants_f32 *constants
  * In this scene: x_N = lever/ground_z
  * Error: median 0.48, largest 2.9 u of the largest product or sum in the equation (of x_N; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8336 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: x_N 3.6e-07 m (seen 2.6e-07).
  * Cost: 1 add, 2 mul.
  * On Cortex-M0+, -O2: 289 to 325 instructions, 28 B of code, 48 B of stack.
  * On Cortex-M4F, -O2: 7 instructions, 28 B of code, 0 B of stack.
@@ -111,6 +114,7 @@ void rolling_cone_x_N_f32(const rolling_cone_constants_f32 *constants, float W, 
  * Error: median 0.3, largest 3.1 u of the largest product or sum in the equation (of steady;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 3e-07 m (seen 2.7e-07).
  * Cost: 1 add, 2 mul.
  * On Cortex-M0+, -O2: 300 to 351 instructions, 28 B of code, 48 B of stack.
  * On Cortex-M4F, -O2: 7 instructions, 28 B of code, 0 B of stack.

@@ -69,6 +69,8 @@ int rotor_on_turning_axes_setup_f64(double A, double C,
  * Error: median 0.51, largest 3.9 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 2.3e-13 N m (seen
+ *            2.2e-13).
  * Cost: 2 add, 2 sub, 7 mul.
  * On Cortex-M0+, -O2: 2642 to 2708 instructions, 196 B of code, 96 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -92,6 +94,8 @@ void rotor_on_turning_axes_moment_f64(const rotor_on_turning_axes_constants_f64 
  * Error: median 0.37, largest 2 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8336 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 8.9e-14 kg
+ *            m^2/s (seen 8.8e-14).
  * Cost: 1 add, 3 mul.
  * On Cortex-M0+, -O2: 1004 to 1085 instructions, 72 B of code, 80 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
@@ -123,6 +127,8 @@ void rotor_on_turning_axes_angular_momentum_f64(const rotor_on_turning_axes_cons
  * Error: median 0.51, largest 3.8 u of the largest product or sum in the equation (of
  *            rate_absolute; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 7.5e-15 N m (seen
+ *            7.4e-15), rate_absolute 2.3e-13 N m (seen 2.1e-13).
  * Cost: 2 add, 2 sub, 7 mul.
  * On Cortex-M0+, -O2: 2643 to 2751 instructions, 252 B of code, 120 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
@@ -143,6 +149,8 @@ void rotor_on_turning_axes_angular_momentum_rate_f64(const rotor_on_turning_axes
  * Error: median 0.76, largest 4.9 u of the largest product or sum in the equation (of
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 6.7e-11 J (seen
+ *            5.1e-11).
  * Cost: 3 add, 5 mul.
  * On Cortex-M0+, -O2: 1846 to 1926 instructions, 124 B of code, 88 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.

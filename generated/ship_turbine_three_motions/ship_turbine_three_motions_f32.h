@@ -87,6 +87,8 @@ int ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, f
  * In this scene: B_roll = (m*b*g)/(a + b)
  * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of A_roll; 200000
  *            samples of the ranges, 65536 searched from the worst); at 114 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: A_roll 0.00013 N (seen
+ *            0.00012), B_roll 0.00013 N (seen 0.00012).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 5 to 6 instructions, 12 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 5 instructions, 12 B of code, 0 B of stack.
@@ -106,6 +108,8 @@ void ship_turbine_three_motions_roll_case_f32(const ship_turbine_three_motions_c
  * In this scene: B_turn = (m*(b*g + kz^2*ws*turn))/(a + b)
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of B_turn; 200000
  *            samples of the ranges, 65536 searched from the worst); at 114 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: A_turn 0.00049 N (seen
+ *            0.00049), B_turn 0.00098 N (seen 0.00098).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 5 to 6 instructions, 12 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 5 instructions, 12 B of code, 0 B of stack.
@@ -126,6 +130,8 @@ void ship_turbine_three_motions_turn_case_f32(const ship_turbine_three_motions_c
  * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of A_pitch;
  *            200000 samples of the ranges, 65536 searched from the worst); at 114 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: A_pitch 0.00013 N (seen
+ *            0.00012), B_pitch 0.00013 N (seen 0.00012).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 5 to 6 instructions, 12 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 5 instructions, 12 B of code, 0 B of stack.
@@ -146,6 +152,8 @@ void ship_turbine_three_motions_pitch_case_f32(const ship_turbine_three_motions_
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of
  *            pitch_horizontal_couple; 200000 samples of the ranges, 65536 searched from the
  *            worst); at 114 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: pitch_horizontal_couple 0.002 N
+ *            m (seen 0.002).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.

@@ -86,6 +86,8 @@ int ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double 
  * In this scene: B_roll = (m*b*g)/(a + b)
  * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of A_roll; 200000
  *            samples of the ranges, 65536 searched from the worst); at 114 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: A_roll 2.3e-13 N (seen
+ *            2.3e-13), B_roll 2.3e-13 N (seen 2.3e-13).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 10 to 11 instructions, 20 B of code, 12 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -104,6 +106,8 @@ void ship_turbine_three_motions_roll_case_f64(const ship_turbine_three_motions_c
  * In this scene: B_turn = (m*(b*g + kz^2*ws*turn))/(a + b)
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of B_turn; 200000
  *            samples of the ranges, 65536 searched from the worst); at 114 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: A_turn 9.1e-13 N (seen
+ *            9.1e-13), B_turn 1.9e-12 N (seen 1.8e-12).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 10 to 11 instructions, 20 B of code, 12 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -123,6 +127,8 @@ void ship_turbine_three_motions_turn_case_f64(const ship_turbine_three_motions_c
  * Error: median 0.37, largest 1 u of the largest product or sum in the equation (of A_pitch;
  *            200000 samples of the ranges, 65536 searched from the worst); at 114 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: A_pitch 2.3e-13 N (seen
+ *            2.3e-13), B_pitch 2.3e-13 N (seen 2.3e-13).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 10 to 11 instructions, 20 B of code, 12 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -142,6 +148,8 @@ void ship_turbine_three_motions_pitch_case_f64(const ship_turbine_three_motions_
  * Error: median 0.35, largest 1 u of the largest product or sum in the equation (of
  *            pitch_horizontal_couple; 200000 samples of the ranges, 65536 searched from the
  *            worst); at 114 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: pitch_horizontal_couple 3.7e-12
+ *            N m (seen 3.6e-12).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,

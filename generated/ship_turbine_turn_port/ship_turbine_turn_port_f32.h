@@ -68,6 +68,8 @@ int ship_turbine_turn_port_setup_f32(float m, float k, float p, float v, float R
  * In this scene: R_B = (m*(a*g - (k^2*p*v)/R))/(a + b)
  * Error: median 0.34, largest 1 u of the largest product or sum in the equation (of R_A; 200000
  *            samples of the ranges, 65536 searched from the worst); at 114 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: R_A 0.00049 N (seen 0.00049),
+ *            R_B 0.00025 N (seen 0.00024).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 5 to 6 instructions, 12 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 5 instructions, 12 B of code, 0 B of stack.
@@ -87,6 +89,8 @@ void ship_turbine_turn_port_reactions_f32(const ship_turbine_turn_port_constants
  * Error: median 0.046, largest 0.65 u of the largest product or sum in the equation (of
  *            gyro_moment; 200000 samples of the ranges, 65536 searched from the worst); at 114
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_moment 0.00013 N m (seen
+ *            0.00012).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.

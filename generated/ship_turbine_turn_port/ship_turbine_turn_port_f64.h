@@ -67,6 +67,8 @@ int ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, dou
  * In this scene: R_B = (m*(a*g - (k^2*p*v)/R))/(a + b)
  * Error: median 0.33, largest 1 u of the largest product or sum in the equation (of R_A; 200000
  *            samples of the ranges, 65536 searched from the worst); at 114 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: R_A 9.1e-13 N (seen 9.1e-13),
+ *            R_B 4.6e-13 N (seen 4.5e-13).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 10 to 11 instructions, 20 B of code, 12 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -85,6 +87,8 @@ void ship_turbine_turn_port_reactions_f64(const ship_turbine_turn_port_constants
  * Error: median 0.045, largest 0.65 u of the largest product or sum in the equation (of
  *            gyro_moment; 200000 samples of the ranges, 65536 searched from the worst); at 114
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_moment 2.3e-13 N m (seen
+ *            2.3e-13).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,

@@ -67,6 +67,8 @@ int skewed_disc_setup_f32(float m, float r, float skew, float b,
  * In this scene: M_y = b*(A_x - B_x)
  * Error: median 0.52, largest 2.9 u of the largest product or sum in the equation (of M_y; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8324 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: M_x 0 N m (seen 0), M_y 0.00061
+ *            N m (seen 0.00044), M_z 0 N m (seen 0).
  * Cost: 2 mul.
  * On Cortex-M0+, -O2: 247 to 254 instructions, 32 B of code, 48 B of stack.
  * On Cortex-M4F, -O2: 8 instructions, 24 B of code, 0 B of stack.
@@ -87,6 +89,8 @@ void skewed_disc_M_f32(const skewed_disc_constants_f32 *constants, float w, floa
  * Error: median 0.52, largest 2.9 u of the largest product or sum in the equation (of
  *            bearing_force; 200000 samples of the ranges, 65536 searched from the worst); at 8324
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: bearing_force 0.0017 N (seen
+ *            0.0015).
  * Cost: 2 mul.
  * On Cortex-M0+, -O2: 244 to 251 instructions, 24 B of code, 48 B of stack.
  * On Cortex-M4F, -O2: 5 instructions, 20 B of code, 0 B of stack.

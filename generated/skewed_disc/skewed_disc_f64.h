@@ -66,6 +66,8 @@ int skewed_disc_setup_f64(double m, double r, double skew, double b,
  * In this scene: M_y = b*(A_x - B_x)
  * Error: median 0.52, largest 3 u of the largest product or sum in the equation (of M_y; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8324 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: M_x 0 N m (seen 0), M_y 1.2e-12
+ *            N m (seen 1.1e-12), M_z 0 N m (seen 0).
  * Cost: 2 mul.
  * On Cortex-M0+, -O2: 592 to 614 instructions, 44 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -85,6 +87,8 @@ void skewed_disc_M_f64(const skewed_disc_constants_f64 *constants, double w, dou
  * Error: median 0.52, largest 2.9 u of the largest product or sum in the equation (of
  *            bearing_force; 200000 samples of the ranges, 65536 searched from the worst); at 8324
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: bearing_force 3.1e-12 N (seen
+ *            2.9e-12).
  * Cost: 2 mul.
  * On Cortex-M0+, -O2: 586 to 614 instructions, 32 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,

@@ -67,6 +67,7 @@ int top_steady_precession_setup_f32(float r, float l, float theta, float n, floa
  * Error: median 0.53, largest 4.1 u of the largest product or sum in the equation (of steady;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8324 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 2.5e-05 (seen 2.1e-05).
  * Cost: 2 sub, 2 mul.
  * On Cortex-M0+, -O2: 376 to 443 instructions, 40 B of code, 48 B of stack.
  * On Cortex-M4F, -O2: 9 instructions, 36 B of code, 0 B of stack.

@@ -65,6 +65,7 @@ int top_steady_precession_setup_f64(double r, double l, double theta, double n, 
  * Error: median 0.52, largest 3.7 u of the largest product or sum in the equation (of steady;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8324 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 4.6e-14 (seen 4.1e-14).
  * Cost: 2 sub, 2 mul.
  * On Cortex-M0+, -O2: 876 to 964 instructions, 56 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,

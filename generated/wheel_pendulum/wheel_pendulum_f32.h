@@ -87,6 +87,9 @@ int wheel_pendulum_setup_f32(float m_p, float m_r, float l_p, float l_r, float J
  * Error: median 0.62, largest 4.4 u of the largest product or sum in the equation (of
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_rate 0 rad/s (seen 0),
+ *            theta_dot_rate 3.4e-05 rad/s^2 (seen 2.5e-05), s_rate 0.0009 rad/s^2 (seen 0.00068);
+ *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 sub, 4 mul, 1 sin.
  * On Cortex-M0+, -O2: 4161 to 4980 instructions, 636 B of code, 112 B of stack.
  * On Cortex-M4F, -O2: 113 to 114 instructions, 512 B of code, 52 B of stack.
@@ -112,6 +115,9 @@ void wheel_pendulum_state_rate_f32(const wheel_pendulum_constants_f32 *constants
  * Error: median 0.62, largest 4.8 u of the largest product or sum in the equation (of
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_rate 0 rad/s (seen 0),
+ *            theta_dot_rate 3.5e-05 rad/s^2 (seen 2.2e-05), s_rate 0.0007 rad/s^2 (seen 0.00068),
+ *            jacobian 0.002 (seen 0.002); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 sub, 5 mul, 1 neg, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 4298 to 5109 instructions, 692 B of code, 120 B of stack.
  * On Cortex-M4F, -O2: 124 to 125 instructions, 544 B of code, 52 B of stack.
@@ -148,6 +154,8 @@ void wheel_pendulum_state_rate_jacobian_dense_f32(const wheel_pendulum_constants
  * Error: median 0, largest 1 u of the largest product or sum in the equation (of mass_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 2.4e-10 (seen
+ *            2.3e-10), damping_matrix 0 (seen 0), stiffness_matrix 1.5e-08 (seen 1.5e-08).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 19 to 20 instructions, 40 B of code, 12 B of stack.
  * On Cortex-M4F, -O2: 18 instructions, 52 B of code, 0 B of stack.
@@ -176,6 +184,8 @@ void wheel_pendulum_linearised_f32(const wheel_pendulum_constants_f32 *constants
  * Error: median 0.75, largest 12 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 3.9e-06 J (seen
+ *            2.9e-06); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 5 mul, 1 cos.
  * On Cortex-M0+, -O2: 4346 to 5127 instructions, 636 B of code, 104 B of stack.
  * On Cortex-M4F, -O2: 109 to 110 instructions, 500 B of code, 44 B of stack.
@@ -202,6 +212,9 @@ void wheel_pendulum_energy_f32(const wheel_pendulum_constants_f32 *constants, fl
  * Error: median 0.36, largest 5.2e+02 u of the largest component, before or after, or of the
  *            largest product of what the step adds, by rounding alone (of theta_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_next 2.4e-07 rad (seen
+ *            1.7e-07), theta_dot_next 2.5e-06 rad/s (seen 1.3e-06), s_next 8.8e-05 rad/s (seen
+ *            5.2e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 18 add, 8 sub, 29 mul, 4 sin.
  * On Cortex-M0+, -O2: 19143 to 22152 instructions, 1064 B of code, 192 B of stack.
  * On Cortex-M4F, -O2: 434 to 438 instructions, 756 B of code, 140 B of stack.

@@ -85,6 +85,9 @@ int wheel_pendulum_setup_f64(double m_p, double m_r, double l_p, double l_r, dou
  * Error: median 0.63, largest 4.7 u of the largest product or sum in the equation (of
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_rate 0 rad/s (seen 0),
+ *            theta_dot_rate 6.2e-14 rad/s^2 (seen 4.1e-14), s_rate 1.7e-12 rad/s^2 (seen 1.2e-12);
+ *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 sub, 4 mul, 1 sin.
  * On Cortex-M0+, -O2: 11102 to 12749 instructions, 1044 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -109,6 +112,10 @@ void wheel_pendulum_state_rate_f64(const wheel_pendulum_constants_f64 *constants
  * Error: median 0.63, largest 4.6 u of the largest product or sum in the equation (of
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_rate 0 rad/s (seen 0),
+ *            theta_dot_rate 6.5e-14 rad/s^2 (seen 4.1e-14), s_rate 1.3e-12 rad/s^2 (seen 1.2e-12),
+ *            jacobian 3.7e-12 (seen 3.6e-12); assumed: sines and cosines of our own within 0.79
+ *            ulp.
  * Cost: 2 sub, 5 mul, 1 neg, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 11374 to 13091 instructions, 1128 B of code, 192 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -143,6 +150,8 @@ void wheel_pendulum_state_rate_jacobian_dense_f64(const wheel_pendulum_constants
  * Error: median 0, largest 1 u of the largest product or sum in the equation (of mass_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 4.4e-19 (seen
+ *            4.3e-19), damping_matrix 0 (seen 0), stiffness_matrix 2.8e-17 (seen 2.8e-17).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 36 instructions, 72 B of code, 20 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -170,6 +179,8 @@ void wheel_pendulum_linearised_f64(const wheel_pendulum_constants_f64 *constants
  * Error: median 0.74, largest 9.9 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 7.3e-15 J (seen
+ *            5.1e-15); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 5 mul, 1 cos.
  * On Cortex-M0+, -O2: 11426 to 13138 instructions, 1040 B of code, 176 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
@@ -195,6 +206,9 @@ void wheel_pendulum_energy_f64(const wheel_pendulum_constants_f64 *constants, do
  * Error: median 0.36, largest 9.7e+02 u of the largest component, before or after, or of the
  *            largest product of what the step adds, by rounding alone (of theta_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_next 4.5e-16 rad (seen
+ *            3e-16), theta_dot_next 4.6e-15 rad/s (seen 2.4e-15), s_next 1.7e-13 rad/s (seen
+ *            9.5e-14); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 18 add, 8 sub, 29 mul, 4 sin.
  * On Cortex-M0+, -O2: 49582 to 56059 instructions, 1648 B of code, 328 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,

@@ -7,7 +7,7 @@ from derive.emit.notation import equation_text
 from derive.emit.on_target import OPTIMISED, Cost
 from derive.lecture.chapters import LECTURE
 from derive.motion.runge_kutta.system import FLOW, NEXT
-from derive.program.program import Measurement, Program, Quantity, Singular
+from derive.program.program import Bound, Measurement, Program, Quantity, Singular
 from derive.program.status import possible
 from derive.scene.escape import in_comment
 
@@ -24,6 +24,8 @@ MOMENTS = {
 }
 """About which points the moments of equations are."""
 
+BOUND_OF_WHAT = "absolute, by rounding alone, on the whole ranges"
+"""What proved bounds are of: any component, parameters and inputs being floats."""
 WITH_POTENTIAL = ("energy", "potential_energy")
 WIDTH = 96
 
@@ -55,6 +57,7 @@ def comment(
         lines += _on_cores(costs)
     else:
         lines += _labelled("Error:", _error(program, figures))
+        lines += [x for told in bound_clauses(program, figures) for x in _labelled("Bound:", told)]
         pairs = " (on pairs of floats)" if program.arithmetic == "pairs" else ""
         lines += [
             line
@@ -168,6 +171,24 @@ def _at_hard_samples(within: Measurement, worst: Measurement) -> str:
     more = worst.worst > within.within
     found = f"{worst.worst:.2g} u (of {worst.output}, {worst.kind})" if more else "no more"
     return f"; at {worst.hard} hard samples {found}"
+
+
+def bound_clauses(program: Program, figures: Sequence[Measurement]) -> list[str]:
+    """Return what is proved of the outputs of a function in each precision, and what was seen."""
+    own = [m.bound for m in figures if m.function == program.name and m.bound is not None]
+    return [_bound_clause(program, [b for b in own if b.precision == name])
+            for name in dict.fromkeys(b.precision for b in own)]  # fmt: skip
+
+
+def _bound_clause(program: Program, own: Sequence[Bound]) -> str:
+    unproved = dict.fromkeys(b.why for b in own if b.proved is None)
+    if unproved:
+        return f"not proved: {'; '.join(unproved)}."
+    units = {q.name: f" {q.unit}" if q.unit else "" for q in program.outputs}
+    each = [f"{b.output} {b.proved:.2g}{units[b.output]} (seen {b.seen:.2g})" for b in own]
+    assumed = dict.fromkeys(words for b in own for words in b.assumed)
+    more = f"; assumed: {', '.join(assumed)}" if assumed else ""
+    return f"proved, {BOUND_OF_WHAT}: {', '.join(each)}{more}."
 
 
 def of_what(program: Program) -> str:

@@ -5,7 +5,7 @@ from functools import partial
 
 from markupsafe import Markup, escape
 
-from derive.emit.c.comment import SETUP_ERROR, cost_line, of_what
+from derive.emit.c.comment import BOUND_OF_WHAT, SETUP_ERROR, cost_line, of_what
 from derive.emit.c.source import first_line
 from derive.emit.drawing.drawing import drawing
 from derive.emit.notation import name_mathml
@@ -62,6 +62,7 @@ def scene_page(
         range_of=_range,
         cost=cost_line,
         of_what=of_what,
+        bound_of_what=f"proved, {BOUND_OF_WHAT}",
         sections=_sections(library, figures, by.on_target),
         files=_files(scene.name),
     )
@@ -80,6 +81,7 @@ def _sections(
     return [
         _section(library, program, owners.setdefault(_base(program), program.name))
         | {"errors": _errors(program, figures), "costs": costs.of(program.name)}
+        | {"bounds": _bounds(program, figures)}
         for program in library.printed()
     ]
 
@@ -143,3 +145,13 @@ def _errors(program: Program, figures: Sequence[Measurement]) -> dict[str, list[
     own = [m for m in figures if m.function == program.name]
     found = {q.name: [m for m in own if m.output == q.name] for q in program.outputs}
     return {name: each for name, each in found.items() if each}
+
+
+def _bounds(program: Program, figures: Sequence[Measurement]) -> dict[str, object]:
+    """Return what is proved of each output, and what it assumes or why there is nothing."""
+    own = [m.bound for m in figures if m.function == program.name and m.bound is not None]
+    rows = {b.output: [x for x in own if x.output == b.output] for b in own}
+    assumed = dict.fromkeys(words for b in own for words in b.assumed)
+    says = [f"Proved assuming {'; '.join(assumed)}."] if assumed else []
+    says += [f"Not proved: {why}." for why in dict.fromkeys(b.why for b in own) if why]
+    return {"rows": rows, "says": " ".join(says)}

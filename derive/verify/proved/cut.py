@@ -1,0 +1,218 @@
+"""A bound over a whole box: cut into parts, the part with the largest bound first.
+
+Nothing is left out when it ends early: a bound of all is the largest of its parts, cut or not.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, reduce
+from operator import add
+
+import numpy as np
+
+from derive.verify.draw import Dice
+from derive.verify.operators import Column
+from derive.verify.proved.enclosed import Enclosed, enclosed
+from derive.verify.proved.slopes import shifts
+from derive.verify.proved.traits import Traits
+
+TIGHT = 1.1
+"""A bound is no more than this of one at a point: nothing is left to cut for."""
+UNIT = (0.999, 1.001)
+"""Of the squared length of a quaternion that is given."""
+FINEST = 4
+TRIED_AT = 512
+MOST = 16384
+"""Cells that a box is cut into at most."""
+BATCH = 256
+FULL = 1 << 15
+"""Numbers that a table of slopes, results by boxes, has at most."""
+
+
+@dataclass(frozen=True)
+class Region:
+    """What is given to a function: names, ends, and where quaternions stand among them."""
+
+    names: tuple[str, ...]
+    lows: Column
+    highs: Column
+    quaternions: tuple[tuple[int, ...], ...]
+
+
+@dataclass
+class Cells:
+    """Cells of a box, a column each, and how far rounding moves each result in each."""
+
+    lows: Column
+    highs: Column
+    shifts: Column
+    blamed: Column
+
+    def of(self, which: Column) -> "Cells":
+        """Return some of the parts."""
+        return Cells(*(x[..., which] for x in (self.lows, self.highs, self.shifts, self.blamed)))
+
+
+def joined(each: Sequence[Cells]) -> Cells:
+    """Return all parts together."""
+    several = ([getattr(p, n) for p in each] for n in ("lows", "highs", "shifts", "blamed"))
+    return Cells(*(np.concatenate(x, axis=-1) for x in several))
+
+
+@dataclass
+class Cutting:
+    """A bound in the making: work is counted in operations over one box, for one result."""
+
+    traits: Traits
+    box: Region
+    work: int
+    dice: Dice
+    spent: int = 0
+
+    def valued(self, lows: Column, highs: Column) -> Cells:
+        """Return parts with their bounds, those without a unit quaternion left out."""
+        lows, highs = self._on_the_sphere(lows, highs)
+        rows = len(self.traits.trace.results)
+        step = max(1, FULL // rows)
+        each = [self._valued(lows[:, n : n + step], highs[:, n : n + step])
+                for n in range(0, lows.shape[1], step)]  # fmt: skip
+        none = Cells(lows[:, :0], highs[:, :0], np.zeros((rows, 0)), np.zeros(0, int))
+        return joined([none, *each])
+
+    def _valued(self, lows: Column, highs: Column) -> Cells:
+        count = lows.shape[1]
+        self._count(count)
+        ranges = {n: (lows[k], highs[k]) for k, n in enumerate(self.box.names)}
+        with np.errstate(all="ignore"):
+            found = enclosed(self.traits, ranges, count)
+            return Cells(lows, highs, shifts(found), np.where(found.void, -1, found.blamed))
+
+    def scores(self, parts: Cells) -> Column:
+        """Return how much the bound of each part is above what is certain at points."""
+        over = parts.shifts / np.maximum(self.least, 1e-280)[:, None]
+        return np.asarray(np.where(np.isnan(over), np.inf, over).max(axis=0))
+
+    def run(self) -> Cells:
+        """Return parts that make up the box, cut while that makes the bound smaller."""
+        parts = self.valued(*self._started())
+        while self.spent < self.work and 0 < parts.shifts.shape[1] < MOST:
+            scores = self.scores(parts)
+            if scores.max() <= TIGHT:
+                break
+            order = np.argsort(-scores, kind="stable")
+            first = order[:BATCH]
+            first = first[scores[first] > TIGHT]
+            rest = parts.of(order[len(first) :])
+            halves = self._halved(parts.of(first))
+            parts = joined([rest, halves])
+        return parts
+
+    @cached_property
+    def least(self) -> Column:
+        """Return the largest bound of each result at points, below which none of all can be."""
+        d = len(self.box.names)
+        dice = self.dice.uniform(d, TRIED_AT)
+        dice[:, : TRIED_AT // 2] = np.round(dice[:, : TRIED_AT // 2])
+        points = self.box.lows[:, None] + (self.box.highs - self.box.lows)[:, None] * dice
+        for places in self.box.quaternions:
+            at = points[list(places)]
+            size = np.sqrt(reduce(add, (x * x for x in at)))
+            points[list(places)] = at / np.where(size > 0, size, 1.0)
+        free = [n.startswith("choice") for n in self.box.names]
+        ends = points.copy(), points.copy()
+        ends[0][free], ends[1][free] = 0.0, 1.0
+        found = self.valued(*ends)
+        bounds = np.where(np.isfinite(found.shifts), found.shifts, 0.0)
+        return np.asarray(bounds.max(axis=1, initial=0.0))
+
+    def _started(self) -> tuple[Column, Column]:
+        """Return parts to begin with: quaternions, of the sphere alone, cut as finely as pays."""
+        ends = self.box.lows[:, None], self.box.highs[:, None]
+        for _ in range(FINEST if self.box.quaternions else 0):
+            finer = ends
+            for k in (k for places in self.box.quaternions for k in places):
+                middle = (finer[0][k] + finer[1][k]) / 2
+                low, high = (np.concatenate([x, x], axis=1) for x in finer)
+                low[k, len(middle) :] = middle
+                high[k, : len(middle)] = middle
+                finer = self._on_the_sphere(low, high)
+            if finer[0].shape[1] > min(MOST / 4, 0.8 * self.work / self._price()):
+                break
+            ends = finer
+        return ends
+
+    def _on_the_sphere(self, lows: Column, highs: Column) -> tuple[Column, Column]:
+        """Return boxes without those that hold no unit quaternion."""
+        fits = np.ones(lows.shape[1], dtype=bool)
+        for places in self.box.quaternions:
+            low, high = _squares(lows[list(places)], highs[list(places)])
+            fits &= (low <= UNIT[1]) & (high >= UNIT[0])
+        return lows[:, fits], highs[:, fits]
+
+    def _halved(self, parts: Cells) -> Cells:
+        """Return parts cut in two, each where that serves the first of them best."""
+        along = self._best(parts)
+        middle = (parts.lows + parts.highs) / 2
+        at = (along, np.arange(len(along)))
+        highs, lows = parts.highs.copy(), parts.lows.copy()
+        highs[at] = middle[at]
+        lows[at] = middle[at]
+        return self.valued(
+            np.concatenate([parts.lows, lows], axis=1), np.concatenate([highs, parts.highs], axis=1)
+        )
+
+    def _best(self, parts: Cells) -> Column:
+        """Return along which of its sides each part is to be cut, as the first one tells."""
+        width = (parts.highs - parts.lows) / (self.box.highs - self.box.lows)[:, None]
+        d = len(width)
+        low, high = (np.repeat(x[:, :1], 2 * d, axis=1) for x in (parts.lows, parts.highs))
+        for k in range(d):
+            middle = (parts.lows[k, 0] + parts.highs[k, 0]) / 2
+            high[k, 2 * k] = middle
+            low[k, 2 * k + 1] = middle
+        gains = self._gains(parts, low, high)
+        return np.asarray(np.argmax(gains[:, None] * width / width[:, :1], axis=0))
+
+    def _gains(self, parts: Cells, low: Column, high: Column) -> Column:
+        """Return what cutting each side takes from the bound, or from what keeps it from being."""
+        low, high = (np.concatenate([x[:, :1], y], axis=1)
+                     for x, y in ((parts.lows, low), (parts.highs, high)))  # fmt: skip
+        ranges = {n: (low[k], high[k]) for k, n in enumerate(self.box.names)}
+        self._count(low.shape[1])
+        with np.errstate(all="ignore"):
+            found = enclosed(self.traits, ranges, low.shape[1])
+            over = self.scores(Cells(low, high, shifts(found), found.blamed))
+        if not np.isfinite(over[0]):
+            over = _width(found)
+        halves = over[1:].reshape(-1, 2)
+        width = (parts.highs[:, 0] - parts.lows[:, 0]) / (self.box.highs - self.box.lows)
+        with np.errstate(all="ignore"):
+            gains = 2 - halves.sum(axis=1) / over[0]
+        return np.asarray(np.maximum(np.where(np.isfinite(gains), gains, 0.0), 1e-6 * width))
+
+    def _count(self, boxes: int) -> None:
+        self.spent += boxes * self._price()
+
+    def _price(self) -> int:
+        return len(self.traits.trace.steps) * (4 + len(self.traits.trace.results))
+
+
+def _width(found: Enclosed) -> Column:
+    """Return how wide that is which the first part has no bound for."""
+    blamed = int(found.blamed[0])
+    if blamed < 0:
+        return np.ones(len(found.blamed))
+    operands = found.traits.trace.steps[blamed].operands
+    low, high = found.ranges[operands[-1] if operands else blamed]
+    return np.asarray(high - low)
+
+
+def _squares(lows: Column, highs: Column) -> tuple[Column, Column]:
+    """Return the range of the squared length of vectors in boxes."""
+    across = (lows <= 0) & (highs >= 0)
+    most = np.maximum(np.abs(lows), np.abs(highs))
+    least = np.where(across, 0.0, np.minimum(np.abs(lows), np.abs(highs)))
+    low, high = np.zeros(lows.shape[1]), np.zeros(lows.shape[1])
+    for a, b in zip(least, most, strict=True):
+        low, high = low + a * a, high + b * b
+    return low, high

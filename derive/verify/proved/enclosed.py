@@ -1,0 +1,284 @@
+"""All values of a function over boxes of its inputs and parameters, and how far each is rounded.
+
+Set-up's values have a range and an error, both rounded outwards: its pairs err so little that
+errors add up plainly. A value in floats is taken along the way from the true one to the one that
+is computed: its range holds them and what is between, and beside it stands its own rounding.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from derive.program.arithmetic import rounded
+from derive.program.own_sine import FITTED
+from derive.verify.operators import Column
+from derive.verify.proved.ranges import (
+    Interval,
+    column,
+    greatest,
+    half_unit,
+    hull,
+    inverse,
+    magnitude,
+    negated,
+    outward,
+    powers_of_two,
+    root_of,
+    squared,
+    sum_of,
+    times,
+    wave,
+)
+from derive.verify.proved.traits import COMPARED, Traits, choice_name
+from derive.verify.proved.unfolded import Operation
+
+PAIR_ERROR = {"add": 4.0, "sub": 4.0, "mul": 8.0, "div": 16.0, "sqrt": 16.0}
+"""In u^2, of + - * (Joldes, Muller and Popescu 2017: 3, 3, 7), and of long division and the root,
+whose digits are each as exact as these."""
+PAIR_WAVE = 64.0
+"""In u^2 absolute, and as much of the angle relative to it: sines of pairs."""
+BROAD = (0.9, 1.1)
+"""Of the squared length of a quaternion that a program divides by."""
+OWN_WAVE = {24: 0.79, 53: 0.77}
+"""In units in the last place: sines and cosines of our own (``program.own_sine``)."""
+SIZEABLE = {24: 2.0**-100, 53: 2.0**-960}
+"""What underflow may leave of an operation on pairs, more than of all floats that it is made of."""
+UPWARDS = 1 + 2.0**-40
+"""More than rounding takes from a sum of errors."""
+
+
+@dataclass
+class Enclosed:
+    """The values of all places over columns of boxes.
+
+    ranges : of each place        errors : of set-up's values
+    own    : how far a place's own rounding moves it
+    blamed : the first place that has no bound in a box, -1 for none
+    void   : the boxes that hold nothing
+    """
+
+    traits: Traits
+    ranges: list[Interval]
+    errors: list[Column]
+    own: list[Column | None]
+    blamed: Column
+    void: Column
+
+
+def enclosed(of: Traits, boxes: Mapping[str, Interval], count: int) -> Enclosed:
+    """Return the values of all places over boxes, the ranges of what is given by name."""
+    found = Enclosed(of, [], [], [], np.full(count, -1), np.zeros(count, bool))
+    for index, step in enumerate(of.trace.steps):
+        at = _given(of, step, boxes, count) if not step.operands else _made(found, index, step)
+        value, error, own = at
+        if choice_name(index) in boxes:
+            value = _decided(found, value, boxes[choice_name(index)])
+        found.ranges.append(value)
+        found.errors.append(error)
+        found.own.append(own)
+        _blame(found, index, step)
+    return found
+
+
+def _decided(found: Enclosed, value: Interval, by: Interval) -> Interval:
+    """Return a truth as a box decides it; one that decides against what is so holds nothing."""
+    low, high = np.where(by[0] > 0, 1.0, value[0]), np.where(by[1] < 1, 0.0, value[1])
+    found.void = found.void | (low > high) | (low > value[1]) | (high < value[0])
+    return np.minimum(low, high), high
+
+
+At = tuple[Interval, Column, Column | None]
+
+
+def _blame(found: Enclosed, index: int, step: Operation) -> None:
+    """Remember where a value has no bound, or is beyond what floats, or their pairs, hold."""
+    largest = float(np.finfo(found.traits.precision.dtype).max)
+    if step.origin == "pairs":
+        largest /= 2.0 ** (found.traits.precision.bits // 2 + 2)
+    own = found.own[index]
+    lost = ~(greatest(found.ranges[index]) <= largest) | ~(found.errors[index] < np.inf)
+    if own is not None:
+        lost |= ~(own < np.inf)
+    found.blamed = np.where((found.blamed < 0) & lost, index, found.blamed)
+
+
+def _given(of: Traits, step: Operation, boxes: Mapping[str, Interval], count: int) -> At:
+    nothing = np.zeros(count)
+    if step.operator == "given":
+        return boxes[step.name], nothing, None
+    q = step.number or Fraction(0)
+    held = Fraction(float(rounded(q, of.precision.dtype)))
+    if step.origin == "pairs":
+        value = outward(*column(float(q), count))
+        return (
+            (value if held != q else column(float(q), count)),
+            greatest(value) * _u(of) ** 2,
+            None,
+        )
+    low, high = sorted((held, q))
+    value = (np.full(count, float(held)),) * 2
+    if held == q:
+        return value, nothing, None
+    gap = float(high - low) * UPWARDS
+    return (value[0] - gap, value[1] + gap), nothing, np.full(count, gap)
+
+
+def _u(of: Traits) -> float:
+    return of.precision.unit_roundoff
+
+
+def _made(found: Enclosed, index: int, step: Operation) -> At:
+    of = found.traits
+    each = [found.ranges[o] for o in step.operands]
+    exactly = _exactly(of, index, step, each)
+    if index in of.lengths:
+        exactly = np.clip(exactly[0], *BROAD), np.clip(exactly[1], *BROAD)
+    nothing = np.zeros(len(found.blamed))
+    if step.origin == "rounded":
+        (error,) = (found.errors[o] for o in step.operands)
+        least = float(np.finfo(of.precision.dtype).smallest_subnormal)
+        most = (greatest(exactly) + error) * UPWARDS
+        own = nothing if of.exact[index] else error + half_unit(most, of.precision.bits, least)
+        return _widened(exactly, own), nothing, own
+    if step.operator in (*COMPARED, "both", "either"):
+        return exactly, nothing, None
+    if step.operator == "select" and _may_turn(of, index, step):
+        torn = each[0][0] != each[0][1]
+        jump = np.where(torn, greatest(exactly) * 2, 0.0)
+        if step.origin == "pairs":
+            return exactly, np.maximum(*(found.errors[o] for o in step.operands[1:])) + jump, None
+        own = np.where(torn, np.inf, 0.0)
+        return exactly, nothing, own
+    if step.origin == "pairs":
+        return exactly, _pair_error(of, step, found, exactly), None
+    rounding = _rounding(of, step, exactly, each)
+    return _widened(exactly, rounding), nothing, rounding
+
+
+def _may_turn(of: Traits, index: int, step: Operation) -> bool:
+    """Tell whether a choice may be another for rounded values than for true ones."""
+    return not of.kinds[index] and not of.exact[step.operands[0]]
+
+
+def _widened(a: Interval, by: Column | None) -> Interval:
+    return a if by is None else outward(a[0] - by, a[1] + by)
+
+
+def _rounding(
+    of: Traits, step: Operation, exactly: Interval, each: Sequence[Interval]
+) -> Column | None:
+    """Return how far an operation in floats rounds at most, None if not at all."""
+    steps, bits = of.trace.steps, of.precision.bits
+    least = float(np.finfo(of.precision.dtype).smallest_subnormal)
+    if step.operator in ("neg", "abs", "select", "power_of_two"):
+        return None
+    numbers = [steps[o].number for o in step.operands]
+    if step.operator == "mul" and any(q is not None and _shifts(q) for q in numbers):
+        return np.full_like(exactly[0], least)
+    found = half_unit(greatest(exactly), bits, least)
+    if step.operator not in ("sin", "cos"):
+        return found
+    far = ~(greatest(each[0]) <= FITTED[bits].largest)
+    return np.where(far, np.inf, found * (2 * OWN_WAVE[bits]))
+
+
+def _shifts(q: Fraction) -> bool:
+    """Tell whether a number is a power of two, whose products are exact but for underflow."""
+    top, bottom = abs(q.numerator), q.denominator
+    return top & (top - 1) == 0 and bottom & (bottom - 1) == 0
+
+
+def _pair_error(of: Traits, step: Operation, found: Enclosed, exactly: Interval) -> Column:
+    """Return the error of an operation on pairs, of its operands and its own."""
+    errors = [found.errors[o] for o in step.operands]
+    least = np.ones(1)
+    ranges = [found.ranges[o] for o in step.operands]
+    square_of_u = _u(of) ** 2
+    match step.operator:
+        case "add" | "sub":
+            came = errors[0] + errors[1]
+        case "mul":
+            first, second = map(greatest, ranges)
+            came = first * errors[1] + second * errors[0] + errors[0] * errors[1]
+        case "div":
+            least = magnitude(ranges[1])[0] - errors[1]
+            least = np.where(least > 0, least, 0.0)
+            came = (errors[0] + greatest(exactly) * errors[1]) / least
+        case "sqrt":
+            least = np.sqrt(np.maximum(ranges[0][0] - errors[0], 0.0))
+            came = errors[0] / least
+        case "sin" | "cos":
+            own = PAIR_WAVE * square_of_u * (1 + greatest(ranges[0]))
+            return (errors[0] + own) * UPWARDS
+        case "neg" | "abs":
+            return errors[0]
+        case "select":
+            return np.maximum(errors[1], errors[2])
+        case "power_of_two":
+            return errors[0] * 0
+        case _:
+            return errors[0] + np.inf
+    lost = SIZEABLE[of.precision.bits] / np.minimum(least, 1.0)
+    own = PAIR_ERROR[step.operator] * square_of_u * (greatest(exactly) + came)
+    return np.asarray((came + own + lost) * UPWARDS)
+
+
+def _less(a: Interval, b: Interval) -> Interval:
+    return np.where(a[1] < b[0], 1.0, 0.0), np.where(a[0] >= b[1], 0.0, 1.0)
+
+
+def _at_most(a: Interval, b: Interval) -> Interval:
+    return np.where(a[1] <= b[0], 1.0, 0.0), np.where(a[0] > b[1], 0.0, 1.0)
+
+
+def _select(condition: Interval, yes: Interval, no: Interval) -> Interval:
+    both = hull(yes, no)
+    sure, never = condition[0] > 0, condition[1] < 1
+    return (
+        np.where(sure, yes[0], np.where(never, no[0], both[0])),
+        np.where(sure, yes[1], np.where(never, no[1], both[1])),
+    )
+
+
+def _ends(which: Callable[[Column, Column], Column]) -> Callable[[Interval, Interval], Interval]:
+    return lambda a, b: (which(a[0], b[0]), which(a[1], b[1]))
+
+
+def _unbounded(*given: Interval) -> Interval:
+    return np.full_like(given[0][0], -np.inf), np.full_like(given[0][0], np.inf)
+
+
+MEANT: Mapping[str, Callable[..., Interval]] = {
+    "add": sum_of,
+    "sub": lambda a, b: sum_of(a, negated(b)),
+    "mul": times,
+    "div": lambda a, b: times(a, inverse(b)),
+    "neg": negated,
+    "sqrt": root_of,
+    "abs": magnitude,
+    "sin": lambda a: wave(a, 0),
+    "cos": lambda a: wave(a, 1),
+    "power_of_two": powers_of_two,
+    "less": _less,
+    "at_most": _at_most,
+    "both": _ends(np.minimum),
+    "either": _ends(np.maximum),
+    "select": _select,
+    "rounded": lambda a: a,
+    "least": _ends(np.minimum),
+    "most": _ends(np.maximum),
+}
+
+
+def _exactly(of: Traits, index: int, step: Operation, each: Sequence[Interval]) -> Interval:
+    """Return the range of an operation without rounding."""
+    if step.operator == "mul" and step.operands[0] == step.operands[1]:
+        return squared(each[0])
+    kind = of.kinds[index]
+    if kind in ("least", "most"):
+        return MEANT[kind](each[1], each[2])
+    if kind == "abs":
+        return magnitude(each[2])
+    return MEANT.get(step.operator, _unbounded)(*each)
