@@ -31,7 +31,7 @@ METHOD = (
 """The modules that figures are measured by."""
 PROVING = (
     *("program/arithmetic", "program/own_sine", "program/pair_sine", "program/pairs"),
-    *("program/indexed", "program/run", "verify/columns", "verify/draw", "verify/scale"),
+    *("verify/columns", "verify/draw", "verify/scale"),
     *(f"verify/proved/{name}" for name in ("bounds", "cut", "enclosed", "ranges", "traits")),
     *(f"verify/proved/{name}" for name in ("seen", "slopes", "unfolded")),
 )

@@ -109,6 +109,10 @@ int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, floa
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8282 hard samples 13 u (of
  *            attitude_next, turned, ill-conditioned).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: position_next 4.2e-06 m (seen
+ *            4e-06), attitude_next 5.2e-06 1 (seen 1.6e-07), velocity_next 7.2e-06 m/s (seen
+ *            2e-06), omega_next 1.6e-05 rad/s (seen 7.7e-07); assumed: quaternions given with
+ *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 204 add, 64 sub, 351 mul, 1 div, 4 neg, 1 sqrt.
  * On Cortex-M0+, -O2: 61572 to 62879 instructions, 1540 B of code, 416 B of stack.
@@ -143,6 +147,7 @@ void rigid_body_steps_step_rk4_f32(const rigid_body_steps_constants_f32 *constan
  * Error: median 0.26, largest 5.3 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8282 hard samples no more.
+ * Bound: not proved: 4155 operations are more than the 2000 tried.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 2322 add, 460 sub, 3210 mul, 1 div, 250 neg, 1 sqrt.
  * On Cortex-M0+, -O2: 508696 to 513127 instructions, 6944 B of code, 6 B of tables, 1192 B of

@@ -106,6 +106,10 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8282 hard samples 1.5e+03 u (of
  *            attitude_next, turned, ill-conditioned).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: position_next 7.7e-15 m (seen
+ *            7.3e-15), attitude_next 9.6e-15 1 (seen 2.6e-16), velocity_next 1.4e-14 m/s (seen
+ *            3.7e-15), omega_next 3e-14 rad/s (seen 1.5e-15); assumed: quaternions given with
+ *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 204 add, 64 sub, 351 mul, 1 div, 4 neg, 1 sqrt.
  * On Cortex-M0+, -O2: 141827 to 143341 instructions, 2360 B of code, 832 B of stack.
@@ -139,6 +143,7 @@ void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constan
  * Error: median 0.37, largest 5.5 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8282 hard samples no more.
+ * Bound: not proved: 4155 operations are more than the 2000 tried.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 2322 add, 460 sub, 3210 mul, 1 div, 250 neg, 1 sqrt.
  * On Cortex-M0+, -O2: 1080812 to 1087610 instructions, 11224 B of code, 6 B of tables, 2432 B of
