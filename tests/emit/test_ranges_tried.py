@@ -38,7 +38,7 @@ def in_a_run(library: Library, dtype: type) -> list[int]:
 
 def test_c_and_casadi_refuse_what_a_run_refuses(tmp_path: Path) -> None:
     library = with_ranges_tried(library_of(NAME))
-    texts = {n.partition("/")[2]: t for n, t in scene_files(library, (), "").items()}
+    texts = {n.partition("/")[2]: t for n, t in scene_files(library, ()).items()}
     files, names = Files(texts, ""), [q.name for q in library.setup.inputs]
     wanted = in_a_run(library, np.float64)
     assert wanted.count(RANGE) == 2 * len(names)

@@ -64,7 +64,7 @@ made = library(parse_scene(sys.stdin.read(), "odd"))
 prove(made)
 few = Sampling(samples=64, rounds=1, batch=16, balls=1, corners=1)
 print(json.dumps([[m.median, m.worst] for m in figures(made, few)]))
-texts = {name.partition("/")[2]: text for name, text in scene_files(made, (), "").items()}
+texts = {name.partition("/")[2]: text for name, text in scene_files(made, ()).items()}
 files, here = Files(texts, ""), Path(sys.argv[1])
 for one in loaded(made, files, here, find_compiler()):
     given = {q.name: [0.75 + 0.25 * k for k in range(len(q.components))]
