@@ -17,6 +17,8 @@ from derive.scene import catalogue
 collect_ignore_glob = ["data/*"]
 settings.register_profile("derive", deadline=None)
 settings.load_profile("derive")
+FEW = 3
+"""Of a longer table the quick tests run so many rows, and ``-m long`` the others."""
 MANY, PART = 6, 8
 """Of a test with more than ``MANY`` long cases, continuous integration runs an eighth."""
 SLOW = {"acrobot", "quadrotor", "rattleback"}
@@ -31,20 +33,30 @@ def scene(item: pytest.Item) -> str:
     return next((name for name in names if name in SCENES), "")
 
 
+def _all_but(few: int, rows: list[pytest.Item], name: str) -> list[pytest.Item]:
+    """Return the rows of a table but a few, which are spread over it from a place of its own."""
+    first, count = crc32(name.encode()), len(rows)
+    run = {(first + k * count // few) % count for k in range(few)}
+    return [row for place, row in enumerate(rows) if place not in run]
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Order the tests by scene, and mark those of slow scenes and what only a whole run has."""
-    tables = defaultdict[str, list[pytest.Item]](list)
+    short, long = (defaultdict[str, list[pytest.Item]](list) for _ in range(2))
     for item in items:
-        if scene(item) in SLOW and not any(map(item.get_closest_marker, ("browser", "target"))):
+        aside = any(map(item.get_closest_marker, ("browser", "target")))
+        if scene(item) in SLOW and not aside:
             item.add_marker("long")
-        if item.get_closest_marker("long"):
+        if not aside:
+            tables = long if item.get_closest_marker("long") else short
             tables[item.nodeid.partition("[")[0]].append(item)
-    for name, rows in tables.items():
-        if len(rows) > MANY:
-            for place, row in enumerate(rows, crc32(name.encode())):
-                if place % PART:
-                    row.add_marker("whole")
+    for name, rows in long.items():
+        for row in _all_but(-(-len(rows) // PART), rows, name) if len(rows) > MANY else ():
+            row.add_marker("whole")
+    for name, rows in short.items():
+        for row in _all_but(FEW, rows, name):
+            row.add_marker("long")
     items.sort(key=scene)
 
 

@@ -37,6 +37,7 @@ def wrong(scene: str) -> list[str]:
     return [f"{v.function}: {v.says}" for v in verdicts if v.outcome != "holds"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scene", SCENES)
 def test_no_derivative_is_a_wrong_number(scene: str) -> None:
     assert not wrong(scene)

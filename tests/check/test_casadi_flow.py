@@ -56,6 +56,7 @@ def made(name: str) -> tuple[Library, ModuleType]:
     return found, imported("free_casadi", casadi_file(found), Path(mkdtemp()))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("function", ["flow_exact", "plan_dmv"])
 @pytest.mark.parametrize("name", thinned([*BODIES, "tumbling_disc"], 4))
 def test_no_slope_is_wrong_or_lost(name: str, function: str) -> None:

@@ -129,6 +129,7 @@ def test_a_compiler_that_fuses_products_with_sums_is_told_not_to(
     assert all(np.array_equal(a, b) for a, b in zip(*found, strict=True))
 
 
+@pytest.mark.long
 def test_many_threads_share_nothing(
     module: ModuleType, cache_of_three: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -49,6 +49,7 @@ def shortest(steps: Steps) -> tuple[float, int]:
     return float(found.value(whole)), iterations
 
 
+@pytest.mark.long
 def test_minimum_time_is_found_as_with_casadis_own_derivatives(
     module: ModuleType, compiled: Steps
 ) -> None:

@@ -86,6 +86,7 @@ def test_a_number_of_steps_of_numpys_is_one(
     assert sorted((cache_of_three / "derive").glob("*.so")) == before
 
 
+@pytest.mark.long
 def test_two_processes_that_build_at_once_both_have_it(
     module: ModuleType, cache_of_three: Path, tmp_path: Path
 ) -> None:

@@ -28,6 +28,7 @@ def folder(tmp_path: Path, found: Files) -> Path:
     return tmp_path
 
 
+@pytest.mark.long
 def test_what_an_import_or_an_editor_left_is_not_read(folder: Path, found: Files) -> None:
     (folder / NAME / "__pycache__").mkdir()
     (folder / NAME / f".{NAME}_f64.c.swp").write_bytes(b"\xff\xfe")

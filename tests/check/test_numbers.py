@@ -111,6 +111,7 @@ def test_steady_motions_are_the_expected_roots(case: Case, names: tuple[str, ...
         assert close(root, case.expected(name), DOUBLE)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("case", "names"), ROOTS, ids=lambda c: getattr(c, "scene", ""))
 def test_compiled_c_vanishes_at_the_expected_roots(
     case: Case, names: tuple[str, ...], emitted: Built

@@ -43,6 +43,7 @@ def test_a_scene_of_the_catalogue_is_its_particles(name: str) -> None:
     assert rows(made) == dict.fromkeys(made.problems, "holds")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", quick(unusual.SCENES, "a moving point"))
 def test_a_scene_of_any_axes_wheels_or_point_is_its_particles(name: str) -> None:
     made = library(parse_scene(unusual.text_of(name), "unusual"))

@@ -19,6 +19,7 @@ def broken(name: str, by: Sampling) -> list[str]:
     return [row.says for row in rows if row.outcome == "FAILS"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name",
     ["heavy_top", *(pytest.param(n, marks=pytest.mark.long) for n in ("acrobot", "gyrostat"))],
@@ -27,6 +28,7 @@ def test_a_figure_of_few_samples_is_a_promise(name: str) -> None:
     assert broken(name, sampled_at(FEW)) == []
 
 
+@pytest.mark.long
 def test_a_search_as_small_as_the_samples_breaks_it() -> None:
     assert sampled_at(FEW).batch == LEAST
     assert broken("heavy_top", replace(sampled_at(FEW), batch=8)) != []

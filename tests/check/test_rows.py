@@ -47,6 +47,7 @@ def test_a_row_with_nothing_to_compare_says_why(workshop: Path) -> None:
     }  # fmt: skip
 
 
+@pytest.mark.long
 def test_a_figure_that_no_header_states_is_not_said_to_be_stated(workshop: Path) -> None:
     says = [v.says for v in rows("attitude", workshop) if v.check == "rounding"]
     assert says

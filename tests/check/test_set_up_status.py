@@ -93,6 +93,7 @@ def test_a_set_up_refuses_what_the_declaration_refuses_and_nothing_else(name: st
 RULED = ("edge_runner_flat", "rigid_body_steps", "heavy_top", "gyrostat")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", thinned(RULED, 2))
 def test_a_set_up_without_one_of_its_rules_is_caught(name: str) -> None:
     lib = made(name)

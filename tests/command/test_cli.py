@@ -30,6 +30,7 @@ def made(tmp_path_factory) -> Path:
     return folder
 
 
+@pytest.mark.long
 def test_what_a_function_costs_is_told_and_what_its_errors_are_a_part_of(made):
     told, program = made.with_suffix(".told").read_text(), library_of(SCENE)["acceleration"]
     assert re.search(rf"^ *acceleration +{program.flops()} 0( +[\d.]+){{4}} *$", told, re.M)

@@ -41,6 +41,7 @@ def accepted() -> Iterator[Path]:
         yield file
 
 
+@pytest.mark.long
 def test_the_schema_accepts_every_scene_that_the_reader_accepts(by: Any) -> None:
     files = list(accepted())
     assert len(files) > 85

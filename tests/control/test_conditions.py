@@ -26,6 +26,7 @@ def posed():
     return own, task(own, given, TURN, {}, LIMITS, (), {"time": 1}, None)
 
 
+@pytest.mark.long
 def test_the_cheapest_way_satisfies_what_is_necessary(trajectory: derive.Trajectory) -> None:
     assert trajectory.conditions is not None
     assert trajectory.conditions.worst < 1e-7
@@ -88,6 +89,7 @@ def test_other_methods_and_solvers_find_the_same(
     assert other.cost == pytest.approx(trajectory.cost, rel=1e-10)
 
 
+@pytest.mark.long
 def test_a_trajectory_from_before_is_a_start(trajectory: derive.Trajectory) -> None:
     """Straight, this start leads to the turn about one axis, which takes longer."""
     turn, values = "z 180deg", inertia((1, 1, 1))

@@ -139,6 +139,7 @@ def test_what_is_given_outside_of_its_range_is_told() -> None:
     )
 
 
+@pytest.mark.long
 def test_a_tumbling_body_is_stopped_in_the_time_that_its_moments_need() -> None:
     values = {**inertia((1, 2, 3)), "omega_x": 0.5}
     limits = {"moment": 0.8}
@@ -171,6 +172,7 @@ def test_inputs_held_from_row_to_row_of_the_table_lead_to_the_end(cost) -> None:
     assert np.abs(np.array([*q, *omega]) - rows[-1, 1:8]).max() < 1e-6
 
 
+@pytest.mark.long
 def test_a_table_and_a_plot_show_the_way() -> None:
     trajectory = derive.steer(craft(), inertia((1, 2, 3)), "x 1", limits={"moment": 1}, starts=1)
     head, first, *_, last = trajectory.table().splitlines()

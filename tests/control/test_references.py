@@ -45,6 +45,7 @@ def test_a_straight_start_ends_at_the_turn_about_one_axis_and_others_do_better()
     assert min(c for c in trajectory.found[1:] if c is not None) < 3.25
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", KNOWN["min_energy"])
 def test_a_turn_costs_the_energy_that_is_known(name: str) -> None:
     case = KNOWN["min_energy"][name]
@@ -56,6 +57,7 @@ def test_a_turn_costs_the_energy_that_is_known(name: str) -> None:
     assert trajectory.conditions.worst < 1e-8
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("moments", "turn", "limit", "cost", "until"),
     [

@@ -50,6 +50,7 @@ REFUSED = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("given", "says"), REFUSED, ids=[str(n) for n in range(len(REFUSED))])
 def test_what_makes_no_sense_is_refused(given, says: str) -> None:
     with pytest.raises(derive.DeriveError) as refused:
@@ -57,6 +58,7 @@ def test_what_makes_no_sense_is_refused(given, says: str) -> None:
     assert says in str(refused.value)
 
 
+@pytest.mark.long
 def test_scenes_that_cannot_be_steered_say_why() -> None:
     with pytest.raises(derive.DeriveError, match="set values by --set: I_y, I_z"):
         derive.steer(craft(), {"I_x": 1}, "z 1")
@@ -124,6 +126,7 @@ def test_an_end_that_cannot_be_reached_is_said(capsys) -> None:
         derive.steer(craft(), values, "z 3", limits={"moment": 0.01}, cost=COST, until=1, starts=2)
 
 
+@pytest.mark.long
 def test_the_command_prints_what_was_found_and_writes_the_way(tmp_path, capsys) -> None:
     file = tmp_path / "craft.toml"
     file.write_text(craft().scene.text)

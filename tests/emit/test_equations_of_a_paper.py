@@ -35,6 +35,7 @@ hinge = { on = "rod", force = ["?rail", "?across", "?up"], couple = ["?a", "0", 
 """
 
 
+@pytest.mark.long
 def test_a_letter_of_the_laws_that_the_scene_uses_otherwise_is_said_to_be_another() -> None:
     meanings = {row.shown[0]: row.meaning for row in account(library_of("cart_pendulum")).of_laws}
     other = "in the laws alone, for above m is: mass of the pendulum"
@@ -81,6 +82,7 @@ def test_laws_are_quoted_in_sentences_that_need_none_before_them() -> None:
     assert [says for says in quoted.values() if begun.match(says)] == []
 
 
+@pytest.mark.long
 def test_short_equations_stand_on_one_line_of_latex() -> None:
     tex = equations(library_of("rolling_disc"), "latex")
     rows = [row for part in re.findall(r"\\begin\{align\*\}\n(.*?)\n\\end", tex, re.DOTALL)

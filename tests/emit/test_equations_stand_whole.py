@@ -158,6 +158,7 @@ def _drawn(name: str) -> str:
     return TAGS.sub("", name_mathml(name, "scalar"))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", [*USERS, *thinned([*TEXTS, *catalogue()], 8)])
 def test_every_name_in_an_equation_is_given_or_stands_on_a_left_hand_side(name: str) -> None:
     known = known_of(name)

@@ -51,6 +51,7 @@ def middle(name: str) -> dict[str, float]:
     }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("precision", [F32, F64], ids=lambda p: p.name)
 @pytest.mark.parametrize("name", [NAME, "heavy_top", "gyrostat", "skewed_disc"])
 def test_the_table_has_the_bits_that_set_up_makes(
@@ -83,6 +84,7 @@ def test_c_without_set_up_compiles_and_passes_the_test_of_its_package(tmp_path: 
     assert subprocess.run([tmp_path / "made"], check=False).returncode == 1
 
 
+@pytest.mark.long
 def test_header_json_and_command_say_what_is_fixed(tmp_path: Path) -> None:
     command = ["generate", NAME, "--fixed", TEXT, "--samples", "64", "--out", str(tmp_path)]
     assert main(command) == 0
@@ -120,6 +122,7 @@ def test_what_cannot_be_fixed_is_refused_by_a_sentence(
     assert not any(tmp_path.iterdir())
 
 
+@pytest.mark.long
 def test_values_outside_of_their_ranges_are_warned_of(capsys, tmp_path: Path) -> None:
     wide = TEXT.replace("I_zz=1.9", "I_zz=2.7")
     command = ["generate", NAME, "--fixed", wide, "--samples", "64", "--out", str(tmp_path)]

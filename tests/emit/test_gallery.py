@@ -71,6 +71,7 @@ def glance(text: str) -> str:
     return " ".join(re.sub(r"<[^>]+>|&#8203;", "", part) for part in parts)
 
 
+@pytest.mark.long
 def test_all_short_answers_of_a_machine_are_shown_and_none_that_is_given() -> None:
     text = load("cart_pendulum").text.replace(', "step_rk4"', "")
     own = glance(text.replace('wanted = ["state_rate",', 'wanted = ["energy",').replace(

@@ -103,6 +103,7 @@ def test_one_unit_makes_the_functions_of_a_single_header_and_others_call_them(
     assert status(tmp_path, "made.c", f"test/{NAME}_test_f32.c", "calls.c") == 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", [NAME, "attitude", "rigid_body_steps"])
 def test_a_package_is_the_same_each_time_and_says_how_it_is_made_again(name: str) -> None:
     texts = packed(name)

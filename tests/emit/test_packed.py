@@ -85,6 +85,7 @@ def test_the_packed_functions_are_the_scenes_own(name: str, tmp_path: Path) -> N
     assert float(ca.norm_inf(after - unpacked(module, getattr(module, step)(), given))) == 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", KINDS)
 def test_module_and_json_say_the_same(name: str, tmp_path: Path) -> None:
     module, said = module_of(name, tmp_path), json.loads(manifest(made(name), ()))
@@ -121,6 +122,7 @@ def test_errors_vanish_at_the_target_for_either_sign_and_have_derivatives(
         assert np.isfinite(found).all()
 
 
+@pytest.mark.long
 def test_a_small_error_of_attitude_is_its_rotation_vector(tmp_path: Path) -> None:
     module = module_of("satellite", tmp_path)
     vector = np.array([1e-5, -2e-5, 3e-5])

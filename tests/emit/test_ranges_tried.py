@@ -64,6 +64,7 @@ def test_a_range_that_is_not_tried_is_noticed() -> None:
         assert in_a_run(lax, np.float64) != wanted
 
 
+@pytest.mark.long
 def test_header_json_and_command_say_that_ranges_are_tried_and_at_what_cost(
     tmp_path: Path,
 ) -> None:

@@ -87,6 +87,7 @@ def test_a_command_prints_what_the_readme_shows(command: list[str], tmp_path: Pa
     assert told(command, tmp_path) == shown
 
 
+@pytest.mark.long
 def test_the_table_that_the_readme_shows_has_the_costs_of_its_scene(folder: Path) -> None:
     (shown,) = [b.shown for b in of("sh") if b.text.split() == GENERATE]
     text = (folder / "generated" / "brick" / "brick.json").read_text(encoding="utf-8")
@@ -162,6 +163,7 @@ def errors(scene: str, functions: list[str]) -> tuple[float, float]:
     return max(r["median_ulp"] for r in rows), max(r["largest_within_ulp"] for r in rows)
 
 
+@pytest.mark.long
 def test_the_errors_that_it_states_are_those_of_the_committed_files() -> None:
     table, machines = [], []
     for label, _, _ in ROW.findall(README):

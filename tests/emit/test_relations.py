@@ -57,6 +57,7 @@ def wrong(library: Library, told: dict[str, list[str]]) -> list[str]:
     return found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SCENES)
 def test_equations_of_a_header_hold_of_what_the_functions_return(name: str) -> None:
     library = library_of(name)

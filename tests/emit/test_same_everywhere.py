@@ -147,6 +147,7 @@ def name(source: Path) -> str:
     return source.relative_to(ROOT).as_posix().removeprefix("derive/")
 
 
+@pytest.mark.long
 def test_no_module_asks_for_what_is_rounded_differently_elsewhere() -> None:
     found = {f"{name(s)}: {what}" for s in judged() for what in asked(parsed(s))}
     assert found == set(ASKED)

@@ -68,6 +68,7 @@ def test_a_page_of_unusual_axes_names_nothing_that_its_file_does_not(name: str) 
     assert [text for text, wrong in found if wrong] == []
 
 
+@pytest.mark.long
 def test_the_whole_page_and_the_balances_of_a_cone_speak_of_the_body_and_its_axes() -> None:
     made = library(parse_scene(CONE, "cone"))
     page, (moment, *_) = scene_page(made, ()), functions(made)

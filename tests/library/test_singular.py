@@ -87,6 +87,7 @@ def test_header_json_and_casadi_say_the_same() -> None:
     assert says in casadi_file(lib)
 
 
+@pytest.mark.long
 def test_a_quaternion_of_no_norm_is_told() -> None:
     step = library_of("rigid_body_steps")["step_rk4"]
     assert [s.where for s in step.singular] == ["attitude = 0"]

@@ -73,6 +73,7 @@ def two_hubs(*wanted: str, emission: str = "fast") -> Library:
     return library(parse_scene(text, "two_hubs"))
 
 
+@pytest.mark.long
 def test_samples_have_every_quaternion_of_length_one_and_at_half_a_turn() -> None:
     made = two_hubs("step_rk4")
     of = Sampled(made, F64)

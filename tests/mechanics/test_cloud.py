@@ -42,6 +42,7 @@ UNLIKE = (
 )  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("row", thinned(UNLIKE, 2), ids=[row[0] for row in UNLIKE])
 def test_another_machine_does_not_agree_with_the_cloud(
     row: tuple[str, str, str, str],

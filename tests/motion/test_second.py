@@ -70,6 +70,7 @@ def test_there_are_45_a_step_and_none_by_the_attitude_twice() -> None:
     assert not [(i, k) for i, k in pattern.places() if i < 4 and k < 4]
 
 
+@pytest.mark.long
 def test_mutants_are_found() -> None:
     given, off = off_the_sphere()
     made = second_derivatives(given)

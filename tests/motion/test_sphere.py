@@ -59,6 +59,7 @@ def run_of(program: Program, values: Values, dtype: type, count: int) -> tuple[n
     return q, drift
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("dtype", U)
 @pytest.mark.parametrize("name", ["step_rk4", "step_lie"])
 def test_a_normalised_attitude_never_leaves_the_sphere(name: str, dtype: type) -> None:

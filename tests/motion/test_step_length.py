@@ -131,6 +131,7 @@ def test_differences_in_five_hundred_bits_agree(name: str) -> None:
     assert max(one.gap for one in found) < GAP
 
 
+@pytest.mark.long
 def test_a_machine_has_the_column_too() -> None:
     text = (CATALOGUE / "acrobot.toml").read_text(encoding="utf-8")
     start, end = text.index("wanted"), text.index("]", text.index("wanted")) + 1

@@ -27,6 +27,7 @@ def inputs(program: Program) -> list[str]:
     return [c for q in program.inputs for c in q.components]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", thinned(FREE, 1))
 def test_the_order_is_four(name: str) -> None:
     given, values = case(name)
@@ -85,6 +86,7 @@ def test_the_jacobian_is_the_slope_of_the_step_on_the_sphere_and_off_it(name: st
     assert max(worst(made, plain, one) for one in (values, off)) < EXACTLY
 
 
+@pytest.mark.long
 def test_the_tangent_jacobian_is_that_of_the_step_that_normalises() -> None:
     given, values = case("rigid_body")
     unit, plain = (entries(step(given, f"step_rk4{k}_tangent"), values) for k in ("_unit", ""))

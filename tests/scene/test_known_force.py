@@ -103,6 +103,7 @@ def test_what_formulas_give_is_no_argument(name: str) -> None:
     assert "force" not in inputs(made["state_rate"])
 
 
+@pytest.mark.long
 def test_an_input_is_a_column_of_the_jacobian_and_held_during_a_step() -> None:
     made = body(ROCKET, "state_rate_jacobian")
     pattern = (made["state_rate_jacobian"].sparsity or {})["jacobian"]

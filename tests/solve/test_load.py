@@ -92,6 +92,7 @@ def test_a_scene_goes_to_another_process_by_its_text() -> None:
     assert pickle.loads(pickle.dumps(ball)) is ball  # noqa: S301
 
 
+@pytest.mark.long
 def test_a_scene_of_a_dict_is_generated_and_its_file_makes_the_same(tmp_path: Path) -> None:
     ball = derive.load(BALL, "ball")
     made = ball.generate(tmp_path / "one", samples=64)
@@ -107,6 +108,7 @@ def test_a_scene_of_a_dict_is_generated_and_its_file_makes_the_same(tmp_path: Pa
         ball.generate(file)
 
 
+@pytest.mark.long
 def test_generate_adds_c_for_casadi_where_it_is_asked_for(tmp_path: Path) -> None:
     wanted = ["step_rk4", "step_rk4_jacobian"]
     made = derive.load(BALL | {"wanted": wanted}, "ball").generate(
@@ -153,6 +155,7 @@ def test_a_limit_is_of_one_component() -> None:
         derive.load(BALL | {"wanted": ["kinetic_energy"]}, "ball").limits({}, "omega")
 
 
+@pytest.mark.long
 def test_a_report_leaves_the_files_of_its_scene_as_they_are_made(tmp_path: Path) -> None:
     ball = derive.load(BALL, "ball")
     ball.generate(tmp_path, samples=64)

@@ -217,6 +217,7 @@ def test_what_only_machines_have_is_not_advised_to_one_body() -> None:
             ask({})
 
 
+@pytest.mark.long
 def test_no_answer_is_a_zero_with_a_sign(capsys: pytest.CaptureFixture[str]) -> None:
     still = dict.fromkeys(("x", "x_dot", "theta", "theta_dot", "F"), 0.0)
     cart = {"M": 0.5, "m": 0.2, "l": 0.3, "I": 0.006, "b": 0.1, "g": 9.8} | still

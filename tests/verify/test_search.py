@@ -31,6 +31,7 @@ def measured():
     return figures(library_of(SCENE), FEW)
 
 
+@pytest.mark.long
 def test_fresh_samples_keep_the_stated_errors(measured):
     rows = list(fresh(library_of(SCENE), measured, 256, told))
     assert {row.outcome for row in rows} == {"holds"}

@@ -17,6 +17,7 @@ SAME = 1e-6
 CASES = [(name, precision) for name in catalogue() for precision in PRECISIONS]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", thinned(CASES, 12), ids=lambda case: f"{case[0]}-{case[1].name}")
 def test_errors_in_columns_are_those_in_balls(case: tuple[str, Precision]) -> None:
     name, precision = case

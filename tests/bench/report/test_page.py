@@ -26,6 +26,7 @@ def html() -> str:
     return page(report())
 
 
+@pytest.mark.long
 def test_the_page_opens_with_a_plot_then_says_what_to_use_then_all_else(html: str) -> None:
     places = [html.index(mark) for mark in ("<h1>", "<svg viewBox", 'id="choose"', "<table")]
     assert places == sorted(places)
