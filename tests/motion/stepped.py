@@ -15,6 +15,8 @@ import numpy as np
 
 from derive.check.compiler import compiled, find_compiler
 from derive.emit.c import text as c_text
+from derive.emit.c.sines import own_sines
+from derive.emit.sines import TOGETHER
 from derive.motion.exact.inertia import Inertia
 from derive.motion.moser_veselov import plan_dmv, step_dmv
 from derive.motion.splitting import Start, step_split
@@ -217,7 +219,9 @@ _LIBRARIES: dict[int, tuple[Stepper, ctypes.CDLL]] = {}
 def _library(stepper: Stepper) -> ctypes.CDLL:
     """Return a stepper's loops in both precisions, compiled once."""
     if id(stepper) not in _LIBRARIES:
-        text = "#include <math.h>\n" + "".join(_loop(stepper, p) for p in PRECISIONS)
+        loops = "".join(_loop(stepper, p) for p in PRECISIONS)
+        sines = "\n".join(own_sines("many", p) for p in PRECISIONS) if TOGETHER in loops else ""
+        text = f"#include <math.h>\n{sines}\n{loops}"
         made = compiled({"many.c": text}, "many.c", Path(mkdtemp()), find_compiler())
         _LIBRARIES[id(stepper)] = stepper, ctypes.CDLL(str(made))
     return _LIBRARIES[id(stepper)][1]
@@ -227,8 +231,8 @@ def _loop(stepper: Stepper, precision: Precision) -> str:
     s, p = precision.scalar, precision.name
     names = [c for q in stepper.setup.outputs for c in q.components]
     fields = "".join(f"{s} {name}; " for name in (*names, "none"))
-    plan = "\n".join(c_text.body(stepper.plan, precision))
-    step = "\n".join(c_text.body(stepper.step, precision))
+    plan = "\n".join(c_text.body(stepper.plan, "many", precision))
+    step = "\n".join(c_text.body(stepper.step, "many", precision))
     width = max(1, len(stepper.plan.results))
     head = f"const struct constants_{p} *constants"
     unused = "(void)constants; (void)plan; (void)h;"
