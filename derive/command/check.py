@@ -10,7 +10,7 @@ from derive.command.parsed import word_of
 from derive.command.scenes import samples_argument, scene_argument
 from derive.command.terminal import OUT, console, print_rows, progress
 from derive.solve.handle import FRESH, Handle
-from derive.solve.several import checked
+from derive.solve.several import checked, checked_by_eva
 from derive.solve.targets import TARGETS, Tried, on_targets
 
 WIDTH = 100
@@ -33,27 +33,39 @@ def options(command: argparse.ArgumentParser) -> None:
         const=OUT,
         help="keep what it costs on the core for the comments, JSON and pages of `derive generate`",
     )
+    command.add_argument(
+        "--eva",
+        action="store_true",
+        help="let Frama-C's Eva look for run-time errors in the C instead: what is infinite or no"
+        " number, divisions by zero, places outside of arrays",
+    )
     command.set_defaults(run=check)
 
 
 def check(given: argparse.Namespace) -> int:
     """Compile the emitted files and compare them with ball arithmetic and with each other."""
     scenes = [derive.load(source) for source in given.scenes]
+    other = "--target" if given.target else "--eva" if given.eva else ""
+    if other and given.samples != FRESH:
+        raise derive.DeriveError(f"check: --samples does not go with {other}")
     if given.target:
-        if given.samples != FRESH:
-            raise derive.DeriveError("check: --samples does not go with --target")
+        if given.eva:
+            raise derive.DeriveError("check: --eva does not go with --target")
         return _on_target(scenes, given)
     if given.keep:
         raise derive.DeriveError(f"check: --keep needs --target, {' or '.join(TARGETS)}")
     table = Table("scene", "function", "in", "check", "verdict", "found", box=None)
     found: list[str] = []
     with progress() as shown:
-        task = shown.add_task("finding a compiler")
+        task = shown.add_task("Eva" if given.eva else "finding a compiler")
 
         def told(says: str) -> None:
             shown.update(task, description=says)
 
-        for v in checked(scenes, OUT, given.samples, told):
+        every = (
+            checked_by_eva(scenes, told) if given.eva else checked(scenes, OUT, given.samples, told)
+        )
+        for v in every:
             found.append(v.outcome)
             if len(scenes) == 1:
                 told(f"{v.scene}: {v.function} ({len(found)} checks)")

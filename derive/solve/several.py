@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TypeVar, get_args
 
+from derive.check.eva import require_eva, shown_by_eva
 from derive.check.verdict import Verdict
 from derive.emit.files import Difference, differences, folders_left_over, require_folder
 from derive.scene import SceneError, catalogue
@@ -157,14 +158,35 @@ def checked(
     require_posed(scenes)
     if len(scenes) == 1:
         yield from scenes[0].check(folder, samples, told)
-        return
-    tasks = [partial(_checked, scene, folder, samples) for scene in every(scenes)]
+    else:
+        yield from _in_order([partial(_checked, s, folder, samples) for s in every(scenes)], told)
+
+
+def checked_by_eva(
+    scenes: Sequence[Handle], told: Callable[[str], None] = silent
+) -> Iterator[Verdict]:
+    """Yield whether Frama-C's Eva finds run-time errors in the C of scenes, as ``checked`` does.
+
+    Raises DeriveError where Frama-C is missing.
+    """
+    require_eva()
+    require_posed(scenes)
+    yield from _in_order([partial(_eva, scene) for scene in every(scenes)], told)
+
+
+def _in_order(
+    tasks: Sequence[Callable[[], list[Verdict]]], told: Callable[[str], None]
+) -> Iterator[Verdict]:
     found: dict[int, list[Verdict]] = {}
     for place, verdicts in all_made(tasks):
         found[place] = verdicts
         told(f"{len(found)} of {len(tasks)} scenes")
     for place in range(len(tasks)):
         yield from found[place]
+
+
+def _eva(scene: Handle) -> list[Verdict]:
+    return list(shown_by_eva(scene.library))
 
 
 def _checked(scene: Handle, folder: str | Path, samples: int) -> list[Verdict]:

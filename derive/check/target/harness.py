@@ -13,7 +13,7 @@ from derive.program.program import Program, Quantity
 
 CALLS = 100
 PAINTED = 4
-REMAINDERS = (Fraction(-1, 10**8), Fraction(1, 10**8))
+LEFT_BY_ROUNDING = (Fraction(-1, 10**8), Fraction(1, 10**8))
 """What rounding may have left of earlier steps."""
 
 
@@ -27,10 +27,10 @@ def all_of(library: Library) -> list[Program]:
 
 def count_of(program: Program) -> int:
     """Return how many values a function returns a call, the status of set-up among them."""
-    return sum(size(q) for q in program.outputs) + program.makes("constants")
+    return sum(numbers_in(q) for q in program.outputs) + program.makes("constants")
 
 
-def size(q: Quantity) -> int:
+def numbers_in(q: Quantity) -> int:
     """Return how many numbers a quantity has."""
     return len(q.components) or prod(q.shape)
 
@@ -46,7 +46,7 @@ def calling(library: Library, precision: Precision) -> dict[str, str]:
     lines = [f"static found all[{len(every)}];"]
     if library.constants:
         lines.append(f"static {names.scene}_constants_{precision.name} ready;")
-    made = {q.name: size(q) for p in every for q in p.outputs if q.role != "constants"}
+    made = {q.name: numbers_in(q) for p in every for q in p.outputs if q.role != "constants"}
     passed_on = {q.name: made[q.name] for p in every for q in p.inputs if _passed_on(q, made)}
     lines += [f"static scalar last_{name}[{n}];" for name, n in passed_on.items()]
     for place, program in enumerate(every):
@@ -58,7 +58,7 @@ def calling(library: Library, precision: Precision) -> dict[str, str]:
 
 def _passed_on(q: Quantity, made: dict[str, int]) -> bool:
     """Tell whether an input is what another function returns: nobody has a range for it."""
-    return q.low is None and q.role == "plan" and made.get(q.name) == size(q)
+    return q.low is None and q.role == "plan" and made.get(q.name) == numbers_in(q)
 
 
 def _caller(
@@ -73,7 +73,7 @@ def _caller(
     yield f"    {result} (*const pick[2])({arguments}) = {{{empty}, {symbol}}};"
     for q in (*program.inputs, *program.outputs):
         if q.role != "constants":
-            yield f"    scalar own_{q.name}[{size(q)}];"
+            yield f"    scalar own_{q.name}[{numbers_in(q)}];"
     for q in program.inputs:
         if q.role != "constants":
             yield f"    {_drawn(q, precision, passed_on)}"
@@ -84,7 +84,7 @@ def _caller(
         yield f"    take(&all[{place}], &status, 1);"
     for q in program.outputs:
         at = "(const scalar *)&ready" if q.role == "constants" else f"own_{q.name}"
-        yield f"    take(&all[{place}], {at}, {size(q)});"
+        yield f"    take(&all[{place}], {at}, {numbers_in(q)});"
         if q.name in passed_on:
             yield f"    memcpy(last_{q.name}, own_{q.name}, sizeof own_{q.name});"
     yield "}"
@@ -105,10 +105,10 @@ def _drawn(q: Quantity, precision: Precision, passed_on: set[str]) -> str:
     if q.is_quaternion:
         return f"attitude(own_{q.name});"
     if q.low is None or q.high is None:
-        q = replace(q, low=REMAINDERS[0], high=REMAINDERS[1])
+        q = replace(q, low=LEFT_BY_ROUNDING[0], high=LEFT_BY_ROUNDING[1])
     low, high = (literal(end, precision) for end in q.ends)
-    ranges = ", ".join([f"{{{low}, {high}}}"] * size(q))
+    ranges = ", ".join([f"{{{low}, {high}}}"] * numbers_in(q))
     return (
-        f"static const scalar range_{q.name}[{size(q)}][2] = {{{ranges}}};\n"
-        f"    draw(own_{q.name}, range_{q.name}, {size(q)});"
+        f"static const scalar range_{q.name}[{numbers_in(q)}][2] = {{{ranges}}};\n"
+        f"    draw(own_{q.name}, range_{q.name}, {numbers_in(q)});"
     )
