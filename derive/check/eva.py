@@ -30,7 +30,7 @@ from derive.program.own_sine import FITTED
 from derive.program.precision import PRECISIONS, Precision
 from derive.program.program import Program, Quantity
 from derive.scene.declaration import DeriveError
-from derive.verify.enclosure import Extent, Region, regions
+from derive.verify.enclosure import Domain, Region, regions
 
 TOOL = "frama-c"
 HOW_TO_GET_IT = f"check: --eva needs {TOOL}; on Debian: apt-get install frama-c-base gcc"
@@ -131,7 +131,7 @@ def _hot(library: Library, program: Program) -> Program:
     return next(p for p in library.printed() if p.name == program.name.removesuffix("_dense"))
 
 
-def _cases(q: Quantity) -> list[Extent]:
+def _cases(q: Quantity) -> list[Domain]:
     """Return ranges of the components of an input that together hold all its values."""
     low, high = (q.low, q.high) if q.low is not None and q.high is not None else LEFT_BY_ROUNDING
     names = q.components

@@ -21,16 +21,16 @@ from derive.verify.operators import IN_BALLS
 PARTS = 128
 """Into so many parts the ranges are cut, at most."""
 Interval = tuple[Fraction, Fraction]
-Extent = Mapping[str, Interval]
+Domain = Mapping[str, Interval]
 Truth = bool | None
 """None where a part has numbers of which it holds and others of which it does not."""
 
 
 @dataclass(frozen=True)
 class Region:
-    """Extent of a function's inputs by component; of constants, between which they lie."""
+    """Domain of a function's inputs by component; of constants, between which they lie."""
 
-    inputs: Extent
+    inputs: Domain
     constants: Mapping[str, arb]
 
 
@@ -76,7 +76,7 @@ def _watching(doubts: list[float]) -> Arithmetic:
     return {**IN_BALLS, **truths, "select": _select, "div": divided, "sqrt": root}
 
 
-def regions(setup: Program, function: Program, cases: Sequence[Extent]) -> list[Region] | None:
+def regions(setup: Program, function: Program, cases: Sequence[Domain]) -> list[Region] | None:
     """Return parts that together hold all of ``cases``, in which nothing divides by zero.
 
     cases : ranges of parameters and of the function's other inputs, by component
@@ -100,7 +100,7 @@ def regions(setup: Program, function: Program, cases: Sequence[Extent]) -> list[
     return found
 
 
-def _looked_at(setup: Program, function: Program, box: Extent) -> tuple[Region | None, float]:
+def _looked_at(setup: Program, function: Program, box: Domain) -> tuple[Region | None, float]:
     """Return a part, None if set-up refuses it, and how wide what may vanish there is."""
     doubts: list[float] = []
     by = _watching(doubts)
@@ -131,7 +131,7 @@ def _is_refused(test: Test, value: Any) -> bool:
     return kept == "within" and bool(value < number(ends[0]) or value > number(ends[1]))
 
 
-def _halves(box: Extent, name: str) -> Iterator[Extent]:
+def _halves(box: Domain, name: str) -> Iterator[Domain]:
     low, high = box[name]
     middle = (low + high) / 2
     yield {**box, name: (low, middle)}
