@@ -30,7 +30,7 @@ from derive.program.own_sine import FITTED
 from derive.program.precision import PRECISIONS, Precision
 from derive.program.program import Program, Quantity
 from derive.scene.declaration import DeriveError
-from derive.verify.enclosure import Domain, Piece, pieces
+from derive.verify.enclosure import Domain, Stretch, stretches
 
 TOOL = "frama-c"
 HOW_TO_GET_IT = f"check: --eva needs {TOOL}; on Debian: apt-get install frama-c-base gcc"
@@ -38,7 +38,7 @@ OPTIONS = ("-eva", "-eva-precision", "2", "-eva-no-results", "-machdep", "x86_64
 CHECK = "no run-time error"
 UNIT = Fraction(1)
 HALF = Fraction(1, 2)
-SIXTEENTHS, SHORT = 7 * 16, 16
+SIXTEENTHS = 7 * 16
 """Pieces of 1/16 rad on either side of 0, on each of which a sine has its bounds."""
 _BODY = re.compile(
     r"^(?P<head>static (?P<type>\w+) (?P<symbol>\w+_sine_cosine_f\d\d)\((?P<kind>\w+) angle\)\n)"
@@ -84,9 +84,9 @@ def with_bounds_of_sines(text: str) -> str:
 def _bounded(of: re.Match[str]) -> str:
     precision = next(p for p in PRECISIONS if p.scalar == of["kind"])
     lines = [f"{of['head']}{{", f"    {of['type']} found;", "    "]
-    for k in range(-SIXTEENTHS, PIECES):
-        angle = arb(k).union(arb(k + 1)) / SHORT
-        lines[-1] += f"if (angle >= {k / SHORT} && angle <= {(k + 1) / SHORT}) {{"
+    for k in range(-SIXTEENTHS, SIXTEENTHS):
+        angle = arb(k).union(arb(k + 1)) / 16
+        lines[-1] += f"if (angle >= {k / 16} && angle <= {(k + 1) / 16}) {{"
         for name, sine in (("sine", angle.sin()), ("cosine", angle.cos())):
             ends = _outward(sine, precision)
             lines.append(f"        found.{name} = {_between(*ends, precision)};")
@@ -111,7 +111,7 @@ def _own_sines(library: Library, texts: Mapping[str, str], folder: Path) -> Iter
             yield Verdict(*head, *_judged(answer_of((TOOL, *OPTIONS, str(whole)), folder)))
 
 
-def _cut(library: Library, program: Program) -> Sequence[Piece] | str:
+def _cut(library: Library, program: Program) -> Sequence[Stretch] | str:
     """Return parts of the ranges of a function, or why there are none."""
     given = [q for q in program.inputs if q.role != "constants"]
     if q := next((q for q in given if q.low is None and q.role == "plan"), None):
@@ -123,7 +123,9 @@ def _cut(library: Library, program: Program) -> Sequence[Piece] | str:
         for case in product(*map(_cases, given))
     ]
     function = _hot(library, program)
-    return pieces(setup, function, cases) or "what it divides by may vanish, for all that is seen"
+    return (
+        stretches(setup, function, cases) or "what it divides by may vanish, for all that is seen"
+    )
 
 
 def _hot(library: Library, program: Program) -> Program:
@@ -145,7 +147,7 @@ def _verdict(
     library: Library,
     program: Program,
     precision: Precision,
-    cut: Sequence[Piece] | str,
+    cut: Sequence[Stretch] | str,
     folder: Path,
 ) -> Verdict:
     head = (library.scene.name, program.name, precision.name, CHECK)
@@ -168,7 +170,9 @@ def _judged(said: str, count: int = 1) -> tuple[Outcome, str]:
     return "skipped", f"Eva: alarms, {alarms[1]} of them{where}"
 
 
-def entered(library: Library, program: Program, precision: Precision, cut: Sequence[Piece]) -> str:
+def entered(
+    library: Library, program: Program, precision: Precision, cut: Sequence[Stretch]
+) -> str:
     """Return the C that calls a function with all that it may be given."""
     names, kind = CNames(library.scene.name), precision.scalar
     source = names.file(precision, "c")

@@ -27,7 +27,7 @@ Truth = bool | None
 
 
 @dataclass(frozen=True)
-class Piece:
+class Stretch:
     """Domain of a function's inputs by component; of constants, between which they lie."""
 
     inputs: Domain
@@ -76,13 +76,13 @@ def _watching(doubts: list[float]) -> Arithmetic:
     return {**IN_BALLS, **truths, "select": _select, "div": divided, "sqrt": root}
 
 
-def pieces(setup: Program, function: Program, cases: Sequence[Domain]) -> list[Piece] | None:
+def stretches(setup: Program, function: Program, cases: Sequence[Domain]) -> list[Stretch] | None:
     """Return parts that together hold all of ``cases``, in which nothing divides by zero.
 
     cases : ranges of parameters and of the function's other inputs, by component
     None where more than ``PARTS`` would be needed.
     """
-    ahead, found = [*cases], list[Piece]()
+    ahead, found = [*cases], list[Stretch]()
     while ahead:
         if len(ahead) + len(found) > max(PARTS, 2 * len(cases)):
             return None
@@ -100,7 +100,7 @@ def pieces(setup: Program, function: Program, cases: Sequence[Domain]) -> list[P
     return found
 
 
-def _looked_at(setup: Program, function: Program, box: Domain) -> tuple[Piece | None, float]:
+def _looked_at(setup: Program, function: Program, box: Domain) -> tuple[Stretch | None, float]:
     """Return a part, None if set-up refuses it, and how wide what may vanish there is."""
     doubts: list[float] = []
     by = _watching(doubts)
@@ -117,7 +117,7 @@ def _looked_at(setup: Program, function: Program, box: Domain) -> tuple[Piece | 
     run(function, by, [every[c] for q in function.inputs for c in q.components])
     parameters = {c for q in setup.inputs for c in q.components}
     inputs = {n: ends for n, ends in box.items() if n not in parameters}
-    return Piece(inputs, constants), sum(doubts)
+    return Stretch(inputs, constants), sum(doubts)
 
 
 def _is_refused(test: Test, value: Any) -> bool:
