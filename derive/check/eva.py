@@ -30,7 +30,7 @@ from derive.program.own_sine import FITTED
 from derive.program.precision import PRECISIONS, Precision
 from derive.program.program import Program, Quantity
 from derive.scene.declaration import DeriveError
-from derive.verify.enclosure import Domain, Stretch, stretches
+from derive.verify.enclosure import Ranged, Sector, sectors
 
 TOOL = "frama-c"
 HOW_TO_GET_IT = f"check: --eva needs {TOOL}; on Debian: apt-get install frama-c-base gcc"
@@ -111,7 +111,7 @@ def _own_sines(library: Library, texts: Mapping[str, str], folder: Path) -> Iter
             yield Verdict(*head, *_judged(answer_of((TOOL, *OPTIONS, str(whole)), folder)))
 
 
-def _cut(library: Library, program: Program) -> Sequence[Stretch] | str:
+def _cut(library: Library, program: Program) -> Sequence[Sector] | str:
     """Return parts of the ranges of a function, or why there are none."""
     given = [q for q in program.inputs if q.role != "constants"]
     if q := next((q for q in given if q.low is None and q.role == "plan"), None):
@@ -123,9 +123,7 @@ def _cut(library: Library, program: Program) -> Sequence[Stretch] | str:
         for case in product(*map(_cases, given))
     ]
     function = _hot(library, program)
-    return (
-        stretches(setup, function, cases) or "what it divides by may vanish, for all that is seen"
-    )
+    return sectors(setup, function, cases) or "what it divides by may vanish, for all that is seen"
 
 
 def _hot(library: Library, program: Program) -> Program:
@@ -133,7 +131,7 @@ def _hot(library: Library, program: Program) -> Program:
     return next(p for p in library.printed() if p.name == program.name.removesuffix("_dense"))
 
 
-def _cases(q: Quantity) -> list[Domain]:
+def _cases(q: Quantity) -> list[Ranged]:
     """Return ranges of the components of an input that together hold all its values."""
     low, high = (q.low, q.high) if q.low is not None and q.high is not None else LEFT_BY_ROUNDING
     names = q.components
@@ -147,7 +145,7 @@ def _verdict(
     library: Library,
     program: Program,
     precision: Precision,
-    cut: Sequence[Stretch] | str,
+    cut: Sequence[Sector] | str,
     folder: Path,
 ) -> Verdict:
     head = (library.scene.name, program.name, precision.name, CHECK)
@@ -170,9 +168,7 @@ def _judged(said: str, count: int = 1) -> tuple[Outcome, str]:
     return "skipped", f"Eva: alarms, {alarms[1]} of them{where}"
 
 
-def entered(
-    library: Library, program: Program, precision: Precision, cut: Sequence[Stretch]
-) -> str:
+def entered(library: Library, program: Program, precision: Precision, cut: Sequence[Sector]) -> str:
     """Return the C that calls a function with all that it may be given."""
     names, kind = CNames(library.scene.name), precision.scalar
     source = names.file(precision, "c")

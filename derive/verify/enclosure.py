@@ -20,17 +20,16 @@ from derive.verify.operators import IN_BALLS
 
 PARTS = 128
 """Into so many parts the ranges are cut, at most."""
-Interval = tuple[Fraction, Fraction]
-Domain = Mapping[str, Interval]
+Ranged = Mapping[str, tuple[Fraction, Fraction]]
 Truth = bool | None
 """None where a part has numbers of which it holds and others of which it does not."""
 
 
 @dataclass(frozen=True)
-class Stretch:
-    """Domain of a function's inputs by component; of constants, between which they lie."""
+class Sector:
+    """Ranged of a function's inputs by component; of constants, between which they lie."""
 
-    inputs: Domain
+    inputs: Ranged
     constants: Mapping[str, arb]
 
 
@@ -76,13 +75,13 @@ def _watching(doubts: list[float]) -> Arithmetic:
     return {**IN_BALLS, **truths, "select": _select, "div": divided, "sqrt": root}
 
 
-def stretches(setup: Program, function: Program, cases: Sequence[Domain]) -> list[Stretch] | None:
+def sectors(setup: Program, function: Program, cases: Sequence[Ranged]) -> list[Sector] | None:
     """Return parts that together hold all of ``cases``, in which nothing divides by zero.
 
     cases : ranges of parameters and of the function's other inputs, by component
     None where more than ``PARTS`` would be needed.
     """
-    ahead, found = [*cases], list[Stretch]()
+    ahead, found = [*cases], list[Sector]()
     while ahead:
         if len(ahead) + len(found) > max(PARTS, 2 * len(cases)):
             return None
@@ -95,12 +94,12 @@ def stretches(setup: Program, function: Program, cases: Sequence[Domain]) -> lis
             continue
         ahead += min(
             ([*_halves(box, name)] for name in box),
-            key=lambda halves: sum(_looked_at(setup, function, half)[1] for half in halves),
+            key=lambda halves: max(_looked_at(setup, function, half)[1] for half in halves),
         )
     return found
 
 
-def _looked_at(setup: Program, function: Program, box: Domain) -> tuple[Stretch | None, float]:
+def _looked_at(setup: Program, function: Program, box: Ranged) -> tuple[Sector | None, float]:
     """Return a part, None if set-up refuses it, and how wide what may vanish there is."""
     doubts: list[float] = []
     by = _watching(doubts)
@@ -117,7 +116,7 @@ def _looked_at(setup: Program, function: Program, box: Domain) -> tuple[Stretch 
     run(function, by, [every[c] for q in function.inputs for c in q.components])
     parameters = {c for q in setup.inputs for c in q.components}
     inputs = {n: ends for n, ends in box.items() if n not in parameters}
-    return Stretch(inputs, constants), sum(doubts)
+    return Sector(inputs, constants), max(doubts, default=0.0)
 
 
 def _is_refused(test: Test, value: Any) -> bool:
@@ -131,7 +130,7 @@ def _is_refused(test: Test, value: Any) -> bool:
     return kept == "within" and bool(value < number(ends[0]) or value > number(ends[1]))
 
 
-def _halves(box: Domain, name: str) -> Iterator[Domain]:
+def _halves(box: Ranged, name: str) -> Iterator[Ranged]:
     low, high = box[name]
     middle = (low + high) / 2
     yield {**box, name: (low, middle)}

@@ -12,7 +12,7 @@ from derive.cli import main
 from derive.emit.c.source import c_files
 from derive.program.program import component_names
 from derive.program.run import run
-from derive.verify.enclosure import stretches
+from derive.verify.enclosure import sectors
 from derive.verify.operators import IN_BALLS
 from tests.made import library_of
 
@@ -26,7 +26,7 @@ def test_parts_have_every_input_and_what_set_up_makes_of_every_parameter(name: s
     function, setup = made.functions[0], made.setup
     given = [q for q in (*setup.inputs, *function.inputs) if q.role != "constants"]
     box = {c: q.ends for q in given for c in q.components}
-    cut = stretches(setup, function, [box])
+    cut = sectors(setup, function, [box])
     assert cut
     random = np.random.default_rng(1)
     for _ in range(100):
@@ -46,8 +46,8 @@ def test_what_can_vanish_is_not_cut_away() -> None:
     function = next(p for p in made.functions if p.name == "state_rate")
     given = [q for q in (*made.setup.inputs, *function.inputs) if q.role != "constants"]
     box = {c: q.ends for q in given for c in q.components}
-    assert stretches(made.setup, function, [box])
-    assert stretches(made.setup, function, [box | {"theta": (Fraction(-1), Fraction(1))}]) is None
+    assert sectors(made.setup, function, [box])
+    assert sectors(made.setup, function, [box | {"theta": (Fraction(-1), Fraction(1))}]) is None
 
 
 def test_bounds_of_sines_hold_and_are_near() -> None:
