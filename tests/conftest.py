@@ -17,10 +17,10 @@ from derive.scene import catalogue
 collect_ignore_glob = ["data/*"]
 settings.register_profile("derive", deadline=None)
 settings.load_profile("derive")
-FEW = 3
+FEW = 2
 """Of a longer table the quick tests run so many rows, and ``-m long`` the others."""
-MANY, PART = 6, 8
-"""Of a test with more than ``MANY`` long cases, continuous integration runs an eighth."""
+PART = 24
+"""Of a table of long tests, continuous integration runs a row, or one of so many."""
 SLOW = {"acrobot", "quadrotor", "rattleback"}
 """Scenes that take seconds to derive: their rows run with ``-m long``."""
 SCENES = {*catalogue(), *(path.stem for path in Path(__file__).parent.rglob("*.toml"))}
@@ -52,7 +52,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             tables = long if item.get_closest_marker("long") else short
             tables[item.nodeid.partition("[")[0]].append(item)
     for name, rows in long.items():
-        for row in _all_but(-(-len(rows) // PART), rows, name) if len(rows) > MANY else ():
+        for row in _all_but(-(-len(rows) // PART), rows, name):
             row.add_marker("whole")
     for name, rows in short.items():
         for row in _all_but(FEW, rows, name):

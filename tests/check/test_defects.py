@@ -27,6 +27,7 @@ def verdicts(made: Library, texts: Texts, place: Path, with_: Compiler) -> list[
 
 
 @pytest.mark.long
+@pytest.mark.whole
 @pytest.mark.parametrize("name", thinned(AS_THEY_ARE, len(AS_THEY_ARE)))
 def test_the_scene_as_it_is_passes_every_check(name: str, workshop: Path) -> None:
     rows = verdicts(library_of(name), printed(library_of(name)), workshop, find_compiler())

@@ -149,6 +149,7 @@ def test_many_threads_share_nothing(
             assert same
 
 
+@pytest.mark.long
 def test_parameters_that_no_body_has_give_nan_everywhere(
     module: ModuleType, cache_of_three: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -60,6 +60,7 @@ def test_minimum_time_is_found_as_with_casadis_own_derivatives(
     assert quickest < ours < 6
 
 
+@pytest.mark.long
 def test_moments_of_inertia_are_found_from_a_motion(module: ModuleType, compiled: Steps) -> None:
     dice = np.random.default_rng(3)
     u, start = dice.uniform(-1, 1, size=(3, N)), np.array([1, 0, 0, 0, 0.3, -0.2, 0.5])

@@ -77,6 +77,7 @@ def test_a_number_of_steps_that_is_none_is_refused(module: ModuleType, steps: ob
         module.external(steps)
 
 
+@pytest.mark.long
 def test_a_number_of_steps_of_numpys_is_one(
     module: ModuleType, cache_of_three: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

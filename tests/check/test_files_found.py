@@ -35,6 +35,7 @@ def test_what_an_import_or_an_editor_left_is_not_read(folder: Path, found: Files
     assert files(library_of(NAME), folder, FEW).texts == found.texts
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ending", ["_casadi.py", "_f64.c", ".json"])
 def test_what_lies_there_is_compared_and_never_run(folder: Path, found: Files, ending: str) -> None:
     (folder / NAME / f"{NAME}{ending}").write_text("raise SystemExit('it was run')")

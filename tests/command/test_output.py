@@ -67,6 +67,7 @@ def test_who_has_read_enough_is_told_nothing(monkeypatch, capsys):
     assert capsys.readouterr().err == ""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("command", ["equations heavy_top", "scenes"])
 @pytest.mark.skipif(os.name != "posix", reason="the shell of POSIX has pipes")
 def test_a_pipe_that_is_closed_early_ends_the_program_quietly(command):
@@ -88,6 +89,7 @@ def test_where_a_file_lies_in_place_of_a_folder_it_is_named(tmp_path, capsys):
         assert capsys.readouterr().err.strip().endswith(says), command
 
 
+@pytest.mark.long
 def test_a_module_is_not_printed_in_another_encoding_than_its_own(monkeypatch, tmp_path, capsys):
     catalogue = Path(__file__).parents[2] / "derive" / "scene" / "catalogue"
     text = (catalogue / "free_body.toml").read_text(encoding="utf-8")

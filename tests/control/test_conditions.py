@@ -33,6 +33,7 @@ def test_the_cheapest_way_satisfies_what_is_necessary(trajectory: derive.Traject
     assert trajectory.missed < 1e-9
 
 
+@pytest.mark.long
 def test_an_input_at_the_other_limit_is_seen(trajectory: derive.Trajectory) -> None:
     own, asked = posed()
     assert trajectory.refined is not None

@@ -45,6 +45,7 @@ def test_a_limit_of_what_a_function_tells_holds_and_costs() -> None:
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_a_limit_of_a_force_holds_of_states_and_inputs() -> None:
     scene, spread, costs = derive.load("cart_pendulum"), [], []
     force = scene.function("rail", CART)
@@ -132,6 +133,7 @@ def test_a_cart_swings_its_pendulum_up() -> None:
     assert trajectory.doubts[0].startswith("theta comes to 4.6")
 
 
+@pytest.mark.long
 def test_what_is_given_outside_of_its_range_is_told() -> None:
     told = derive.steer(craft(), inertia((0.4, 0.5, 0.6)), "x 1", limits={"moment": 1}, starts=1)
     assert told.doubts == (

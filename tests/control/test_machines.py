@@ -30,6 +30,7 @@ def test_a_heavy_top_is_erected_by_two_moments() -> None:
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_a_pendulum_on_a_driven_arm_is_swung_up_by_the_work_of_the_motor() -> None:
     scene = derive.load(SCENES / "furuta.toml")
     end = dict.fromkeys(("psi", "theta", "psi_dot", "theta_dot"), 0)

@@ -98,6 +98,7 @@ def test_a_start_outside_of_its_limits_is_refused() -> None:
         derive.steer(craft(), values, "z 1", limits={"omega": 0.4})
 
 
+@pytest.mark.long
 def test_what_a_function_tells_at_the_start_is_refused_beyond_its_limits() -> None:
     scene, limits = derive.load("cart_pendulum"), {"rail": "2..3", "F": 1}
     cart = {"M": 0.5, "m": 0.2, "l": 0.3, "I": 0.006, "b": 0.1, "g": 9.8}

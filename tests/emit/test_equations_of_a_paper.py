@@ -90,6 +90,7 @@ def test_short_equations_stand_on_one_line_of_latex() -> None:
     assert [row for row in rows if row.startswith(r"&\quad =") and len(row) < 40] == []
 
 
+@pytest.mark.long
 def test_an_energy_is_in_joule() -> None:
     (result,) = (r for r in library_of("rolling_disc").scene.results if r.name == "energy_of_all")
     assert result.unit == "J"

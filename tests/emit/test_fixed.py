@@ -69,6 +69,7 @@ def test_the_table_has_the_bits_that_set_up_makes(
     assert struct.pack(form, *found) == by_set_up(name, values, precision, tmp_path)
 
 
+@pytest.mark.long
 def test_c_without_set_up_compiles_and_passes_the_test_of_its_package(tmp_path: Path) -> None:
     made = with_fixed(library_of(NAME), VALUES)
     texts = package_files(made, c_files(made, ()), (), tuple(BUILD_TOOLS), PRECISIONS)

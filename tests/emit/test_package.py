@@ -198,6 +198,7 @@ def test_what_can_be_no_package_is_refused_by_one_sentence(
     assert {path.name: path.read_text() for path in tmp_path.iterdir()} == before
 
 
+@pytest.mark.long
 def test_the_command_writes_a_package_and_then_writes_it_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -104,6 +104,7 @@ def test_the_first_scene_has_ten_lines() -> None:
     assert len([line for line in of("toml")[0].text.splitlines() if line]) <= 10
 
 
+@pytest.mark.long
 def test_the_scene_makes_the_files_that_the_readme_names(folder: Path) -> None:
     named = set(re.findall(r"`(brick(?:_\w+)?\.\w+)`", README)) - {"brick.toml"}
     assert {"brick_f64.c", "brick_f32.c", "brick_casadi.py", "brick.json", "brick.html"} <= named

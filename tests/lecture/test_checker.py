@@ -93,6 +93,7 @@ def test_reasons_that_explain_a_symbol_by_itself_are_refused() -> None:
         Facts.of([one.claims, two.claims], {}).read(scalar("k"))
 
 
+@pytest.mark.long
 def test_a_theorem_may_not_be_carried_to_a_body_whose_sums_differ() -> None:
     step = LECTURE["wheel_obeys_the_same_law"]
     moment = LECTURE["moment_on_wheel"]

@@ -71,6 +71,7 @@ def worst(form: str, dtype: type) -> float:
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_the_accurate_form_rounds_once(dtype):
     assert worst("accurate", dtype) <= ROUNDED_ONCE

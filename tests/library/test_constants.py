@@ -110,6 +110,7 @@ pin = { on = "wheel", against = "arm", force = "?q", couple = ["?c", "?d", "0"] 
 """
 
 
+@pytest.mark.long
 def test_an_entry_of_an_inverse_is_called_by_the_places_of_the_unknowns_that_it_gives() -> None:
     says = library_of("rigid_body").constants
     assert says["J_xz"] == "entry xz of the inverse of the matrix that multiplies the unknowns"

@@ -113,6 +113,7 @@ def test_steps_of_machines_have_their_orders_and_their_slopes(of: str) -> None:
 OTHERS = (("step_rk4", F64), ("step_rk4_compensated", F32), ("step_rk4_compensated", F64))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "precision"),
     [("step_rk4", F32), *(pytest.param(*row, marks=pytest.mark.long) for row in OTHERS)],

@@ -86,6 +86,7 @@ WRITTEN_OUT = {
 SLOW = ("free_body", "gyrostat", "heavy_body", "rigid_body", "satellite")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "scene", [pytest.param(n, marks=pytest.mark.long) if n in SLOW else n for n in WRITTEN_OUT]
 )

@@ -80,6 +80,7 @@ def names(program: Program) -> list[str]:
     return [q.name for q in program.inputs]
 
 
+@pytest.mark.long
 def test_inputs_that_do_not_matter_are_not_asked_for():
     assert names(library_of("heavy_top")["state_rate"]) == ["constants", "theta", "omega"]
     assert "position" not in names(library_of("rigid_body")["state_rate"])

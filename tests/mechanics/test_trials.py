@@ -12,6 +12,7 @@ SECONDS, SAMPLES = 120, 256
 
 
 @pytest.mark.long
+@pytest.mark.whole
 @pytest.mark.parametrize("name", ["straight_cat", "bent_cat", "quadrotor"])
 def test_a_large_machine_is_checked_within_two_minutes(name: str, tmp_path: Path) -> None:
     with time_box(SECONDS):

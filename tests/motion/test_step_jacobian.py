@@ -171,6 +171,7 @@ def test_the_tangent_jacobian_is_the_slope_through_the_exponential_map(
             assert abs(found.get((row, column), 0) - slope) < mpf(10) ** -18, (row, column)
 
 
+@pytest.mark.long
 def test_the_tangent_jacobian_has_three_columns_for_the_attitude() -> None:
     pattern = (step(system("rigid_body"), "step_rk4_tangent").sparsity or {})["jacobian"]
     assert len(pattern.rows) == 12

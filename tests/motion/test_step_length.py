@@ -54,6 +54,7 @@ def test_the_column_is_the_slope_of_the_step_by_its_length(of: tuple[str, str]) 
     assert worst(made, plain, values) < EXACTLY
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["heavy_top", "gyrostat"])
 def test_so_it_is_of_states_without_a_quaternion_and_with_wheels(name: str) -> None:
     made, plain, _, values = made_of(name, "rk4", "jacobian")
@@ -74,6 +75,7 @@ def test_the_column_of_a_tangent_is_the_rate_of_the_errors(of: tuple[str, str]) 
         assert abs(found.get((row, "time_step"), 0) - slope) < mpf(10) ** -18, row
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("method", KINDS)
 def test_mutants_of_the_column_are_found(method: str) -> None:
     made, plain, given, values = made_of("principal", method, "jacobian")

@@ -119,6 +119,7 @@ def test_scenes_that_differ_in_name_only_have_the_same_limit() -> None:
     assert fastest(library(parse_scene(wider, "plate"))) != fastest(other)
 
 
+@pytest.mark.long
 def test_the_scene_says_to_what_time_unless_the_command_does() -> None:
     text = text_of("tumbling_disc")
     own = library(parse_scene(f"horizon = 0.25\n{text}", "tumbling_disc"))

@@ -76,6 +76,7 @@ def test_a_motion_in_c_ends_where_one_in_long_floats_does(tmp_path: Path) -> Non
     assert 0 < by_c.work < 2 * plain.work
 
 
+@pytest.mark.long
 def test_equations_that_c_is_not_told_are_left_to_long_floats(tmp_path: Path) -> None:
     made = extrapolation_made(tmp_path)
     assert made is not None

@@ -61,5 +61,6 @@ def test_what_is_wanted_as_a_group_stays_one_in_the_other_form(name: str) -> Non
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_a_scene_that_wants_a_group_could_want_every_step_of_a_machine() -> None:
     assert "step_taylor12" in wished(library_of("quadrotor")).steps

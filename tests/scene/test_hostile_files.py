@@ -88,6 +88,7 @@ def test_a_huge_or_deep_file_is_refused_in_one_line(more: str, tmp_path: Path) -
     assert refused(path).startswith("scene 'odd': ")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", thinned(NAMES, 4))
 def test_names_that_meet_in_emitted_text_are_refused_or_compile(name: str, tmp_path: Path) -> None:
     found = []
@@ -127,6 +128,7 @@ def test_a_value_that_no_scene_has_is_answered_by_those_that_it_has(
     assert "has no 'q9' to set (known: " in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_a_folder_that_is_a_file_or_not_to_be_written_is_refused_and_left(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

@@ -189,6 +189,7 @@ def named_by_the_scene() -> set[tuple[str]]:
     return {(name,) for name in reading.NAMED}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("text", [BODY, MACHINE], ids=["body", "machine"])
 @pytest.mark.parametrize("hostile", ENDS)
 def test_no_entry_takes_text_that_ends_a_comment_a_string_or_a_line(

@@ -72,12 +72,14 @@ def gap(short: Library, scene: str, function: str) -> Any:
     return max(gaps)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", thinned(CASES, 4), ids="-".join)
 def test_a_body_in_short_form_is_the_body_in_long_form(case: tuple[str, str]) -> None:
     scene, function = case
     assert gap(library_of(scene), scene, function) < AGREE
 
 
+@pytest.mark.long
 def test_a_body_that_is_read_otherwise_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     right = long_form.carrier
     monkeypatch.setattr(long_form, "carrier", lambda s: (*right(s)[1::-1], *right(s)[2:]))

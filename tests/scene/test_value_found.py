@@ -85,6 +85,7 @@ def test_a_refusal_repeats_the_value_found(name: str) -> None:
     assert silent(name) == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kept", [0, 3])
 def test_a_sentence_that_names_a_kind_alone_is_noticed(
     kept: int, monkeypatch: pytest.MonkeyPatch

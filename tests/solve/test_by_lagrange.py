@@ -117,6 +117,7 @@ MACHINES: tuple[tuple[Callable[[], ByHand], tuple[str, ...]], ...] = (
 )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("machine", thinned(MACHINES, len(MACHINES)))
 def test_a_machine_moves_as_lagranges_equations_say(
     machine: tuple[Callable[[], ByHand], tuple[str, ...]],

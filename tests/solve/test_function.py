@@ -74,6 +74,7 @@ def test_compiled_and_by_casadi_a_batch_has_the_same_bits(case: tuple[str, str])
     assert bits(compiled(**one)) == bits(own(**one))
 
 
+@pytest.mark.long
 def test_a_member_of_a_batch_has_the_bits_of_a_single_call_however_axes_lie() -> None:
     rate = function_of("heavy_top", "state_rate", "compiler")
     given = drawn(rate, 6)

@@ -13,6 +13,7 @@ NAMES = ("skewed_disc", "rod_wire_vertical_shaft")
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_scenes_checked_together_are_told_in_order_and_one_that_is_wrong_fails(
     tmp_path: Path,
 ) -> None:

@@ -67,6 +67,7 @@ def test_the_largest_of_numbers_is_infinite_if_one_is_none(numbers: Sequence[Any
     assert largest(numbers) == math.inf
 
 
+@pytest.mark.long
 def test_a_formula_without_a_value_has_an_infinite_error() -> None:
     scene, name = "attitude", "quaternion_product"
     found = figures(spoilt(library_of(scene), name), FEWEST)
@@ -91,6 +92,7 @@ def test_an_order_of_errors_that_are_no_numbers_does_not_hold() -> None:
     assert not any(Order(4, e, closed=False).holds for e in ((1e-7, NAN), (NAN, 1e-7), (NAN, NAN)))
 
 
+@pytest.mark.long
 def test_a_slope_without_a_value_is_noticed() -> None:
     scene, name = "tumbling_body", "step_rk4_jacobian"
     whole = library_of(scene)

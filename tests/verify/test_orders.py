@@ -29,6 +29,7 @@ def one_sample(scene: str) -> Sample:
     return with_motion(library_of(scene), drawn, F64)[0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scene", thinned(MOVING, 8))
 def test_every_step_has_its_order_and_every_flow_is_the_motion(scene: str) -> None:
     drawn = samples(library_of(scene).mechanism, F64, 2, 0).each

@@ -37,6 +37,7 @@ def test_fresh_samples_keep_the_stated_errors(measured):
     assert {row.outcome for row in rows} == {"holds"}
 
 
+@pytest.mark.long
 def test_a_figure_below_two_thirds_of_what_samples_find_is_noticed(measured):
     seen = worst(Sampled(library_of(SCENE), F32), replace(FEW, samples=4096, rounds=0))
     found = max(w.errors[0] for w in seen if w.function == "kinetic_energy")

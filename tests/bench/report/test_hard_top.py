@@ -17,6 +17,7 @@ def rows(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Hard]:
     return {row.name: row for row in tops(folder)}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("precision", ["f32", "f64"])
 @pytest.mark.parametrize("name", ["slow precession of a fast top", "1 - cos at a tilt of 1e-4 rad"])
 def test_ours_keeps_its_bound_where_the_printed_form_fails(

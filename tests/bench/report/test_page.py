@@ -39,6 +39,7 @@ def test_the_page_that_is_kept_is_light_enough_to_send() -> None:
     assert kept.read_text(encoding="utf-8").count('<svg viewBox="') > FEWEST
 
 
+@pytest.mark.long
 def test_the_page_has_no_script(html: str) -> None:
     assert "<script" not in html.lower()
     assert not re.search(r"\son\w+\s*=", html)
@@ -59,6 +60,7 @@ def test_a_target_that_is_missed_is_called_so(html: str) -> None:
     assert html.count("not measured") >= 1
 
 
+@pytest.mark.long
 def test_a_naive_form_is_judged_in_each_precision_by_the_bound_of_ours() -> None:
     bound = dict.fromkeys(("f64", "f32"), 1e-6)
     figures = {"f64": (1e-3,), "f32": (1e-9,)}

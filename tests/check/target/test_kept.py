@@ -71,7 +71,7 @@ def test_what_is_kept_stands_in_comment_json_and_page() -> None:
     texts = c_files(library, (), costs)
     assert SAYS in texts[f"{NAME}_f32.h"]
     assert "Cortex" not in texts[f"{NAME}_f64.h"]
-    described = {f["name"]: f for f in json.loads(manifest(library, (), "", costs))["functions"]}
+    described = {f["name"]: f for f in json.loads(manifest(library, (), costs=costs))["functions"]}
     assert described["moment"]["targets"]["m4f"]["f32"]["instructions"] == [277, 277]
     assert "targets" not in described["kinetic_energy"]
     page = scene_page(library, (), Beside(on_target=costs))

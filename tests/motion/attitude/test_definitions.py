@@ -38,6 +38,7 @@ def test_every_formula_is_what_its_name_means(both: list[Emitted], place: int) -
     assert [v for v in found if v.outcome != "holds"] == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("component", thinned([0, 1, 2], 3))
 def test_a_component_with_the_other_sign_is_noticed(both: list[Emitted], component: int) -> None:
     def other(name: str):
