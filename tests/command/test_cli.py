@@ -179,7 +179,6 @@ def test_nothing_temporary_is_left_by_whatever_ends_the_writing(tmp_path, monkey
     assert contents(tmp_path) == {}
 
 
-@pytest.mark.long
 def test_the_catalogue_is_listed(capsys):
     assert main(["scenes"]) == 0
     assert SCENE in capsys.readouterr().out
