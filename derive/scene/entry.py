@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -112,9 +111,10 @@ def _turning(entry: object, label: str, scope: Scope) -> Turning:
 
 
 def _positive(one: _One) -> Fraction:
-    if not isinstance(one.value, bool) and isinstance(one.value, int | Decimal) and one.value <= 0:
+    value = rational(one.value, one.label)
+    if value <= 0:
         raise SceneError(f"{one.label} must be above 0, not {shown(one.value)}")
-    return rational(one.value, one.label)
+    return value
 
 
 def _count(one: _One) -> int:

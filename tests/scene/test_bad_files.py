@@ -53,6 +53,21 @@ def test_any_scene_with_odd_values_is_a_scene_or_a_scene_error(
         assert parse_scene(text, "odd").name == "odd"
 
 
+KEYED = re.compile(r"^(\w+) *= *(.+)$", re.MULTILINE)
+EACH = {m[1]: (text, m.span(2)) for text in TEXTS for m in KEYED.finditer(text)}
+"""An entry of each name, and where its value stands."""
+
+
+@pytest.mark.parametrize(
+    "odd", ["nan", "-inf", "true", *(pytest.param(odd, marks=pytest.mark.long) for odd in ODD)]
+)
+def test_every_entry_takes_an_odd_value_or_refuses_it(odd: str) -> None:
+    assert "horizon" in EACH
+    for text, (start, end) in EACH.values():
+        with suppress(SceneError):
+            assert parse_scene(text[:start] + odd + text[end:], "odd").name == "odd"
+
+
 @given(st.sampled_from(TEXTS), st.data())
 def test_any_scene_with_lines_lost_or_moved_is_a_scene_or_a_scene_error(
     text: str, data: st.DataObject
