@@ -81,6 +81,7 @@ def faults(lib: Library, setup: Program, precision: Precision) -> list[str]:
 
 
 @pytest.mark.long
+@pytest.mark.whole
 @pytest.mark.parametrize("name", thinned(reversed(WITH_SET_UP), 12))
 def test_a_set_up_refuses_what_the_declaration_refuses_and_nothing_else(name: str) -> None:
     lib = made(name)

@@ -28,6 +28,7 @@ def relieved() -> derive.Trajectory:
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_the_momentum_of_wheels_is_taken_out_by_attitude_alone(relieved) -> None:
     assert relieved.missed < 1e-8
     assert relieved.conditions.worst < 1e-6
@@ -58,6 +59,7 @@ def test_its_inputs_lead_there_in_the_inertial_frame_if_there_is_a_field(field, 
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_two_skew_thrusters_and_a_wheel_turn_a_craft_with_a_full_tensor_fastest() -> None:
     scene = SCENES / "skew_thrusters.toml"
     assert len(scene.read_text("utf-8").splitlines()) <= LINES

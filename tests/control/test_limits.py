@@ -27,6 +27,7 @@ def test_a_limit_of_a_speed_holds_and_costs() -> None:
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_a_limit_of_what_a_function_tells_holds_and_costs() -> None:
     """The craft wants no angular momentum for itself; what it has is told by its own moments."""
     moments = (1, 2, 3)
@@ -64,6 +65,7 @@ def test_a_limit_of_a_force_holds_of_states_and_inputs() -> None:
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_an_axis_keeps_out_of_a_cone() -> None:
     values, limits = inertia((1, 1, 1)), {"moment": 1.0}
     free = derive.steer(craft(), values, "z 90deg", limits=limits, starts=2)
@@ -96,6 +98,7 @@ WHEELS |= {"J_xy": -TENSOR[0, 1], "J_xz": -TENSOR[0, 2], "J_yz": -TENSOR[1, 2]}
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_a_satellite_on_wheels_turns_later_where_a_wheel_comes_to_its_limit() -> None:
     text = derive.load("reaction_wheel_satellite").scene.text
     document = tomllib.loads(text, parse_float=Decimal)
@@ -118,6 +121,7 @@ def test_a_satellite_on_wheels_turns_later_where_a_wheel_comes_to_its_limit() ->
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_a_cart_swings_its_pendulum_up() -> None:
     trajectory = derive.steer(
         derive.load("cart_pendulum"),
@@ -150,6 +154,7 @@ def test_a_tumbling_body_is_stopped_in_the_time_that_its_moments_need() -> None:
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_a_part_of_an_attitude_may_be_the_end() -> None:
     values = {**inertia((1, 2, 3)), "attitude_w": 0.6, "attitude_x": 0.8}
     end = {"attitude_x": 0, "attitude_y": 0, "omega": 0}

@@ -13,6 +13,7 @@ ARM = {"J": 2e-3, "r": 0.2, "m": 0.1, "l": 0.15, "I": 1e-3, "I_3": 5e-5, "g": 9.
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_a_heavy_top_is_erected_by_two_moments() -> None:
     half = 1.0
     start = {"attitude_top_w": np.cos(half), "attitude_top_x": np.sin(half)}

@@ -99,6 +99,7 @@ def drawn(made: Library, precision: Precision, count: int) -> tuple[Sample, ...]
 
 
 @pytest.mark.long
+@pytest.mark.whole
 @pytest.mark.parametrize("of", ["top", "two hubs"])
 def test_steps_of_machines_have_their_orders_and_their_slopes(of: str) -> None:
     hubs = ("step_rk4", "step_rk4_jacobian", "step_taylor12")

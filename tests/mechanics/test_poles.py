@@ -56,6 +56,7 @@ def test_every_function_is_right_wherever_the_equations_are_regular(name: str) -
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_a_straight_cat_is_no_pole() -> None:
     assert poles(made_of("bent_cat", text("bent_cat", "waist"))) == []
 

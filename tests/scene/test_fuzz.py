@@ -44,6 +44,7 @@ def test_thousands_of_changed_scenes_are_read_or_refused_in_one_sentence(start: 
 
 
 @pytest.mark.long
+@pytest.mark.whole
 @pytest.mark.parametrize("start", range(10_000, 11_000, 100))
 def test_programs_of_changed_scenes_are_made_or_refused_in_one_sentence(start: int) -> None:
     assert faults(range(start, start + 100), library) == {}

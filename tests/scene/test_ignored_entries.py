@@ -102,6 +102,7 @@ def test_nothing_in_a_short_scene_is_ignored(name: str) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_a_force_that_is_left_out_is_noticed(monkeypatch: Any) -> None:
     before = loads._force
     monkeypatch.setattr(
@@ -137,12 +138,14 @@ def test_an_entry_that_is_left_unread_is_noticed(monkeypatch: Any) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.whole
 @pytest.mark.parametrize("name", EVERY)
 def test_nothing_in_a_scene_that_is_quickly_made_is_ignored(name: str) -> None:
     assert ignored(EVERY[name], name) == []
 
 
 @pytest.mark.long
+@pytest.mark.whole
 @pytest.mark.parametrize("text", BLOCKS)
 def test_nothing_in_an_example_of_the_pages_is_ignored(text: str) -> None:
     assert ignored(text) == []

@@ -265,6 +265,7 @@ def test_nothing_is_left_in_the_temporary_folder(
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_processes_do_not_meet_in_the_temporary_folder(tmp_path: Path) -> None:
     environment = os.environ | {"TMPDIR": str(tmp_path)}
     command = [sys.executable, "-c", ELSEWHERE]

@@ -38,6 +38,8 @@ def flyer() -> Instrument:
     return opened_once("quadrotor")
 
 
+@pytest.mark.long
+@pytest.mark.whole
 def test_four_equal_rotors_hold_it_where_thrust_is_weight() -> None:
     """sqrt(m g/(4 b)), b = 1.3234e-5: 861 rad/s; drag k = 1.0697e-7 is what motors balance."""
     assert FLYER["c_T"] == pytest.approx(1.3234e-5, abs=5e-10)

@@ -49,6 +49,8 @@ def kane_and_levinson(given: Mapping[str, float], mu: NDArray, u: NDArray) -> ND
     return np.linalg.solve(left, moment)
 
 
+@pytest.mark.long
+@pytest.mark.whole
 def test_a_rattleback_moves_by_the_equations_of_kane_and_levinson() -> None:
     """Our third axis points up, so that two axes are turned round; omega is differentiated."""
     alpha, beta, W = (symbols(n) for n in ("alpha", "beta", "W"))

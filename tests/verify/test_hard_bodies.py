@@ -180,6 +180,7 @@ FRESH = 1.5
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_the_worst_motion_of_a_hard_body_is_searched_for() -> None:
     made = library_of(ROTOR)
     searched, not_searched = (
@@ -193,6 +194,7 @@ def test_the_worst_motion_of_a_hard_body_is_searched_for() -> None:
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_the_accurate_form_errs_by_two_roundings_at_most_at_hard_bodies_too() -> None:
     head, tables = load(ROTOR).text.split("\n[", 1)
     made = library(parse_scene(f'{head}\nform = "accurate"\n[{tables}', "rotor"))

@@ -84,6 +84,7 @@ COMPENSATED = '"step_rk4_compensated", "step_lie_compensated", "step_split_compe
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_a_compensated_step_has_the_order_of_its_step() -> None:
     text = load("tumbling_body").text.replace('"step_taylor"', COMPENSATED)
     whole = library(parse_scene(text, "tumbling_body"))
@@ -163,6 +164,7 @@ def test_a_sign_turned_in_a_step_is_noticed_unless_it_is_below_the_order(step: s
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_a_sign_turned_in_the_exact_flow_is_noticed() -> None:
     scene = "tumbling_disc"
     whole, program = library_of(scene), library_of(scene)["flow_exact"]

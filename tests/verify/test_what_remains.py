@@ -14,6 +14,7 @@ JACOBIAN = '["state_rate_jacobian"]'
 
 
 @pytest.mark.long
+@pytest.mark.whole
 @pytest.mark.parametrize("seed", [1, 2, 3, 7, 9, 11, 13])
 def test_wheels_askew_of_any_number_on_any_body_lose_no_more_than_their_terms(seed):
     made = library(parse_scene(satellite(seed, JACOBIAN), "walk"))
@@ -23,6 +24,7 @@ def test_wheels_askew_of_any_number_on_any_body_lose_no_more_than_their_terms(se
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_what_cancels_is_found_in_the_errors_where_it_is_computed(monkeypatch):
     monkeypatch.setattr(forms, "what_is_left", lambda _, found: [tuple(f) for f in found])
     made = library(parse_scene(satellite(3, JACOBIAN), "walk"))
