@@ -189,8 +189,13 @@ def _finite(programs: Library, measured: Sequence[Measurement]) -> None:
         if not isfinite(m.worst):
             raise SceneError(
                 f"scene '{scene}': ranges must keep '{m.function}' within {m.precision}, "
-                f"but {_poles(programs) or f'the error of {m.output} is {m.worst}'}"
+                f"but {_poles(programs) or _overflown(m)}"
             )
+
+
+def _overflown(m: Measurement) -> str:
+    aside = "a value on the way to it, in set-up too, is too large or too small"
+    return f"the error of {m.output} is {m.worst}: {aside}"
 
 
 def few_digits(measured: Sequence[Measurement]) -> Iterator[str]:

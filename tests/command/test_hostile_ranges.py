@@ -11,7 +11,7 @@ import pytest
 
 from derive import cli
 from derive.library.library import library
-from derive.scene import SceneError, load
+from derive.scene import SceneError, load, parse_scene
 from derive.solve.generation import made
 from derive.verify.kept import Measuring
 from derive.verify.prove import ProofError
@@ -97,3 +97,20 @@ def test_no_command_lets_a_warning_of_numpy_through(monkeypatch: pytest.MonkeyPa
     monkeypatch.setitem(cli.COMMANDS, "lecture", (lambda p: p.set_defaults(run=seen), "says", ()))
     assert cli.main(["lecture"]) == 0
     assert set(found) == {"ignore"}
+
+
+HEAVY = """
+wanted = ["kinetic_energy"]
+[parameters]
+m = { unit = "kg", range = [1, 8.31e34] }
+r = { unit = "m", range = [1e-10, 1e-9] }
+[body]
+shape = "box"
+mass = "m"
+lengths = ["r", "2*r", "3*r"]
+"""
+
+
+def test_a_small_energy_that_set_up_cannot_compute_is_not_called_too_large() -> None:
+    with pytest.raises(SceneError, match="a value on the way to it, in set-up too, is too large"):
+        made(library(parse_scene(HEAVY, "heavy")), FEW)
