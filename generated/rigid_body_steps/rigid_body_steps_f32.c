@@ -346,10 +346,9 @@ void rigid_body_steps_step_rk4_f32(const rigid_body_steps_constants_f32 *constan
     float attitude_next[4], float velocity_next[3], float omega_next[3])
 {
     const float t0 = time_step * 0.5F;
-    const float t1 = time_step * 0.333333343F;
     const float t2 = time_step * 0.166666672F;
     const float parts[4] = {t0, t0, time_step, time_step};
-    const float weights[4] = {t2, t1, t1, t2};
+    static const float times[4] = {1.0F, 2.0F, 2.0F, 1.0F};
     float start[13], now[13], sum[13], rates[13];
     start[0] = position[0];
     start[1] = position[1];
@@ -480,12 +479,12 @@ void rigid_body_steps_step_rk4_f32(const rigid_body_steps_constants_f32 *constan
         const float t99 = t97 + t98;
         rates[12] = t99;
         for (int i = 0; i < 13; ++i) {
-            sum[i] += weights[stage] * rates[i];
+            sum[i] += times[stage] * rates[i];
             now[i] = start[i] + (parts[stage] * rates[i]);
         }
     }
     for (int i = 0; i < 13; ++i) {
-        now[i] = start[i] + sum[i];
+        now[i] = start[i] + (t2 * sum[i]);
     }
     const float t100 = now[3] * now[3];
     const float t101 = now[4] * now[4];
@@ -525,6 +524,7 @@ void rigid_body_steps_step_rk4_jacobian_f32(const rigid_body_steps_constants_f32
     const float t1 = time_step * 0.333333343F;
     const float t2 = time_step * 0.166666672F;
     const float parts[4] = {t0, t0, time_step, time_step};
+    static const float times[4] = {1.0F, 2.0F, 2.0F, 1.0F};
     const float weights[4] = {t2, t1, t1, t2};
     float start[13], now[13], sum[13], rates[13];
     start[0] = position[0];
@@ -769,12 +769,12 @@ void rigid_body_steps_step_rk4_jacobian_f32(const rigid_body_steps_constants_f32
         const float t182 = now[5] * 0.5F;
         slopes[stage][18] = t182;
         for (int i = 0; i < 13; ++i) {
-            sum[i] += weights[stage] * rates[i];
+            sum[i] += times[stage] * rates[i];
             now[i] = start[i] + (parts[stage] * rates[i]);
         }
     }
     for (int i = 0; i < 13; ++i) {
-        now[i] = start[i] + sum[i];
+        now[i] = start[i] + (t2 * sum[i]);
     }
     const float t185 = now[3] * now[3];
     const float t186 = now[4] * now[4];

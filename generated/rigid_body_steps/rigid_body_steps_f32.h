@@ -24,7 +24,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 74c2b35062c70763.
+ * Body of these files: sha256 d3a984156be759ce.
  */
 #ifndef RIGID_BODY_STEPS_F32_H
 #define RIGID_BODY_STEPS_F32_H
@@ -105,18 +105,18 @@ int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, floa
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Error: median 0.26, largest 5.4 u of the largest component, before or after, or of the largest
+ * Error: median 0.26, largest 4.6 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
- *            the ranges, 65536 searched from the worst); at 8282 hard samples 13 u (of
+ *            the ranges, 65536 searched from the worst); at 8282 hard samples 9.5 u (of
  *            attitude_next, turned, ill-conditioned).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_next 4.2e-06 m (seen
- *            4e-06), attitude_next 5.2e-06 1 (seen 1.6e-07), velocity_next 7.2e-06 m/s (seen
- *            2e-06), omega_next 1.6e-05 rad/s (seen 7.7e-07); assumed: quaternions given with
+ *            4e-06), attitude_next 5.2e-06 1 (seen 1.5e-07), velocity_next 7.2e-06 m/s (seen
+ *            2e-06), omega_next 1.6e-05 rad/s (seen 7.6e-07); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
- * Cost: 204 add, 64 sub, 351 mul, 1 div, 4 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 61572 to 62879 instructions, 1540 B of code, 416 B of stack.
- * On Cortex-M4F, -O2: 1382 instructions, 1024 B of code, 372 B of stack.
+ * Cost: 204 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 62725 to 64119 instructions, 1528 B of code, 16 B of tables, 408 B of stack.
+ * On Cortex-M4F, -O2: 1391 instructions, 1012 B of code, 16 B of tables, 364 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -144,15 +144,16 @@ void rigid_body_steps_step_rk4_f32(const rigid_body_steps_constants_f32 *constan
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Error: median 0.26, largest 5.3 u of the largest component, before or after, or of the largest
- *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
- *            the ranges, 65536 searched from the worst); at 8282 hard samples no more.
- * Bound: not proved: 4155 operations are more than the 2000 tried.
+ * Error: median 0.26, largest 4.5 u of the largest component, before or after, or of the largest
+ *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
+ *            ranges, 65536 searched from the worst); at 8282 hard samples 4.8 u (of omega_next,
+ *            thin rod).
+ * Bound: not proved: 4143 operations are more than the 2000 tried.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
- * Cost: 2322 add, 460 sub, 3210 mul, 1 div, 250 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 508696 to 513127 instructions, 6944 B of code, 6 B of tables, 1192 B of
+ * Cost: 2322 add, 460 sub, 3223 mul, 1 div, 250 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 510071 to 514414 instructions, 6968 B of code, 22 B of tables, 1200 B of
  *            stack.
- * On Cortex-M4F, -O2: 9871 instructions, 4600 B of code, 6 B of tables, 1164 B of stack.
+ * On Cortex-M4F, -O2: 9887 instructions, 4624 B of code, 22 B of tables, 1164 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -163,9 +164,9 @@ void rigid_body_steps_step_rk4_jacobian_f32(const rigid_body_steps_constants_f32
     float attitude_next[4], float velocity_next[3], float omega_next[3], float jacobian[145]);
 
 /* The same, the whole matrix: 247 entries.
- * On Cortex-M0+, -O2: 510639 to 515291 instructions, 7040 B of code, 151 B of tables, 1832 B of
+ * On Cortex-M0+, -O2: 511857 to 516753 instructions, 7064 B of code, 167 B of tables, 1840 B of
  *            stack.
- * On Cortex-M4F, -O2: 11237 instructions, 4692 B of code, 151 B of tables, 1796 B of stack.
+ * On Cortex-M4F, -O2: 11253 instructions, 4716 B of code, 167 B of tables, 1796 B of stack.
  */
 void rigid_body_steps_step_rk4_jacobian_dense_f32(const rigid_body_steps_constants_f32 *constants,
     const float position[3], const float attitude[4], const float velocity[3], const float omega[3],

@@ -346,10 +346,9 @@ void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constan
     double position_next[3], double attitude_next[4], double velocity_next[3], double omega_next[3])
 {
     const double t0 = time_step * 0.5;
-    const double t1 = time_step * 0.3333333333333333;
     const double t2 = time_step * 0.16666666666666666;
     const double parts[4] = {t0, t0, time_step, time_step};
-    const double weights[4] = {t2, t1, t1, t2};
+    static const double times[4] = {1.0, 2.0, 2.0, 1.0};
     double start[13], now[13], sum[13], rates[13];
     start[0] = position[0];
     start[1] = position[1];
@@ -480,12 +479,12 @@ void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constan
         const double t99 = t97 + t98;
         rates[12] = t99;
         for (int i = 0; i < 13; ++i) {
-            sum[i] += weights[stage] * rates[i];
+            sum[i] += times[stage] * rates[i];
             now[i] = start[i] + (parts[stage] * rates[i]);
         }
     }
     for (int i = 0; i < 13; ++i) {
-        now[i] = start[i] + sum[i];
+        now[i] = start[i] + (t2 * sum[i]);
     }
     const double t100 = now[3] * now[3];
     const double t101 = now[4] * now[4];
@@ -526,6 +525,7 @@ void rigid_body_steps_step_rk4_jacobian_f64(const rigid_body_steps_constants_f64
     const double t1 = time_step * 0.3333333333333333;
     const double t2 = time_step * 0.16666666666666666;
     const double parts[4] = {t0, t0, time_step, time_step};
+    static const double times[4] = {1.0, 2.0, 2.0, 1.0};
     const double weights[4] = {t2, t1, t1, t2};
     double start[13], now[13], sum[13], rates[13];
     start[0] = position[0];
@@ -770,12 +770,12 @@ void rigid_body_steps_step_rk4_jacobian_f64(const rigid_body_steps_constants_f64
         const double t182 = now[5] * 0.5;
         slopes[stage][18] = t182;
         for (int i = 0; i < 13; ++i) {
-            sum[i] += weights[stage] * rates[i];
+            sum[i] += times[stage] * rates[i];
             now[i] = start[i] + (parts[stage] * rates[i]);
         }
     }
     for (int i = 0; i < 13; ++i) {
-        now[i] = start[i] + sum[i];
+        now[i] = start[i] + (t2 * sum[i]);
     }
     const double t185 = now[3] * now[3];
     const double t186 = now[4] * now[4];

@@ -22,7 +22,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 c53938e3d810f1db.
+ * Body of these files: sha256 c83a3843beca7d88.
  */
 #ifndef RIGID_BODY_STEPS_F64_H
 #define RIGID_BODY_STEPS_F64_H
@@ -107,12 +107,13 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  *            the ranges, 65536 searched from the worst); at 8282 hard samples 1.5e+03 u (of
  *            attitude_next, turned, ill-conditioned).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_next 7.7e-15 m (seen
- *            7.3e-15), attitude_next 9.6e-15 1 (seen 2.6e-16), velocity_next 1.4e-14 m/s (seen
- *            3.7e-15), omega_next 3e-14 rad/s (seen 1.5e-15); assumed: quaternions given with
+ *            7.4e-15), attitude_next 9.6e-15 1 (seen 2.8e-16), velocity_next 1.4e-14 m/s (seen
+ *            3.7e-15), omega_next 3e-14 rad/s (seen 1.4e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
- * Cost: 204 add, 64 sub, 351 mul, 1 div, 4 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 141827 to 143341 instructions, 2360 B of code, 832 B of stack.
+ * Cost: 204 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 144618 to 146217 instructions, 2348 B of code, 32 B of tables, 808 B of
+ *            stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -140,13 +141,13 @@ void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constan
  * Postcondition: M = I_dot omega + I omega_dot + Omega x (I omega)   [lecture step general_form]
  * Postcondition: q_w_dot = -1/2 q_v . omega   [lecture step quaternion_rate_scalar]
  * Postcondition: q_v_dot = 1/2 (q_w omega + q_v x omega)   [lecture step quaternion_rate_vector]
- * Error: median 0.37, largest 5.5 u of the largest component, before or after, or of the largest
- *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
- *            ranges, 65536 searched from the worst); at 8282 hard samples no more.
- * Bound: not proved: 4155 operations are more than the 2000 tried.
+ * Error: median 0.37, largest 5.6 u of the largest component, before or after, or of the largest
+ *            product of what the step adds, by rounding alone (of velocity_next; 200000 samples of
+ *            the ranges, 65536 searched from the worst); at 8282 hard samples no more.
+ * Bound: not proved: 4143 operations are more than the 2000 tried.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
- * Cost: 2322 add, 460 sub, 3210 mul, 1 div, 250 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 1080812 to 1087610 instructions, 11224 B of code, 6 B of tables, 2432 B of
+ * Cost: 2322 add, 460 sub, 3223 mul, 1 div, 250 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 1084207 to 1091065 instructions, 11284 B of code, 38 B of tables, 2432 B of
  *            stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -159,7 +160,7 @@ void rigid_body_steps_step_rk4_jacobian_f64(const rigid_body_steps_constants_f64
     double jacobian[145]);
 
 /* The same, the whole matrix: 247 entries.
- * On Cortex-M0+, -O2: 1084069 to 1090806 instructions, 11368 B of code, 151 B of tables, 3656 B of
+ * On Cortex-M0+, -O2: 1087485 to 1094294 instructions, 11428 B of code, 183 B of tables, 3656 B of
  *            stack.
  */
 void rigid_body_steps_step_rk4_jacobian_dense_f64(const rigid_body_steps_constants_f64 *constants,

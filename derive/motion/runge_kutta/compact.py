@@ -5,7 +5,8 @@ From a state y a step of the length h has
 
     now -> y + (1/2, 1/2, 1) h k,    after = y + h (k1 + 2 k2 + 2 k3 + k4) / 6,
 
-and its derivatives go back through what the stages have kept (``compact_slopes``).
+where h / 6 comes last, so that rates that are all but nothing are rounded once. Its derivatives go
+back through what the stages have kept (``compact_slopes``).
 """
 
 from __future__ import annotations
@@ -44,8 +45,10 @@ def _stages(tape: Tape, way: CarriedWay) -> KeptSlopes | None:
     """Record the loop over the stages: ``now`` is the state after it. Return what stages keep."""
     names, (h,) = way.system.names, (tape.input(c) for c in way.system.step.components)
     half, third, sixth = ((h * Fraction(1, k)).operand for k in (2, 3, 6))
-    parts, weights = (half, half, h.operand, h.operand), (sixth, third, third, sixth)
-    tape.ops += [Row("parts", parts), Row("weights", weights)]
+    tape.ops.append(Row("parts", (half, half, h.operand, h.operand)))
+    tape.ops.append(Row("times", tuple(Fraction(k) for k in (1, 2, 2, 1))))
+    if way.system.slopes is not None:
+        tape.ops.append(Row("weights", (sixth, third, third, sixth)))
     arrays = ("start", "now", "sum", "rates")
     tape.ops.append(Arrays(tuple((name, (len(names),)) for name in arrays)))
     tape.ops += [Assign(f"start[{k}]", name) for k, name in enumerate(names)]
@@ -57,12 +60,13 @@ def _stages(tape: Tape, way: CarriedWay) -> KeptSlopes | None:
     if kept:
         tape.ops.append(Arrays((("slopes", (STAGES, len(kept.values))),)))
     onward = (
-        Assign(total, Term("mul", (element_at("weights", "stage"), rate)), "add"),
+        Assign(total, Term("mul", (element_at("times", "stage"), rate)), "add"),
         Assign(now, Term("add", (start, Term("mul", (element_at("parts", "stage"), rate))))),
     )
     lines = (*_stored_soon(body, stored), Loop("i", *states, onward))
     tape.ops.append(Loop("stage", Index(), Index(plus=STAGES), lines))
-    tape.ops.append(Loop("i", *states, (Assign(now, Term("add", (start, total))),)))
+    moved = Term("add", (start, Term("mul", (sixth, total))))
+    tape.ops.append(Loop("i", *states, (Assign(now, moved),)))
     return kept
 
 
