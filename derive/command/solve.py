@@ -1,13 +1,15 @@
 """``derive solve``: the answers of a scene, its limits and motions, from the command line."""
 
 import argparse
+import shlex
 from collections.abc import Mapping, Sequence
+from collections.abc import Set as AbstractSet
 
 from rich.table import Table
 
 import derive
 from derive.command.parsed import location, seconds, typed
-from derive.command.terminal import complain, print_rows
+from derive.command.terminal import complain, console, print_rows
 from derive.solve.handle import STEP
 
 Printed = tuple[str, str, str, str]
@@ -43,6 +45,11 @@ def options(command: argparse.ArgumentParser) -> None:
         help=f"longest step, of which --until is a multiple ({STEP:g})",
     )
     command.add_argument(
+        "--stop",
+        metavar="EQUATION",
+        help="end where this is met first, as 'theta = 0', of the state and answers (with --until)",
+    )
+    command.add_argument(
         "--plot", type=location, metavar="FILE", help="write the motion as SVG (with --until)"
     )
     command.set_defaults(run=solve)
@@ -59,12 +66,46 @@ def solve(given: argparse.Namespace) -> int:
         _print(rows, (*scene.doubts(values), *doubts))
         return 0
     found = scene.solve(values)
+    if found.unanswered and not values:
+        _print_quantities(scene, {c for own in found.unanswered.values() for c in own})
     rows = [(row.of, row.name, f"{row.value:.12g}", row.unit) for row in found.rows]
     _print(rows if rows or not found.unanswered else None, found.doubts)
+    if found.unanswered and not values:
+        names = ", ".join(f"'{name}'" for name in found.unanswered)
+        raise derive.DeriveError(f"set values by --set, as the example does: {names} need them")
     if found.unanswered:
         each = [f"'{name}' needs {', '.join(own)}" for name, own in found.unanswered.items()]
         raise derive.DeriveError(f"set values by --set: {'; '.join(each)}")
     return 0
+
+
+def _print_quantities(scene: derive.Handle, needed: AbstractSet[str]) -> None:
+    """Print what answers need, with ranges, and a command that sets all of it."""
+    table = Table("name", "from", "to", "unit", "meaning", box=None)
+    own = {c: q for q in scene.quantities for c in q.components}
+    steady = scene.scene.steady if "steady" in scene.wanted else None
+    found = steady.unknown if steady else ()
+    values = []
+    for name in (name for name in own if name in needed | {*found}):
+        q = own[name]
+        low, high = (0.0 if end is None else float(end) for end in (q.low, q.high))
+        says = f"{q.meaning}; found if it is not set" if name in found else q.meaning
+        table.add_row(name, f"{low:g}", f"{high:g}", "" if q.unit == "1" else q.unit, says)
+        if name not in found:
+            values.append(f"{name}={example(low, high, name if q.is_quaternion else '')}")
+    print_rows(table)
+    command = ["derive", "solve", scene.source, "--set", *values]
+    console.print(f"\nfor example: {shlex.join(command)}", highlight=False, soft_wrap=True)
+
+
+def example(low: float, high: float, part: str) -> str:
+    """Return a short number in a range; of a quaternion's part, that of no turn."""
+    if part:
+        return "1" if part.endswith("_w") else "0"
+    middle = (low + high) / 2
+    short = (float(f"{middle:.{digits}g}") for digits in (2, 3, 6))
+    found = next((x for x in short if low <= x <= high), middle) + 0.0  # no -0
+    return repr(found).removesuffix(".0")
 
 
 def _print(rows: Sequence[Printed] | None, doubts: Sequence[str]) -> None:
@@ -103,6 +144,9 @@ def _require_one_question(given: argparse.Namespace) -> None:
     if given.step is not None and given.until is None:
         rule = "a step is of a motion and needs --until SECONDS"
         raise derive.DeriveError(f"--step {given.step:g}: {rule}")
+    if given.stop is not None and given.until is None:
+        rule = "an event ends a motion and needs --until SECONDS"
+        raise derive.DeriveError(f"--stop {typed(given.stop)}: {rule}")
     if given.limit and given.until is not None:
         rule = f"limits of stability are no motion; leave out --until {given.until:g}"
         raise derive.DeriveError(f"--limit {given.limit[0]}: {rule}")
@@ -113,8 +157,9 @@ def _simulated(
 ) -> tuple[list[Printed], tuple[str, ...]]:
     """Return the state at the end of a motion, and warnings; write its plot to a named file."""
     step = STEP if given.step is None else given.step
-    motion = scene.simulate(values, given.until, step, given.plot)
-    at = f"at {motion.times[-1]:.6g} s"
+    motion = scene.simulate(values, given.until, step, given.plot, given.stop)
+    digits = 6 if given.stop is None else 12
+    at = f"at {motion.times[-1]:.{digits}g} s"
     rows = [(at, n, f"{v[-1]:z.12g}", motion.units[n]) for n, v in motion.states.items()]
     return rows, motion.doubts
 

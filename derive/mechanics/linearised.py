@@ -101,10 +101,11 @@ def unsteady(machine: Scene, balances: Balances, given: Mapping[str, float]) -> 
     given : values that were set; all else is in the middle of its range, or at rest if it varies
         and may be. What is left is an acceleration if it is more than changes of those values by
         a millionth make of it. Where a scene has ``steady`` and nothing is set, nothing is said:
-        the state is an equilibrium at its roots alone.
+        the state is an equilibrium at its roots alone; nor where it is an argument that is not set.
     """
+    open_ = {name for name, f in machine.about.items() if f.name == name} - given.keys()
     steady = machine.steady is not None and not given
-    if steady or not any("linearised" in a for a in machine.asked.values()):
+    if steady or open_ or not any("linearised" in a for a in machine.asked.values()):
         return
     sheet, every = balances.frames.sheet, balances.unknowns
     free = [m for m in (*machine.coordinates, *machine.speeds) if m.free]

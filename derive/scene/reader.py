@@ -203,13 +203,18 @@ def _momentum(
 
 
 def _about(given: Table, scalars: Scalars) -> Mapping[str, Formula]:
-    """Return the values of free coordinates and speeds about which motion is small."""
+    """Return the values of free coordinates and speeds about which motion is small.
+
+    What stands for itself, as ``theta = "theta"``, is an argument of ``linearised``.
+    """
     free = {m.name: m.unit for m in (*scalars.coordinates, *scalars.speeds) if m.free}
     free |= {c.rate.name: PER_SECOND[c.unit] for c in scalars.coordinates
              if c.free and isinstance(c.rate, Input)}  # fmt: skip
     keys(given, (), free)
-    others = dict.fromkeys(free, "free, and not known")
-    dimensions = {n: d for n, d in scalars.known.dimensions.items() if n not in free}
+    kept = {name for name, says in given.entries.items() if says == name}
+    others = dict.fromkeys(free.keys() - kept, "free, and not known")
+    dimensions = {n: d for n, d in scalars.known.dimensions.items() if n not in others}
+    dimensions |= {n: dimension(free[n]) for n in kept}
     scope = Scope(dimensions, others, "only what is given may stand here")
     return {
         name: formula(given.entries[name], f"linearised.{name}", scope, dimension(unit))

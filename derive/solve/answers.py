@@ -1,12 +1,13 @@
 """Every answer of a scene at given values: its functions, steady motions, small motions."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import isfinite
 
-from derive.scene import SceneError
+from derive.scene import Input, SceneError
 from derive.scene.machine import LEFT_OVER
 from derive.scene.unit import behind
+from derive.scene.wanted import moves
 from derive.solve.instrument import Instrument
 from derive.solve.motions import roots, small_motion
 
@@ -58,38 +59,88 @@ class Answered:
 def every_answer(found: Instrument, values: Mapping[str, float]) -> Answered:
     """Return all that the values of components let a scene answer.
 
+    What only the unknowns of steady motion are missing for is answered at every root of it. Steps
+    in time are answers of no instant: a simulation takes them.
     Raises SceneError for values without an answer.
     """
     rows: list[AnswerRow] = []
     unanswered: dict[str, tuple[str, ...]] = {}
+    motions = _steady_motions(found, values)
     for name in found.library.scene.wanted:
         missing = _missing(found, name, values)
-        if missing:
-            unanswered[name] = missing
-        else:
+        if motions is not None and name == "steady":
+            rows.extend(_found(found, motions))
+        elif missing and motions and all(c in motions[0] for c in missing):
+            rows.extend(_at_each(found, name, motions))
+        elif missing:
+            unanswered[name] = (
+                tuple(c for c in missing if c not in _sought(found, values)) or missing
+            )
+        elif not moves(name):
             rows.extend(_rows(found, name, values))
-    return Answered(tuple(rows), unanswered, found.doubts(values))
+    each: Sequence[Mapping[str, float]] = motions or [values]
+    doubts = dict.fromkeys(doubt for own in each for doubt in found.doubts(own))
+    nowhere = [] if motions is None or motions else [_nowhere(found)]
+    return Answered(tuple(rows), unanswered, (*doubts, *nowhere))
 
 
-def _unknowns(found: Instrument, name: str, values: Mapping[str, float]) -> tuple[str, ...]:
-    """Return the unknowns of a steady motion that is to be found; none if they are all set."""
+def _steady_motions(
+    found: Instrument, values: Mapping[str, float]
+) -> list[dict[str, float]] | None:
+    """Return the values with each root of steady motion, None if none is to be found yet."""
+    sought = _sought(found, values)
+    if not sought or _missing(found, "steady", values):
+        return None
+    return [{**dict.fromkeys(sought, 0.0), **values, **root} for root in roots(found, values)]
+
+
+def _sought(found: Instrument, values: Mapping[str, float]) -> tuple[str, ...]:
+    """Return what a steady motion says that is to be found: its unknowns, rates that are 0 in it.
+
+    Free coordinates rest where what vanishes is a balance.
+    """
     scene = found.library.scene
-    steady = scene.steady if name == "steady" else None
-    return () if steady is None or all(n in values for n in steady.unknown) else steady.unknown
+    steady = scene.steady if "steady" in scene.wanted else None
+    if steady is None or all(n in values for n in steady.unknown):
+        return ()
+    rates = [c.rate.name for c in scene.coordinates if c.free and isinstance(c.rate, Input)]
+    return (*steady.unknown, *(rates if steady.vanishes is None else ()))
+
+
+def _found(found: Instrument, motions: Sequence[Mapping[str, float]]) -> Iterator[AnswerRow]:
+    steady = found.library.scene.steady
+    unit = {c: q.unit for q in found.quantities() for c in q.components}
+    for number, motion in enumerate(motions, 1):
+        for unknown in steady.unknown if steady else ():
+            value = motion[unknown] + 0.0  # no -0
+            yield AnswerRow(f"steady motion {number}", unknown, value, unit[unknown])
+
+
+def _nowhere(found: Instrument) -> str:
+    """Return the sentence on a steady motion that was looked for and is nowhere."""
+    steady = found.library.scene.steady
+    names = " and ".join(f"'{name}'" for name in steady.unknown) if steady else ""
+    return f"no steady motion was found in the declared range of {names}"
+
+
+def _at_each(
+    found: Instrument, name: str, motions: Sequence[Mapping[str, float]]
+) -> Iterator[AnswerRow]:
+    """Yield what a function answers in every steady motion."""
+    for number, motion in enumerate(motions, 1):
+        for row in _rows(found, name, motion):
+            yield replace(row, of=f"{row.of} in steady motion {number}")
 
 
 def _missing(found: Instrument, name: str, values: Mapping[str, float]) -> tuple[str, ...]:
-    given = (*values, *_unknowns(found, name, values))
-    return tuple(c for c in found.needed(name.removesuffix("_jacobian")) if c not in given)
+    steady = found.library.scene.steady
+    given = (*values, *(steady.unknown if steady and name == "steady" else ()))
+    lacking = [c for c in found.needed(name.removesuffix("_jacobian")) if c not in given]
+    known = {c for q in found.quantities() for c in q.components}
+    return tuple(c for c in lacking if c in known or not moves(name))
 
 
 def _rows(found: Instrument, name: str, values: Mapping[str, float]) -> Iterator[AnswerRow]:
-    if _unknowns(found, name, values):
-        unit = {c: q.unit for q in found.quantities() for c in q.components}
-        for number, root in enumerate(roots(found, values), 1):
-            for unknown, value in root.items():
-                yield AnswerRow(f"steady motion {number}", unknown, value + 0.0, unit[unknown])
-        return
     units = {c: q.unit for q in found.library[name].outputs for c in q.components}
     for component, value in found.answer(name, values).items():
         if not isfinite(value):

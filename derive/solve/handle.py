@@ -1,6 +1,5 @@
 """A scene that was loaded, with all that can be done with it; what was made once is kept."""
 
-import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache, partial, reduce
@@ -14,7 +13,7 @@ from derive.emit.files import require_folder, require_writable, write
 from derive.library.library import Library, library
 from derive.program.program import Quantity
 from derive.report import SceneReport, report, report_files
-from derive.scene import Scene, SceneError, contents, document_text, of_the_scene, parse_scene
+from derive.scene import Scene, SceneError, contents, document_text, parse_scene
 from derive.scene.table import one_of
 from derive.scene.unit import behind
 from derive.solve.answers import Answered, every_answer
@@ -36,7 +35,7 @@ from derive.solve.instrument import Instrument, instrument
 from derive.solve.motions import limits, roots, small_motion
 from derive.solve.settings import NamedValues, settable, settings
 from derive.solve.simulation import Simulation, plot_of, simulated
-from derive.solve.told import listener, met, path
+from derive.solve.told import listener, met, path, require_another_file
 from derive.verify.reference import NoValueError
 
 KEPT = 64
@@ -157,18 +156,24 @@ class Handle:
         return self._instrument.doubts(self._settings(values))
 
     def simulate(
-        self, values: NamedValues, until: float, step: float = STEP, plot: str | Path | None = None
+        self,
+        values: NamedValues,
+        until: float,
+        step: float = STEP,
+        plot: str | Path | None = None,
+        stop: str | None = None,
     ) -> Simulation:
         """Return the motion from the state in ``values``, other inputs held, by ``step_rk4``.
 
         until : s, the end        step : s, at most the length of a step, all being equal
         plot  : a file that the motion is drawn to, as SVG
+        stop  : an equation such as "theta = 0", at which the motion ends if it comes before
         """
         file = None if plot is None else path("plot", plot)
         if file is not None:
-            self._require_another_file(file)
+            require_another_file(file, self.scene.text)
             require_writable(file)
-        motion = simulated(self._instrument, self._settings(values), until, step)
+        motion = simulated(self._instrument, self._settings(values), until, step, stop)
         if file is not None:
             write(file.parent, {file.name: plot_of(motion)})
         return motion
@@ -243,12 +248,6 @@ class Handle:
 
     def _settings(self, values: NamedValues) -> dict[str, float]:
         return settings(self.name, self.quantities, values)
-
-    def _require_another_file(self, file: Path) -> None:
-        """Refuse to write over the scene itself."""
-        there = file.read_bytes() if os.path.isfile(file) else b""
-        if of_the_scene(there.decode("utf-8-sig", "replace")) == self.scene.text:
-            raise SceneError(f"plot {file}: the scene itself lies there; name another file")
 
     def __reduce__(self) -> Any:
         """Return how another process loads the same scene, by its text."""

@@ -84,7 +84,7 @@ class Instrument:
         told = [p.name for p in scene.parameters if p.value is None]
         linear = "linearised" in self.library.problems
         whole = linear and {*told, *self.needed("linearised")} <= given.keys()
-        own = {n: x for n, x in given.items() if n not in scene.about}
+        own = {n: x for n, x in given.items() if n not in scene.about or scene.about[n].name == n}
         return (*found, *self.library.mechanism.doubts_at(own)) if whole else found
 
     @cached_property

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
-from math import ceil, isfinite
+from math import ceil, floor, isfinite, log10
 from typing import Any
 
 import casadi
@@ -14,6 +14,7 @@ from derive.program.program import Quantity
 from derive.scene import SceneError
 from derive.scene.unit import behind
 from derive.solve.arguments import one_number
+from derive.solve.event import event, first_met, residual
 from derive.solve.instrument import Instrument
 from derive.solve.lacking import advice_on
 
@@ -21,6 +22,7 @@ STEP = "step_rk4"
 WIDTH, HEIGHT, LEFT, GAP = 640, 110, 90, 14
 ROUNDING = 1e-12  # so that 1 s is ten steps of 0.1 s, and no short one more
 MOST = 10_000_000  # steps: what fits into the memory of a small machine
+MOST_TICKS = 10  # on the axis of time
 SHOWN = 600  # points of a line, at most
 
 
@@ -38,14 +40,15 @@ class Simulation:
 
 
 def simulated(
-    found: Instrument, given: Mapping[str, float], until: float, step: float
+    found: Instrument, given: Mapping[str, float], until: float, step: float, stop: str | None
 ) -> Simulation:
     """Return the motion from the state in ``given``, other inputs held, by ``step_rk4``.
 
-    Steps are as long as each other, at most ``step``, and end at ``until``.
+    Steps are as long as each other, at most ``step``, and end at ``until``, or where ``stop``
+    holds first: the last step is as short as that needs.
 
     Raises SceneError if the scene does not ask for that step, a state is not given, a time has no
-    sense, or the motion does not stay finite.
+    sense, an event is none, or the motion does not stay finite.
     """
     label = f"scene '{found.name}'"
     until, step = (one_number(label, n, x) for n, x in (("until", until), ("step", step)))
@@ -59,14 +62,26 @@ def simulated(
     missing = [n for n in names if n not in given]
     if missing:
         raise SceneError(f"scene '{found.name}': a simulation begins at {', '.join(missing)}")
+    sought = None if stop is None else event(found, given, stop)
     start = [float(given[n]) for n in names]
     moved = _one_step(found, dict(given) | {"time_step": step}, names)
     after = moved.mapaccum("motion", count)(start).full() if count else np.zeros((len(names), 0))
     columns = np.column_stack([start, after])
-    _require_finite(found.name, names, columns, step)
     times: NDArray[np.float64] = step * np.arange(columns.shape[1], dtype=np.float64)
+    doubts = []
+    if sought is not None:
+        left, h = residual(found, given, names, sought), casadi.SX.sym("h")
+        part = _one_step(found, dict(given) | {"time_step": h}, names, [h])
+        if (met := first_met(left, columns, part, step)) is None:
+            doubts.append(f"'{sought.text}' is not met by {until:g} s")
+        else:
+            place, rest, state = met
+            columns = np.column_stack([columns[:, :place], state])
+            times = np.append(times[:place], times[place - 1] + rest)
+    _require_finite(found.name, names, columns, step)
     motion = dict(zip(names, columns, strict=True))
-    return Simulation(times, motion, _units(states), tuple(_outside(found, given, times, motion)))
+    doubts += _outside(found, given, times, motion)
+    return Simulation(times, motion, _units(states), tuple(doubts))
 
 
 def _outside(
@@ -114,12 +129,14 @@ def _require_finite(
         )
 
 
-def _one_step(found: Instrument, given: Mapping[str, float], names: Sequence[str]) -> Any:
-    """Return the step of the whole state as a CasADi function."""
+def _one_step(
+    found: Instrument, given: Mapping[str, Any], names: Sequence[str], more: Sequence[Any] = ()
+) -> Any:
+    """Return the step of the whole state as a CasADi function, of ``more`` symbols behind it."""
     x = casadi.SX.sym("x", len(names))
     after = found.answer(STEP, dict(given) | {n: x[k] for k, n in enumerate(names)})
     following = [after.get(f"{n}_next", x[k]) for k, n in enumerate(names)]
-    return casadi.Function("step", [x], [casadi.vertcat(*following)])
+    return casadi.Function("step", [x, *more], [casadi.vertcat(*following)])
 
 
 def _units(states: Sequence[Quantity]) -> dict[str, str]:
@@ -128,18 +145,40 @@ def _units(states: Sequence[Quantity]) -> dict[str, str]:
 
 def plot_of(simulation: Simulation) -> str:
     """Return an SVG with a line for every component of the state."""
-    height = len(simulation.states) * (HEIGHT + GAP) + GAP + 16
+    below = len(simulation.states) * (HEIGHT + GAP)
+    height = below + GAP + 16
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" role="img">'
-    style = "<style>text{font:12px sans-serif}polyline{fill:none;stroke:#345e8c}</style>"
-    parts = [head, style]
+    style = (
+        "<style>text{font:12px sans-serif}polyline{fill:none;stroke:#345e8c}"
+        "path{stroke:#ccc}.t{text-anchor:middle}</style>"
+    )
+    parts = [head, style, *_ticks(float(simulation.times[-1]), below)]
     for place, (name, values) in enumerate(simulation.states.items()):
         top = GAP + place * (HEIGHT + GAP)
         parts += _line(
             name, simulation.units[name], simulation.times.tolist(), values.tolist(), top
         )
-    end = simulation.times[-1]
-    parts.append(f'<text x="{WIDTH - 60}" y="{height - 6}">{end:.6g} s</text>')
     return "\n".join([*parts, "</svg>"]) + "\n"
+
+
+def _ticks(end: float, below: int) -> Iterator[str]:
+    """Yield a line and a number at round times, from 0 to the end, and their unit."""
+    apart = _round(end / MOST_TICKS) if end else 1.0
+    for k in range(int(end / apart * (1 + ROUNDING)) + 1):
+        x = LEFT + (WIDTH - LEFT - GAP) * k * apart / (end or 1.0)
+        yield f'<path d="M{x:.1f} {GAP}V{below + 4}"/>'
+        yield f'<text class="t" x="{x:.1f}" y="{below + 18}">{k * apart:.6g}</text>'
+    yield f'<text x="{LEFT - 40}" y="{below + 18}">t, s</text>'
+
+
+def _round(least: float) -> float:
+    """Return the smallest of 1, 2 and 5, and their tenfolds, that is no less.
+
+    >>> _round(0.13), _round(3.0)
+    (0.2, 5.0)
+    """
+    power = 10.0 ** floor(log10(least))
+    return next(own * power for own in (1, 2, 5, 10) if own * power >= least * (1 - ROUNDING))
 
 
 def _line(

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from derive.scene import SceneError
+from derive.scene import SceneError, of_the_scene
 from derive.scene.table import shown
 
 LONGEST_NAME = 255
@@ -54,6 +54,13 @@ def path(what: str, value: object) -> Path:
     if not text.strip() or b"\0" in written or max(map(len, written.split(b"/"))) > LONGEST_NAME:
         raise SceneError(f"{what} must be a path that can exist, not {shown(text)}")
     return Path(text)
+
+
+def require_another_file(file: Path, scene: str) -> None:
+    """Refuse to write over the scene itself, of which this is the text."""
+    there = file.read_bytes() if os.path.isfile(file) else b""
+    if of_the_scene(there.decode("utf-8-sig", "replace")) == scene:
+        raise SceneError(f"plot {file}: the scene itself lies there; name another file")
 
 
 def count(what: str, value: Any, known: range) -> int:

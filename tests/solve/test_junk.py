@@ -51,6 +51,7 @@ TAKEN: Mapping[str, set[str]] = {
     "samples": {"whole"}, "until": NUMBERS | {"none"}, "step": {"whole"},
     "told": {"function", "type"}, "parameters": {"none", "dict"}, "values": {"dict"},
     "tensor": set(), "omega": {"no number"}, "omega_dot": {"no number"}, "guess": {"none"},
+    "stop": {"none"},
 }  # fmt: skip
 """What makes sense as an argument of a name, or whose range other tests try."""
 
@@ -71,7 +72,7 @@ def good(folder: Path) -> dict[str, Any]:
         "source": BALL, "name": "ball", "scenes": [derive.load(BALL, "ball")], "folder": folder,
         "samples": 4, "figures": "kept", "tell": "costs", "parts": "usual", "told": lambda _: None,
         "tensor": np.eye(3), "parameters": {}, "precision": "double", "by": "any",
-        "values": {}, "until": 0.01, "step": 1e-3, "plot": None, "form": "text",
+        "values": {}, "until": 0.01, "step": 1e-3, "plot": None, "form": "text", "stop": None,
         "omega": [1, 2, 3], "omega_dot": [1, 2, 3],
         "scene": derive.load(BALL, "ball"), "turn": "z 1", "end": {}, "limits": {}, "avoid": (),
         "cost": {"time": 1}, "steps": 10, "starts": 1, "method": "shooting", "solver": "ipopt",

@@ -45,7 +45,8 @@ def is_at_rest(machine: Scene, given: Mapping[str, float]) -> bool:
 def _base(machine: Scene, given: Mapping[str, float]) -> dict[str, Any]:
     """Return the motion about which the scene is linearised."""
     values = {name: mpf(x) for name, x in given.items()}
-    start = CloudAnswers(machine, values | dict.fromkeys(machine.about, mpf(0)))
+    unset = [name for name, f in machine.about.items() if f.name != name]
+    start = CloudAnswers(machine, values | dict.fromkeys(unset, mpf(0)))
     return values | {name: start.result(f) for name, f in machine.about.items()}
 
 
