@@ -3,24 +3,24 @@
 An error is a number that is infinite or none, a division by nothing, a place outside of an array, a
 value that was never set. Eva (https://frama-c.com) encloses all that C can compute in intervals;
 what it cannot exclude it names, and then nothing is shown. Set-up's constants come between bounds
-found by balls, for intervals through pairs of floats are too wide, and ranges are cut where balls
-cannot exclude that something divides by nothing (``verify.enclosure``). An attitude has a component
-of at least a half, so eight cases have them all.
+that hold its pairs of floats too, of which intervals in C would be too wide, and ranges are cut
+where something may divide by nothing (``verify.proved.regular``). A quaternion has a component near
+a half or above, so eight cases have them all.
 """
 
 import re
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from fractions import Fraction
-from itertools import product
+from functools import reduce
+from itertools import pairwise, product
+from operator import or_
 from pathlib import Path
 
 import numpy as np
-from flint import arb
 
 from derive.check.compiler import answer_of
-from derive.check.target.harness import LEFT_BY_ROUNDING, all_of, numbers_in
+from derive.check.target.harness import all_of, numbers_in
 from derive.check.verdict import Outcome, Verdict
 from derive.emit.c.signature import CNames
 from derive.emit.c.source import c_files
@@ -28,16 +28,17 @@ from derive.emit.sines import TOGETHER
 from derive.library.library import Library
 from derive.program.own_sine import FITTED
 from derive.program.precision import PRECISIONS, Precision
-from derive.program.program import Program, Quantity
+from derive.program.program import Program
 from derive.scene.declaration import DeriveError
-from derive.verify.enclosure import Ranged, Sector, sectors
+from derive.verify.proved.bounds import ends_in_floats
+from derive.verify.proved.cut import UNIT
+from derive.verify.proved.ranges import wave
+from derive.verify.proved.regular import Sector, sectors
 
 TOOL = "frama-c"
 HOW_TO_GET_IT = f"check: --eva needs {TOOL}; on Debian: apt-get install frama-c-base gcc"
 OPTIONS = ("-eva", "-eva-precision", "2", "-eva-no-results", "-machdep", "x86_64")
 CHECK = "no run-time error"
-UNIT = Fraction(1)
-HALF = Fraction(1, 2)
 SIXTEENTHS = 7 * 16
 """Pieces of 1/16 rad on either side of 0, on each of which a sine has its bounds."""
 _BODY = re.compile(
@@ -71,8 +72,8 @@ def shown_by_eva(library: Library, sources: Mapping[str, str] | None = None) -> 
         for program in all_of(library):
             if program.makes("constants"):
                 continue
-            cut = _cut(library, program)
             for precision in PRECISIONS:
+                cut = cut_into_parts(library, program, precision)
                 yield _verdict(library, program, precision, cut, folder)
 
 
@@ -84,16 +85,24 @@ def with_bounds_of_sines(text: str) -> str:
 def _bounded(of: re.Match[str]) -> str:
     precision = next(p for p in PRECISIONS if p.scalar == of["kind"])
     lines = [f"{of['head']}{{", f"    {of['type']} found;", "    "]
-    for k in range(-SIXTEENTHS, SIXTEENTHS):
-        angle = arb(k).union(arb(k + 1)) / 16
-        lines[-1] += f"if (angle >= {k / 16} && angle <= {(k + 1) / 16}) {{"
-        for name, sine in (("sine", angle.sin()), ("cosine", angle.cos())):
-            ends = _outward(sine, precision)
-            lines.append(f"        found.{name} = {_between(*ends, precision)};")
-        lines.append("    } else ")
+    edges = np.arange(-SIXTEENTHS, SIXTEENTHS + 1) / 16
+    sines, cosines = (wave((edges[:-1], edges[1:]), which) for which in (0, 1))
+    for k, (low, high) in enumerate(pairwise(edges)):
+        lines[-1] += f"if (angle >= {low} && angle <= {high}) {{"
+        lines += [
+            f"        found.sine = {_near(sines[0][k], sines[1][k], precision)};",
+            f"        found.cosine = {_near(cosines[0][k], cosines[1][k], precision)};",
+            "    } else ",
+        ]
     lines[-1] += "{"
-    lines += [f"        found.{n} = {_between(-1.0, 1.0, precision)};" for n in ("sine", "cosine")]
+    lines += [f"        found.{n} = {_near(-1.0, 1.0, precision)};" for n in ("sine", "cosine")]
     return "\n".join([*lines, "    }", "    return found;", "}"])
+
+
+def _near(low: float, high: float, precision: Precision) -> str:
+    """Return the C of any float within two units in the last place of sines between two numbers."""
+    off = 4 * precision.unit_roundoff
+    return _between(low - off, high + off, precision)
 
 
 def _own_sines(library: Library, texts: Mapping[str, str], folder: Path) -> Iterator[Verdict]:
@@ -111,19 +120,22 @@ def _own_sines(library: Library, texts: Mapping[str, str], folder: Path) -> Iter
             yield Verdict(*head, *_judged(answer_of((TOOL, *OPTIONS, str(whole)), folder)))
 
 
-def _cut(library: Library, program: Program) -> Sequence[Sector] | str:
+def cut_into_parts(
+    library: Library, program: Program, precision: Precision
+) -> Sequence[Sector] | str:
     """Return parts of the ranges of a function, or why there are none."""
-    given = [q for q in program.inputs if q.role != "constants"]
-    if q := next((q for q in given if q.low is None and q.role == "plan"), None):
+    own = [q for q in program.inputs if q.role != "constants"]
+    if q := next((q for q in own if q.low is None and q.role == "plan"), None):
         return f"{q.name} has no range"
-    setup = library.setup
-    of_setup = {c: q.ends for q in setup.inputs for c in q.components}
-    cases = [
-        of_setup | {c: ends for box in case for c, ends in box.items()}
-        for case in product(*map(_cases, given))
-    ]
-    function = _hot(library, program)
-    return sectors(setup, function, cases) or "what it divides by may vanish, for all that is seen"
+    each = (*library.setup.inputs, *own)
+    quantities = {c: q for q in each for c in q.components}
+    every = {c: ends_in_floats(quantities, c, precision) for c in quantities}
+    whole = [q.components for q in own if q.is_quaternion]
+    cases = [reduce(or_, case, every) for case in product(*map(_attitudes, whole))]
+    return (
+        sectors(library, _hot(library, program), cases, precision)
+        or "what it divides by may vanish, or a constant be beyond floats, for all that is seen"
+    )
 
 
 def _hot(library: Library, program: Program) -> Program:
@@ -131,14 +143,11 @@ def _hot(library: Library, program: Program) -> Program:
     return next(p for p in library.printed() if p.name == program.name.removesuffix("_dense"))
 
 
-def _cases(q: Quantity) -> list[Ranged]:
-    """Return ranges of the components of an input that together hold all its values."""
-    low, high = (q.low, q.high) if q.low is not None and q.high is not None else LEFT_BY_ROUNDING
-    names = q.components
-    if not q.is_quaternion:
-        return [dict.fromkeys(names, (low, high))]
-    halves = ((HALF, UNIT), (-UNIT, -HALF))
-    return [dict.fromkeys(names, (-UNIT, UNIT)) | {c: half} for c in names for half in halves]
+def _attitudes(components: Sequence[str]) -> list[dict[str, tuple[float, float]]]:
+    """Return ranges that together hold all quaternions of about unit length."""
+    least, most = float(np.sqrt(UNIT[0] / len(components)) - 1e-6), float(np.sqrt(UNIT[1]) + 1e-6)
+    ends = ((least, most), (-most, -least))
+    return [dict.fromkeys(components, (-most, most)) | {c: e} for c in components for e in ends]
 
 
 def _verdict(
@@ -184,13 +193,12 @@ def entered(library: Library, program: Program, precision: Precision, cut: Seque
         for q in (*program.inputs, *program.outputs)
     ]  # fmt: skip
     call = f"{names.symbol(program.name, precision)}({', '.join(passed)})"
-    asked = {c for q in program.inputs if q.role == "constants" for c in q.components}
     for part in cut:
         lines.append("    {")
         lines += [
-            f"        ready.{name} = {_between(*_outward(x, precision), precision)};"
-            for name, x in part.constants.items() if name in asked
-        ]  # fmt: skip
+            f"        ready.{name} = {_between(*ends, precision)};"
+            for name, ends in part.constants.items()
+        ]
         lines += [
             f"        {kind} own_{q.name}[{numbers_in(q)}];" for q in (*given, *program.outputs)
         ]
@@ -202,13 +210,11 @@ def entered(library: Library, program: Program, precision: Precision, cut: Seque
     return "\n".join([*lines, "}", ""])
 
 
-def _outward(ball: arb, precision: Precision) -> tuple[float, float]:
-    """Return bounds of a constant, which may be a unit in the last place beside what it is."""
-    wide, least = 4 * precision.unit_roundoff, float(np.finfo(precision.dtype).tiny)
-    a, b = float(ball.lower()), float(ball.upper())
-    return a - wide * abs(a) - least, b + wide * abs(b) + least
-
-
-def _between(low: float | Fraction, high: float | Fraction, precision: Precision) -> str:
-    kind = precision.scalar
-    return f"Frama_C_{kind}_interval({float(low).hex()}, {float(high).hex()})"
+def _between(low: float, high: float, precision: Precision) -> str:
+    """Return the C of any float between two numbers, or next to one that is none."""
+    kind, ends = precision.dtype, []
+    for end, way in ((low, -np.inf), (high, np.inf)):
+        held = kind(end)
+        inward = float(held) > end if way < 0 else float(held) < end
+        ends.append(float(np.nextafter(held, kind(way))) if inward else float(held))
+    return f"Frama_C_{precision.scalar}_interval({ends[0].hex()}, {ends[1].hex()})"

@@ -11,6 +11,7 @@ output's equation; none counts as smaller than the smallest normal number.
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from decimal import ROUND_CEILING, Decimal
 from typing import Any
 
 import numpy as np
@@ -70,14 +71,14 @@ class Expected:
 def upwards(x: float) -> float:
     """Return ``x`` rounded up to two digits.
 
-    >>> upwards(1.2301), upwards(0.0), upwards(11.0)
-    (1.3, 0.0, 11.0)
+    >>> upwards(1.2301), upwards(0.0), upwards(11.0), upwards(5.51e-29)
+    (1.3, 0.0, 11.0, 5.6e-29)
     """
     if x == 0 or not math.isfinite(x):
         return x
-    step = int(f"{x:e}".partition("e")[2]) - DIGITS + 1
-    unit = 10.0 ** abs(step)
-    return math.ceil(x * unit) / unit if step < 0 else math.ceil(x / unit) * unit
+    exact = Decimal(x)
+    unit = Decimal(1).scaleb(exact.adjusted() - DIGITS + 1)
+    return float(exact.quantize(unit, ROUND_CEILING))
 
 
 def should(

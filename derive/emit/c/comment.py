@@ -10,6 +10,7 @@ from derive.motion.runge_kutta.system import FLOW, NEXT
 from derive.program.program import Bound, Measurement, Program, Quantity, Singular
 from derive.program.status import possible
 from derive.scene.escape import in_comment
+from derive.scene.unit import behind
 
 SETUP_ERROR = (
     "each constant is worked out in twice the working precision and rounded once: at most 1 ulp, "
@@ -184,7 +185,7 @@ def _bound_clause(program: Program, own: Sequence[Bound]) -> str:
     unproved = dict.fromkeys(b.why for b in own if b.proved is None)
     if unproved:
         return f"not proved: {'; '.join(unproved)}."
-    units = {q.name: f" {q.unit}" if q.unit else "" for q in program.outputs}
+    units = {q.name: behind(q.unit) for q in program.outputs}
     each = [f"{b.output} {b.proved:.2g}{units[b.output]} (seen {b.seen:.2g})" for b in own]
     assumed = dict.fromkeys(words for b in own for words in b.assumed)
     more = f"; assumed: {', '.join(assumed)}" if assumed else ""

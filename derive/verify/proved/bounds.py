@@ -109,14 +109,15 @@ def box(library: Library, program: Program, of: Traits) -> Region:
     every = (*library.setup.inputs, *program.inputs)
     quantities = {c: q for q in every for c in q.components if q.role != "constants"}
     names = tuple(s.name for s in of.trace.steps if s.operator == "given")
-    ends = [_ends(quantities, c, of.precision) for c in names] + [(0.0, 1.0)] * len(of.choices)
+    ends = [ends_in_floats(quantities, c, of.precision) for c in names]
+    ends += [(0.0, 1.0)] * len(of.choices)
     low, high = np.array(ends).reshape(len(ends), 2).T
     whole = [q.components for q in program.inputs if q.is_quaternion]
     places = [tuple(map(names.index, each)) for each in whole if set(each) <= set(names)]
     return Region((*names, *map(choice_name, of.choices)), low, high, tuple(places))
 
 
-def _ends(of: dict[str, Quantity], name: str, precision: Precision) -> tuple[float, float]:
+def ends_in_floats(of: dict[str, Quantity], name: str, precision: Precision) -> tuple[float, float]:
     """Return the ends of a range; a remainder is at most what rounding leaves of its state."""
     q = of[name]
     if q.role != "remainder":
@@ -164,4 +165,6 @@ def assumed(at: Cutting) -> tuple[str, ...]:
         says.append(f"divisors |q|^2 in {BROAD[0]:g} .. {BROAD[1]:g}")
     if kinds & {"sin", "cos"}:
         says.append("sines and cosines of our own within 0.79 ulp")
+    if "power_of_two" in kinds:
+        says.append("scaling by any power of two gives the same")
     return tuple(says)

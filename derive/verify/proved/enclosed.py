@@ -71,7 +71,7 @@ def enclosed(of: Traits, boxes: Mapping[str, Interval], count: int) -> Enclosed:
     """Return the values of all places over boxes, the ranges of what is given by name."""
     found = Enclosed(of, [], [], [], np.full(count, -1), np.zeros(count, bool))
     for index, step in enumerate(of.trace.steps):
-        at = _given(of, step, boxes, count) if not step.operands else _made(found, index, step)
+        at = given(of, step, boxes, count) if not step.operands else _made(found, index, step)
         value, error, own = at
         if choice_name(index) in boxes:
             value = _decided(found, value, boxes[choice_name(index)])
@@ -104,7 +104,8 @@ def _blame(found: Enclosed, index: int, step: Operation) -> None:
     found.blamed = np.where((found.blamed < 0) & lost, index, found.blamed)
 
 
-def _given(of: Traits, step: Operation, boxes: Mapping[str, Interval], count: int) -> At:
+def given(of: Traits, step: Operation, boxes: Mapping[str, Interval], count: int) -> At:
+    """Return the range of a number or of what is given, its error in pairs, its own in floats."""
     nothing = np.zeros(count)
     if step.operator == "given":
         return boxes[step.name], nothing, None
@@ -132,29 +133,29 @@ def _u(of: Traits) -> float:
 def _made(found: Enclosed, index: int, step: Operation) -> At:
     of = found.traits
     each = [found.ranges[o] for o in step.operands]
-    exactly = _exactly(of, index, step, each)
+    exact = exactly(of, index, step, each)
     if index in of.lengths:
-        exactly = np.clip(exactly[0], *BROAD), np.clip(exactly[1], *BROAD)
+        exact = np.clip(exact[0], *BROAD), np.clip(exact[1], *BROAD)
     nothing = np.zeros(len(found.blamed))
     if step.origin == "rounded":
         (error,) = (found.errors[o] for o in step.operands)
         least = float(np.finfo(of.precision.dtype).smallest_subnormal)
-        most = (greatest(exactly) + error) * UPWARDS
+        most = (greatest(exact) + error) * UPWARDS
         own = nothing if of.exact[index] else error + half_unit(most, of.precision.bits, least)
-        return _widened(exactly, own), nothing, own
+        return _widened(exact, own), nothing, own
     if step.operator in (*COMPARED, "both", "either"):
-        return exactly, nothing, None
+        return exact, nothing, None
     if step.operator == "select" and _may_turn(of, index, step):
         torn = each[0][0] != each[0][1]
-        jump = np.where(torn, greatest(exactly) * 2, 0.0)
+        jump = np.where(torn, greatest(exact) * 2, 0.0)
         if step.origin == "pairs":
-            return exactly, np.maximum(*(found.errors[o] for o in step.operands[1:])) + jump, None
+            return exact, np.maximum(*(found.errors[o] for o in step.operands[1:])) + jump, None
         own = np.where(torn, np.inf, 0.0)
-        return exactly, nothing, own
+        return exact, nothing, own
     if step.origin == "pairs":
-        return exactly, _pair_error(of, step, found, exactly), None
-    rounding = _rounding(of, step, exactly, each)
-    return _widened(exactly, rounding), nothing, rounding
+        return exact, _pair_error(of, step, found, exact), None
+    rounding = _rounding(of, step, exact, each)
+    return _widened(exact, rounding), nothing, rounding
 
 
 def _may_turn(of: Traits, index: int, step: Operation) -> bool:
@@ -272,7 +273,7 @@ MEANT: Mapping[str, Callable[..., Interval]] = {
 }
 
 
-def _exactly(of: Traits, index: int, step: Operation, each: Sequence[Interval]) -> Interval:
+def exactly(of: Traits, index: int, step: Operation, each: Sequence[Interval]) -> Interval:
     """Return the range of an operation without rounding."""
     if step.operator == "mul" and step.operands[0] == step.operands[1]:
         return squared(each[0])
