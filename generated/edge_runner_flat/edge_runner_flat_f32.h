@@ -85,7 +85,7 @@ void edge_runner_flat_N_f32(const edge_runner_flat_constants_f32 *constants, flo
  * Error: median 0.41, largest 2.2 u of the largest product or sum in the equation (of gyro_gain;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8329 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_gain 2.7e-07 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_gain 2.7e-07 (seen
  *            2.5e-07).
  * Cost: 1 add, 2 mul.
  * On Cortex-M0+, -O2: 306 to 319 instructions, 32 B of code, 48 B of stack.

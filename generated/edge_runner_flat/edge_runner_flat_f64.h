@@ -83,8 +83,7 @@ void edge_runner_flat_N_f64(const edge_runner_flat_constants_f64 *constants, dou
  * Error: median 0.41, largest 2.2 u of the largest product or sum in the equation (of gyro_gain;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8330 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_gain 5e-16 1 (seen
- *            4.7e-16).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_gain 5e-16 (seen 4.7e-16).
  * Cost: 1 add, 2 mul.
  * On Cortex-M0+, -O2: 706 to 726 instructions, 40 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,

@@ -99,7 +99,7 @@ void heavy_body_kinetic_energy_f32(const heavy_body_constants_f32 *constants, co
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 2 u (of omega_next,
  *            thin disc).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.8e-06 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.8e-06 (seen
  *            8.7e-08), omega_next 3.4e-05 rad/s (seen 9.5e-07); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 93 add, 17 sub, 120 mul, 9 div, 9 neg, 2 less, 30 select.
@@ -123,7 +123,7 @@ void heavy_body_step_split2_f32(const heavy_body_constants_f32 *constants, const
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 3.1 u (of
  *            omega_next, thin disc).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.7e-05 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.7e-05 (seen
  *            9.1e-08), omega_next 0.00029 rad/s (seen 1.1e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 588 add, 137 sub, 716 mul, 54 div, 49 neg, 2 less, 90 select.
@@ -149,7 +149,7 @@ void heavy_body_step_split_f32(const heavy_body_constants_f32 *constants, const 
  * Error: median 0.26, largest 3.6 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.2e-06 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.2e-06 (seen
  *            1.6e-07), omega_next 1.2e-06 rad/s (seen 6.4e-07); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.

@@ -97,7 +97,7 @@ void heavy_body_kinetic_energy_f64(const heavy_body_constants_f64 *constants, co
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 2.5 u (of
  *            omega_next, denormal).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 3.3e-15 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 3.3e-15 (seen
  *            1.4e-16), omega_next 6.2e-14 rad/s (seen 1.7e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 93 add, 17 sub, 120 mul, 9 div, 9 neg, 2 less, 30 select.
@@ -120,7 +120,7 @@ void heavy_body_step_split2_f64(const heavy_body_constants_f64 *constants, const
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 3.2 u (of
  *            omega_next, at rest).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.9e-14 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.9e-14 (seen
  *            1.3e-16), omega_next 5.4e-13 rad/s (seen 2e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 588 add, 137 sub, 716 mul, 54 div, 49 neg, 2 less, 90 select.
@@ -145,7 +145,7 @@ void heavy_body_step_split_f64(const heavy_body_constants_f64 *constants, const 
  * Error: median 0.36, largest 3.8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.2e-15 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.2e-15 (seen
  *            2.8e-16), omega_next 2.3e-15 rad/s (seen 1.5e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.

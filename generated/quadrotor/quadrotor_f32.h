@@ -311,7 +311,7 @@ void quadrotor_gyro_f32(const quadrotor_constants_f32 *constants, const float w[
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: p_next 3.9e-06 m (seen
  *            3.8e-06), p_dot_next 2e-06 m/s (seen 5.2e-07), w_next 1.6e-06 rad/s (seen 6.2e-07),
- *            s_next 0.00011 rad/s (seen 6.8e-05), attitude_hull_next 9.3e-07 1 (seen 1.5e-07);
+ *            s_next 0.00011 rad/s (seen 6.8e-05), attitude_hull_next 9.3e-07 (seen 1.5e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude_hull = 0, attitude_hull_next infinite, no number or beyond all measure.

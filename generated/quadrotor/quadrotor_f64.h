@@ -305,7 +305,7 @@ void quadrotor_gyro_f64(const quadrotor_constants_f64 *constants, const double w
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: p_next 7.2e-15 m (seen
  *            7.1e-15), p_dot_next 3.7e-15 m/s (seen 1e-15), w_next 3e-15 rad/s (seen 1e-15),
- *            s_next 2.1e-13 rad/s (seen 1.4e-13), attitude_hull_next 1.8e-15 1 (seen 2.5e-16);
+ *            s_next 2.1e-13 rad/s (seen 1.4e-13), attitude_hull_next 1.8e-15 (seen 2.5e-16);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude_hull = 0, attitude_hull_next infinite, no number or beyond all measure.

@@ -107,7 +107,7 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  *            the ranges, 65536 searched from the worst); at 8282 hard samples 1.5e+03 u (of
  *            attitude_next, turned, ill-conditioned).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_next 7.7e-15 m (seen
- *            7.4e-15), attitude_next 9.6e-15 1 (seen 2.8e-16), velocity_next 1.4e-14 m/s (seen
+ *            7.4e-15), attitude_next 9.6e-15 (seen 2.8e-16), velocity_next 1.4e-14 m/s (seen
  *            3.7e-15), omega_next 3e-14 rad/s (seen 1.4e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.

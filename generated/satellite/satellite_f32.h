@@ -121,7 +121,7 @@ void satellite_state_rate_f32(const satellite_constants_f32 *constants, const fl
  * Error: median 0.26, largest 5.8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.2e-06 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.2e-06 (seen
  *            1.5e-07), omega_next 1.2e-06 rad/s (seen 7.9e-07); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
@@ -151,7 +151,7 @@ void satellite_step_rk4_f32(const satellite_constants_f32 *constants, const floa
  * Error: median 0.26, largest 6.7 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.6e-06 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.6e-06 (seen
  *            1.5e-07), omega_next 1.2e-06 rad/s (seen 7.2e-07), jacobian 1.1e-05 (seen 3.7e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
@@ -191,7 +191,7 @@ void satellite_step_rk4_jacobian_dense_f32(const satellite_constants_f32 *consta
  * Error: median 0.26, largest 5.4 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.6e-06 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.6e-06 (seen
  *            1.5e-07), omega_next 1.2e-06 rad/s (seen 7.6e-07), jacobian 6.3e-07 (seen 1.8e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
@@ -231,7 +231,7 @@ void satellite_step_rk4_tangent_dense_f32(const satellite_constants_f32 *constan
  * Error: median 0.26, largest 6.8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.4e-06 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.4e-06 (seen
  *            1.5e-07), omega_next 1.2e-06 rad/s (seen 7.3e-07), jacobian 1.2e-06 (seen 4.6e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
@@ -295,7 +295,7 @@ void satellite_step_lie_f32(const satellite_constants_f32 *constants, const floa
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 5.2 u (of
  *            omega_next, denormal).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.5e-05 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.5e-05 (seen
  *            9e-08), omega_next 0.00023 rad/s (seen 1.1e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 531 add, 100 sub, 585 mul, 54 div, 44 neg, 2 less, 24 select.

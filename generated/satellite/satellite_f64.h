@@ -118,7 +118,7 @@ void satellite_state_rate_f64(const satellite_constants_f64 *constants, const do
  * Error: median 0.37, largest 4.2 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.2e-15 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.2e-15 (seen
  *            2.9e-16), omega_next 2.2e-15 rad/s (seen 1.1e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
@@ -147,7 +147,7 @@ void satellite_step_rk4_f64(const satellite_constants_f64 *constants, const doub
  * Error: median 0.37, largest 8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.8e-15 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.8e-15 (seen
  *            2.6e-16), omega_next 2.2e-15 rad/s (seen 1.4e-15), jacobian 1.9e-14 (seen 8.2e-16);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
@@ -187,7 +187,7 @@ void satellite_step_rk4_jacobian_dense_f64(const satellite_constants_f64 *consta
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 4.4 u (of
  *            omega_next, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.8e-15 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.8e-15 (seen
  *            3e-16), omega_next 2.2e-15 rad/s (seen 1e-15), jacobian 1.2e-15 (seen 3.8e-16);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
@@ -226,7 +226,7 @@ void satellite_step_rk4_tangent_dense_f64(const satellite_constants_f64 *constan
  * Error: median 0.37, largest 6.1 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.4e-15 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.4e-15 (seen
  *            2.6e-16), omega_next 2.2e-15 rad/s (seen 1.3e-15), jacobian 2.3e-15 (seen 7.8e-16);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
@@ -288,7 +288,7 @@ void satellite_step_lie_f64(const satellite_constants_f64 *constants, const doub
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 5.4 u (of
  *            omega_next, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.6e-14 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.6e-14 (seen
  *            2.1e-16), omega_next 4.2e-13 rad/s (seen 1.6e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 531 add, 100 sub, 585 mul, 54 div, 44 neg, 2 less, 24 select.

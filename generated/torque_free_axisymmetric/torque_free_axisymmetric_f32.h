@@ -104,7 +104,7 @@ void torque_free_axisymmetric_body_rate_f32(const torque_free_axisymmetric_const
  * Error: median 0.61, largest 4.2 u of the largest product or sum in the equation (of tan_theta;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_theta 1.1e-07 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_theta 1.1e-07 (seen
  *            5.5e-08).
  * Singular: at w_z = 0, tan_theta infinite, no number or beyond all measure.
  * Cost: 1 add, 5 mul, 1 div, 1 sqrt.
@@ -124,8 +124,7 @@ void torque_free_axisymmetric_tan_theta_f32(const torque_free_axisymmetric_const
  * Error: median 0.48, largest 2.8 u of the largest component, by rounding alone (of tan_beta;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_beta 6.7e-08 1 (seen
- *            5e-08).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_beta 6.7e-08 (seen 5e-08).
  * Singular: at w_z = 0, tan_beta infinite, no number or beyond all measure.
  * Cost: 1 add, 2 mul, 1 div, 1 sqrt.
  * On Cortex-M0+, -O2: 999 to 1045 instructions, 48 B of code, 64 B of stack.

@@ -101,7 +101,7 @@ void torque_free_axisymmetric_body_rate_f64(const torque_free_axisymmetric_const
  * Error: median 0.62, largest 4.4 u of the largest product or sum in the equation (of tan_theta;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples
  *            4.5 u (of tan_theta, thin disc).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_theta 1.9e-16 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_theta 1.9e-16 (seen
  *            1.1e-16).
  * Singular: at w_z = 0, tan_theta infinite, no number or beyond all measure.
  * Cost: 1 add, 5 mul, 1 div, 1 sqrt.
@@ -120,7 +120,7 @@ void torque_free_axisymmetric_tan_theta_f64(const torque_free_axisymmetric_const
  * Error: median 0.47, largest 2.8 u of the largest component, by rounding alone (of tan_beta;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_beta 1.3e-16 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_beta 1.3e-16 (seen
  *            9.3e-17).
  * Singular: at w_z = 0, tan_beta infinite, no number or beyond all measure.
  * Cost: 1 add, 2 mul, 1 div, 1 sqrt.

@@ -217,7 +217,7 @@ void tumbling_body_step_dmv_f32(const float plan[13], const float attitude[4], c
  * Error: median 0.19, largest 2 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.8e-06 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.8e-06 (seen
  *            9.5e-08), omega_next 2.7e-05 rad/s (seen 7.8e-07); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 82 add, 15 sub, 100 mul, 9 div, 9 neg, 2 less, 18 select.
@@ -241,7 +241,7 @@ void tumbling_body_step_split2_f32(const tumbling_body_constants_f32 *constants,
  * Error: median 0.19, largest 2 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 3.9e-06 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 3.9e-06 (seen
  *            1.2e-07), omega_next 6.6e-05 rad/s (seen 9.6e-07); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 292 add, 45 sub, 306 mul, 29 div, 29 neg, 2 less, 18 select.
@@ -265,7 +265,7 @@ void tumbling_body_step_split_f32(const tumbling_body_constants_f32 *constants,
  * Error: median 0.2, largest 2.7 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.2e-05 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.2e-05 (seen
  *            1e-07), omega_next 0.00034 rad/s (seen 1.1e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 460 add, 69 sub, 470 mul, 45 div, 45 neg, 2 less, 18 select.
@@ -292,7 +292,7 @@ void tumbling_body_step_split6_f32(const tumbling_body_constants_f32 *constants,
  * Error: median 0.26, largest 3.9 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.1e-06 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.1e-06 (seen
  *            1.6e-07), omega_next 1.1e-06 rad/s (seen 6.4e-07); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
@@ -321,7 +321,7 @@ void tumbling_body_step_rk4_f32(const tumbling_body_constants_f32 *constants,
  * Error: median 0.26, largest 6.3 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.6e-06 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.6e-06 (seen
  *            1.4e-07), omega_next 1.1e-06 rad/s (seen 6e-07), jacobian 1.1e-05 (seen 3.5e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.

@@ -213,7 +213,7 @@ void tumbling_body_step_dmv_f64(const double plan[13], const double attitude[4],
  * Error: median 0.19, largest 2 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 3.4e-15 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 3.4e-15 (seen
  *            1.3e-16), omega_next 4.9e-14 rad/s (seen 1.5e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 82 add, 15 sub, 100 mul, 9 div, 9 neg, 2 less, 18 select.
@@ -237,7 +237,7 @@ void tumbling_body_step_split2_f64(const tumbling_body_constants_f64 *constants,
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 2.3 u (of
  *            attitude_next, near sphere).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 7.3e-15 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 7.3e-15 (seen
  *            1.4e-16), omega_next 1.3e-13 rad/s (seen 1.5e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 292 add, 45 sub, 306 mul, 29 div, 29 neg, 2 less, 18 select.
@@ -261,7 +261,7 @@ void tumbling_body_step_split_f64(const tumbling_body_constants_f64 *constants,
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 2.9 u (of
  *            attitude_next, thin disc).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.3e-14 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.3e-14 (seen
  *            1.8e-16), omega_next 6.4e-13 rad/s (seen 1.8e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 460 add, 69 sub, 470 mul, 45 div, 45 neg, 2 less, 18 select.
@@ -287,7 +287,7 @@ void tumbling_body_step_split6_f64(const tumbling_body_constants_f64 *constants,
  * Error: median 0.38, largest 4.1 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2e-15 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2e-15 (seen
  *            2.9e-16), omega_next 2e-15 rad/s (seen 1.4e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
@@ -315,7 +315,7 @@ void tumbling_body_step_rk4_f64(const tumbling_body_constants_f64 *constants,
  * Error: median 0.38, largest 7.6 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.7e-15 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.7e-15 (seen
  *            2.5e-16), omega_next 2e-15 rad/s (seen 1.1e-15), jacobian 1.9e-14 (seen 7.7e-16);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.

@@ -126,7 +126,7 @@ void tumbling_disc_step_dmv_f32(const float plan[6], const float attitude[4], co
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 2.3 u (of
  *            attitude_next, thin disc).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 3.7e-07 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 3.7e-07 (seen
  *            9.3e-08), omega_next 2.5e-06 rad/s (seen 1.2e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 40 add, 9 sub, 55 mul, 5 div, 5 neg.
@@ -153,7 +153,7 @@ void tumbling_disc_step_split_f32(const tumbling_disc_constants_f32 *constants,
  * Error: median 0.26, largest 3.6 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1e-06 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1e-06 (seen
  *            1.5e-07), omega_next 1.3e-06 rad/s (seen 8.5e-07); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.

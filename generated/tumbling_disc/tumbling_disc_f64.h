@@ -122,7 +122,7 @@ void tumbling_disc_step_dmv_f64(const double plan[6], const double attitude[4],
  * Error: median 0.18, largest 2.5 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 6.8e-16 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 6.8e-16 (seen
  *            1.3e-16), omega_next 4.6e-15 rad/s (seen 1.8e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 40 add, 9 sub, 55 mul, 5 div, 5 neg.
@@ -148,7 +148,7 @@ void tumbling_disc_step_split_f64(const tumbling_disc_constants_f64 *constants,
  * Error: median 0.38, largest 3.7 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.9e-15 1 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.9e-15 (seen
  *            2.6e-16), omega_next 2.3e-15 rad/s (seen 1.4e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
