@@ -16,6 +16,7 @@ from derive.scene.formula import ZERO, Formula, number
 from derive.scene.machine import Entries, Frame, Member
 from derive.scene.numbers import check_member, positive
 from derive.scene.scalars import Scalars
+from derive.scene.scope import formulas
 from derive.scene.shape import (
     AXIS_AFTER,
     CONE_CENTRE,
@@ -29,7 +30,7 @@ from derive.scene.shape import (
     moment,
     round_part,
 )
-from derive.scene.table import Table, formulas, keys, one_of
+from derive.scene.table import Table, keys, one_of
 from derive.scene.unit import LENGTH
 
 CHOSEN = ("kind", "shape")

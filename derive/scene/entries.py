@@ -163,6 +163,11 @@ GRADIENT = (
     ALONG,
     ALL,
 )
+FORMULA = (
+    Entry("formula", "any", "of all that is known with the state", default=REQUIRED),
+    MEANING,
+    Entry("unit", "any", "coherent SI, which the formula must have; its own if left out"),
+)
 RESULT = (
     Entry("formula", "any", "of answers, parameters and the motion", default=REQUIRED),
     MEANING,

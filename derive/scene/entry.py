@@ -9,11 +9,9 @@ from derive.scene.declaration import AXES, Given, Parameter, SceneError, Turning
 from derive.scene.formula import Formula
 from derive.scene.names import label
 from derive.scene.numbers import positive
+from derive.scene.scope import Scope, formula, formulas, triple
 from derive.scene.table import (
-    Scope,
     Table,
-    formula,
-    formulas,
     interval,
     keys,
     one_of,
@@ -22,7 +20,6 @@ from derive.scene.table import (
     shown,
     table,
     text,
-    triple,
 )
 from derive.scene.unit import NONE, dimension
 

@@ -60,7 +60,7 @@ def parse(text: str) -> Formula:
     formula = _sum(tokens, 0)
     if tokens[-1].kind != "end":
         raise _expected("an operator or the end", tokens[-1])
-    if _height(formula) > TALLEST_TREE:
+    if height(formula) > TALLEST_TREE:
         raise FormulaError(f"joins more than {TALLEST_TREE} terms in one chain; use parentheses")
     return formula
 
@@ -82,12 +82,12 @@ def _expected(what: str, found: Token) -> FormulaError:
     return FormulaError(f"at {found.place}: expected {what}, found {shown}")
 
 
-def _height(formula: Formula) -> int:
+def height(formula: Formula) -> int:
     """Return the height of a tree, level by level, so that a tall tree cannot exhaust the stack."""
-    level, height = [formula], 0
+    level, levels = [formula], 0
     while level:
-        level, height = [part for node in level for part in node.operands], height + 1
-    return height
+        level, levels = [part for node in level for part in node.operands], levels + 1
+    return levels
 
 
 def _as_written(formula: Formula, start: Token, tokens: Tokens) -> Formula:

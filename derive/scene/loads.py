@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from derive.scene.declaration import AXES, SceneError, Triple
 from derive.scene.entries import FORCE, GRADIENT, SPRING, WEIGHT
@@ -11,7 +11,8 @@ from derive.scene.machine import Force, Frame, Gradient, Load, Member, Spring, U
 from derive.scene.names import identifier, label
 from derive.scene.numbers import check_unit, ends_of, middle
 from derive.scene.scalars import Scalars
-from derive.scene.table import Scope, Table, keys, table, triple
+from derive.scene.scope import triple
+from derive.scene.table import Table, keys, table
 from derive.scene.unit import Dimension, dimension
 
 MARK = re.compile(r"\?([A-Za-z][A-Za-z0-9_]*)")
@@ -106,7 +107,7 @@ def _three(reader: _Reader, given: Table, key: str) -> Triple:
     """Return three formulas of what is known and of unknowns."""
     parts, known = _spread(given, key), reader.scalars.known
     units = unknown_units(tuple(reader.found.values()))
-    both = Scope({**known.dimensions, **units}, known.others, known.rule)
+    both = replace(known, dimensions={**known.dimensions, **units})
     if isinstance(parts, list):
         parts = [MARK.sub(r"\1", part) if isinstance(part, str) else part for part in parts]
     return triple(parts, given.of(key), both, dimension(UNKNOWNS[key]))

@@ -33,6 +33,7 @@ TABLES: Mapping[str, tuple[Entry, ...]] = {
     "`[coordinates]` NAME": entries.COORDINATE,
     "`[speeds]` NAME": entries.SPEED,
     "`[inputs]` NAME": entries.INPUT,
+    "`[formulas]` NAME, a formula or": entries.FORMULA,
     "`[frames.NAME]`": entries.FRAME,
     "`rolls` of a frame": entries.ROLLS,
     "`[bodies.NAME]`, besides a kind or a shape": entries.MEMBER,

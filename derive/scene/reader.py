@@ -18,6 +18,7 @@ from derive.scene.frames import read_frames
 from derive.scene.groups import grouped
 from derive.scene.loads import read_loads
 from derive.scene.machine import Frame, Member, Place, Result, Scene, Steady, Unknown
+from derive.scene.named import check_named, named_told, named_unused, widened
 from derive.scene.names import distinct, label
 from derive.scene.numbers import member_doubts
 from derive.scene.results import (
@@ -32,7 +33,8 @@ from derive.scene.results import (
 from derive.scene.safe import require_values
 from derive.scene.said import said
 from derive.scene.scalars import PER_SECOND, Scalars, read_scalars
-from derive.scene.table import THE_FILE, Scope, Table, formula, keys, several, table
+from derive.scene.scope import Scope, formula
+from derive.scene.table import THE_FILE, Table, keys, several, table
 from derive.scene.unit import BESIDE_SI, dimension, misnamed, spelled
 from derive.scene.wanted import check_form, moves
 
@@ -47,7 +49,7 @@ class Form:
     motion: tuple[Entry, ...]
 
 
-SCALARS = ("parameters", "coordinates", "speeds", "inputs", "motion")
+SCALARS = ("parameters", "coordinates", "speeds", "inputs", "formulas", "motion")
 MACHINE = Form(
     ("bodies", "frames", "loads", "results", "angular_momentum", "linearised", "steady", *SCALARS),
     ("body", "axes", "wheels", "point", "known", "position"),
@@ -83,6 +85,7 @@ def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
     """Return the machine of a parsed TOML document, checked table by table."""
     head, part = read_file(document, name, source, MACHINE)
     scalars = read_scalars(part)
+    check_named(scalars.named, scalars.known)
     frames = read_frames(part["frames"], scalars, tuple(part["bodies"].entries))
     bodies = _bodies(part["bodies"], frames, scalars)
     loads, unknowns = read_loads(part["loads"], scalars, frames, bodies)
@@ -106,7 +109,8 @@ def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
     require_sizes(scene)
     check_form(scene.wanted, scene.form, scene.emission)
     require_values(scene)
-    return grouped(replace(scene, warnings=(*scene.warnings, *doubts(scene)), told=said(scene)))
+    told = (*said(scene), *named_told(scalars.named))
+    return grouped(replace(scene, warnings=(*scene.warnings, *doubts(scene)), told=told))
 
 
 def _misnamed(scalars: Scalars, results: tuple[Result, ...]) -> list[str]:
@@ -181,11 +185,12 @@ def _unused(scalars: Scalars, source: str) -> tuple[str, ...]:
     entries = [(f"parameter '{p.name}' is not used", p.name, 1) for p in scalars.parameters]
     entries += [(f"no formula uses {m.kind} '{m.name}'", m.name, 0 if m.vector else 1)
                 for m in scalars.moving]  # fmt: skip
-    return tuple(
+    unused = (
         says
         for says, name, declared in entries
         if words[name] == declared and not words[f"{name}_dot"] + words[f"{name}_ddot"]
     )
+    return (*unused, *named_unused(scalars.named, source))
 
 
 def _doubts(bodies: tuple[Member, ...], scalars: Scalars) -> Iterator[str]:
@@ -215,7 +220,8 @@ def _about(given: Table, scalars: Scalars) -> Mapping[str, Formula]:
     others = dict.fromkeys(free.keys() - kept, "free, and not known")
     dimensions = {n: d for n, d in scalars.known.dimensions.items() if n not in others}
     dimensions |= {n: dimension(free[n]) for n in kept}
-    scope = Scope(dimensions, others, "only what is given may stand here")
+    base = Scope(dimensions, others, "only what is given may stand here")
+    scope = widened(base, scalars.named)
     return {
         name: formula(given.entries[name], f"linearised.{name}", scope, dimension(unit))
         if name in given.entries
@@ -239,14 +245,15 @@ def _steady(
     if given.entries["unknown"] == []:
         raise SceneError("steady.unknown is an empty list; it must name what is to be found")
     fixed = {"pi", *(p.name for p in scalars.parameters if p.value is not None)}
-    scalar = [n for n in scalars.known.dimensions if n not in fixed]
+    scalar = [n for n in scalars.known.dimensions if n not in {*fixed, *scalars.known.meanings}]
     names = several(given.entries["unknown"], "steady.unknown", scalar)
     vanishes, unit = None, ""
     if "vanishes" in given.entries:
         answers = answer_units(scalars, unknowns) | {
             r.name: dimension(r.unit) for r in results if r.unit not in BESIDE_SI
         }
-        both = Scope(dict(scalars.known.dimensions) | answers, {}, "")
+        known = scalars.known
+        both = Scope(dict(known.dimensions) | answers, {}, "", known.meanings)
         vanishes, found = of_any_unit(given.entries["vanishes"], "steady.vanishes", both)
         unit = spelled(found)
         vanishes = written_out(vanishes, results)

@@ -11,7 +11,8 @@ from derive.scene.loads import MARK, unknown_units
 from derive.scene.machine import Result, Unknown
 from derive.scene.names import identifier, refuse_taken_functions
 from derive.scene.scalars import Scalars, unknown_rates
-from derive.scene.table import Scope, Table, measured, shown, text
+from derive.scene.scope import Scope, measured
+from derive.scene.table import Table, shown, text
 from derive.scene.unit import BESIDE_SI, NONE, Dimension, UnitError, dimension, spelled
 from derive.scene.wanted import JACOBIAN, OF_MACHINES, WANTED, resembling
 
@@ -39,7 +40,7 @@ def read_results(
         if isinstance(value, dict):
             entry = entries_of(Table(f"result '{key}'", value), RESULT, Reading())
             said, meaning = entry["formula"], entry["meaning"] or ""
-        both = Scope(dict(scope.dimensions) | answers, {}, "")
+        both = Scope(dict(scope.dimensions) | answers, {}, "", scope.meanings)
         read, unit = of_any_unit(said, f"result '{key}'", both)
         energy = unit == dimension("J") and not energies.isdisjoint(symbols(read))
         energies |= {name} if energy else set()

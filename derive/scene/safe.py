@@ -30,7 +30,7 @@ SMALLEST_BOX = 2.0**-36
 """Part of a range in which a zero that no sign shows is taken to lie."""
 _WORDS = {
     "Member": "body", "Force": "load", "Weight": "load", "Spring": "load", "Gradient": "load",
-    "Moving": "coordinate", "Scene": "",
+    "Moving": "coordinate", "Scene": "", "Named": "formula",
 }  # fmt: skip
 """What those are called whose class has another name; of a whole, its fields are."""
 

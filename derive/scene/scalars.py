@@ -11,8 +11,10 @@ from derive.scene.entries import COORDINATE, INPUT, MEANING, PARAMETER, RANGE, S
 from derive.scene.entry import Reading, entries_of
 from derive.scene.escape import brief
 from derive.scene.formula import ZERO, Formula, symbols
-from derive.scene.names import identifier
-from derive.scene.table import Scope, Table, formula, shown, table
+from derive.scene.named import Named, read_named, widened
+from derive.scene.names import distinct, identifier
+from derive.scene.scope import Scope, formula
+from derive.scene.table import Table, shown, table
 from derive.scene.table import unit as unit_of
 from derive.scene.unit import NONE, Dimension, dimension, spelled
 
@@ -30,6 +32,7 @@ class Scalars:
     coordinates: tuple[Moving, ...] = ()
     speeds: tuple[Moving, ...] = ()
     inputs: tuple[Moving, ...] = ()
+    named: tuple[Named, ...] = ()
 
     @property
     def moving(self) -> tuple[Moving, ...]:
@@ -46,6 +49,7 @@ class Scalars:
             if m.free and m.kind != "input":
                 rates.append(m.unknown)
             found += [(name, f"the rate '{name}'") for name in rates]
+        found += [(one.name, one.label) for one in self.named]
         vectors = dict.fromkeys((m.vector, m.kind) for m in self.moving if m.vector)
         for name, kind in vectors:
             found.append((name, f"the vector '{name}'"))
@@ -65,7 +69,7 @@ class Scalars:
         known = {"pi": NONE} | {p.name: dimension(p.unit) for p in self.parameters}
         others = {m.name: f"{ARTICLE[m.kind]} {m.kind}" for m in self.moving}
         others |= {i.name: "a rate" for m in self.moving for i in m.given}
-        return Scope(known, others, "only parameters may stand here")
+        return self._widened(known, others, "only parameters may stand here")
 
     @cached_property
     def places(self) -> Scope:
@@ -73,7 +77,7 @@ class Scalars:
         known = dict(self.constants.dimensions)
         known |= {c.name: dimension(c.unit) for c in self.coordinates}
         others = {m.name: f"{ARTICLE[m.kind]} {m.kind}" for m in (*self.speeds, *self.inputs)}
-        return Scope(known, others, "only parameters and coordinates may stand here")
+        return self._widened(known, others, "only parameters and coordinates may stand here")
 
     @cached_property
     def motions(self) -> Scope:
@@ -85,7 +89,7 @@ class Scalars:
         others = {m.name: "an input, whose rate is not known" for m in self.inputs}
         others |= dict.fromkeys(lost, "a coordinate, whose rate is to be found")
         others |= dict.fromkeys(accelerations(self), "an acceleration")
-        return Scope(
+        return self._widened(
             known, others, "only parameters, coordinates, their rates and speeds may stand here"
         )
 
@@ -98,7 +102,13 @@ class Scalars:
         others = dict.fromkeys(unknown_rates(self), "an acceleration that is found")
         others |= {f"{c.name}_dot": "a rate that is found" for c in self.coordinates
                    if c.rate is None}  # fmt: skip
-        return Scope(dimensions, others, "a load is a formula of what is known with the state")
+        rule = "a load is a formula of what is known with the state"
+        return self._widened(dimensions, others, rule)
+
+    def _widened(
+        self, dimensions: Mapping[str, Dimension], others: Mapping[str, str], rule: str
+    ) -> Scope:
+        return widened(Scope(dimensions, others, rule), self.named)
 
 
 def rates(scalars: Scalars) -> dict[str, Dimension]:
@@ -184,10 +194,15 @@ def read_scalars(part: Mapping[str, Table]) -> Scalars:
     known = {"pi": NONE} | {one.name: dimension(one.unit) for one in every}
     others = {f"{name}_dot": "a rate" for name in known if f"{name}_dot" not in known}
     others |= dict.fromkeys((m.name for m in inputs), "an input, whose rate is not known")
-    scope = Scope(known, others, "only parameters, coordinates and speeds may stand here")
+    named = read_named(part["formulas"])
+    base = Scope(known, others, "only parameters, coordinates and speeds may stand here")
+    scope = widened(base, named)
     moved = {one.name for one in own} | {s.name for s in speeds if s.free}
     coordinates = tuple(_coordinate(one, scope, moved) for one in own)
-    return Scalars(parameters, coordinates, speeds, inputs)
+    found = Scalars(parameters, coordinates, speeds, inputs, named)
+    if named:  # before a formula is met where a scalar of its name is meant
+        distinct(found.declared)
+    return found
 
 
 def _entries(given: Table, kind: str) -> list[tuple[str, Table]]:

@@ -105,6 +105,7 @@ def _tables() -> dict[str, Any]:
     rolling = _table(entries.FRAME)
     rolling["properties"]["rolls"] |= _table(entries.ROLLS)
     result = {"anyOf": [FORMULA, _table(entries.RESULT)]}
+    named = {"anyOf": [FORMULA, _table(entries.FORMULA)]}
     parameter = {**_table(entries.PARAMETER),
                  "oneOf": [{"required": ["range"]}, {"required": ["value"]}]}  # fmt: skip
     return {
@@ -112,6 +113,7 @@ def _tables() -> dict[str, Any]:
         "coordinates": _named(_table(entries.COORDINATE), "angles and lengths that change"),
         "speeds": _named(_table(entries.SPEED), "rates whose angle or length is not needed"),
         "inputs": _named(_table(entries.INPUT), "what is known at every instant"),
+        "formulas": _named(named, "names for formulas, which may stand in others"),
         "frames": _named(rolling, "moving axes, each carried by another"),
         "bodies": _named(_member(), "rigid bodies, each carried by a frame"),
         "loads": _named(_load(), "forces, couples, weights, springs, gravity gradients"),

@@ -4,18 +4,17 @@ Every function here raises SceneError with a sentence that begins at the table's
 """
 
 import difflib
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from datetime import date, time
 from decimal import Decimal
 from fractions import Fraction
 from numbers import Number
 
-from derive.scene.declaration import SceneError, Triple
+from derive.scene.declaration import SceneError
 from derive.scene.escape import brief
-from derive.scene.formula import Formula, FormulaError, number, symbols
-from derive.scene.grammar import LARGEST_DECIMAL_EXPONENT, parse
-from derive.scene.unit import Dimension, UnitError, dimension, dimension_of, spelled
+from derive.scene.grammar import LARGEST_DECIMAL_EXPONENT
+from derive.scene.unit import Dimension, UnitError, dimension
 
 LONGEST_INTEGER_BITS = 1000
 LONGEST_LINE, LONGEST_KEY = 1000, 100
@@ -36,11 +35,12 @@ NAMED = {
     "bodies": "body",
     "loads": "load",
     "results": "result",
+    "formulas": "formula",
 }
 """Tables whose entries are named by the scene, and what one of them is called."""
 
 
-SCALARS = ("parameter", "coordinate", "speed", "input", "wheel", "result")
+SCALARS = ("parameter", "coordinate", "speed", "input", "wheel", "result", "formula")
 """What a table of few entries is called."""
 
 
@@ -57,15 +57,6 @@ class Table:
             return key
         apart = ": " if self.label.partition(" ")[0] in SCALARS else "."
         return f"{self.label}{apart}{key}"
-
-
-@dataclass(frozen=True)
-class Scope:
-    """The symbols that a formula may use, and the scene's others with what they are."""
-
-    dimensions: Mapping[str, Dimension]
-    others: Mapping[str, str]
-    rule: str
 
 
 def gate(value: object, label: str, depth: int = 0) -> None:
@@ -231,63 +222,3 @@ def unit(given: Table) -> Dimension:
         return dimension(text(given.entries["unit"], f"{given.label}.unit"))
     except UnitError as error:
         raise SceneError(f"{given.label}: {error}") from None
-
-
-def formula(value: object, label: str, scope: Scope, expected: Dimension) -> Formula:
-    """Return a formula in known symbols and of the expected dimension.
-
-    A plain number stands for itself in the SI unit of the quantity.
-    """
-    read, found = measured(value, label, scope)
-    if found is not None and found != expected and read.operator != "number":
-        raise SceneError(
-            f"{label} = '{brief(read)}' is in {spelled(found)}, not {spelled(expected)}"
-        )
-    return read
-
-
-def measured(value: object, label: str, scope: Scope) -> tuple[Formula, Dimension | None]:
-    """Return a formula in known symbols and its dimension, None where it is 0 in any unit."""
-    read = _read(value, label)
-    _check_symbols(read, label, scope)
-    try:
-        return read, dimension_of(read, scope.dimensions)
-    except UnitError as error:
-        raise SceneError(f"{label}: {error}") from None
-
-
-def _read(value: object, label: str) -> Formula:
-    try:
-        if isinstance(value, str):
-            return parse(value)
-        return replace(number(rational(value, label)), written=str(value))
-    except FormulaError as error:
-        raise SceneError(f"{label} = {shown(value)}: {error}") from None
-
-
-def _check_symbols(read: Formula, label: str, scope: Scope) -> None:
-    for name in symbols(read):
-        if name in scope.others:
-            raise SceneError(f"{label} uses '{name}', {scope.others[name]}; {scope.rule}")
-        if name not in scope.dimensions:
-            rule = f"which the scene does not declare{nearest(name, scope.dimensions)}"
-            raise SceneError(f"{label} uses '{brief(name)}', {rule}")
-
-
-def triple(value: object, label: str, scope: Scope, expected: Dimension) -> Triple:
-    """Return three formulas along x, y and z."""
-    x, y, z = formulas(value, label, "xyz", scope, expected)
-    return x, y, z
-
-
-def formulas(
-    value: object, label: str, names: Sequence[str], scope: Scope, expected: Dimension
-) -> tuple[Formula, ...]:
-    """Return a formula for each of some names, such as x, y and z."""
-    if not isinstance(value, list) or len(value) != len(names):
-        which = f" ({', '.join(names)})" if len(names[0]) > 1 else ""
-        raise SceneError(f"{label} must be a list of {len(names)}{which}, not {shown(value)}")
-    return tuple(
-        formula(part, f"{label}.{name}", scope, expected)
-        for part, name in zip(value, names, strict=True)
-    )

@@ -12,7 +12,7 @@ from derive.scene import SceneError
 from derive.scene.escape import brief
 from derive.scene.formula import Formula, evaluate, symbols
 from derive.scene.functions import FUNCTIONS, PLAIN
-from derive.scene.table import Scope, measured
+from derive.scene.scope import Scope, measured
 from derive.scene.unit import BESIDE_SI, NONE, Dimension, dimension, spelled
 from derive.scene.wanted import moves
 from derive.solve.instrument import Instrument

@@ -125,7 +125,7 @@ def test_every_key_of_an_example_is_a_row(text: str) -> None:
 def _names(text: str) -> set[str]:
     """Return the names that a scene gives to its scalars and results."""
     document = tomllib.loads(text)
-    scalars = ("parameters", "coordinates", "speeds", "inputs", "results")
+    scalars = ("parameters", "coordinates", "speeds", "inputs", "formulas", "results")
     return {name for table in scalars for name in document.get(table, {})}
 
 

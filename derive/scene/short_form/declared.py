@@ -19,6 +19,7 @@ from derive.scene.declaration import (
     Turning,
 )
 from derive.scene.formula import Formula
+from derive.scene.named import Named
 from derive.scene.shape import Portion
 
 
@@ -91,6 +92,7 @@ class ShortForm:
     position: Given | None
     velocity: Given | None
     warnings: tuple[str, ...]
+    named: tuple[Named, ...] = ()
 
     @property
     def wanted(self) -> tuple[str, ...]:

@@ -13,6 +13,7 @@ from derive.scene.declaration import AXES, SceneError, Turning
 from derive.scene.doubtful import in_degrees
 from derive.scene.escape import brief
 from derive.scene.formula import ONE, ZERO, symbols
+from derive.scene.named import named_unused
 from derive.scene.numbers import check_unit, ends_of, middle, valuations_of
 from derive.scene.safe import formulas_of
 from derive.scene.short_form.declared import ShortForm
@@ -234,6 +235,7 @@ def warnings(scene: ShortForm, said: tuple[str, ...]) -> tuple[str, ...]:
         *_doubtful_wheels(scene),
         *_unused(scene, said),
         *_doubtful_axes(scene),
+        *named_unused(scene.named, scene.head["text"]),
         *([merging] if merging else []),
         *in_degrees((*scene.coordinates, *scene.parameters, *scene.inputs)),
     )

@@ -11,12 +11,14 @@ from typing import Any, Literal
 from derive.scene.declaration import Input, SceneError
 from derive.scene.entries import AXES_OF_ONE, COLUMN, KNOWN, POINT, POSITION, TIME, TIME_STEP, WHEEL
 from derive.scene.entry import Reading, entries_of
+from derive.scene.named import check_named, widened
 from derive.scene.names import distinct
 from derive.scene.reader import SCALARS, Form, read_file
 from derive.scene.scalars import UNITS, Scalars, read_scalars
+from derive.scene.scope import Scope
 from derive.scene.short_form.body import read_body, through_coordinates
 from derive.scene.short_form.declared import Axes, Point, ShortForm, Wheel
-from derive.scene.table import Scope, Table, keys, shown, table
+from derive.scene.table import Table, keys, shown, table
 from derive.scene.unit import ANGULAR_VELOCITY, LENGTH, NONE, VELOCITY, Dimension
 from derive.scene.wanted import EQUATIONS, WANTED, attitudes_only, resembling
 
@@ -40,7 +42,9 @@ def read_scene(document: dict[str, Any], name: str, source: str) -> ShortForm:
     axes = _axes(part["axes"], scalars)
     place = entries_of(part["position"], POSITION, Reading()) if "position" in document else {}
     state = _state(axes, "position" in document)
-    loads = Scope({**scope.dimensions, **state}, scope.others, scope.rule)
+    widest = replace(scope, dimensions={**scope.dimensions, **state})
+    loads = widened(widest, scalars.named)
+    check_named(scalars.named, loads)
     by = Reading({"motions": scalars.motions, "known": scope, "loads": loads})
     point = _point(part["point"], scope)
     return ShortForm(
@@ -55,6 +59,7 @@ def read_scene(document: dict[str, Any], name: str, source: str) -> ShortForm:
         known=entries_of(part["known"], KNOWN, by),
         position=place.get("position"),
         velocity=place.get("velocity"),
+        named=scalars.named,
         head={**head, "source": "", "wanted": _wanted(head["wanted"])},
         warnings=(),
     )
@@ -130,7 +135,8 @@ def _known_with(scalars: Scalars, wheels: tuple[Wheel, ...]) -> Scope:
     known, speeds = scalars.known, [wheel.speed for wheel in wheels]
     others = {wheel.torque.name: "a motor torque" for wheel in wheels}
     dimensions = {speed.name: ANGULAR_VELOCITY for speed in speeds}
-    return Scope({**known.dimensions, **dimensions}, {**known.others, **others}, known.rule)
+    both = Scope({**known.dimensions, **dimensions}, {**known.others, **others}, known.rule)
+    return widened(both, scalars.named)
 
 
 def _scalars(part: Mapping[str, Table]) -> Scalars:

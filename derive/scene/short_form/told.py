@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from derive.scene.declaration import Turning
 from derive.scene.formula import ZERO, Formula
+from derive.scene.named import named_told
 from derive.scene.short_form.declared import Axes, Body, ShortForm, Wheel
 from derive.scene.wanted import attitudes_only
 
@@ -29,7 +30,8 @@ def told(scene: ShortForm) -> tuple[str, ...]:
     if attitudes_only(list(scene.wanted)):
         return ("Formulas for attitudes, which need no body.",)
     body = _body(scene.body, POINT_PHRASES[scene.point.kind])
-    return (_axes(scene), body, _point(scene), *_wheels(scene.wheels), *_known(scene))
+    return (_axes(scene), body, _point(scene), *_wheels(scene.wheels), *_known(scene),
+            *named_told(scene.named))  # fmt: skip
 
 
 def spoken(scene: ShortForm, axes: str, body: str, own: str) -> Mapping[str, str]:
