@@ -23,10 +23,11 @@ OTHERS = 7919  # where trial points begin that share nothing with the first
 
 @dataclass(frozen=True)
 class Lean:
-    """A problem without what does not matter, and the symbols that were taken out."""
+    """A problem without what does not matter, the symbols taken out, and what was put for all."""
 
     problem: Problem
     cancelled: tuple[Symbol, ...]
+    taken: Mapping[Symbol, Expr]
 
 
 def lean(problem: Problem, words: Words) -> Lean:
@@ -58,7 +59,8 @@ def lean(problem: Problem, words: Words) -> Lean:
                 taken[symbol] = Integer(number)
                 break
     current = substituted(problem, taken)
-    return Lean(current, tuple(s for s in idle if s in taken and s not in words.hidden))
+    shown = tuple(s for s in idle if s in taken and s not in words.hidden)
+    return Lean(current, shown, taken)
 
 
 def _answers(problem: Problem, values: Mapping[Symbol, Any]) -> list[Any] | None:

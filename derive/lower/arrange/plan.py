@@ -12,6 +12,7 @@ from sympy import Symbol
 
 from derive.lower.arrange.arrangement import Arrangement, Definition
 from derive.lower.arrange.block import BlockRule, Solution
+from derive.lower.arrange.by_links import by_links
 from derive.lower.arrange.column import (
     ColumnRule,
     NamedColumns,
@@ -44,6 +45,9 @@ OF_COLUMNS: tuple[ColumnRule, ...] = (turns_one_by_one, turned_by_quaternion, sp
 OF_ANSWERS: tuple[ColumnRule, ...] = (quaternion_rate,)
 OF_ROWS: tuple[ColumnRule, ...] = (spherical_part,)
 OF_BLOCKS: tuple[BlockRule, ...] = (constant_tensor, constant_coefficients)
+LONGEST_ROW = (
+    400  # terms of a balance: beyond, it is not solved as it stands if there is another way
+)
 MOST_TERMS = 60  # of a named quantity that rules have found; its users may multiply it out
 
 
@@ -64,8 +68,19 @@ def arrange(mechanism: Mechanism, problem: Problem) -> tuple[Arrangement, ...]:
     """Return the ways to compute the outputs of ``problem``, the plain one first."""
     own = mechanism.posed(problem.name)
     lean = prepared(own, own.lean(problem.name).problem)
+    recursive = tuple(by_links(own, problem.name))
+    if recursive and _longest(lean) > LONGEST_ROW:
+        return recursive
     ways = (Way(lean), _ruled(own, lean), _written_out(own, lean))
-    return tuple(dict.fromkeys(_arranged(own, way) for way in ways))
+    return tuple(dict.fromkeys((*(_arranged(own, way) for way in ways), *recursive)))
+
+
+def _longest(problem: Problem) -> int:
+    """Return how many terms the longest balance has when it is multiplied out."""
+    sizes: dict[Symbol, int] = {}
+    for symbol, value in problem.definitions.items():
+        sizes[symbol] = term_count(value, sizes)
+    return max((term_count(row, sizes) for row in problem.rows), default=0)
 
 
 def plain_arrangement(mechanism: Mechanism, problem: Problem) -> Arrangement:
