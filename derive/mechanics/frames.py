@@ -52,7 +52,7 @@ class Frames:
             return None
         R = eye(3)
         for turn in frame.turned:
-            R = R * self._one_turn(turn)[0]
+            R = R * self.one_turn(turn)[0]
         return R
 
     @cached_property
@@ -80,13 +80,13 @@ class Frames:
             adds = "" if total == ZERO else ADDED
             return angular_velocities_summed(R if R is not None else eye(3), total, own), adds
         for turn in frame.turned:
-            R, rate = self._one_turn(turn)
+            R, rate = self.one_turn(turn)
             own = by_law("rate_of_simple_turn", {"angle_dot": rate, "e": unit_vector(turn.axis)})
             adds = adds if total == ZERO else ADDED
             total = angular_velocities_summed(R, total, own)
         return total, adds
 
-    def _one_turn(self, turn: Turning) -> tuple[Matrix, Expr]:
+    def one_turn(self, turn: Turning) -> tuple[Matrix, Expr]:
         angle = self.words.expression(turn.angle)
         R = turn_matrix(turn.axis, angle).applyfunc(expand_trig)
         return R, self.sheet.rate(angle)

@@ -1,23 +1,20 @@
-"""A machine whose links all turn about parallel axes: what its links are, and what acts on them.
+"""A machine whose links turn one in another about axes of theirs: what they are, and what acts.
 
-Vectors have components along the two axes that turn and then along the one that all turn about.
+All vectors are columns along the axes of a link, or of the base, which does not turn.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
-from sympy import Expr, Integer, Matrix, Symbol
+from sympy import Expr, Integer, Matrix, Rational, Symbol, eye, zeros
 
 from derive.lecture.turning import PLACE
 from derive.mechanics.bodies import centre, inertia_tensor, mass
 from derive.mechanics.frames import ZERO, Frames
 from derive.mechanics.loads import Wrench, wrenches
 from derive.scene.declaration import Turning
-from derive.scene.machine import INERTIAL, Frame, Weight
+from derive.scene.machine import INERTIAL, Force, Frame, Weight
 
-Triad = tuple[Expr, Expr, Expr]
-NOTHING_YET = Integer(0)
-NO_VECTOR: Triad = (NOTHING_YET, NOTHING_YET, NOTHING_YET)
 BASE = -1
 """The place of what does not turn, where a link would have its place."""
 
@@ -26,27 +23,43 @@ BASE = -1
 class Drift:
     """The acceleration of a point that does not turn: known, and by each unknown."""
 
-    rest: Triad
-    slopes: Mapping[Symbol, Triad]
+    rest: Matrix
+    slopes: Mapping[Symbol, Matrix]
+
+
+@dataclass(frozen=True)
+class Bulk:
+    """A mass with its first and second moments about a point, sums of m, m r and m r r^T."""
+
+    mass: Expr
+    first: Matrix
+    second: Matrix
+
+    def __add__(self, other: "Bulk") -> "Bulk":
+        """Return both masses as one."""
+        return Bulk(self.mass + other.mass, self.first + other.first, self.second + other.second)
+
+
+NO_BULK = Bulk(Integer(0), ZERO, zeros(3, 3))
 
 
 @dataclass(frozen=True)
 class Link:
-    """A body that turns in its parent by a free angle: its hinge in the parent, what it weighs.
+    """What turns in its parent by a free angle about an axis of both, through its hinge.
 
-    first, second : its moments of mass about the hinge, along its own axes
+    axis  : its place, 0 to 2         hinge : along the parent's axes
+    drift : how its hinge accelerates where its parent is the base
     """
 
     parent: int
+    axis: int
     unknown: Symbol
     rate: Expr
     cosine: Expr
     sine: Expr
-    hinge: Triad
+    hinge: Matrix
     drift: Drift | None
-    mass: Expr = NOTHING_YET
-    first: Triad = NO_VECTOR
-    second: Expr = NOTHING_YET
+    bulk: Bulk = NO_BULK
 
 
 @dataclass(frozen=True)
@@ -54,21 +67,25 @@ class Push:
     """A known force along the axes of a link, at a point of a link, and a known couple."""
 
     link: int
-    arm: Triad
+    arm: Matrix
     drift: Drift | None
     along: int
-    force: Triad
-    couple: Expr
+    force: Matrix
+    couple: Matrix
 
 
 @dataclass(frozen=True)
 class Links:
-    """Links, parents first, the masses that do not turn, gravity, and all else that acts."""
+    """Links, parents first, the masses that do not turn, gravity, and all else that acts.
+
+    motors : the moment about the axis of a link that its parent takes on
+    """
 
     links: tuple[Link, ...]
     carried: tuple[tuple[Expr, Drift], ...]
-    gravity: Triad
+    gravity: Matrix
     pushes: tuple[Push, ...]
+    motors: Mapping[int, Expr] = field(default_factory=dict)
 
     @property
     def unknowns(self) -> frozenset[Symbol]:
@@ -84,75 +101,90 @@ class Links:
             link = self.links[link].parent
         return found
 
+    def augmented(self) -> list[Bulk]:
+        """Return each link with all that hangs on it as a mass at its own hinge."""
+        found = [k.bulk for k in self.links]
+        for n, link in reversed(list(enumerate(self.links))):
+            if link.parent != BASE:
+                found[link.parent] += at_point(found[n].mass, link.hinge)
+        return found
+
+
+def at_point(m: Expr, place: Matrix) -> Bulk:
+    """Return a mass that is all at one place."""
+    return Bulk(m, m * place, m * place * place.T)
+
 
 class OtherMachineError(Exception):
-    """A machine that has more than links about parallel axes."""
+    """A machine that has more than links which turn freely."""
 
 
 def links(frames: Frames, sought: frozenset[Symbol]) -> Links | None:
-    """Return the links of a machine, None if it has more than turns about parallel axes.
+    """Return the links of a machine, None if it has more than links which turn freely.
 
     sought : the unknowns of the motion; all others do no work, which who uses this has to prove
     """
-    axes = {t.axis for f in frames.each.values() for t in f.turned}
-    if len(axes) != 1:
-        return None
     try:
-        return _Reader(frames, sought, PLACE[axes.pop()]).read()
+        return _Survey(frames, sought).read()
     except OtherMachineError:
         return None
 
 
-class _Reader:
+class _Survey:
     """Reads frames, bodies and loads, and gives up at what is no link."""
 
-    def __init__(self, frames: Frames, sought: frozenset[Symbol], axis: int) -> None:
-        self.frames, self.sought, self.axis = frames, sought, axis
+    def __init__(self, frames: Frames, sought: frozenset[Symbol]) -> None:
+        self.frames, self.sought = frames, sought
         words = frames.words
         self.fixed = words.vocabulary.fixed() | words.hidden.keys()
+        self.reactions = dict.fromkeys(frames.sheet.unknowns - sought, Integer(0))
         self.links: list[Link] = []
         self.of: dict[str, int] = {INERTIAL: BASE}
         self.at: dict[str, Matrix] = {INERTIAL: ZERO}  # the origin of a frame, in its link's axes
 
     def read(self) -> Links:
+        machine = self.frames.machine
         for name, frame in self.frames.each.items():
             if name != INERTIAL:
                 self._frame(frame)
-        carried = [own for b in self.frames.machine.bodies for own in self._body(b.name)]
-        acting = wrenches(self.frames)
+        carried = [own for b in machine.bodies for own in self._body(b.name)]
         gravity, weights = self._gravity()
-        pushes = tuple(p for w in acting if w.load not in weights for p in self._push(w))
-        return Links(tuple(self.links), tuple(carried), gravity, pushes)
+        motors: dict[int, Expr] = {}
+        driven = [load for load in machine.loads if isinstance(load, Force)
+                  and self._motor(load, motors)]  # fmt: skip
+        other = weights | {load.name for load in driven}
+        acting = [w for w in wrenches(self.frames) if w.load not in other]
+        pushes = tuple(p for w in acting for p in self._push(w))
+        return Links(tuple(self.links), tuple(carried), gravity, pushes, motors)
 
     def _frame(self, frame: Frame) -> None:
         moves = (frame.angular_velocity, frame.velocity, frame.acceleration, frame.rolls)
-        if frame.attitude or any(m is not None for m in moves) or len(frame.turned) > 1:
+        if frame.attitude or any(m is not None for m in moves):
             raise OtherMachineError
         link, origin = self.of[frame.parent], self.frames.words.column(frame.origin)
         place = self.at[frame.parent] + origin
         if link != BASE and not self._constant(place):
             raise OtherMachineError
+        for turn in frame.turned:
+            self._turned(turn, link, place)
+            link, place = len(self.links) - 1, ZERO
         self.of[frame.name], self.at[frame.name] = link, place
-        if frame.turned:
-            self._turned(frame.name, frame.turned[0], link, place)
 
-    def _turned(self, name: str, turn: Turning, parent: int, place: Matrix) -> None:
-        sheet, R = self.frames.sheet, self.frames.rotations[name]
-        angle = self.frames.words.expression(turn.angle)
-        rate = sheet.rate(angle)
+    def _turned(self, turn: Turning, parent: int, place: Matrix) -> None:
+        sheet, (R, rate) = self.frames.sheet, self.frames.one_turn(turn)
         rest, slopes = sheet.split(sheet.rate(rate))
-        if R is None or rest != 0 or list(slopes.values()) != [1]:
+        if rest != 0 or list(slopes.values()) != [1]:
             raise OtherMachineError
-        i, j = (self.axis + 1) % 3, (self.axis + 2) % 3
+        axis, (unknown,) = PLACE[turn.axis], slopes
+        i, j = (axis + 1) % 3, (axis + 2) % 3
         drift = self._drift(place) if parent == BASE else None
-        (unknown,) = slopes
-        self.of[name], self.at[name] = len(self.links), ZERO
-        self.links.append(Link(parent, unknown, rate, R[i, i], R[j, i], self._along(place), drift))
+        self.links.append(Link(parent, axis, unknown, rate, R[i, i], R[j, i], place, drift))
 
     def _body(self, body: str) -> list[tuple[Expr, Drift]]:
         """Add a body to its link, or return it if it does not turn."""
         member = self.frames.machine.body(body)
-        if member.turned or member.spin_axis is not None or member.angular_velocity is not None:
+        spins = (member.spin, member.axial_speed, member.angular_velocity)
+        if member.turned or any(s is not None for s in spins):
             raise OtherMachineError
         m, I = mass(self.frames, body), inertia_tensor(self.frames, body)  # noqa: E741
         frame, at = centre(self.frames, body)
@@ -161,57 +193,68 @@ class _Reader:
             return [(m, self._drift(place))]
         if not self._constant(place):
             raise OtherMachineError
-        own, (x, y, z) = self.links[link], self._along(place)
-        first = tuple(a + m * r for a, r in zip(own.first, (x, y, z), strict=True))
-        second = own.second + I[self.axis, self.axis] + m * (x**2 + y**2)
-        self.links[link] = replace(own, mass=own.mass + m, first=first, second=second)
+        spread = (I.trace() * Rational(1, 2) * eye(3) - I).applyfunc(lambda e: e.expand())
+        own, at_place = self.links[link], at_point(m, place)
+        bulk = own.bulk + at_place + Bulk(Integer(0), ZERO, spread)
+        self.links[link] = replace(own, bulk=bulk)
         return []
 
-    def _gravity(self) -> tuple[Triad, frozenset[str]]:
+    def _gravity(self) -> tuple[Matrix, frozenset[str]]:
         """Return the gravity that acts on all bodies, and the loads that it is."""
         machine = self.frames.machine
         loads = [load for load in machine.loads if isinstance(load, Weight)]
         if len(loads) != 1 or {*loads[0].on} != {b.name for b in machine.bodies}:
-            return NO_VECTOR, frozenset()
+            return ZERO, frozenset()
         (load,) = loads
         g = self.frames.words.column(load.gravity)
         if self.of[load.along] != BASE or not self._constant(g):
-            return NO_VECTOR, frozenset()
-        return self._along(g), frozenset({load.name})
+            return ZERO, frozenset()
+        return g, frozenset({load.name})
+
+    def _known(self, vector: Matrix) -> Matrix:
+        """Return what of a load is known."""
+        found = vector.xreplace(self.reactions)
+        if found.free_symbols & self.sought:
+            raise OtherMachineError
+        return found
+
+    def _motor(self, load: Force, motors: dict[int, Expr]) -> bool:
+        """Note a couple between a link and its parent, and tell whether a load is that alone."""
+        column = self.frames.words.column
+        force, couple = self._known(column(load.force)), self._known(column(load.couple))
+        ends = [self.of[self.frames.own(load.on)]]
+        ends += [self.of[self.frames.own(load.against)]] if load.against else [BASE]
+        if force != ZERO or self.of[load.along] not in ends:
+            return False
+        for (link, other), sign in ((ends, 1), (ends[::-1], -1)):
+            if link != BASE and self.links[link].parent == other:
+                own = sign * couple[self.links[link].axis]
+                motors[link] = motors.get(link, Integer(0)) + own
+                return True
+        return False
 
     def _push(self, w: Wrench) -> list[Push]:
         """Return what of a load is known, in nothing if it is only what holds a joint."""
-        reactions = dict.fromkeys(self.frames.sheet.unknowns - self.sought, Integer(0))
-        force, couple = (self._along(v.xreplace(reactions)) for v in (w.force, w.couple))
-        if any(e.free_symbols & self.sought for e in (*force, *couple)):
-            raise OtherMachineError
-        frame = self.frames.own(w.body)
-        link, along = self.of[frame], self.of[w.along]
-        if force == NO_VECTOR:
-            still = couple[2] == 0 or link == BASE
-            return [] if still else [Push(link, NO_VECTOR, None, along, force, couple[2])]
+        force, couple = self._known(w.force), self._known(w.couple)
+        link, along = self.of[self.frames.own(w.body)], self.of[w.along]
+        if force == ZERO:
+            still = couple == ZERO or link == BASE
+            return [] if still else [Push(link, ZERO, None, along, force, couple)]
         if self.of[w.point[0]] != link:
             raise OtherMachineError
         place = self.at[w.point[0]] + w.point[1]
         drift = self._drift(place) if link == BASE else None
-        arm = self._along(place) if link != BASE else NO_VECTOR
-        return [Push(link, arm, drift, along, force, couple[2])]
+        return [Push(link, ZERO if drift else place, drift, along, force, couple)]
 
     def _drift(self, place: Matrix) -> Drift:
         sheet = self.frames.sheet
         second = sheet.rate_of_column(sheet.rate_of_column(place))
-        each = [sheet.split(e) for e in self._along(second)]
+        each = [sheet.split(e) for e in second]
         found = {u for _, slopes in each for u in slopes}
-        if not found <= self.sought:
+        by = {u: Matrix([s.get(u, Integer(0)) for _, s in each]) for u in sorted(found, key=str)}
+        if not found <= self.sought or not all(self._constant(d) for d in by.values()):
             raise OtherMachineError
-        by = {u: tuple(s.get(u, Integer(0)) for _, s in each) for u in sorted(found, key=str)}
-        if not all(self._constant(Matrix(d)) for d in by.values()):
-            raise OtherMachineError
-        return Drift(tuple(rest for rest, _ in each), by)
+        return Drift(Matrix([rest for rest, _ in each]), by)
 
     def _constant(self, values: Matrix) -> bool:
         return bool(values.free_symbols <= self.fixed)
-
-    def _along(self, vector: Matrix) -> Triad:
-        a = self.axis
-        return vector[(a + 1) % 3], vector[(a + 2) % 3], vector[a]

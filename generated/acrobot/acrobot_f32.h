@@ -27,7 +27,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 152fce8473fb47b1.
+ * Body of these files: sha256 938068d633c889e1.
  */
 #ifndef ACROBOT_F32_H
 #define ACROBOT_F32_H
@@ -38,30 +38,21 @@ extern "C" {
 
 /* Constants made of parameters only, by acrobot_setup_f32. */
 typedef struct {
-    float k1; /* m_1*c_1*g + m_2*l_1*g */
     float m_2_l_1_c_2; /* m_2*l_1*c_2 */
-    float twice_m_2_l_1_c_2; /* 2*m_2*l_1*c_2 */
+    float k1; /* g*(m_2*l_1 + m_1*c_1) */
+    float inverse; /* 1/(I_1 + m_1*c_1^2 + m_2*l_1^2) */
     float m_2_c_2_g; /* m_2*c_2*g */
-    float c_2; /* c_2 */
-    float m_2_c_2; /* m_2*c_2 */
-    float l_1; /* l_1 */
-    float I_2; /* I_2 */
-    float pivot; /* 1/(I_2 + m_2*c_2^2) */
-    float m_2_l_1; /* m_2*l_1 */
-    float k2; /* I_1 + I_2 + m_1*c_1^2 */
-    float k3; /* I_2 + m_2*c_2^2 */
-    float k4; /* 1/(I_2 + m_2*c_2^2) */
-    float minus_pivot; /* -(1/(I_2 + m_2*c_2^2)) */
-    float k5; /* -2*1/(I_2 + m_2*c_2^2) */
-    float m_2_c_2_c_2; /* m_2*c_2^2 */
-    float m_2_l_1_c_2_pivot; /* m_2*l_1*c_2*(1/(I_2 + m_2*c_2^2)) */
-    float k6; /* I_1 + I_2 + m_1*c_1^2 + (l_1 + c_2)*(m_2*l_1 + m_2*c_2) */
-    float k7; /* I_2 + m_2*c_2^2 + m_2*l_1*c_2 */
-    float k8; /* I_2 + m_2*c_2*(l_1 + c_2) */
-    float k9; /* -(m_1*c_1*g + m_2*g*(l_1 + c_2)) */
+    float k2; /* I_2 + m_2*c_2^2 */
+    float k3; /* g*(m_2*l_1 + m_1*c_1)*(1/(I_1 + m_1*c_1^2 + m_2*l_1^2)) */
+    float m_2_l_1_c_2_inverse; /* m_2*l_1*c_2*(1/(I_1 + m_1*c_1^2 + m_2*l_1^2)) */
+    float k4; /* I_1 + I_2 + m_1*c_1^2 + (l_1 + c_2)*(m_2*l_1 + m_2*c_2) */
+    float k5; /* I_2 + m_2*c_2^2 + m_2*l_1*c_2 */
+    float k6; /* I_2 + m_2*c_2*(l_1 + c_2) */
+    float k7; /* -(m_1*c_1*g + m_2*g*(l_1 + c_2)) */
     float minus_m_2_c_2_g; /* -m_2*c_2*g */
-    float k10; /* 1/2*(I_2 + m_2*c_2^2) */
-    float k11; /* 1/2*(I_1 + I_2 + m_2*c_2^2 + m_1*c_1^2 + m_2*l_1^2) */
+    float k8; /* 1/2*(I_2 + m_2*c_2^2) */
+    float k9; /* m_1*c_1*g + m_2*l_1*g */
+    float k10; /* 1/2*(I_1 + I_2 + m_2*c_2^2 + m_1*c_1^2 + m_2*l_1^2) */
 } acrobot_constants_f32;
 
 /* Make the constants of this scene from its parameters; call it once.
@@ -78,9 +69,7 @@ typedef struct {
  *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
- * Cost: once; 32 operations on pairs.
- * On Cortex-M0+, -O2: 65933 to 68038 instructions, 2160 B of code, 704 B of stack.
- * On Cortex-M4F, -O2: 1358 instructions, 1780 B of code, 624 B of stack.
+ * Cost: once; 33 operations on pairs.
  */
 int acrobot_setup_f32(float m_1, float m_2, float l_1, float c_1, float c_2, float I_1, float I_2,
     float g, acrobot_constants_f32 *constants);
@@ -114,13 +103,11 @@ int acrobot_setup_f32(float m_1, float m_2, float l_1, float c_1, float c_2, flo
  * In this scene: q_1_dot_rate = ((I_2 + m_2*c_2^2)*h + b*(I_2 + m_2*(c_2 +
  *            l_1*cos(q_2))*c_2))/Delta
  * In this scene: q_2_dot_rate = -(b*mu + (I_2 + m_2*(c_2 + l_1*cos(q_2))*c_2)*h)/Delta
- * Error: median 0.83, largest 9.3 u of the largest product or sum in the equation (of
- *            q_1_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
- *            hard samples no more.
+ * Error: median 0.46, largest 15 u of the largest product or sum in the equation (of q_1_dot_rate;
+ *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
+ *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
- * Cost: 12 add, 4 sub, 27 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 11939 to 13477 instructions, 992 B of code, 160 B of stack.
- * On Cortex-M4F, -O2: 255 to 257 instructions, 732 B of code, 76 B of stack.
+ * Cost: 4 add, 6 sub, 16 mul, 1 div, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -150,13 +137,11 @@ void acrobot_state_rate_f32(const acrobot_constants_f32 *constants, float q_1, f
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.87, largest 14 u of the largest product or sum in the equation (of jacobian;
+ * Error: median 0.46, largest 33 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
- * Cost: 24 add, 13 sub, 70 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 18761 to 20394 instructions, 1664 B of code, 224 B of stack.
- * On Cortex-M4F, -O2: 337 to 339 instructions, 1056 B of code, 108 B of stack.
+ * Cost: 22 add, 8 sub, 52 mul, 1 div, 5 neg, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -165,10 +150,7 @@ void acrobot_state_rate_jacobian_f32(const acrobot_constants_f32 *constants, flo
     float q_1_dot, float q_2, float q_2_dot, float T, float *q_1_rate, float *q_1_dot_rate,
     float *q_2_rate, float *q_2_dot_rate, float jacobian[12]);
 
-/* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 18936 to 20599 instructions, 1740 B of code, 12 B of tables, 320 B of stack.
- * On Cortex-M4F, -O2: 491 to 493 instructions, 1120 B of code, 12 B of tables, 180 B of stack.
- */
+/* The same, the whole matrix: 20 entries. */
 void acrobot_state_rate_jacobian_dense_f32(const acrobot_constants_f32 *constants, float q_1,
     float q_1_dot, float q_2, float q_2_dot, float T, float *q_1_rate, float *q_1_dot_rate,
     float *q_2_rate, float *q_2_dot_rate, float jacobian[20]);
@@ -202,8 +184,6 @@ void acrobot_state_rate_jacobian_dense_f32(const acrobot_constants_f32 *constant
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 9.6e-07 (seen
  *            9.5e-07), damping_matrix 0 (seen 0), stiffness_matrix 3.9e-06 (seen 3.8e-06).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 22 instructions, 44 B of code, 12 B of stack.
- * On Cortex-M4F, -O2: 21 instructions, 60 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -237,8 +217,6 @@ void acrobot_linearised_f32(const acrobot_constants_f32 *constants, float mass_m
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 0.0004 J (seen 0.00019);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 6 add, 1 sub, 10 mul, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 8797 to 10398 instructions, 740 B of code, 128 B of stack.
- * On Cortex-M4F, -O2: 214 to 216 instructions, 572 B of code, 68 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, constant_mass, further_axes_are_right_handed, rate_seen_from_N,
  *            rigid.
@@ -267,13 +245,11 @@ void acrobot_energy_f32(const acrobot_constants_f32 *constants, float q_1, float
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.39, largest 1.7e+02 u of the largest component, before or after, or of the
+ * Error: median 0.35, largest 6.2e+02 u of the largest component, before or after, or of the
  *            largest product of what the step adds, by rounding alone (of q_2_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
- * Cost: 104 add, 20 sub, 185 mul, 8 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 61900 to 68553 instructions, 3372 B of code, 368 B of stack.
- * On Cortex-M4F, -O2: 1202 to 1210 instructions, 2436 B of code, 300 B of stack.
+ * Cost: 44 add, 24 sub, 99 mul, 8 div, 8 sin, 8 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -25,7 +25,7 @@
  * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 e594c3a25c60b754.
+ * Body of these files: sha256 101e4e350e8f9118.
  */
 #ifndef ACROBOT_F64_H
 #define ACROBOT_F64_H
@@ -36,30 +36,21 @@ extern "C" {
 
 /* Constants made of parameters only, by acrobot_setup_f64. */
 typedef struct {
-    double k1; /* m_1*c_1*g + m_2*l_1*g */
     double m_2_l_1_c_2; /* m_2*l_1*c_2 */
-    double twice_m_2_l_1_c_2; /* 2*m_2*l_1*c_2 */
+    double k1; /* g*(m_2*l_1 + m_1*c_1) */
+    double inverse; /* 1/(I_1 + m_1*c_1^2 + m_2*l_1^2) */
     double m_2_c_2_g; /* m_2*c_2*g */
-    double c_2; /* c_2 */
-    double m_2_c_2; /* m_2*c_2 */
-    double l_1; /* l_1 */
-    double I_2; /* I_2 */
-    double pivot; /* 1/(I_2 + m_2*c_2^2) */
-    double m_2_l_1; /* m_2*l_1 */
-    double k2; /* I_1 + I_2 + m_1*c_1^2 */
-    double k3; /* I_2 + m_2*c_2^2 */
-    double k4; /* 1/(I_2 + m_2*c_2^2) */
-    double minus_pivot; /* -(1/(I_2 + m_2*c_2^2)) */
-    double k5; /* -2*1/(I_2 + m_2*c_2^2) */
-    double m_2_c_2_c_2; /* m_2*c_2^2 */
-    double m_2_l_1_c_2_pivot; /* m_2*l_1*c_2*(1/(I_2 + m_2*c_2^2)) */
-    double k6; /* I_1 + I_2 + m_1*c_1^2 + (l_1 + c_2)*(m_2*l_1 + m_2*c_2) */
-    double k7; /* I_2 + m_2*c_2^2 + m_2*l_1*c_2 */
-    double k8; /* I_2 + m_2*c_2*(l_1 + c_2) */
-    double k9; /* -(m_1*c_1*g + m_2*g*(l_1 + c_2)) */
+    double k2; /* I_2 + m_2*c_2^2 */
+    double k3; /* g*(m_2*l_1 + m_1*c_1)*(1/(I_1 + m_1*c_1^2 + m_2*l_1^2)) */
+    double m_2_l_1_c_2_inverse; /* m_2*l_1*c_2*(1/(I_1 + m_1*c_1^2 + m_2*l_1^2)) */
+    double k4; /* I_1 + I_2 + m_1*c_1^2 + (l_1 + c_2)*(m_2*l_1 + m_2*c_2) */
+    double k5; /* I_2 + m_2*c_2^2 + m_2*l_1*c_2 */
+    double k6; /* I_2 + m_2*c_2*(l_1 + c_2) */
+    double k7; /* -(m_1*c_1*g + m_2*g*(l_1 + c_2)) */
     double minus_m_2_c_2_g; /* -m_2*c_2*g */
-    double k10; /* 1/2*(I_2 + m_2*c_2^2) */
-    double k11; /* 1/2*(I_1 + I_2 + m_2*c_2^2 + m_1*c_1^2 + m_2*l_1^2) */
+    double k8; /* 1/2*(I_2 + m_2*c_2^2) */
+    double k9; /* m_1*c_1*g + m_2*l_1*g */
+    double k10; /* 1/2*(I_1 + I_2 + m_2*c_2^2 + m_1*c_1^2 + m_2*l_1^2) */
 } acrobot_constants_f64;
 
 /* Make the constants of this scene from its parameters; call it once.
@@ -76,8 +67,7 @@ typedef struct {
  *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
- * Cost: once; 32 operations on pairs.
- * On Cortex-M0+, -O2: 128636 to 135047 instructions, 4016 B of code, 1336 B of stack.
+ * Cost: once; 33 operations on pairs.
  */
 int acrobot_setup_f64(double m_1, double m_2, double l_1, double c_1, double c_2, double I_1,
     double I_2, double g, acrobot_constants_f64 *constants);
@@ -111,12 +101,11 @@ int acrobot_setup_f64(double m_1, double m_2, double l_1, double c_1, double c_2
  * In this scene: q_1_dot_rate = ((I_2 + m_2*c_2^2)*h + b*(I_2 + m_2*(c_2 +
  *            l_1*cos(q_2))*c_2))/Delta
  * In this scene: q_2_dot_rate = -(b*mu + (I_2 + m_2*(c_2 + l_1*cos(q_2))*c_2)*h)/Delta
- * Error: median 0.84, largest 13 u of the largest product or sum in the equation (of q_1_dot_rate;
+ * Error: median 0.43, largest 16 u of the largest product or sum in the equation (of q_1_dot_rate;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
- * Cost: 12 add, 4 sub, 27 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 30221 to 33586 instructions, 1584 B of code, 288 B of stack.
+ * Cost: 4 add, 6 sub, 16 mul, 1 div, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -146,12 +135,11 @@ void acrobot_state_rate_f64(const acrobot_constants_f64 *constants, double q_1, 
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.85, largest 15 u of the largest product or sum in the equation (of jacobian;
+ * Error: median 0.43, largest 24 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
- * Cost: 24 add, 13 sub, 70 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 45989 to 49478 instructions, 2612 B of code, 416 B of stack.
+ * Cost: 22 add, 8 sub, 52 mul, 1 div, 5 neg, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -160,9 +148,7 @@ void acrobot_state_rate_jacobian_f64(const acrobot_constants_f64 *constants, dou
     double q_1_dot, double q_2, double q_2_dot, double T, double *q_1_rate, double *q_1_dot_rate,
     double *q_2_rate, double *q_2_dot_rate, double jacobian[12]);
 
-/* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 46294 to 49774 instructions, 2716 B of code, 12 B of tables, 592 B of stack.
- */
+/* The same, the whole matrix: 20 entries. */
 void acrobot_state_rate_jacobian_dense_f64(const acrobot_constants_f64 *constants, double q_1,
     double q_1_dot, double q_2, double q_2_dot, double T, double *q_1_rate, double *q_1_dot_rate,
     double *q_2_rate, double *q_2_dot_rate, double jacobian[20]);
@@ -196,7 +182,6 @@ void acrobot_state_rate_jacobian_dense_f64(const acrobot_constants_f64 *constant
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 1.8e-15 (seen
  *            1.8e-15), damping_matrix 0 (seen 0), stiffness_matrix 7.2e-15 (seen 7.1e-15).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 54 instructions, 108 B of code, 20 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -230,7 +215,6 @@ void acrobot_linearised_f64(const acrobot_constants_f64 *constants, double mass_
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 7.4e-13 J (seen
  *            5.4e-13); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 6 add, 1 sub, 10 mul, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 22980 to 26413 instructions, 1192 B of code, 216 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, constant_mass, further_axes_are_right_handed, rate_seen_from_N,
  *            rigid.
@@ -259,12 +243,11 @@ void acrobot_energy_f64(const acrobot_constants_f64 *constants, double q_1, doub
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.39, largest 2e+02 u of the largest component, before or after, or of the largest
- *            product of what the step adds, by rounding alone (of q_1_dot_next; 200000 samples of
- *            the ranges, 65536 searched from the worst); at 48 hard samples no more.
+ * Error: median 0.36, largest 2.7e+02 u of the largest component, before or after, or of the
+ *            largest product of what the step adds, by rounding alone (of q_2_dot_next; 200000
+ *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
- * Cost: 104 add, 20 sub, 185 mul, 8 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 152577 to 166456 instructions, 5168 B of code, 672 B of stack.
+ * Cost: 44 add, 24 sub, 99 mul, 8 div, 8 sin, 8 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

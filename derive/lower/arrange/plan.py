@@ -8,11 +8,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field, replace
 
-from sympy import Symbol
+from sympy import Expr, Symbol
 
 from derive.lower.arrange.arrangement import Arrangement, Definition
 from derive.lower.arrange.block import BlockRule, Solution
-from derive.lower.arrange.by_links import by_links
 from derive.lower.arrange.column import (
     ColumnRule,
     NamedColumns,
@@ -37,6 +36,7 @@ from derive.lower.arrange.tidy import (
     without_squares,
 )
 from derive.lower.arrange.turns import turns_one_by_one
+from derive.mechanics.by_links import by_links
 from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.problem import Problem
 from derive.mechanics.vocabulary import Vocabulary
@@ -68,11 +68,19 @@ def arrange(mechanism: Mechanism, problem: Problem) -> tuple[Arrangement, ...]:
     """Return the ways to compute the outputs of ``problem``, the plain one first."""
     own = mechanism.posed(problem.name)
     lean = prepared(own, own.lean(problem.name).problem)
-    recursive = tuple(by_links(own, problem.name))
+    answers = tuple(lean.answers.values())
+    found = (_cut(way, lean.unknowns) for way in by_links(own, problem.name))
+    recursive = tuple(Arrangement(definitions, answers) for definitions in found)
     if recursive and _longest(lean) > LONGEST_ROW:
         return recursive
     ways = (Way(lean), _ruled(own, lean), _written_out(own, lean))
     return tuple(dict.fromkeys((*(_arranged(own, way) for way in ways), *recursive)))
+
+
+def _cut(way: Mapping[Symbol, Expr], unknowns: Iterable[Symbol]) -> tuple[Definition, ...]:
+    """Return values as they are to be computed, none multiplied out but those of unknowns."""
+    free = frozenset(unknowns)
+    return tuple(Definition("let" if s in free else "cut", s, e) for s, e in way.items())
 
 
 def _longest(problem: Problem) -> int:

@@ -1,0 +1,67 @@
+"""The ways that a machine's links offer to find accelerations, each held against the balances.
+
+Links are solved without the reactions between them. That these do no work is not looked into: a
+way that yields other answers than the balances at trial points is none.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from sympy import Expr, Integer, Symbol
+
+from derive.mechanics.absolute_angles import absolute_angles, relative
+from derive.mechanics.links import Links, links
+from derive.mechanics.mechanism import Mechanism
+from derive.mechanics.probe import NOTHING, PROBES, random_probe
+from derive.mechanics.problem import Problem, answered
+from derive.mechanics.recursion import recursion
+from derive.mechanics.words import Words
+
+OnTheWay = Mapping[Symbol, Expr]
+
+
+def by_links(mechanism: Mechanism, base: str) -> Iterator[OnTheWay]:
+    """Yield ways to the unknowns of a function: values in order, what they stand on before."""
+    found, sheet = mechanism.lean(base), mechanism.answers.frames.sheet
+    problem = found.problem
+    machine = links(mechanism.answers.frames, frozenset(problem.unknowns))
+    if machine is None or machine.unknowns != {*problem.unknowns} or not machine.links:
+        return
+    known = dict.fromkeys(mechanism.words.hidden, Integer(1)) | dict(found.taken)
+    for own in _solved(machine, problem.unknowns):
+        needed = sheet.needed([*own.values(), *problem.answers.values()])
+        way = {s: e.xreplace(known) for s, e in {**needed, **own}.items()}
+        if _same_answers(mechanism.words, problem, way):
+            yield way
+
+
+def _solved(machine: Links, unknowns: Sequence[Symbol]) -> Iterator[OnTheWay]:
+    systems = absolute_angles(machine), recursion(machine)
+    for order in _orders(machine, unknowns):
+        for absolute, system in zip((True, False), systems, strict=True):
+            if system is not None:
+                own, found = system.solved(order)
+                yield {**own.definitions, **(relative(machine, found) if absolute else found)}
+
+
+def _orders(machine: Links, unknowns: Sequence[Symbol]) -> list[tuple[Symbol, ...]]:
+    """Return orders to solve in: from the leaves, with what does not turn last or first."""
+    leaves = [link.unknown for link in reversed(machine.links)]
+    others = [u for u in unknowns if u not in leaves]
+    return list(dict.fromkeys([(*leaves, *others), (*others, *leaves), (*others, *leaves[::-1])]))
+
+
+def _same_answers(words: Words, problem: Problem, way: OnTheWay) -> bool:
+    """Tell whether values yield at trial points what a problem's answers are."""
+    for number in range(PROBES):
+        probe = random_probe(words, number)
+        probe.define(problem.definitions)
+        true = answered(problem, probe)
+        probe = random_probe(words, number)
+        try:
+            probe.define(way)
+        except ZeroDivisionError:  # by what was put for a mass that does not matter
+            return False
+        found = [probe.value(e) for e in problem.answers.values()]
+        if any(abs(y - x) > NOTHING * max(1, abs(x)) for x, y in zip(true, found, strict=True)):
+            return False
+    return True

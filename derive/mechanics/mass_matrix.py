@@ -1,0 +1,74 @@
+"""A symmetric mass matrix and its right side, and their solution by L D L^T.
+
+In any order L D L^T divides by what is positive, as the energy of every motion is.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from sympy import Expr, Integer, Matrix, Symbol
+
+from derive.mechanics.links import Drift
+
+
+@dataclass
+class MassMatrix:
+    """What is computed on the way, in order, each by a symbol; then both sides, by unknown."""
+
+    definitions: dict[Symbol, Expr] = field(default_factory=dict)
+    entries: dict[tuple[Symbol, Symbol], Expr] = field(default_factory=dict)
+    right: dict[Symbol, Expr] = field(default_factory=dict)
+
+    def cut(self, name: str, value: Expr) -> Expr:
+        """Return a symbol for a value, unless it is plain."""
+        if value.is_Symbol or value.is_Number or (-value).is_Symbol:
+            return value
+        symbol = Symbol(name, real=True)
+        if symbol in self.definitions:
+            symbol = Symbol(f"{name}'{len(self.definitions)}", real=True)
+        self.definitions[symbol] = value
+        return symbol
+
+    def column(self, name: str, values: Matrix) -> Matrix:
+        """Return a column with every component by a symbol."""
+        return values.applyfunc(lambda value: self.cut(name, value))
+
+    def add(self, a: Symbol, b: Symbol, value: Expr) -> None:
+        """Add to an entry of the matrix, and to that across its diagonal."""
+        for pair in dict.fromkeys(((a, b), (b, a))):
+            self.entries[pair] = self.entries.get(pair, Integer(0)) + value
+
+    def act(self, unknown: Symbol, value: Expr) -> None:
+        """Add to the right side."""
+        self.right[unknown] = self.right.get(unknown, Integer(0)) + value
+
+    def translate(self, m: Expr, drift: Drift, gravity: Matrix) -> None:
+        """Add a mass that is carried through space without being turned."""
+        each = list(drift.slopes.items())
+        for n, (unknown, d) in enumerate(each):
+            self.act(unknown, -m * d.dot(drift.rest - gravity))
+            for other, d_other in each[n:]:
+                self.add(unknown, other, m * d.dot(d_other))
+
+    def solved(self, order: Sequence[Symbol]) -> tuple["MassMatrix", dict[Symbol, Expr]]:
+        """Return the unknowns, and what is computed on the way to them in an order."""
+        own = MassMatrix(dict(self.definitions))
+        A, left = dict(self.entries), list(order)
+        b = {u: own.cut("b", self.right.get(u, Integer(0))) for u in order}
+        factors, inverses = dict[tuple[Symbol, Symbol], Expr](), []
+        for u in order:
+            left.remove(u)
+            inverses.append(own.cut("inverse", 1 / A[u, u]))
+            held = [n for n in left if A.get((n, u), 0) != 0]
+            for n in held:
+                factors[n, u] = own.cut("factor", A[n, u] * inverses[-1])
+                b[n] = own.cut("b", b[n] - factors[n, u] * b[u])
+            for place, n in enumerate(held):
+                for m in held[place:]:
+                    less = A.get((n, m), Integer(0)) - factors[n, u] * A[m, u]
+                    A[n, m] = A[m, n] = own.cut("a", less)
+        found: dict[Symbol, Expr] = {}
+        for u, inverse in reversed(list(zip(order, inverses, strict=True))):
+            rest = sum((e * found[n] for (n, k), e in factors.items() if k == u), Integer(0))
+            found[u] = own.cut("x", b[u] * inverse - rest)
+        return own, found
