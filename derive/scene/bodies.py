@@ -177,7 +177,10 @@ def of_shape(
         return Substance(row.kind, mass, inertia, axis, said, shape, lengths=lengths,
                          parts=(round_part(shape, axis, lengths),))  # fmt: skip
     if axis is not None and shape == "blades":
-        parts = blade_parts(axis, said["number"], said["length"])
+        first = said["first"] or AXIS_AFTER[axis]
+        if first == axis:
+            raise SceneError(f"{given.of('first')} must be across the axis, not '{axis}' itself")
+        parts = blade_parts(axis, first, said["number"], said["length"])
         return replace(_blades(axis, mass, said), lengths=lengths, parts=parts)
     if shape == "point":
         inertia = diagonal(ZERO, ZERO, ZERO)
@@ -204,7 +207,7 @@ def _blades(axis: Axis, mass: Formula, said: Mapping[str, Any]) -> Substance:
     """Return slender blades from the hub: a rod for one and two, else as good as a disc."""
     count, length = said["number"], said["length"]
     one = mass * length**2
-    first = AXIS_AFTER[axis]
+    first = said["first"] or AXIS_AFTER[axis]
     if count == 1:
         inertia = about_axis(first, ZERO, number(Fraction(1, 12)) * one)
         x, y, z = (number(Fraction(1, 2)) * length if a == first else ZERO for a in AXES)

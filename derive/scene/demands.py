@@ -7,7 +7,7 @@ triangle inequality is not among the demands: it is a warning in a scene, and so
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal
 
-from derive.scene.formula import Formula
+from derive.scene.formula import ZERO, Formula
 from derive.scene.machine import Above, Demand, Member, Tensor
 
 
@@ -37,7 +37,7 @@ def in_order(found: Iterable[Demand]) -> tuple[Demand, ...]:
 def of_substance(
     label: str, mass: Formula | None, lengths: Mapping[str, Formula]
 ) -> Iterator[Demand]:
-    if mass is not None:
+    if mass is not None and mass != ZERO:
         yield Above(f"{label}.mass", "mass", mass)
     for name, length in lengths.items():
         yield Above(f"{label}.{name}", "length", length)

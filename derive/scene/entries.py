@@ -80,7 +80,7 @@ KINDS: Mapping[str, tuple[Entry, ...]] = {
     "rod": (AXIS, ACROSS),
 }
 """What each kind of body must say."""
-MASS = Entry("mass", "formula above 0", "if it is known", "kg")
+MASS = Entry("mass", "formula above 0, or 0", "if it is known; 0 is counted in another body", "kg")
 POINT_MASS = Entry("mass", "formula above 0", "of the point", "kg", default=REQUIRED)
 WHOLE_MASS = Entry("mass", "formula above 0", "of uniform density", "kg", default=REQUIRED)
 SAID: Mapping[str, tuple[Entry, ...]] = {
@@ -90,13 +90,8 @@ SAID: Mapping[str, tuple[Entry, ...]] = {
     "blades": (
         AXIS,
         Entry("number", "count", "of slender blades from the hub, `mass` each", default=REQUIRED),
-        Entry(
-            "length",
-            "formula above 0",
-            "of a blade; the first along the axis after `axis`",
-            "m",
-            default=REQUIRED,
-        ),
+        Entry("length", "formula above 0", "of a blade", "m", default=REQUIRED),
+        Entry("first", "word", "along which the first lies; the axis after `axis`", words=AXES),
     ),
 }
 """Shapes that are not round, and what each must say besides its mass."""
@@ -158,11 +153,22 @@ SPRING = (
     AGAINST,
 )  # fmt: skip
 GRADIENT = (
-    Entry("gravity_gradient", "formula", "times e x I e", "1/s^2", "known", REQUIRED),
+    Entry(
+        "gravity_gradient",
+        "any",
+        "times e x I e: a formula in 1/s^2, or `{ mu, distance }`, or `{ orbital_rate }`",
+        default=REQUIRED,
+    ),
     Entry("towards", "three formulas", "the unit vector e", "1", "known", REQUIRED),
     ALONG,
     ALL,
 )
+CENTRE_OF_FIELD = (
+    Entry("mu", "formula", "G M of the centre: 3 mu/distance^3", "m^3/s^2", "known"),
+    Entry("distance", "formula", "from the centre", "m", "known"),
+    Entry("orbital_rate", "formula", "of a circular orbit, instead: 3 orbital_rate^2", "rad/s",
+          "known"),
+)  # fmt: skip
 FORMULA = (
     Entry("formula", "any", "of all that is known with the state", default=REQUIRED),
     MEANING,

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Any
 
 from derive.scene.declaration import AXES, Given, Parameter, SceneError, Turning
-from derive.scene.formula import Formula
+from derive.scene.formula import ZERO, Formula
 from derive.scene.names import label
 from derive.scene.numbers import positive
 from derive.scene.scope import Scope, formula, formulas, triple
@@ -152,6 +152,9 @@ def _names(one: _One) -> tuple[str, ...]:
 READERS: Mapping[str, Callable[[_One], Any]] = {
     "formula": _One.formula,
     "formula above 0": lambda one: positive(one.formula(), one.label, one.by.parameters),
+    "formula above 0, or 0": lambda one: (
+        made if (made := one.formula()) == ZERO else positive(made, one.label, one.by.parameters)
+    ),
     "three formulas": lambda one: triple(one.value, one.label, one.scope, dimension(one.row.unit)),
     "three formulas xy, xz, yz": lambda one: formulas(
         one.value, one.label, ("xy", "xz", "yz"), one.scope, dimension(one.row.unit)

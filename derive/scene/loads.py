@@ -5,13 +5,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from derive.scene.declaration import AXES, SceneError, Triple
-from derive.scene.entries import FORCE, GRADIENT, SPRING, WEIGHT
+from derive.scene.entries import CENTRE_OF_FIELD, FORCE, GRADIENT, SPRING, WEIGHT
 from derive.scene.entry import Entry, Reading, entries_of
+from derive.scene.formula import Formula, FormulaError, number
 from derive.scene.machine import Force, Frame, Gradient, Load, Member, Spring, Unknown, Weight
 from derive.scene.names import identifier, label
 from derive.scene.numbers import check_unit, ends_of, middle
 from derive.scene.scalars import Scalars
-from derive.scene.scope import triple
+from derive.scene.scope import formula, triple
 from derive.scene.table import Table, keys, table
 from derive.scene.unit import Dimension, dimension
 
@@ -93,7 +94,7 @@ def _load(reader: _Reader, name: str, given: Table) -> Load:
         ranges = ends_of((*reader.scalars.parameters, *reader.scalars.moving))
         values = {**dict.fromkeys(reader.scalars.known.dimensions, 0.0), **middle(ranges)}
         check_unit(said["towards"], given.of("towards"), values)
-        return Gradient(name, every, said["along"], said["towards"], said["gravity_gradient"])
+        return Gradient(name, every, said["along"], said["towards"], _strength(reader, given))
     frame, against = said["frame"] or reader.carrier(said["on"]), said["against"] or ""
     if rows is SPRING:
         return Spring(name, said["on"], against, frame, said["at"], said["to_frame"], said["to"],
@@ -101,6 +102,23 @@ def _load(reader: _Reader, name: str, given: Table) -> Load:
     force, couple = (_three(reader, given, key) for key in UNKNOWNS)
     along = said["along"] or frame
     return Force(name, said["on"], against, frame, said["at"], along, force, couple)
+
+
+def _strength(reader: _Reader, given: Table) -> Formula:
+    """Return what a gravity gradient multiplies: a formula, or that of a centre or of an orbit."""
+    value, label = given.entries["gravity_gradient"], given.of("gravity_gradient")
+    if not isinstance(value, dict):
+        return formula(value, label, reader.scalars.known, dimension("1/s^2"))
+    said = entries_of(Table(label, value), CENTRE_OF_FIELD, reader.by)
+    mu, distance, rate = (said[row.key] for row in CENTRE_OF_FIELD)
+    said_of = [one is not None for one in (mu, distance, rate)]
+    if said_of not in ([True, True, False], [False, False, True]):
+        raise SceneError(f"{label} needs mu and distance, or orbital_rate alone")
+    try:
+        strength: Formula = rate**2 if mu is None else mu / distance**3
+    except FormulaError as error:
+        raise SceneError(f"{label}: 3*mu/distance^3 {error}") from None
+    return number(3) * strength
 
 
 def _three(reader: _Reader, given: Table, key: str) -> Triple:

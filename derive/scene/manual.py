@@ -43,6 +43,7 @@ TABLES: Mapping[str, tuple[Entry, ...]] = {
     "`[loads.NAME]`, weight": entries.WEIGHT,
     "`[loads.NAME]`, spring and damper": entries.SPRING,
     "`[loads.NAME]`, gravity gradient": entries.GRADIENT,
+    "`gravity_gradient`, a formula or": entries.CENTRE_OF_FIELD,
     "`[results]` NAME, a formula or": entries.RESULT,
     "`[angular_momentum]`": entries.MOMENTUM,
     "`[steady]`": entries.STEADY,

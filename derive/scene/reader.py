@@ -37,6 +37,7 @@ from derive.scene.scope import Scope, formula
 from derive.scene.table import THE_FILE, Table, keys, several, table
 from derive.scene.unit import BESIDE_SI, dimension, misnamed, spelled
 from derive.scene.wanted import check_form, moves
+from derive.scene.welds import welded
 
 
 @dataclass(frozen=True)
@@ -94,12 +95,14 @@ def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
     asked = read_asked(head.pop("wanted"), scalars, unknowns, results)
     distinct([*_declared(scalars, (), ()), *_vectors(unknowns, asked)])
     steady = _steady(part["steady"], scalars, unknowns, results, asked)
+    welds, hidden = welded(bodies, loads, unknowns, scalars.parameters)
     made = _made(scalars, frames, results, asked, steady)
     distinct([*_declared(scalars, unknowns, results), *made])
     scene = Scene(
         **head, parameters=scalars.parameters, coordinates=scalars.coordinates,
         speeds=scalars.speeds, inputs=scalars.inputs,
-        frames=frames, bodies=bodies, loads=loads, unknowns=unknowns, results=results,
+        frames=frames, bodies=bodies, loads=(*loads, *welds), unknowns=(*unknowns, *hidden),
+        results=results,
         momentum=_momentum(part["angular_momentum"], frames, bodies, scalars),
         about=_about(part["linearised"], scalars),
         steady=steady, asked=asked, wanted=tuple(asked), demands=of_bodies(bodies),

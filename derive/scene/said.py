@@ -21,7 +21,9 @@ def said(machine: Scene) -> tuple[str, ...]:
     """Return what a scene is made of, one sentence each."""
     found = [_frame(f) for f in machine.frames if f.name != INERTIAL]
     found += [_body(b) for b in machine.bodies]
-    found += [_load(load) for load in machine.loads]
+    found += [_load(load) for load in machine.loads if not is_hidden(load.name)]
+    welds = [f for f in machine.loads if isinstance(f, Force) and is_hidden(f.name)]
+    found += [f"Body {f.on} is fixed to {f.against}, both in {f.frame}." for f in welds]
     return (*found, *([f"Source: {machine.source}."] if machine.source else []))
 
 

@@ -42,6 +42,7 @@ _ONE_BODYS: Schema = {"items": {"enum": [*WANTED]}}
 OF_KIND: Mapping[str, Schema] = {
     "formula": FORMULA,
     "formula above 0": _ABOVE,
+    "formula above 0, or 0": {**FORMULA, "minimum": 0},
     "three formulas": _THREE,
     "three formulas xy, xz, yz": _THREE,
     "turns": _TURNS,
@@ -74,6 +75,16 @@ OF_ANY: Mapping[str, Schema] = {
     "couple": _LOAD,
     "lengths": {"type": "array", "items": FORMULA, "minItems": 2, "maxItems": 3},
     "formula": FORMULA,
+    "gravity_gradient": {
+        "anyOf": [
+            FORMULA,
+            {
+                "type": "object",
+                "properties": {row.key: FORMULA for row in entries.CENTRE_OF_FIELD},
+                "additionalProperties": False,
+            },
+        ]
+    },
     "unit": _NAME,
     "unknown": {"anyOf": [_NAME, _NAMES]},
     "vanishes": FORMULA,

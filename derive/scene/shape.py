@@ -110,12 +110,13 @@ def round_part(shape: str, axis: Axis | None, lengths: Mapping[str, Formula]) ->
     return Portion("round", axis, tuple(circles))
 
 
-def blade_parts(axis: Axis, count: int, length: Formula) -> tuple[Portion, ...]:
-    """Return blades from the hub, the first along the axis after ``axis``; one about its middle."""
+def blade_parts(axis: Axis, first: Axis, count: int, length: Formula) -> tuple[Portion, ...]:
+    """Return blades from the hub, the first along ``first``; one about its middle."""
+    begin = Fraction(0 if first == AXIS_AFTER[axis] else 1, 4)
     start = number(Fraction(-1, 2)) * length if count == 1 else ZERO
     end = number(Fraction(1, 2)) * length if count == 1 else length
     return tuple(
-        Portion("blade", axis, edges=(start, end, length), turned=Fraction(k, count))
+        Portion("blade", axis, edges=(start, end, length), turned=begin + Fraction(k, count))
         for k in range(count)
     )
 

@@ -67,7 +67,8 @@ def test_the_schema_refuses_what_is_wrong_with_tables_entries_and_words(by: Any)
 def test_the_schema_knows_every_kind_of_entry_and_is_small() -> None:
     assert {*OF_KIND, "any"} == {*entry.READERS}
     assert OF_ANY.keys() == {"wanted", "rate", "acceleration", "force", "couple", "lengths",
-                             "formula", "unit", "unknown", "vanishes", "name"}  # fmt: skip
+                             "formula", "gravity_gradient", "unit", "unknown", "vanishes",
+                             "name"}  # fmt: skip
     assert len(schema_text()) < LARGEST
 
 

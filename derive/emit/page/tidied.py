@@ -65,8 +65,8 @@ def _gathered(value: Expr) -> Expr:
         return value
     terms = [frozenset(f for f in Mul.make_args(t) if not f.is_number) for t in value.args]
     count = Counter(factor for term in terms for factor in term)
-    common = max(count, key=lambda f: (count[f], default_sort_key(f)))
-    if count[common] < 2:
+    common = max(count, key=lambda f: (count[f], default_sort_key(f)), default=None)
+    if common is None or count[common] < 2:  # numbers alone, as cos(3/10) + 1
         return value
     inside = [t / common for t, own in zip(value.args, terms, strict=True) if common in own]
     rest = [t for t, own in zip(value.args, terms, strict=True) if common not in own]

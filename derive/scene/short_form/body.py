@@ -35,6 +35,8 @@ def read_body(given: Table, point: str, scalars: Scalars) -> Body:
         made = _at_point(made, centre, point)
     else:
         made = of_kind(given, BODY, by)
+        if made.mass == ZERO:
+            raise SceneError("body.mass must be positive, not 0")
         centre = made.said["centre"]
         for key in ("axial", "transverse"):
             if made.kind == "axisymmetric" and made.said[key] is None:
