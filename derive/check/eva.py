@@ -134,7 +134,7 @@ def cut_into_parts(
     cases = [reduce(or_, case, every) for case in product(*map(_attitudes, whole))]
     return (
         sectors(library, _hot(library, program), cases, precision)
-        or "what it divides by may vanish, or a constant be beyond floats, for all that is seen"
+        or "what it divides by may vanish, for all that is seen"
     )
 
 

@@ -28,7 +28,7 @@ FloatRanges = Mapping[str, tuple[float, float]]
 
 @dataclass(frozen=True)
 class Sector:
-    """Ranges of parameters and inputs by component; of constants, between which they lie."""
+    """Ranges of parameters and inputs by component; of constants that have bounds, these."""
 
     inputs: FloatRanges
     constants: FloatRanges
@@ -58,7 +58,7 @@ def sectors(
     """Return parts that together hold all of ``cases``, in which nothing divides by zero.
 
     cases : ranges of parameters and of the function's other inputs, by component
-    None where more than ``PARTS`` would be needed, or a constant has no bound.
+    None where more than ``PARTS`` would be needed.
     """
     of, found = _watched(library, function, tuple(cases[0]), precision), list[Sector]()
     ahead = np.array([[case[n] for n in of.names] for case in cases]).T
@@ -69,8 +69,7 @@ def sectors(
         if ahead.shape[-1] * 2 + len(found) > max(PARTS, 2 * len(cases)):
             return None
         ahead = _halved(of, ahead)
-    bounded = all(np.isfinite(end) for s in found for ends in s.constants.values() for end in ends)
-    return found if bounded else None
+    return found
 
 
 def _watched(
@@ -87,9 +86,13 @@ def _watched(
 
 
 def _sector(of: Watched, box: Column, made: Column) -> Sector:
-    each = ((of.names, box), (of.constants, made))
-    return Sector(*({n: (float(x[0, k]), float(x[1, k])) for k, n in enumerate(names)}
-                    for names, x in each))  # fmt: skip
+    """Return a part by names."""
+
+    def named(names: Sequence[str], ends: Column) -> FloatRanges:
+        each = zip(names, *ends, strict=True)
+        return {n: (float(a), float(b)) for n, a, b in each if np.isfinite(a) and np.isfinite(b)}
+
+    return Sector(named(of.names, box), named(of.constants, made))
 
 
 def _looked_at(of: Watched, boxes: Column) -> tuple[Column, Column]:
