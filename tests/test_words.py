@@ -4,6 +4,7 @@ import ast
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -11,10 +12,15 @@ import pytest
 from derive.scene.short_form.quantities import QUANTITIES
 
 ROOT = Path(__file__).parent.parent / "derive"
-PAGES = {
-    str(page.relative_to(ROOT).with_suffix("")): ast.parse(page.read_text(encoding="utf-8"))
-    for page in sorted(ROOT.rglob("*.py"))
-}
+
+
+@cache
+def pages() -> Mapping[str, ast.Module]:
+    """Return all modules of the package."""
+    return {
+        str(page.relative_to(ROOT).with_suffix("")): ast.parse(page.read_text(encoding="utf-8"))
+        for page in sorted(ROOT.rglob("*.py"))
+    }
 
 
 BOTH = {"entry": "of a scene file, and of a matrix: both are terms of the field"}
@@ -22,8 +28,8 @@ BOTH = {"entry": "of a scene file, and of a matrix: both are terms of the field"
 
 
 def test_no_two_modules_define_types_of_one_name() -> None:
-    assert len(types(PAGES)) > 150
-    assert shared(PAGES).keys() == BOTH.keys()
+    assert len(types(pages())) > 150
+    assert shared(pages()).keys() == BOTH.keys()
 
 
 def test_a_second_type_of_a_name_is_found_whether_class_or_alias_or_plural() -> None:
@@ -56,8 +62,8 @@ WORDS = {
 
 
 def test_no_two_modules_give_others_functions_or_constants_of_one_name() -> None:
-    assert len(given_to_others(PAGES)) > 400
-    functions, constants = apart(given_to_others(PAGES))
+    assert len(given_to_others(pages())) > 400
+    functions, constants = apart(given_to_others(pages()))
     assert sorted(several(functions)) == sorted(ALIKE)
     assert sorted(several(constants)) == sorted(SAME)
 
@@ -98,12 +104,13 @@ SAME = {
 
 @pytest.mark.parametrize("word", WORDS)
 def test_a_word_that_named_several_things_is_met_where_it_names_one(word: str) -> None:
-    rooms = {page.partition("/")[0] for page in PAGES if word in words_of(page, PAGES[page])}
+    found = (page for page, tree in pages().items() if word in words_of(page, tree))
+    rooms = {page.partition("/")[0] for page in found}
     assert rooms == {*WORDS[word][1:]}
 
 
 def test_no_name_of_a_scenes_quantity_decides_anything() -> None:
-    found = {page: read for page in PAGES if (read := named(PAGES[page])) and within(page)}
+    found = {page: read for page, tree in pages().items() if (read := named(tree)) and within(page)}
     assert found == {page: {*names} for page, (names, _) in SPOKEN.items()}
     assert named(ast.parse("x = q.name == 'omega_dot'")) == {"omega_dot"}
     assert named(ast.parse("x = {'omega': 1}['omega']")) == set()

@@ -40,11 +40,11 @@ print(digest.hexdigest())
 """
 
 
-LARGER = ("satellite", "reaction_wheel_satellite", "tumbling_disc",
+LARGER = ("edge_runner_flat", "satellite", "reaction_wheel_satellite", "tumbling_disc",
           "unsymmetrical_rotor_in_carrier_axes", "gyrostat")  # fmt: skip
 
 
-@pytest.mark.parametrize("scenes", thinned([("heavy_top", "edge_runner_flat"), LARGER], 2))
+@pytest.mark.parametrize("scenes", thinned([("heavy_top",), LARGER], 2))
 def test_the_hash_seed_changes_no_byte(scenes: tuple[str, ...]) -> None:
     found = set()
     running = [

@@ -36,6 +36,7 @@ def test_a_hot_function_costs_at_most_its_target(scene, function):
     assert (program.flops(), count.get("div", 0), calls) <= TARGETS[scene, function]
 
 
+@pytest.mark.long
 def test_the_free_body_has_sixty_six_nonzeros():
     pattern = library_of("rigid_body")["state_rate_jacobian"].sparsity["jacobian"]
     assert (len(pattern.rows), len(pattern.columns), len(pattern.row)) == (13, 19, 66)

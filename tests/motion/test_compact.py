@@ -90,6 +90,7 @@ def _wrong(line: Line) -> Iterator[Line]:
                 yield replace(line, then=(line.then[-1], *line.then[1:]))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["jacobian", "tangent"])
 def test_a_wrong_chain_rule_is_noticed(kind: str) -> None:
     fast, small = pair("principal", kind)

@@ -88,6 +88,7 @@ def test_rounding_leaves_a_few_u_also_where_a_body_hardly_turns(speed: str, dtyp
     assert rounding(step(given, "step_lie_jacobian"), slow, dtype) <= 8
 
 
+@pytest.mark.long
 def test_a_mutant_of_the_jacobian_is_found() -> None:
     given, values = case("principal")
     made = step(given, "step_lie_jacobian")

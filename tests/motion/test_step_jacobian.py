@@ -202,6 +202,7 @@ def test_the_step_of_a_principal_body_with_its_jacobian_costs_at_most_840_operat
     assert program.flops() <= 898  # with the columns of the moment
 
 
+@pytest.mark.long
 def test_the_step_of_thirteen_states_with_its_sensitivities_costs_at_most_2949_operations() -> None:
     assert step(system("rigid_body"), "step_rk4_jacobian").flops() <= 2947  # CasADi: 5898
 

@@ -101,6 +101,7 @@ def test_other_columns_and_the_state_are_what_they_are_without_it(method: str) -
     assert max(abs(with_it[place] - without[place]) for place in without) < EXACTLY
 
 
+@pytest.mark.long
 def test_the_column_costs_a_principal_body_at_most_276_operations() -> None:
     for method in KINDS:
         made, _, given, _ = made_of("principal", method, "jacobian")
