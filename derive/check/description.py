@@ -63,9 +63,10 @@ class Description:
         """Return the machine as it is told along the turned frames."""
         machine, place = self.machine, self.machine.momentum
         results = tuple(replace(r, formula=self._formula(r.formula)) for r in machine.results)
-        steady = machine.steady
-        if steady is not None and steady.vanishes is not None:
-            steady = replace(steady, vanishes=self._formula(steady.vanishes))
+        steady = {
+            name: replace(own, vanishes=tuple(map(self._formula, own.vanishes)))
+            for name, own in machine.steady.items()
+        }
         return replace(
             machine,
             frames=tuple(map(self._frame, machine.frames)),

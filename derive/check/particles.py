@@ -13,6 +13,7 @@ from derive.scene import Input, Scene
 from derive.scene.formula import symbols
 from derive.scene.machine import Result
 from derive.scene.results import MATRICES, written_out
+from derive.scene.steady import steady_parts
 from derive.verify.cloud import CloudAnswers, answers
 from derive.verify.cloud.series import DIGITS
 from derive.verify.cloud.small import is_at_rest, slopes_about_rest
@@ -61,16 +62,17 @@ def _where_it_lasts(library: Library, each: Sequence[Sample]) -> Iterator[dict[s
     """
     with ctx.workprec(BITS):
         balls = [unit_attitude(library, {c: arb(x) for c, x in s.values.items()}) for s in each]
-    steady = library.scene.steady
-    if steady is None or steady.vanishes is not None or "steady" not in library.problems:
+    balanced = {name: own.unknown for name, own in library.scene.steady.items()
+                if not own.vanishes and name in library.problems}  # fmt: skip
+    if not balanced:
         yield from balls
-    elif len(steady.unknown) == 1:
-        equations = equations_of(library.mechanism, library.problems["steady"])
-        for moving in balls:
+    for name, unknown in [*balanced.items()][:1]:  # at whose root all others vanish, too
+        equations = equations_of(library.mechanism, library.problems[name])
+        for moving in balls if len(unknown) == 1 else ():
             values = moving | dict.fromkeys(_rates(library), arb(0))
-            root = _root(equations, values, steady.unknown[0])
+            root = _root(equations, values, name, unknown[0])
             if root is not None:
-                yield values | {steady.unknown[0]: root}
+                yield values | {unknown[0]: root}
 
 
 def _rates(library: Library) -> list[str]:
@@ -79,11 +81,11 @@ def _rates(library: Library) -> list[str]:
     return [c.rate.name for c in coordinates if c.free and isinstance(c.rate, Input)]
 
 
-def _root(equations: Equations, values: Mapping[str, Any], name: str) -> Any:
+def _root(equations: Equations, values: Mapping[str, Any], steady: str, name: str) -> Any:
     """Return where the only residual vanishes, to a part in 10^60, by secants; None if nowhere."""
 
     def residual(x: Any) -> Any:
-        return reference(equations, {**values, name: x}, ())["steady"].value.mid()
+        return reference(equations, {**values, name: x}, ())[steady].value.mid()
 
     with ctx.workprec(BITS):
         last, here = values[name], (values[name] * arb("1.01")).mid()
@@ -103,8 +105,8 @@ def _gaps(
 ) -> list[Any]:
     """Return how far the answers in ``true`` are from the cloud's, relative to the largest term."""
     cloud = answers(scene, given)
-    lasts = scene.steady is not None and scene.steady.vanishes is None
-    if base == "steady" and lasts:
+    lasts = any(not own.vanishes for own in scene.steady.values())
+    if base in scene.steady and not scene.steady[base].vanishes:
         return [cloud.contradiction]  # at a root, the particles are in balance
     if lasts and cloud.contradiction > AGREE:
         return []
@@ -131,8 +133,10 @@ def of_cloud(
 
 def _of_cloud(machine: Scene, cloud: CloudAnswers, function: str, name: str) -> Any:
     """Return an answer of the cloud, None if it has none."""
-    if function == "steady" and machine.steady is not None and machine.steady.vanishes is not None:
-        return cloud.result(machine.steady.vanishes)
+    if function in machine.steady and machine.steady[function].vanishes:
+        steady = machine.steady[function]
+        parts = steady_parts(function, len(steady.unknown))
+        return cloud.result(steady.vanishes[parts.index(name)])
     if function == "angular_momentum_rate":
         return cloud.momentum_rate.get(name)
     if name in cloud.unknowns:

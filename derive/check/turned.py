@@ -57,9 +57,8 @@ def turned_axes(one: Emitted, each: Sequence[Sample], stated: Stated) -> Iterato
 
 def _free_to_choose(scene: Scene, base: str) -> bool:
     """Tell whether a function's rows may be multiplied or combined, and mean the same."""
-    steady = scene.steady
-    if base == "steady":
-        return steady is None or steady.vanishes is None
+    if base in scene.steady:
+        return not scene.steady[base].vanishes
     names = scene.asked.get(base, (base,))
     results = [r for r in scene.results if r.name in names]
     used = {s for r in results for s in symbols(written_out(r.formula, scene.results))}

@@ -83,10 +83,10 @@ def _print_quantities(scene: derive.Handle, needed: AbstractSet[str]) -> None:
     """Print what answers need, with ranges, and a command that sets all of it."""
     table = Table("name", "from", "to", "unit", "meaning", box=None)
     own = {c: q for q in scene.quantities for c in q.components}
-    steady = scene.scene.steady if "steady" in scene.wanted else None
-    found = steady.unknown if steady else ()
+    lasting = scene.scene.steady
+    found = {n for name in scene.wanted if name in lasting for n in lasting[name].unknown}
     values = []
-    for name in (name for name in own if name in needed | {*found}):
+    for name in (name for name in own if name in needed | found):
         q = own[name]
         low, high = (0.0 if end is None else float(end) for end in (q.low, q.high))
         says = f"{q.meaning}; found if it is not set" if name in found else q.meaning

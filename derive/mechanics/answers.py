@@ -45,8 +45,8 @@ class Answers:
         """Return a wanted function as a problem."""
         asked = self.machine.asked
         names = asked.get(base) or asked.get(base + JACOBIAN) or (base,)
-        if names == ("steady",):
-            return self._steady(base)
+        if names[0] in self.machine.steady:
+            return self._steady(base, names[0])
         parts = {q: e for name in names for q, e in self._answer(name).items()}
         quantities = tuple(parts)
         answers = {
@@ -221,13 +221,11 @@ class Answers:
             total = total + spin
         return total
 
-    def _steady(self, base: str) -> Problem:
-        """Return what vanishes in a steady motion: a formula, or balances without an unknown."""
-        steady = self.machine.steady
-        assert steady is not None  # noqa: S101
-        q = self._quantity("steady")
-        if steady.vanishes is not None:
-            values: list[Expr] = [self.expression(steady.vanishes)]
+    def _steady(self, base: str, name: str) -> Problem:
+        """Return what vanishes in a steady motion: formulas, or balances without an unknown."""
+        steady, q = self.machine.steady[name], self._quantity(name)
+        if steady.vanishes:
+            values: list[Expr] = [self.expression(f) for f in steady.vanishes]
             return self._asked(base, (q,), dict(zip(self._symbols(q), values, strict=True)), ())
         require_nothing_prescribed(
             self.machine.coordinates, "steady", ", or say what vanishes by steady.vanishes"

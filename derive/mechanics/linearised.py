@@ -104,7 +104,7 @@ def unsteady(machine: Scene, balances: Balances, given: Mapping[str, float]) -> 
         the state is an equilibrium at its roots alone; nor where it is an argument that is not set.
     """
     open_ = {name for name, f in machine.about.items() if f.name == name} - given.keys()
-    steady = machine.steady is not None and not given
+    steady = bool(machine.steady) and not given
     if steady or open_ or not any("linearised" in a for a in machine.asked.values()):
         return
     sheet, every = balances.frames.sheet, balances.unknowns

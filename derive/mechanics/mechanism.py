@@ -174,8 +174,8 @@ def _labels(words: Words, problem: Problem) -> set[str]:
 
 def _require_unknowns(own: Mechanism, problem: Problem) -> None:
     """Refuse a residual of steady motion that does not change with each of its unknowns."""
-    steady = own.scene.steady
-    if steady is None or problem.outputs[0].name != "steady":
+    steady = own.scene.steady.get(problem.outputs[0].name)
+    if steady is None:
         return
     used = _labels(own.words, problem)
     if missing := [name for name in steady.unknown if name not in used]:

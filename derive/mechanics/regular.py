@@ -86,7 +86,7 @@ class Regular:
         if not wanted:
             return (), ()
         require_no_ring(self.balances, frozenset(every.index(s) for s in wanted))
-        if self.frames.machine.steady is None and self._contradiction:
+        if not self.frames.machine.steady and self._contradiction:
             raise SceneError(self._contradiction)
         rows, unknowns = chosen(self.balances, frozenset(every.index(s) for s in wanted), hard)
         return rows, tuple(every[k] for k in sorted(unknowns))

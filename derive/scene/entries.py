@@ -186,7 +186,7 @@ MOMENTUM = (
 )
 STEADY = (
     Entry("unknown", "any", "what is to be found: a name or a list", default=REQUIRED),
-    Entry("vanishes", "any", "a formula that is 0, instead of a balance"),
+    Entry("vanishes", "any", "a formula that is 0, instead of a balance; a list, of several"),
 )
 TIME_STEP = Entry("time_step", "bounds", "of a step, s", default={"range": [0, Decimal("0.01")]})
 TIME = Entry("time", "bounds", "that a flow goes on for, s", default={"range": [0, 10]})

@@ -5,9 +5,10 @@ from dataclasses import replace
 
 from derive.scene.declaration import ANY, AXES, Input, Moving
 from derive.scene.formula import ZERO, symbols
-from derive.scene.machine import Force, Group, Groups, Place, Scene, Unknown
+from derive.scene.machine import Force, Group, Groups, Place, Scene, Steady, Unknown
 from derive.scene.results import ENERGIES, MATRICES, unknown_vectors
 from derive.scene.scalars import PER_SECOND
+from derive.scene.steady import steady_parts
 
 
 def grouped(scene: Scene) -> Scene:
@@ -73,11 +74,10 @@ def _outputs(scene: Scene, states: Iterable[Group]) -> Iterator[Group]:
         yield _answer(r.name, (r.name,), r.unit, r.meaning)
     yield from (g for g in rates if g.name in results)  # by this name the result is meant
     yield from _matrices(scene)
-    count = len(scene.steady.unknown) if scene.steady else 1
-    parts = tuple(f"steady_{n + 1}" for n in range(count)) if count > 1 else ("steady",)
-    unit = scene.steady.unit if scene.steady else ""
-    free_of = "" if unit else ", without factors that never vanish, so in no unit"
-    yield _answer("steady", parts, unit, f"what vanishes in a steady motion{free_of}")
+    for name, steady in (scene.steady or {"steady": Steady((), (), "")}).items():
+        free_of = "" if steady.vanishes else ", without factors that never vanish, so in no unit"
+        says = f"what vanishes in a steady motion{free_of}"
+        yield _answer(name, steady_parts(name, len(steady.unknown)), steady.unit, says)
 
 
 def _acting(scene: Scene, u: Unknown) -> Group:

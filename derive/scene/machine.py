@@ -155,13 +155,13 @@ class Place:
 
 @dataclass(frozen=True)
 class Steady:
-    """The unknowns of a steady motion; what vanishes in it and its unit, if it is no balance.
+    """The unknowns of a steady motion; what vanishes in it and its unit, if these are no balances.
 
     A balance is without the factors that never vanish, so it has no unit to be given in.
     """
 
     unknown: tuple[str, ...]
-    vanishes: Formula | None
+    vanishes: tuple[Formula, ...]
     unit: str
 
 
@@ -262,7 +262,7 @@ class Scene:
     results: tuple[Result, ...]
     momentum: Place
     about: Mapping[str, Formula]
-    steady: Steady | None
+    steady: Mapping[str, Steady]
     asked: Mapping[str, tuple[str, ...]]
     wanted: tuple[str, ...]
     form: Literal["fast", "accurate"]

@@ -46,7 +46,7 @@ TABLES: Mapping[str, tuple[Entry, ...]] = {
     "`gravity_gradient`, a formula or": entries.CENTRE_OF_FIELD,
     "`[results]` NAME, a formula or": entries.RESULT,
     "`[angular_momentum]`": entries.MOMENTUM,
-    "`[steady]`": entries.STEADY,
+    "`[steady]`, or `[steady.NAME]` each": entries.STEADY,
     "`[motion]`": (entries.TIME_STEP, entries.TIME, entries.COLUMN),
     "`[axes]` of a single body": entries.AXES_OF_ONE,
     "`[body]`, besides a kind or a shape": entries.BODY,

@@ -11,7 +11,7 @@ from derive.scene.bodies import read_member
 from derive.scene.declaration import Input, SceneError
 from derive.scene.demands import of_bodies
 from derive.scene.doubtful import doubts, require_sizes
-from derive.scene.entries import COLUMN, FILE, MOMENTUM, STEADY, TIME, TIME_STEP
+from derive.scene.entries import COLUMN, FILE, MOMENTUM, TIME, TIME_STEP
 from derive.scene.entry import REQUIRED, Entry, Reading, entries_of
 from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.frames import read_frames
@@ -22,20 +22,18 @@ from derive.scene.named import check_named, named_told, named_unused, widened
 from derive.scene.names import distinct, label
 from derive.scene.numbers import member_doubts
 from derive.scene.results import (
-    answer_units,
     matrix_entries,
-    of_any_unit,
     read_asked,
     read_results,
     unknown_vectors,
-    written_out,
 )
 from derive.scene.safe import require_values
 from derive.scene.said import said
 from derive.scene.scalars import PER_SECOND, Scalars, read_scalars
 from derive.scene.scope import Scope, formula
-from derive.scene.table import THE_FILE, Table, keys, several, table
-from derive.scene.unit import BESIDE_SI, dimension, misnamed, spelled
+from derive.scene.steady import read_steady, steady_names
+from derive.scene.table import THE_FILE, Table, keys, table
+from derive.scene.unit import dimension, misnamed
 from derive.scene.wanted import check_form, moves
 from derive.scene.welds import welded
 
@@ -92,9 +90,10 @@ def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
     loads, unknowns = read_loads(part["loads"], scalars, frames, bodies)
     results = read_results(part["results"], scalars, unknowns)
     distinct(_declared(scalars, unknowns, results))
-    asked = read_asked(head.pop("wanted"), scalars, unknowns, results)
+    lasting = steady_names(part["steady"])
+    asked = read_asked(head.pop("wanted"), scalars, unknowns, results, lasting)
     distinct([*_declared(scalars, (), ()), *_vectors(unknowns, asked)])
-    steady = _steady(part["steady"], scalars, unknowns, results, asked)
+    steady = read_steady(part["steady"], scalars, unknowns, results, asked)
     welds, hidden = welded(bodies, loads, unknowns, scalars.parameters)
     made = _made(scalars, frames, results, asked, steady)
     distinct([*_declared(scalars, unknowns, results), *made])
@@ -156,7 +155,7 @@ def _made(
     frames: tuple[Frame, ...],
     results: tuple[Result, ...],
     asked: Mapping[str, tuple[str, ...]],
-    steady: Steady | None,
+    steady: Mapping[str, Steady],
 ) -> Iterator[tuple[str, str]]:
     """Yield the quantities that functions have by themselves, with what each is."""
     answers = {name for each in asked.values() for name in each}
@@ -178,8 +177,10 @@ def _made(
     for name in matrix_entries(scalars):
         if "linearised" in answers or name in used:
             yield name, "an entry of a matrix of small motion"
-    if "steady" in answers and steady is not None:
-        yield from ((f"steady_{n + 1}", "what vanishes") for n in range(len(steady.unknown)))
+    for name in sorted(answers & steady.keys()):
+        yield from ((f"{name}_{n + 1}", "what vanishes") for n in range(len(steady[name].unknown)))
+        if name != "steady":
+            yield name, f"what vanishes in steady.{name.removeprefix('steady_')}"
 
 
 def _unused(scalars: Scalars, source: str) -> tuple[str, ...]:
@@ -231,33 +232,3 @@ def _about(given: Table, scalars: Scalars) -> Mapping[str, Formula]:
         else ZERO
         for name, unit in free.items()
     }
-
-
-def _steady(
-    given: Table,
-    scalars: Scalars,
-    unknowns: tuple[Unknown, ...],
-    results: tuple[Result, ...],
-    asked: Mapping[str, tuple[str, ...]],
-) -> Steady | None:
-    if not given.entries:
-        if any("steady" in answers for answers in asked.values()):
-            raise SceneError("wanted has 'steady', which needs [steady] with its unknown")
-        return None
-    entries_of(given, STEADY, Reading())
-    if given.entries["unknown"] == []:
-        raise SceneError("steady.unknown is an empty list; it must name what is to be found")
-    fixed = {"pi", *(p.name for p in scalars.parameters if p.value is not None)}
-    scalar = [n for n in scalars.known.dimensions if n not in {*fixed, *scalars.known.meanings}]
-    names = several(given.entries["unknown"], "steady.unknown", scalar)
-    vanishes, unit = None, ""
-    if "vanishes" in given.entries:
-        answers = answer_units(scalars, unknowns) | {
-            r.name: dimension(r.unit) for r in results if r.unit not in BESIDE_SI
-        }
-        known = scalars.known
-        both = Scope(dict(known.dimensions) | answers, {}, "", known.meanings)
-        vanishes, found = of_any_unit(given.entries["vanishes"], "steady.vanishes", both)
-        unit = spelled(found)
-        vanishes = written_out(vanishes, results)
-    return Steady(names, vanishes, unit)

@@ -1,6 +1,7 @@
 """What a machine is asked: the answers it has, results made of them, and what is wanted."""
 
 from collections.abc import Mapping, Sequence
+from collections.abc import Set as AbstractSet
 
 from derive.scene.declaration import AXES, SceneError
 from derive.scene.entries import RESULT
@@ -77,9 +78,16 @@ def of_any_unit(value: object, label: str, scope: Scope) -> tuple[Formula, Dimen
 
 
 def read_asked(
-    value: object, scalars: Scalars, unknowns: tuple[Unknown, ...], results: tuple[Result, ...]
+    value: object,
+    scalars: Scalars,
+    unknowns: tuple[Unknown, ...],
+    results: tuple[Result, ...],
+    lasting: tuple[str, ...],
 ) -> Mapping[str, tuple[str, ...]]:
-    """Return the answers that each wanted function gives."""
+    """Return the answers that each wanted function gives.
+
+    lasting : the functions of steady motions
+    """
     if not isinstance(value, list) or not value:
         raise SceneError(f"wanted must be a list of at least one answer, not {shown(value)}")
     for result in results:
@@ -89,11 +97,11 @@ def read_asked(
     parts = _parts(scalars, unknowns)
     vectors = (m.answer for m in scalars.moving if m.free and m.vector)
     named = (*(u.name for u in unknowns), *(r.name for r in results))
-    known_ = [*FUNCTIONS, *OF_MACHINES, *unknown_vectors(unknowns), *named,
+    known_ = [*FUNCTIONS, *lasting, *OF_MACHINES, *unknown_vectors(unknowns), *named,
               *unknown_rates(scalars), *vectors]  # fmt: skip
     asked: dict[str, tuple[str, ...]] = {}
     for entry in value:
-        name, answers = _entry(entry, known_)
+        name, answers = _entry(entry, known_, {"steady", *lasting})
         if name in asked:
             raise SceneError(f"wanted has '{brief(name)}' twice")
         twice = [(p, a) for a in answers for p in parts.get(a, ()) if p in answers]
@@ -114,7 +122,9 @@ def _parts(scalars: Scalars, unknowns: tuple[Unknown, ...]) -> Mapping[str, tupl
     return parts
 
 
-def _entry(entry: object, known_: Sequence[str]) -> tuple[str, tuple[str, ...]]:
+def _entry(
+    entry: object, known_: Sequence[str], lasting: AbstractSet[str]
+) -> tuple[str, tuple[str, ...]]:
     """Return a wanted function, ``name`` or ``name: answer, answer``, and its answers."""
     if not isinstance(entry, str):
         raise SceneError(f"wanted has {shown(entry)}, which is no answer")
@@ -127,9 +137,9 @@ def _entry(entry: object, known_: Sequence[str]) -> tuple[str, tuple[str, ...]]:
         if colon and answer in OF_MACHINES:
             rule = f"within '{brief(name)}', but a step stands alone"
             raise SceneError(f"wanted has '{answer}' {rule}")
-        if answer == "steady" and len(answers) > 1:
+        if answer in lasting and len(answers) > 1:
             rule = f"within '{brief(name)}', but what vanishes in a steady motion stands alone"
-            raise SceneError(f"wanted has 'steady' {rule}")
+            raise SceneError(f"wanted has '{answer}' {rule}")
         if answer not in known_ or (answer != name and answer in OF_MACHINES):
             alien = answer in WANTED and answer not in OF_MACHINES
             hint = " of a machine, but of a single body" if alien else resembling(answer, known_)

@@ -101,7 +101,8 @@ def formulas_of(value: object, label: str = "") -> Iterator[tuple[str, Formula]]
             yield from formulas_of(inner, label)
     elif isinstance(value, dict):
         for key, inner in value.items():
-            yield from formulas_of(inner, label if "'" in label else f"{label}.{key}")
+            apart = key if key.startswith(label) else f"{label}.{key}"
+            yield from formulas_of(inner, label if "'" in label else apart)
 
 
 def _dangers(formula: Formula) -> Iterator[tuple[str, Formula]]:

@@ -87,7 +87,7 @@ OF_ANY: Mapping[str, Schema] = {
     },
     "unit": _NAME,
     "unknown": {"anyOf": [_NAME, _NAMES]},
-    "vanishes": FORMULA,
+    "vanishes": {"anyOf": [FORMULA, {"type": "array", "items": FORMULA, "minItems": 1}]},
     "name": {"type": "string", "pattern": "^[A-Za-z0-9]{1,20}$"},
 }
 """What values look like of which the row says that their reader knows more, by entry."""
@@ -131,7 +131,7 @@ def _tables() -> dict[str, Any]:
         "results": _named(result, "formulas of answers"),
         "linearised": _named(FORMULA, "values about which motion is small; 0 if not given"),
         "angular_momentum": _table(entries.MOMENTUM),
-        "steady": _table(entries.STEADY),
+        "steady": {"anyOf": [_table(entries.STEADY), _named(_table(entries.STEADY), "several")]},
         "motion": _table((entries.TIME_STEP, entries.TIME, entries.COLUMN)),
         "axes": _table(entries.AXES_OF_ONE),
         "body": _body(),

@@ -1,15 +1,18 @@
 """Every answer of a scene at given values: its functions, steady motions, small motions."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
 
 from derive.scene import Input, SceneError
-from derive.scene.machine import LEFT_OVER
+from derive.scene.machine import LEFT_OVER, Steady
 from derive.scene.unit import behind
 from derive.scene.wanted import moves
 from derive.solve.instrument import Instrument
 from derive.solve.motions import roots, small_motion
+
+Lasting = Mapping[str, Mapping[str, float]]
+"""Values in steady motions, by what each is called."""
 
 
 @dataclass(frozen=True)
@@ -65,76 +68,79 @@ def every_answer(found: Instrument, values: Mapping[str, float]) -> Answered:
     """
     rows: list[AnswerRow] = []
     unanswered: dict[str, tuple[str, ...]] = {}
-    motions = _steady_motions(found, values)
-    for name in found.library.scene.wanted:
+    scene = found.library.scene
+    lasting = {name: own for name in scene.wanted if name in scene.steady
+               if (own := _steady_motions(found, name, values)) is not None}  # fmt: skip
+    motions = {said: own for each in lasting.values() for said, own in each.items()}
+    sought = {c for name in lasting for c in _sought(found, name, values)}
+    for name in scene.wanted:
         missing = _missing(found, name, values)
-        if motions is not None and name == "steady":
-            rows.extend(_found(found, motions))
-        elif missing and motions and all(c in motions[0] for c in missing):
-            rows.extend(_at_each(found, name, motions))
+        if name in lasting:
+            rows.extend(_found(found, name, lasting[name]))
+        elif missing and (own := _enough(motions, missing)):
+            rows.extend(_at_each(found, name, own))
         elif missing:
-            unanswered[name] = (
-                tuple(c for c in missing if c not in _sought(found, values)) or missing
-            )
+            unanswered[name] = tuple(c for c in missing if c not in sought) or missing
         elif not moves(name):
             rows.extend(_rows(found, name, values))
-    each: Sequence[Mapping[str, float]] = motions or [values]
+    each: Sequence[Mapping[str, float]] = [*motions.values()] or [values]
     doubts = dict.fromkeys(doubt for own in each for doubt in found.doubts(own))
-    nowhere = [] if motions is None or motions else [_nowhere(found)]
+    nowhere = [_nowhere(scene.steady[name]) for name, own in lasting.items() if not own]
     return Answered(tuple(rows), unanswered, (*doubts, *nowhere))
 
 
-def _steady_motions(
-    found: Instrument, values: Mapping[str, float]
-) -> list[dict[str, float]] | None:
-    """Return the values with each root of steady motion, None if none is to be found yet."""
-    sought = _sought(found, values)
-    if not sought or _missing(found, "steady", values):
+def _enough(motions: Lasting, missing: Iterable[str]) -> Lasting:
+    """Return the steady motions that have all that is missing."""
+    return {said: own for said, own in motions.items() if own.keys() >= {*missing}}
+
+
+def _steady_motions(found: Instrument, name: str, values: Mapping[str, float]) -> Lasting | None:
+    """Return the values with each root of a steady motion, None if none is to be found yet."""
+    sought = _sought(found, name, values)
+    if not sought or _missing(found, name, values):
         return None
-    return [{**dict.fromkeys(sought, 0.0), **values, **root} for root in roots(found, values)]
+    said = "steady motion" if name == "steady" else f"{name}, motion"
+    still = dict.fromkeys(sought, 0.0)
+    return {f"{said} {number}": {**still, **values, **root}
+            for number, root in enumerate(roots(found, values, name), 1)}  # fmt: skip
 
 
-def _sought(found: Instrument, values: Mapping[str, float]) -> tuple[str, ...]:
+def _sought(found: Instrument, name: str, values: Mapping[str, float]) -> tuple[str, ...]:
     """Return what a steady motion says that is to be found: its unknowns, rates that are 0 in it.
 
     Free coordinates rest where what vanishes is a balance.
     """
     scene = found.library.scene
-    steady = scene.steady if "steady" in scene.wanted else None
-    if steady is None or all(n in values for n in steady.unknown):
+    steady = scene.steady[name]
+    if all(n in values for n in steady.unknown):
         return ()
     rates = [c.rate.name for c in scene.coordinates if c.free and isinstance(c.rate, Input)]
-    return (*steady.unknown, *(rates if steady.vanishes is None else ()))
+    return (*steady.unknown, *(() if steady.vanishes else rates))
 
 
-def _found(found: Instrument, motions: Sequence[Mapping[str, float]]) -> Iterator[AnswerRow]:
-    steady = found.library.scene.steady
+def _found(found: Instrument, name: str, motions: Lasting) -> Iterator[AnswerRow]:
     unit = {c: q.unit for q in found.quantities() for c in q.components}
-    for number, motion in enumerate(motions, 1):
-        for unknown in steady.unknown if steady else ():
-            value = motion[unknown] + 0.0  # no -0
-            yield AnswerRow(f"steady motion {number}", unknown, value, unit[unknown])
+    for said, motion in motions.items():
+        for unknown in found.library.scene.steady[name].unknown:
+            yield AnswerRow(said, unknown, motion[unknown] + 0.0, unit[unknown])  # no -0
 
 
-def _nowhere(found: Instrument) -> str:
+def _nowhere(steady: Steady) -> str:
     """Return the sentence on a steady motion that was looked for and is nowhere."""
-    steady = found.library.scene.steady
-    names = " and ".join(f"'{name}'" for name in steady.unknown) if steady else ""
+    names = " and ".join(f"'{name}'" for name in steady.unknown)
     return f"no steady motion was found in the declared range of {names}"
 
 
-def _at_each(
-    found: Instrument, name: str, motions: Sequence[Mapping[str, float]]
-) -> Iterator[AnswerRow]:
+def _at_each(found: Instrument, name: str, motions: Lasting) -> Iterator[AnswerRow]:
     """Yield what a function answers in every steady motion."""
-    for number, motion in enumerate(motions, 1):
+    for said, motion in motions.items():
         for row in _rows(found, name, motion):
-            yield replace(row, of=f"{row.of} in steady motion {number}")
+            yield replace(row, of=f"{row.of} in {said}")
 
 
 def _missing(found: Instrument, name: str, values: Mapping[str, float]) -> tuple[str, ...]:
-    steady = found.library.scene.steady
-    given = (*values, *(steady.unknown if steady and name == "steady" else ()))
+    steady = found.library.scene.steady.get(name)
+    given = (*values, *(steady.unknown if steady else ()))
     lacking = [c for c in found.needed(name.removesuffix("_jacobian")) if c not in given]
     known = {c for q in found.quantities() for c in q.components}
     return tuple(c for c in lacking if c in known or not moves(name))
@@ -148,7 +154,7 @@ def _rows(found: Instrument, name: str, values: Mapping[str, float]) -> Iterator
                 f"scene '{found.name}': '{name}' must be finite, but with these values "
                 f"{component} is {value}"
             )
-        shown = f"{component}, {LEFT_OVER}" if name == "steady" else component
+        shown = f"{component}, {LEFT_OVER}" if name in found.library.scene.steady else component
         yield AnswerRow(name, shown, value + 0.0, units[component])  # no -0
     if name == "linearised":
         small = small_motion(found, values)

@@ -65,8 +65,9 @@ def event(found: Instrument, given: Mapping[str, float], text: object) -> Event:
 def _functions(found: Instrument, given: Mapping[str, float]) -> dict[str, str]:
     """Return the answers that are known along a motion, each with the function that gives it."""
     states = [c for q in found.library.vocabulary.states for c in q.components]
-    functions = [name for name in found.library.scene.wanted
-                 if not moves(name) and name not in ("steady", "linearised")]  # fmt: skip
+    scene = found.library.scene
+    apart = (*scene.steady, "linearised")
+    functions = [name for name in scene.wanted if not moves(name) and name not in apart]
     return {
         c: name
         for name in reversed(functions)

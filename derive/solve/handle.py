@@ -126,12 +126,12 @@ class Handle:
         """
         return every_answer(self._instrument, self._settings(values))
 
-    def roots(self, values: NamedValues) -> list[dict[str, float]]:
+    def roots(self, values: NamedValues, steady: str = "steady") -> list[dict[str, float]]:
         """Return the unknowns of every steady motion in the declared ranges.
 
-        values : all that the scene's ``steady`` needs but its unknowns
+        values : all that ``steady`` needs but its unknowns; of several, ``steady_NAME``
         """
-        return roots(self._instrument, self._settings(values))
+        return roots(self._instrument, self._settings(values), steady)
 
     def frequencies(self, values: NamedValues) -> list[float]:
         """Return the circular frequencies of small motion, rising, in rad/s."""

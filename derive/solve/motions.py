@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from derive.program.largest import largest
 from derive.scene import SceneError
+from derive.scene.table import one_of
 from derive.solve.instrument import Instrument
 from derive.solve.lacking import advice_on
 
@@ -21,21 +22,23 @@ UNSTABLE = 1e-6  # growth beside the largest eigenvalue that is more than roundi
 HALVINGS = 60
 
 
-def _steady(found: Instrument) -> tuple[str, ...]:
+def _unknown(found: Instrument, steady: object) -> tuple[str, ...]:
     scene = found.library.scene
-    if scene.steady is None:
+    if not scene.steady:
         raise SceneError(advice_on(scene, "steady", "a search for roots"))
-    return scene.steady.unknown
+    return scene.steady[one_of(steady, f"scene '{found.name}': steady", scene.steady)].unknown
 
 
-def roots(found: Instrument, given: Mapping[str, float]) -> list[dict[str, float]]:
+def roots(
+    found: Instrument, given: Mapping[str, float], steady: str = "steady"
+) -> list[dict[str, float]]:
     """Return the unknowns of every steady motion in the declared ranges, by CasADi's root finder.
 
-    given : all that the residual needs but its unknowns
+    given : all that the residual needs but its unknowns       steady : the function that vanishes
     """
-    names = _steady(found)
+    names = _unknown(found, steady)
     x = casadi.SX.sym("x", len(names))
-    left = found.answer("steady", dict(given) | {n: x[k] for k, n in enumerate(names)})
+    left = found.answer(steady, dict(given) | {n: x[k] for k, n in enumerate(names)})
     residual = casadi.Function("residual", [x], [casadi.vertcat(*left.values())])
     grid = _grid(found, names)
     size = max((s for p in grid if np.isfinite(s := _size(residual, p))), default=0.0)

@@ -89,8 +89,7 @@ psi = { unit = "rad", range = [-1, 1], rate = "slow" }""",
     scene = parse_scene(text, "places")
     assert scene.warnings == ()
     assert str(scene.about["theta"]) == "1/2*(1/2)" or str(scene.about["theta"]) == "1/4"
-    assert scene.steady is not None
-    assert str(scene.steady.vanishes) == "l*(1 - cos(theta)) - 1/2*l"
+    assert str(scene.steady["steady"].vanishes[0]) == "l*(1 - cos(theta)) - 1/2*l"
     assert str(scene.coordinates[0].rate) == "1/2*W"
     assert [t.coordinate for t in scene.frames[1].turned] == ["psi", "theta"]
     assert str(scene.bodies[0].centre[2]) == "-l"

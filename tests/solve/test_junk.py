@@ -73,6 +73,7 @@ def good(folder: Path) -> dict[str, Any]:
         "samples": 4, "figures": "kept", "tell": "costs", "parts": "usual", "told": lambda _: None,
         "tensor": np.eye(3), "parameters": {}, "precision": "double", "by": "any",
         "values": {}, "until": 0.01, "step": 1e-3, "plot": None, "form": "text", "stop": None,
+        "steady": "steady",
         "omega": [1, 2, 3], "omega_dot": [1, 2, 3],
         "scene": derive.load(BALL, "ball"), "turn": "z 1", "end": {}, "limits": {}, "avoid": (),
         "cost": {"time": 1}, "steps": 10, "starts": 1, "method": "shooting", "solver": "ipopt",

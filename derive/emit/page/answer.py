@@ -77,7 +77,7 @@ def results_line(library: Library, program: Program, middle: Mapping[str, float]
         for place, ((q, c), r) in enumerate(zip(outputs, results, strict=True))
         if program.results[place] not in (*own, 0)  # which say nothing: given, or none
     ]
-    left = [LEFT_OVER] if program.name == "steady" else []
+    left = [LEFT_OVER] if program.name in library.scene.steady else []
     rest = [f"and {len(every) - _SHOWN} more"] * (len(every) > _SHOWN)
     return Markup(", ".join([*every[:_SHOWN], *rest, *left]))  # noqa: S704 (numbers, units and checked names)
 

@@ -63,7 +63,7 @@ def long_form(scene: ShortForm, motion: Motion) -> Scene:
         bodies=(_body(scene), *(member for _, member, _ in wheels)),
         loads=(*loads, *(load for _, _, load in wheels)), unknowns=unknowns, results=(),
         momentum=Place(FRAME, NOWHERE, (BODY, *(member.name for _, member, _ in wheels))),
-        about={}, steady=None, asked={}, warnings=scene.warnings,
+        about={}, steady={}, asked={}, warnings=scene.warnings,
         demands=of_one_body(scene), merging=singular_attitude(scene), groups=groups(scene),
         spoken=spoken(scene, FRAME, BODY, f"{BODY}.axes"),
         marks={FRAME: "", f"{BODY}.axes": "B", BODY: "B"},
