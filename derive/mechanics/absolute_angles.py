@@ -21,7 +21,7 @@ NOT_TURNED: Turned = (Integer(1), Integer(0))
 
 def absolute_angles(machine: Links) -> MassMatrix | None:
     """Return the mass matrix of links about parallel axes, None if some are not parallel."""
-    if len({link.axis for link in machine.links}) != 1:
+    if machine.drives or len({link.axis for link in machine.links}) != 1:
         return None
     return _AbsoluteAngles(machine, MassMatrix()).assembled()
 

@@ -1,4 +1,4 @@
-"""The ways that a machine's links offer to find accelerations, each held against the balances.
+"""The ways that links offer to what moves or drives them, each held against the balances.
 
 Links are solved without the reactions between them. That these do no work is not looked into: a
 way that yields other answers than the balances at trial points is none.
@@ -13,7 +13,7 @@ from derive.mechanics.links import Links, links
 from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.probe import NOTHING, PROBES, random_probe
 from derive.mechanics.problem import Problem, answered
-from derive.mechanics.recursion import recursion
+from derive.mechanics.recursion import driven, recursion
 from derive.mechanics.words import Words
 
 OnTheWay = Mapping[Symbol, Expr]
@@ -24,7 +24,9 @@ def by_links(mechanism: Mechanism, base: str) -> Iterator[OnTheWay]:
     found, sheet = mechanism.lean(base), mechanism.answers.frames.sheet
     problem = found.problem
     machine = links(mechanism.answers.frames, frozenset(problem.unknowns))
-    if machine is None or machine.unknowns != {*problem.unknowns} or not machine.links:
+    if machine is None or not machine.links:
+        return
+    if {*problem.unknowns} not in (machine.free, machine.driving):
         return
     known = dict.fromkeys(mechanism.words.hidden, Integer(1)) | dict(found.taken)
     for own in _solved(machine, problem.unknowns):
@@ -35,6 +37,11 @@ def by_links(mechanism: Mechanism, base: str) -> Iterator[OnTheWay]:
 
 
 def _solved(machine: Links, unknowns: Sequence[Symbol]) -> Iterator[OnTheWay]:
+    if not machine.free:
+        yield driven(machine)
+        return
+    if machine.drives or any(link.unknown is None for link in machine.links):
+        return
     systems = absolute_angles(machine), recursion(machine)
     for order in _orders(machine, unknowns):
         for absolute, system in zip((True, False), systems, strict=True):

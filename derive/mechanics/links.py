@@ -45,15 +45,17 @@ NO_BULK = Bulk(Integer(0), ZERO, zeros(3, 3))
 
 @dataclass(frozen=True)
 class Link:
-    """What turns in its parent by a free angle about an axis of both, through its hinge.
+    """What turns in its parent about an axis of both, through its hinge.
 
-    axis  : its place, 0 to 2         hinge : along the parent's axes
-    drift : how its hinge accelerates where its parent is the base
+    axis    : its place, 0 to 2         hinge : along the parent's axes
+    unknown : the second rate of its angle where it is free; else that is ``known``
+    drift   : how its hinge accelerates where its parent is the base
     """
 
     parent: int
     axis: int
-    unknown: Symbol
+    unknown: Symbol | None
+    known: Expr
     rate: Expr
     cosine: Expr
     sine: Expr
@@ -78,7 +80,8 @@ class Push:
 class Links:
     """Links, parents first, the masses that do not turn, gravity, and all else that acts.
 
-    motors : the moment about the axis of a link that its parent takes on
+    motors : the known moment about the axis of a link that its parent takes on
+    drives : the same where it is sought, with its sign
     """
 
     links: tuple[Link, ...]
@@ -86,12 +89,19 @@ class Links:
     gravity: Matrix
     pushes: tuple[Push, ...]
     motors: Mapping[int, Expr] = field(default_factory=dict)
+    drives: Mapping[int, tuple[Symbol, Expr]] = field(default_factory=dict)
 
     @property
-    def unknowns(self) -> frozenset[Symbol]:
+    def free(self) -> frozenset[Symbol]:
         """Return the accelerations that a motion of the machine is made of."""
         drifts = (*(d for _, d in self.carried), *(k.drift for k in self.links if k.drift))
-        return frozenset((*(k.unknown for k in self.links), *(u for d in drifts for u in d.slopes)))
+        angles = (k.unknown for k in self.links if k.unknown is not None)
+        return frozenset((*angles, *(u for d in drifts for u in d.slopes)))
+
+    @property
+    def driving(self) -> frozenset[Symbol]:
+        """Return the moments of joints that are sought."""
+        return frozenset(u for u, _ in self.drives.values())
 
     def path(self, link: int) -> list[int]:
         """Return a link, its parent, and so on, without the base."""
@@ -139,6 +149,8 @@ class _Survey:
         self.fixed = words.vocabulary.fixed() | words.hidden.keys()
         self.reactions = dict.fromkeys(frames.sheet.unknowns - sought, Integer(0))
         self.links: list[Link] = []
+        self.motors: dict[int, Expr] = {}
+        self.drives: dict[int, tuple[Symbol, Expr]] = {}
         self.of: dict[str, int] = {INERTIAL: BASE}
         self.at: dict[str, Matrix] = {INERTIAL: ZERO}  # the origin of a frame, in its link's axes
 
@@ -149,13 +161,12 @@ class _Survey:
                 self._frame(frame)
         carried = [own for b in machine.bodies for own in self._body(b.name)]
         gravity, weights = self._gravity()
-        motors: dict[int, Expr] = {}
-        driven = [load for load in machine.loads if isinstance(load, Force)
-                  and self._motor(load, motors)]  # fmt: skip
+        joints = [load for load in machine.loads if isinstance(load, Force)]
+        driven = [load for load in joints if self._motor(load)]
         other = weights | {load.name for load in driven}
         acting = [w for w in wrenches(self.frames) if w.load not in other]
         pushes = tuple(p for w in acting for p in self._push(w))
-        return Links(tuple(self.links), tuple(carried), gravity, pushes, motors)
+        return Links(tuple(self.links), tuple(carried), gravity, pushes, self.motors, self.drives)
 
     def _frame(self, frame: Frame) -> None:
         moves = (frame.angular_velocity, frame.velocity, frame.acceleration, frame.rolls)
@@ -173,12 +184,12 @@ class _Survey:
     def _turned(self, turn: Turning, parent: int, place: Matrix) -> None:
         sheet, (R, rate) = self.frames.sheet, self.frames.one_turn(turn)
         rest, slopes = sheet.split(sheet.rate(rate))
-        if rest != 0 or list(slopes.values()) != [1]:
+        if slopes and (rest != 0 or list(slopes.values()) != [1]):
             raise OtherMachineError
-        axis, (unknown,) = PLACE[turn.axis], slopes
+        axis, unknown = PLACE[turn.axis], next(iter(slopes), None)
         i, j = (axis + 1) % 3, (axis + 2) % 3
         drift = self._drift(place) if parent == BASE else None
-        self.links.append(Link(parent, axis, unknown, rate, R[i, i], R[j, i], place, drift))
+        self.links.append(Link(parent, axis, unknown, rest, rate, R[i, i], R[j, i], place, drift))
 
     def _body(self, body: str) -> list[tuple[Expr, Drift]]:
         """Add a body to its link, or return it if it does not turn."""
@@ -218,18 +229,22 @@ class _Survey:
             raise OtherMachineError
         return found
 
-    def _motor(self, load: Force, motors: dict[int, Expr]) -> bool:
+    def _motor(self, load: Force) -> bool:
         """Note a couple between a link and its parent, and tell whether a load is that alone."""
         column = self.frames.words.column
-        force, couple = self._known(column(load.force)), self._known(column(load.couple))
+        force, couple = (column(v).xreplace(self.reactions) for v in (load.force, load.couple))
         ends = [self.of[self.frames.own(load.on)]]
         ends += [self.of[self.frames.own(load.against)]] if load.against else [BASE]
         if force != ZERO or self.of[load.along] not in ends:
             return False
         for (link, other), sign in ((ends, 1), (ends[::-1], -1)):
             if link != BASE and self.links[link].parent == other:
-                own = sign * couple[self.links[link].axis]
-                motors[link] = motors.get(link, Integer(0)) + own
+                rest, slopes = self.frames.sheet.split(sign * couple[self.links[link].axis])
+                self.motors[link] = self.motors.get(link, Integer(0)) + rest
+                for u, slope in slopes.items():
+                    if slope not in (1, -1) or link in self.drives:
+                        raise OtherMachineError
+                    self.drives[link] = u, slope
                 return True
         return False
 

@@ -8,7 +8,7 @@ A body turning needs K r of each of its particles, K = alpha x + omega x omega x
 
 from dataclasses import dataclass, field
 
-from sympy import Expr, Integer, Matrix, zeros
+from sympy import Expr, Integer, Matrix, Symbol, zeros
 
 from derive.lecture.turning import unit_vector
 from derive.mechanics.frames import ZERO
@@ -21,6 +21,18 @@ def recursion(machine: Links) -> MassMatrix:
     return _Recursion(machine, MassMatrix()).assembled()
 
 
+def driven(machine: Links) -> dict[Symbol, Expr]:
+    """Return the moments that drive links as they are known to move, with what is on the way."""
+    own = _Recursion(machine, MassMatrix())
+    own.follow()
+    moments = own.moments()
+    found = {
+        u: sign * (moments[k] - machine.motors.get(k, Integer(0)))
+        for k, (u, sign) in machine.drives.items()
+    }
+    return {**own.system.definitions, **found}
+
+
 @dataclass
 class _Recursion:
     machine: Links
@@ -31,11 +43,9 @@ class _Recursion:
 
     def assembled(self) -> MassMatrix:
         links, system = self.machine.links, self.system
-        self.bodies = _without_mass_on_axes(self.machine)
-        alphas: list[Matrix] = []
-        for link in links:
-            self._moves(link, alphas)
-        self._moments()
+        self.follow()
+        for link, moment in zip(links, self.moments(), strict=True):
+            system.act(link.unknown, -moment)
         self._masses()
         for m, drift in self.machine.carried:
             system.translate(m, drift, self.machine.gravity)
@@ -43,8 +53,15 @@ class _Recursion:
             system.act(links[k].unknown, moment)
         return system
 
+    def follow(self) -> None:
+        """Follow the links outward."""
+        self.bodies = _without_mass_on_axes(self.machine)
+        alphas: list[Matrix] = []
+        for link in self.machine.links:
+            self._moves(link, alphas)
+
     def _moves(self, link: Link, alphas: list[Matrix]) -> None:
-        """Add how a link moves while no joint accelerates, gravity taken off."""
+        """Add how a link moves while nothing unknown accelerates, gravity taken off."""
         system, e = self.system, unit_vector("xyz"[link.axis])
         if link.drift is not None:
             above, omega, alpha = link.drift.rest - self.machine.gravity, ZERO, ZERO
@@ -53,7 +70,8 @@ class _Recursion:
             above = self.a[p] + self.K[p] * link.hinge
             omega, alpha = self._in(link, self.omega[p]), self._in(link, alphas[p])
         self.a.append(self._in(link, above))
-        alphas.append(system.column("alpha", alpha + omega.cross(e) * link.rate))
+        turning = omega.cross(e) * link.rate + e * link.known
+        alphas.append(system.column("alpha", alpha + turning))
         self.omega.append(system.column("turning", omega + e * link.rate))
         self.K.append(self._turning(self.omega[-1], alphas[-1]))
 
@@ -67,10 +85,11 @@ class _Recursion:
                     [xz - b, yz + a, -xx - yy]])  # fmt: skip
         return K.applyfunc(lambda entry: cut("K", entry))
 
-    def _moments(self) -> None:
-        """Add the moments of all that is outboard about each axis, that joints do not need."""
+    def moments(self) -> list[Expr]:
+        """Return the moment about each axis of all outboard, without what unknowns need."""
         links, system = self.machine.links, self.system
         forces, moments = [[ZERO] * len(links) for _ in range(2)]
+        about = [Integer(0)] * len(links)
         for push in self.machine.pushes:
             if push.link == BASE:
                 force = self._carried(push.force, push.along, BASE)
@@ -85,7 +104,7 @@ class _Recursion:
             bulk, K = self.bodies[k], self.K[k]
             own = _crossed(bulk.second, K) + bulk.first.cross(self.a[k])
             moment = system.column("effort", own + moments[k])
-            system.act(link.unknown, -moment[link.axis])
+            about[k] = moment[link.axis]
             force = self._out(link, system.column("pull", K * bulk.first + forces[k]))
             if link.drift is not None:
                 for u, d in link.drift.slopes.items():
@@ -93,6 +112,7 @@ class _Recursion:
                 continue
             forces[link.parent] += force
             moments[link.parent] += self._out(link, moment) + link.hinge.cross(force)
+        return about
 
     def _masses(self) -> None:
         """Add what the acceleration of each joint alone takes at it and at all inboard."""

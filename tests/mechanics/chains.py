@@ -1,49 +1,6 @@
-"""Scenes of machines of links: chains of rods, and what else hangs and slides."""
+"""Machines of links that branch, slide, and are pushed and driven, as scenes."""
 
-HEAD = [
-    'wanted = ["accelerations"]', "[parameters]",
-    'm = { unit = "kg", range = [1, 2], meaning = "mass" }',
-    'l = { unit = "m", range = [0.5, 1], meaning = "length" }',
-    'g = { unit = "m/s^2", range = [9.7, 9.9], meaning = "gravity" }', "[coordinates]",
-]  # fmt: skip
-WEIGHT = 'weight = { gravity = ["0", "0", "-g"] }'
-COUPLES = {"y": '["?u_{k}", "{0}", "?w_{k}"]', "x": '["{0}", "?u_{k}", "?w_{k}"]'}
-
-
-def chain(axes: str) -> str:
-    """Return the scene of a chain of equal rods that hang from a fixed hinge, angles relative.
-
-    axes : of the joints, one after another
-    """
-    coordinates = [angle(f"q_{k}") for k in range(1, len(axes) + 1)]
-    frames, bodies, loads = ["[frames]"], ["[bodies]"], ["[loads]", WEIGHT]
-    for k, axis in enumerate(axes, 1):
-        parent = f', parent = "link{k - 1}", origin = ["0", "0", "-l"]' if k > 1 else ""
-        frames.append(f'link{k} = {{ turned = ["{axis} q_{k}"]{parent} }}')
-        bodies.append(rod(k))
-        against = f', against = "rod{k - 1}"' if k > 1 else ""
-        loads.append(joint(k, axis, against, "0"))
-    return "\n".join([*HEAD, *coordinates, *frames, *bodies, *loads])
-
-
-def angle(name: str) -> str:
-    """Return the line of a free angle."""
-    return f'{name} = {{ unit = "rad", range = [-1, 1], meaning = "joint" }}'
-
-
-def rod(k: int) -> str:
-    """Return the line of a rod."""
-    return (
-        f'rod{k} = {{ frame = "link{k}", shape = "rod", axis = "z", mass = "m", length = "l", '
-        'centre = ["0", "0", "-l/2"] }'
-    )
-
-
-def joint(k: int, axis: str, against: str, moment: str) -> str:
-    """Return the line of a hinge, with a moment about its axis."""
-    couple = COUPLES[axis].format(moment, k=k)
-    return f'joint{k} = {{ on = "rod{k}"{against}, force = "?j{k}", couple = {couple} }}'
-
+from bench.chains import COUPLES, HEAD, WEIGHT, angle, chain, joint, rod
 
 TIP = 'frame = "link1", at = ["0", "0", "-l"]'
 ON_A_CART = "\n".join(
@@ -77,3 +34,13 @@ ON_A_CART = "\n".join(
     ]
 )
 """Two links and one on a cart, pushed and driven, the second hinge aside of the first link."""
+
+
+def driven(axes: str) -> str:
+    """Return the scene of a chain whose angles are given, and the moments at its joints sought."""
+    moves = 'rate = { range = [-1, 1] }, acceleration = { range = [-1, 1] }, meaning = "joint"'
+    found = chain(axes).replace('meaning = "joint"', moves)
+    for k, axis in enumerate(axes, 1):
+        couple = COUPLES[axis]
+        found = found.replace(couple.format("0", k=k), couple.format(f"?T_{k}", k=k))
+    return found.replace('"accelerations"', ", ".join(f'"T_{k}"' for k in range(1, len(axes) + 1)))

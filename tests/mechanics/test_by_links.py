@@ -1,10 +1,12 @@
 """Machines of links cost what their mass matrix costs by hand or less, whatever they carry."""
 
 from dataclasses import replace
+from pathlib import Path
 from typing import TypeVar
 
 import pytest
 
+from bench.chains import chain
 from derive.library.library import library
 from derive.mechanics import by_links as ways
 from derive.mechanics.by_links import by_links
@@ -12,7 +14,7 @@ from derive.mechanics.links import BASE, Link, Links, links
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.scene import parse_scene
 from derive.verify.prove import prove
-from tests.mechanics.chains import ON_A_CART, chain
+from tests.mechanics.chains import ON_A_CART, driven
 
 BY_HAND = {2: 25, 3: 68, 4: 133, 5: 222, 6: 337}
 """Operations of a chain of equal rods in absolute angles, solved by L D L^T."""
@@ -44,7 +46,13 @@ def test_a_chain_with_axes_in_turn_costs_less_than_a_plain_recursion(rods: int) 
     prove(made)
 
 
-WAYS = {"chain": (chain("yy"), 4), "in turn": (chain("yx"), 2), "cart": (ON_A_CART, 6)}
+ARM = (Path(__file__).parent / "arm.toml").read_text(encoding="utf-8")
+WAYS = {
+    "arm": (ARM, 3),
+    "chain": (chain("yy"), 4),
+    "in turn": (chain("yx"), 2),
+    "cart": (ON_A_CART, 6),
+}
 """Machines, and in how many ways they are solved: by one or two systems, each in some orders."""
 
 
@@ -52,6 +60,13 @@ WAYS = {"chain": (chain("yy"), 4), "in turn": (chain("yx"), 2), "cart": (ON_A_CA
 def test_links_are_solved_whatever_carries_and_pushes_them(name: str) -> None:
     text, ways_ = WAYS[name]
     assert len(list(by_links(machine_of(text), "accelerations"))) == ways_
+
+
+def test_the_moments_that_drive_a_chain_come_out_of_the_passes_alone() -> None:
+    made = library(parse_scene(driven("yxy"), "chain"))
+    assert [made[f"T_{k}"].flops() for k in (1, 2, 3)] <= [81, 36, 36]
+    assert all("div" not in made[f"T_{k}"].count for k in (1, 2, 3))
+    prove(made)
 
 
 def mutants(machine: Links) -> dict[str, Links]:
