@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from time import process_time
 
 from rich.table import Table
-from sympy import Expr, Matrix, Symbol, cse, symbols
+from sympy import Expr, Matrix, Symbol, cse, preorder_traversal, symbols
 from sympy.physics.mechanics import (
     KanesMethod,
     Point,
@@ -111,19 +111,23 @@ def counted(shared: Iterable[tuple[Symbol, Expr]], left: Iterable[Expr]) -> int:
     >>> counted([], [-x * y + 1 / x, x**2])
     4
     """
-    return sum(_operations(e) for e in (*(e for _, e in shared), *left))
+    total = 0
+    for whole in (*(e for _, e in shared), *left):
+        for e in preorder_traversal(whole):
+            total += _operations(e)
+    return total
 
 
 def _operations(e: Expr) -> int:
-    below = sum(map(_operations, e.args))
+    """Return the operations of an expression on what it is made of."""
     if e.is_Add:
-        return below + len(e.args) - 1
+        return len(e.args) - 1
     if e.is_Mul:
-        return below + max(len([a for a in e.args if a != -1]) - 1, 0)
+        return max(len([a for a in e.args if a != -1]) - 1, 0)
     if e.is_Pow and e.exp.is_Integer:
         power = int(e.exp)
-        return below + abs(power) - (power > 0)
-    return below
+        return abs(power) - (power > 0)
+    return 0
 
 
 def table(chains: Iterable[ChainOfRods]) -> Table:
