@@ -70,6 +70,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 33 operations on pairs.
+ * On Cortex-M0+, -O2: 67279 to 69722 instructions, 2024 B of code, 688 B of stack.
+ * On Cortex-M4F, -O2: 1361 instructions, 1692 B of code, 608 B of stack.
  */
 int acrobot_setup_f32(float m_1, float m_2, float l_1, float c_1, float c_2, float I_1, float I_2,
     float g, acrobot_constants_f32 *constants);
@@ -108,6 +110,8 @@ int acrobot_setup_f32(float m_1, float m_2, float l_1, float c_1, float c_2, flo
  *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 4 add, 6 sub, 16 mul, 1 div, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 10234 to 11746 instructions, 872 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 232 to 234 instructions, 640 B of code, 84 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -142,6 +146,8 @@ void acrobot_state_rate_f32(const acrobot_constants_f32 *constants, float q_1, f
  *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 22 add, 8 sub, 52 mul, 1 div, 5 neg, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 15733 to 17356 instructions, 1472 B of code, 208 B of stack.
+ * On Cortex-M4F, -O2: 308 to 310 instructions, 940 B of code, 116 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -150,7 +156,10 @@ void acrobot_state_rate_jacobian_f32(const acrobot_constants_f32 *constants, flo
     float q_1_dot, float q_2, float q_2_dot, float T, float *q_1_rate, float *q_1_dot_rate,
     float *q_2_rate, float *q_2_dot_rate, float jacobian[12]);
 
-/* The same, the whole matrix: 20 entries. */
+/* The same, the whole matrix: 20 entries.
+ * On Cortex-M0+, -O2: 15995 to 17654 instructions, 1548 B of code, 12 B of tables, 304 B of stack.
+ * On Cortex-M4F, -O2: 462 to 464 instructions, 1004 B of code, 12 B of tables, 188 B of stack.
+ */
 void acrobot_state_rate_jacobian_dense_f32(const acrobot_constants_f32 *constants, float q_1,
     float q_1_dot, float q_2, float q_2_dot, float T, float *q_1_rate, float *q_1_dot_rate,
     float *q_2_rate, float *q_2_dot_rate, float jacobian[20]);
@@ -184,6 +193,8 @@ void acrobot_state_rate_jacobian_dense_f32(const acrobot_constants_f32 *constant
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 9.6e-07 (seen
  *            9.5e-07), damping_matrix 0 (seen 0), stiffness_matrix 3.9e-06 (seen 3.8e-06).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 22 instructions, 44 B of code, 12 B of stack.
+ * On Cortex-M4F, -O2: 21 instructions, 60 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -217,6 +228,8 @@ void acrobot_linearised_f32(const acrobot_constants_f32 *constants, float mass_m
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 0.0004 J (seen 0.00019);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 6 add, 1 sub, 10 mul, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 8797 to 10398 instructions, 740 B of code, 128 B of stack.
+ * On Cortex-M4F, -O2: 214 to 216 instructions, 572 B of code, 68 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, constant_mass, further_axes_are_right_handed, rate_seen_from_N,
  *            rigid.
@@ -250,6 +263,8 @@ void acrobot_energy_f32(const acrobot_constants_f32 *constants, float q_1, float
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 44 add, 24 sub, 99 mul, 8 div, 8 sin, 8 cos.
+ * On Cortex-M0+, -O2: 47754 to 53928 instructions, 2248 B of code, 288 B of stack.
+ * On Cortex-M4F, -O2: 975 to 983 instructions, 1528 B of code, 228 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
