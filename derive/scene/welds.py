@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 
 from derive.scene.declaration import AXES, Parameter, Triple
 from derive.scene.formula import ZERO, symbol, symbols
-from derive.scene.machine import INERTIAL, Force, Load, Member, Unknown
+from derive.scene.machine import Force, Load, Member, Unknown
 
 
 def welded(
@@ -55,8 +55,7 @@ def _pairs(fixed: Iterable[Member], held: set[str]) -> Iterator[tuple[Member, Me
         each.setdefault(body.frame, []).append(body)
     for own in each.values():
         base = next((b for b in own if b.name in held), own[0])
-        if len(own) > 1 and (base.frame != INERTIAL or base.name in held):
-            yield from ((base, b) for b in own if b is not base and b.name not in held)
+        yield from ((base, b) for b in own if b is not base and b.name not in held)
 
 
 def _three(body: str, kind: str) -> Triple:
