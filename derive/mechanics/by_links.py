@@ -23,13 +23,15 @@ def by_links(mechanism: Mechanism, base: str) -> Iterator[OnTheWay]:
     """Yield ways to the unknowns of a function: values in order, what they stand on before."""
     found, sheet = mechanism.lean(base), mechanism.answers.frames.sheet
     problem = found.problem
-    machine = links(mechanism.answers.frames, frozenset(problem.unknowns))
+    held = frozenset(s for e in problem.answers.values() for s in e.free_symbols)
+    sought = held & frozenset(problem.unknowns)  # what else balances hold is a reaction
+    machine = links(mechanism.answers.frames, sought)
     if machine is None or not machine.links:
         return
-    if {*problem.unknowns} not in (machine.free, machine.driving):
+    if sought not in (machine.free, machine.driving):
         return
     known = dict.fromkeys(mechanism.words.hidden, Integer(1)) | dict(found.taken)
-    for own in _solved(machine, problem.unknowns):
+    for own in _solved(machine, sorted(sought, key=str)):
         needed = sheet.needed([*own.values(), *problem.answers.values()])
         way = {s: e.xreplace(known) for s, e in {**needed, **own}.items()}
         if _same_answers(mechanism.words, problem, way):

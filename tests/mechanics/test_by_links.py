@@ -8,6 +8,7 @@ import pytest
 
 from bench.chains import chain
 from derive.library.library import library
+from derive.mechanics import balances
 from derive.mechanics import by_links as ways
 from derive.mechanics.by_links import by_links
 from derive.mechanics.links import BASE, Link, Links, links
@@ -69,6 +70,15 @@ def test_the_moments_that_drive_a_chain_come_out_of_the_passes_alone() -> None:
     prove(made)
 
 
+def test_reactions_that_balances_hold_beside_what_is_sought_are_left_to_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(balances, "MOST_TOGETHER", 2)
+    own = machine_of(driven("yxy"))
+    assert len(own.lean("T_1").problem.unknowns) > 1
+    assert len(list(by_links(own, "T_1"))) == 1
+
+
 def mutants(machine: Links) -> dict[str, Links]:
     """Return a machine with each of its data wrong, one at a time."""
     first = machine.links[0]
@@ -98,7 +108,7 @@ def changed(values: tuple[T, ...], place: int, value: T) -> tuple[T, ...]:
 
 def test_wrong_links_are_no_way(monkeypatch: pytest.MonkeyPatch) -> None:
     own = machine_of(ON_A_CART)
-    sought = frozenset(own.lean("accelerations").problem.unknowns)
+    sought = frozenset(own.lean("accelerations").problem.answers)
     right = links(own.answers.frames, sought)
     assert right is not None
     taken = {}
