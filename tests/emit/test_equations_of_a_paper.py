@@ -9,6 +9,7 @@ import sympy
 from derive.emit.equations import equations
 from derive.emit.equations.account import account
 from derive.emit.equations.assumed import ALONE, alone
+from derive.emit.page.tidied import neatened
 from derive.lecture.chapters import LECTURE
 from derive.library.library import library
 from derive.scene import parse_scene
@@ -63,6 +64,12 @@ def test_sums_are_tidied_and_what_stood_before_is_not_repeated() -> None:
     assert told.count("F = m a_G") == 1
     for part in ("16, mass_centre_motion, as above.", "As in state_rate: ", "(M + m)⋅sin(θ)"):
         assert part in told
+
+
+def test_a_sum_of_numbers_alone_is_tidied_too() -> None:
+    turned, l = sympy.cos(sympy.Rational(3, 10)), sympy.Symbol("l")  # noqa: E741 (a length)
+    for value in (turned + 1, l * (turned + 1) + l**2, (turned**2 + 1) * l + turned):
+        assert sympy.simplify(neatened(value) - value) == 0
 
 
 def test_assumptions_stand_alone() -> None:

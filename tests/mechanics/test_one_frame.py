@@ -33,7 +33,8 @@ VALUES: dict[str, Any] = {"A": 1.5, "m": 3.5, "l": 0.9, "J": 0.015, "R": 7e6, "u
 
 
 def programs(text: str) -> list[Any]:
-    return [(p.name, p.results, p.ops) for p in library(parse_scene(text, "sat")).printed()]
+    made = library(parse_scene(text, "sat"))
+    return [(p.name, p.results, p.ops, p.numbers) for p in (made.setup, *made.printed())]
 
 
 def test_a_weld_need_not_be_declared() -> None:
