@@ -7,9 +7,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from derive.check.eva import cut_into_parts, entered, shown_by_eva, with_bounds_of_sines
+from derive.check.eva import cut_into_parts, entered, shown_by_eva
+from derive.check.stand_in import AROUND, with_bounds
 from derive.cli import main
 from derive.emit.c.source import c_files
+from derive.program.arithmetic import extended
 from derive.program.precision import F32, PRECISIONS, Precision
 from derive.program.program import component_names
 from derive.program.run import run
@@ -94,22 +96,47 @@ def test_what_rounding_leaves_is_given_as_widely_as_it_may_be() -> None:
 
 def test_bounds_of_sines_hold_and_are_near() -> None:
     text = c_files(library_of("heavy_top"), ())["heavy_top_f64.c"]
-    bounded = with_bounds_of_sines(text)
+    bounded = with_bounds(text)
     assert "fabs(angle)" in text
     assert "fabs(angle)" not in bounded
     number = r"Frama_C_double_interval\((\S+), (\S+)\)"
-    pieces = rf"angle >= (\S+) && angle <= (\S+)\) {{\s+found.sine = {number};\s+"
-    rows = re.findall(rf"{pieces}found.cosine = {number};", bounded)
-    assert len(rows) == 224
-    assert "found.sine = Frama_C_double_interval(-0x1.00000" in bounded
-    for low, high, *ends in rows:
-        a, b = float(low), float(high)
-        s0, s1, c0, c1 = (float.fromhex(end) for end in ends)
-        for angle in (a, b, (a + b) / 2, a + 0.3 * (b - a)):
-            assert s0 <= math.sin(angle) <= s1
-            assert c0 <= math.cos(angle) <= c1
-        assert s1 - s0 < 2 * (b - a)
-        assert c1 - c0 < 2 * (b - a)
+    for name, wave in (("sine", math.sin), ("cosine", math.cos)):
+        piece = rf"angle >= (\S+) && angle <= (\S+)\) {{ found.{name} = {number};"
+        rows = re.findall(piece, bounded)
+        assert len(rows) == 224
+        for low, high, *ends in rows:
+            a, b = float(low), float(high)
+            least, most = (float.fromhex(end) for end in ends)
+            assert all(least <= wave(x) <= most for x in (a, b, (a + b) / 2, a + 0.3 * (b - a)))
+            assert most - least < 2 * (b - a)
+        assert f"{{ found.{name} = Frama_C_double_interval(-0x1.00000" in bounded
+
+
+def test_bounds_of_operations_on_pairs_hold() -> None:
+    """Pairs of random operands, of all sizes, lie between what is stated of their result."""
+    by, dice = extended(np.float32), np.random.default_rng(3)
+    for name, (made, near) in PAIR_OPERATIONS.items():
+        shape = 20000
+        high = dice.uniform(1, 2, (2, shape)) * np.exp2(dice.integers(-20, 20, (2, shape)))
+        high = (high * dice.choice([-1, 1], high.shape)).astype(np.float32)
+        if name == "sqrt":
+            high = np.abs(high)
+        low = (high * dice.uniform(-1, 1, high.shape) * 2.0**-25).astype(np.float32)
+        pairs = [(high[k], low[k]) for k in range(2)]
+        found = made(by, *pairs)
+        value = near(*((h.astype(float), e.astype(float)) for h, e in pairs))
+        off = np.abs(found[0].astype(float) - value)
+        assert (off <= AROUND * 2.0**-24 * np.abs(value) + 2.0**-100).all(), name
+        assert (np.abs(found[1]) <= 2.0**-23 * np.abs(found[0]) + 2.0**-100).all()
+
+
+PAIR_OPERATIONS = {
+    "add": (lambda by, a, b: by["add"](a, b), lambda a, b: (a[0] + b[0]) + (a[1] + b[1])),
+    "mul": (lambda by, a, b: by["mul"](a, b), lambda a, b: a[0] * b[0]),
+    "div": (lambda by, a, b: by["div"](a, b), lambda a, b: a[0] / b[0]),
+    "sqrt": (lambda by, a, _: by["sqrt"](a), lambda a, _: np.sqrt(a[0])),
+}
+"""Each as a program does it, and as Eva is told of it."""
 
 
 @needs_eva

@@ -16,7 +16,7 @@ from derive.program.precision import Precision
 from derive.program.program import Program, component_names
 from derive.program.status import Test, tried
 from derive.verify.operators import Column
-from derive.verify.proved.enclosed import enclosed, exactly, given
+from derive.verify.proved.enclosed import PAIR_ERROR, enclosed, exactly, given
 from derive.verify.proved.ranges import Interval, outward
 from derive.verify.proved.traits import Traits, traits
 from derive.verify.proved.unfolded import unfolded
@@ -24,6 +24,8 @@ from derive.verify.proved.unfolded import unfolded
 PARTS = 128
 """Into so many parts the ranges are cut, at most."""
 FloatRanges = Mapping[str, tuple[float, float]]
+PairOperation = tuple[str, tuple[tuple[float, float], ...]]
+"""An operator, and of each operand between which numbers it is."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +71,24 @@ def sectors(
         if ahead.shape[-1] * 2 + len(found) > max(PARTS, 2 * len(cases)):
             return None
         ahead = _halved(of, ahead)
+    return found
+
+
+def pair_operations(
+    library: Library, program: Program, parts: Sequence[Sector], precision: Precision
+) -> set[PairOperation]:
+    """Return the operations on pairs on a program's way, each with ends of its operands' ranges."""
+    names, found = tuple(parts[0].inputs), set[PairOperation]()
+    boxes = np.array([[part.inputs[n] for n in names] for part in parts]).T
+    known = {n: (boxes[0, k], boxes[1, k]) for k, n in enumerate(names)}
+    of = traits(unfolded(library, program, precision.bits), precision, quaternions=False)
+    with np.errstate(all="ignore"):
+        at = enclosed(of, known, len(parts))
+    for step in of.trace.steps:
+        if step.origin == "pairs" and step.operator in (*PAIR_ERROR, "sin", "cos", "power_of_two"):
+            each = ((*at.ranges[o], at.errors[o]) for o in step.operands)
+            ends = ((float((a - e).min()), float((b + e).max())) for a, b, e in each)
+            found.add((step.operator, tuple(ends)))
     return found
 
 
