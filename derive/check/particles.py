@@ -112,10 +112,11 @@ def _gaps(
         return []
     found = of_cloud(scene, cloud, base, list(true))
     with mp.workdps(DIGITS):
-        own = [abs(x) for x in found.values() if x]
-        scale = max([mpf(one.scale) for one in true.values()] + own or [1])
+        terms = max(mpf(one.scale) for one in true.values())
+        # without a term, answers are 0 whatever is given, and what the cloud leaves is rounding
+        scale = max([terms, *(abs(x) for x in found.values() if x)]) if terms else mpf(1)
         return [
-            abs(digits(true[name].value) - value) / (scale or 1)
+            abs(digits(true[name].value) - value) / scale
             for name, value in found.items()
             if value is not None
         ]
@@ -205,6 +206,7 @@ def _small(machine: Scene, given: Mapping[str, Any], true: Mapping[str, Solved])
                               for i in range(size)]) for name in MATRICES)  # fmt: skip
         gaps = []
         for left, right in ((D, by_velocity), (K, by_place)):
-            gap, whole = M * right + left, max(mp.mnorm(left, 1), mp.mnorm(M * right, 1)) or mpf(1)
+            gap, terms = M * right + left, mp.mnorm(left, 1)
+            whole = max(terms, mp.mnorm(M * right, 1)) if terms else max(mpf(1), mp.mnorm(M, 1))
             gaps += [abs(x) / whole for x in gap]
         return gaps

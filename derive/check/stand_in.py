@@ -40,8 +40,8 @@ VALUES = {
 CALLED = {"sub": ("add",), "sin": ("sine", "0"), "cos": ("sine", "1")}
 """What does an operation whose own name calls nothing but it, and with what besides."""
 WAVES = ("sin", "cos")
-SERIES = ((-64.0, 64.0),) * 2
-"""Far more than operands in the series of a sine of pairs are."""
+POLYNOMIAL = ((-64.0, 64.0),) * 2
+"""Far more than operands in the polynomial of a sine of pairs are."""
 AROUND = 16
 """In u: more than low parts of operands and the rounding of what is above move a high part."""
 
@@ -126,11 +126,11 @@ def trials_of_pairs(
 ) -> dict[str, str]:
     """Return C that does operations on pairs with all that their operands may be, by what it tries.
 
-    The low part of a pair is half a unit in the last place of the high one at most. Sums and
-    products of a sine's series stand for themselves in its trial: they are tried with the others.
+    The low part of a pair is half a unit in the last place of the high one at most. What is
+    stated of sums and products stands for them in the trial of sines: they are tried besides.
     """
     sines = {of for of in each if of[0] in WAVES}
-    others = {*each} - sines | ({("add", SERIES), ("mul", SERIES)} if sines else set())
+    others = {*each} - sines | ({("add", POLYNOMIAL), ("mul", POLYNOMIAL)} if sines else set())
     own = PAIRS.sub(lambda of: of[0] if of["name"] == "sine" else _bounded_pair(of), plain(text))
     return {"pairs": _operations(text, sorted(others), precision),
             "sines of pairs": _operations(own, sorted(sines), precision)}  # fmt: skip

@@ -84,14 +84,15 @@ def _print_quantities(scene: derive.Handle, needed: AbstractSet[str]) -> None:
     table = Table("name", "from", "to", "unit", "meaning", box=None)
     own = {c: q for q in scene.quantities for c in q.components}
     lasting = scene.scene.steady
-    found = {n for name in scene.wanted if name in lasting for n in lasting[name].unknown}
+    each = [lasting[name].unknown for name in scene.wanted if name in lasting]
+    found = {n for unknown in each for n in unknown}
     values = []
     for name in (name for name in own if name in needed | found):
         q = own[name]
         low, high = (0.0 if end is None else float(end) for end in (q.low, q.high))
         says = f"{q.meaning}; found if it is not set" if name in found else q.meaning
         table.add_row(name, f"{low:g}", f"{high:g}", "" if q.unit == "1" else q.unit, says)
-        if name not in found:
+        if not each or name not in each[0]:  # others that are sought, one of which rests on it
             values.append(f"{name}={example(low, high, name if q.is_quaternion else '')}")
     print_rows(table)
     command = ["derive", "solve", scene.source, "--set", *values]

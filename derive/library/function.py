@@ -78,10 +78,14 @@ class Graphed:
 
 @dataclass(frozen=True)
 class Arranged:
-    """A wanted function in the graph: its problem, and its output components by quantity."""
+    """A wanted function in the graph: its problem, and its output components by quantity.
+
+    ways : operations of the cheapest program of each way to arrange it, the way taken first
+    """
 
     problem: Problem
     outputs: tuple[tuple[Value, ...], ...]
+    ways: Mapping[str, int] = field(default_factory=dict)
 
 
 def graphed(mechanism: Mechanism) -> Graphed:
@@ -96,10 +100,14 @@ def graphed(mechanism: Mechanism) -> Graphed:
 def arranged(terms: Graphed, base: str) -> Arranged:
     """Return what the lecture says of a function, in the cheapest way to compute it."""
     problem = terms.mechanism.problem(base)
-    found = [_lowered(terms, problem, way) for way in plan.arrange(terms.mechanism, problem)]
+    ways = plan.arrange(terms.mechanism, problem)
+    found = [_lowered(terms, problem, way) for way in ways]
     if len(found) == 1:
-        return found[0]
-    return min(found, key=lambda way: cost(terms.graph, _best(terms, way)))
+        return replace(found[0], ways={ways[0].by: 0})
+    costs = [cost(terms.graph, _best(terms, one)) for one in found]
+    order = sorted(range(len(found)), key=costs.__getitem__)
+    each = {ways[n].by: costs[n][0] for n in reversed(order)}
+    return replace(found[order[0]], ways=dict(reversed(each.items())))
 
 
 def function(terms: Graphed, wanted: Arranged, name: str) -> Program:

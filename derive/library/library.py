@@ -31,6 +31,7 @@ class Library:
     rates     : further such functions that ``motions`` rest on and nobody wanted for themselves
     motions   : what moves the state in time, and formulas for attitudes
     fixed     : the values of parameters for which C has a table in the place of set-up
+    ways      : of functions, the operations of each way to arrange them, the way taken first
     """
 
     mechanism: Mechanism
@@ -41,6 +42,7 @@ class Library:
     rates: tuple[Program, ...] = ()
     motions: tuple[Program, ...] = ()
     fixed: Mapping[str, float] = field(default_factory=dict)
+    ways: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Program:
         return next(p for p in (self.setup, *self.printed(), *self.rates) if p.name == name)
@@ -109,6 +111,7 @@ def _library(scene: Scene) -> Library:
         {base: one.problem for base, one in wanted.items()},
         rates=functions[len(asked) :],
         motions=moving,
+        ways={base: one.ways for base, one in wanted.items()},
     )
 
 

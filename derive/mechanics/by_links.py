@@ -19,8 +19,8 @@ from derive.mechanics.words import Words
 OnTheWay = Mapping[Symbol, Expr]
 
 
-def by_links(mechanism: Mechanism, base: str) -> Iterator[OnTheWay]:
-    """Yield ways to the unknowns of a function: values in order, what they stand on before."""
+def by_links(mechanism: Mechanism, base: str) -> Iterator[tuple[str, OnTheWay]]:
+    """Yield ways to the unknowns of a function: how, values in order, what they stand on before."""
     found, sheet = mechanism.lean(base), mechanism.answers.frames.sheet
     problem = found.problem
     held = frozenset(s for e in problem.answers.values() for s in e.free_symbols)
@@ -31,16 +31,16 @@ def by_links(mechanism: Mechanism, base: str) -> Iterator[OnTheWay]:
     if sought not in (machine.free, machine.driving):
         return
     known = dict.fromkeys(mechanism.words.hidden, Integer(1)) | dict(found.taken)
-    for own in _solved(machine, sorted(sought, key=str)):
+    for how, own in _solved(machine, sorted(sought, key=str)):
         needed = sheet.needed([*own.values(), *problem.answers.values()])
         way = {s: e.xreplace(known) for s, e in {**needed, **own}.items()}
         if _same_answers(mechanism.words, problem, way):
-            yield way
+            yield how, way
 
 
-def _solved(machine: Links, unknowns: Sequence[Symbol]) -> Iterator[OnTheWay]:
+def _solved(machine: Links, unknowns: Sequence[Symbol]) -> Iterator[tuple[str, OnTheWay]]:
     if not machine.free:
-        yield driven(machine)
+        yield "recursion", driven(machine)
         return
     if machine.drives or any(link.unknown is None for link in machine.links):
         return
@@ -49,7 +49,9 @@ def _solved(machine: Links, unknowns: Sequence[Symbol]) -> Iterator[OnTheWay]:
         for absolute, system in zip((True, False), systems, strict=True):
             if system is not None:
                 own, found = system.solved(order)
-                yield {**own.definitions, **(relative(machine, found) if absolute else found)}
+                values = relative(machine, found) if absolute else found
+                how = "absolute angles" if absolute else "recursion"
+                yield how, {**own.definitions, **values}
 
 
 def _orders(machine: Links, unknowns: Sequence[Symbol]) -> list[tuple[Symbol, ...]]:

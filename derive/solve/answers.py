@@ -78,7 +78,7 @@ def every_answer(found: Instrument, values: Mapping[str, float]) -> Answered:
         if name in lasting:
             rows.extend(_found(found, name, lasting[name]))
         elif missing and (own := _enough(motions, missing)):
-            rows.extend(_at_each(found, name, own))
+            rows.extend(() if moves(name) else _at_each(found, name, own))
         elif missing:
             unanswered[name] = tuple(c for c in missing if c not in sought) or missing
         elif not moves(name):

@@ -19,6 +19,7 @@ STARTS = 200  # of one unknown; of several, so many in all
 SAME = 1e-7  # distance of two roots that are one, beside the root or, near 0, beside its range
 LEFT = 1e-9  # of the largest residual on the grid: Newton's method leaves less at any root
 UNSTABLE = 1e-6  # growth beside the largest eigenvalue that is more than rounding
+NOTHING = 1e-15  # of the largest value in the range: a root so near to 0 is 0
 HALVINGS = 60
 
 
@@ -44,10 +45,12 @@ def roots(
     size = max((s for p in grid if np.isfinite(s := _size(residual, p))), default=0.0)
     rule = {"x": x, "g": casadi.vertcat(*left.values()) / (size or 1.0)}
     finder = casadi.rootfinder("finder", "newton", rule, {"error_on_fail": False})
-    near = SAME * np.abs([_bounds(found, name) for name in names]).max(axis=1)
+    widest = np.abs([_bounds(found, name) for name in names]).max(axis=1)
+    near = SAME * widest
     kept: list[NDArray[Any]] = []
     for start in _starts(grid, residual):
         root = np.array(finder(x0=start)["x"]).ravel()
+        root = np.where(np.abs(root) <= NOTHING * widest, 0.0, root)
         known = any(np.allclose(root, other, rtol=SAME, atol=near) for other in kept)
         vanishes = _size(residual, root) <= LEFT * size
         if not known and vanishes and _within(found, names, root):

@@ -40,7 +40,11 @@ class Simulation:
 
 
 def simulated(
-    found: Instrument, given: Mapping[str, float], until: float, step: float, stop: str | None
+    found: Instrument,
+    given: Mapping[str, float],
+    until: float,
+    step: float,
+    stop: str | None = None,
 ) -> Simulation:
     """Return the motion from the state in ``given``, other inputs held, by ``step_rk4``.
 

@@ -20,6 +20,7 @@ from derive.verify.sample import samples
 from tests.made import library_of, thinned
 
 FEW = 3
+ON_ONE_AXIS = Path(__file__).parent / "scenes" / "on_one_axis.toml"
 MACHINES = ("edge_runner_flat", "eulers_disk", "skewed_disc")
 """`derive check` tries all of the catalogue."""
 
@@ -30,6 +31,17 @@ def test_every_answer_of_a_machine_agrees_with_its_cloud(name: str) -> None:
     verdicts = list(clouds(made, samples(made.mechanism, F64, FEW, 0).each))
     assert [v for v in verdicts if v.outcome != "holds"] == []
     assert {v.function for v in verdicts} == set(made.problems)
+
+
+def test_accelerations_that_are_zero_are_and_those_that_should_not_be_are_noticed() -> None:
+    """Where no term is left, what the cloud leaves of zero by rounding is no difference."""
+    text = ON_ONE_AXIS.read_text(encoding="utf-8")
+    made = library(parse_scene(text, "on_one_axis"))
+    each = samples(made.mechanism, F64, FEW, 0).each
+    assert [v.outcome for v in clouds(made, each)] == ["holds"]
+    lying = parse_scene(text.replace('gravity = [0, 0, "-g"]', 'gravity = ["-g", 0, 0]'), "lying")
+    spoilt = replace(made, mechanism=replace(made.mechanism, scene=lying))
+    assert [v.outcome for v in clouds(spoilt, each)] == ["FAILS"]
 
 
 # Programs of one machine beside the cloud of another: a machine, an edit of it, what it spoils.

@@ -31,7 +31,7 @@ def turning() -> Handle:
 
 @pytest.mark.parametrize(
     ("stop", "time"),
-    [("q = 0", 0.125), ("q=1", 0.625), ("q - 0.5 = q_dot/4", 0.625), ("height = 1", 0.910398163),
+    [("q = 0", 0.125), ("q=1", 0.625), ("q/2 = q - 0.5", 0.625), ("height = 1", 0.910398163),
      ("2*q = pi", 0.910398163), ("tan(q) = 0", 0.125)],
 )  # fmt: skip
 @pytest.mark.parametrize("step", [0.1, 0.0625])

@@ -189,3 +189,10 @@ def test_values_that_have_no_names_are_refused_in_one_sentence(values: Any) -> N
             top.function("kinetic_energy", values)
     with pytest.raises(derive.DeriveError, match="name is a text, not int"):
         derive.load(BALL, name=5)  # type: ignore[arg-type]
+
+
+def test_a_function_of_nothing_gives_zeros() -> None:
+    """Nothing turns two discs on one axle: their accelerations rest on no input."""
+    scene = Path(__file__).parents[1] / "mechanics" / "scenes" / "on_one_axis.toml"
+    found = derive.load(scene).function("accelerations")()
+    assert (found.a_ddot, found.b_ddot) == (0.0, 0.0)

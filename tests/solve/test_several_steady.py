@@ -1,12 +1,15 @@
 """Several unknowns of a steady motion, and several steady motions of one scene."""
 
+import re
 from math import acos
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from derive import Handle, load
 from derive.check import proof
+from derive.cli import main
 from derive.scene import SceneError
 from tests.scene.fuzzed import ODD, fault
 from tests.scene.mutated import written
@@ -114,3 +117,25 @@ def test_odd_tables_of_steady_motions_are_read_or_refused_in_one_sentence() -> N
         for own in ({"angle": odd, "speed": speed}, {"angle": {"unknown": odd}},
                     {"angle": angle, "speed": speed}):  # fmt: skip
             assert fault(written(BOTH | {"steady": own}), "odd", str) == ""
+
+
+def test_steps_are_no_answer_of_a_steady_motion_and_the_example_leaves_one_unknown(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "hoop.toml"
+    slower = {"speeds": {"W": {"unit": "rad/s", "range": [1, 20], "rate": 0}}}
+    wanted = {"wanted": [*BOTH["wanted"], "step_rk4"]}
+    file.write_text(written(BOTH | slower | wanted), encoding="utf-8")
+    assert main(["solve", str(file)]) == 2
+    (example,) = re.findall(r"for example: derive (solve .*)", capsys.readouterr().out)
+    assert main(example.split()) == 0
+    assert "steady_angle, motion 1" in capsys.readouterr().out
+
+
+def test_a_root_at_zero_is_zero_and_its_motion_in_equilibrium() -> None:
+    """A bead rests at the bottom of a hoop, which rounding misses by some 1e-23."""
+    lower = {"coordinates": {"theta": {"unit": "rad", "range": [-0.3, 1.5]}}}
+    wanted = ["steady_angle", "linearised"]
+    answers = scene(BOTH, wanted=wanted, linearised={"theta": "theta"}, **lower).solve(VALUES)
+    assert next(row.value for row in answers.rows if row.name == "theta") == 0.0
+    assert answers.doubts == ()

@@ -104,6 +104,7 @@ def _section(library: Library, program: Program, owner: str) -> dict[str, object
         "code": listing(program, library.scene.name, links),
         "pattern": pattern_drawing(sparsity, says) if sparsity else "",
         "notes": [_noted(library, note) for note in own],
+        "ways": library.ways.get(program.name, {}),
     }
 
 

@@ -21,7 +21,11 @@ class Definition:
 
 @dataclass(frozen=True)
 class Arrangement:
-    """Definitions in order, and the output components."""
+    """Definitions in order, and the output components.
+
+    by : the way that they were found
+    """
 
     definitions: tuple[Definition, ...]
     outputs: tuple[Expr, ...]
+    by: str = "balances"

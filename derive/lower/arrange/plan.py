@@ -69,8 +69,8 @@ def arrange(mechanism: Mechanism, problem: Problem) -> tuple[Arrangement, ...]:
     own = mechanism.posed(problem.name)
     lean = prepared(own, own.lean(problem.name).problem)
     answers = tuple(lean.answers.values())
-    found = (_cut(way, lean.unknowns) for way in by_links(own, problem.name))
-    recursive = tuple(Arrangement(definitions, answers) for definitions in found)
+    found = ((_cut(way, lean.unknowns), how) for how, way in by_links(own, problem.name))
+    recursive = tuple(Arrangement(definitions, answers, how) for definitions, how in found)
     if recursive and _longest(lean) > LONGEST_ROW:
         return recursive
     ways = (Way(lean), _ruled(own, lean), _written_out(own, lean))
