@@ -57,12 +57,15 @@ WAYS = {
 """Machines, and in how many ways they are solved: by one or two systems, each in some orders."""
 
 
-@pytest.mark.parametrize("name", WAYS)
+@pytest.mark.parametrize(
+    "name", [n if n == "chain" else pytest.param(n, marks=pytest.mark.long) for n in WAYS]
+)
 def test_links_are_solved_whatever_carries_and_pushes_them(name: str) -> None:
     text, ways_ = WAYS[name]
     assert len(list(by_links(machine_of(text), "accelerations"))) == ways_
 
 
+@pytest.mark.long
 def test_the_moments_that_drive_a_chain_come_out_of_the_passes_alone() -> None:
     made = library(parse_scene(driven("yxy"), "chain"))
     assert [made[f"T_{k}"].flops() for k in (1, 2, 3)] <= [81, 36, 36]
@@ -106,6 +109,7 @@ def changed(values: tuple[T, ...], place: int, value: T) -> tuple[T, ...]:
     return (*values[:place], value, *values[place + 1 :])
 
 
+@pytest.mark.long
 def test_wrong_links_are_no_way(monkeypatch: pytest.MonkeyPatch) -> None:
     own = machine_of(ON_A_CART)
     sought = frozenset(own.lean("accelerations").problem.answers)

@@ -67,6 +67,7 @@ def test_several_steady_motions_are_proved() -> None:
     assert proof(scene(BOTH).library).outcome == "holds"
 
 
+@pytest.mark.long
 def test_two_unknowns_are_found_by_two_balances_as_by_two_formulas() -> None:
     values = {"m": 0.7, "r": 0.25, "g": 9.8, "W": 8.0}
     by_balances = scene(DOUBLE).solve(values)
