@@ -43,10 +43,13 @@ class ValuedBalance:
     """A balance with its coefficients at each trial point: the rest first, then the unknowns.
 
     The last point is at rest, where what is independent elsewhere may not be.
+
+    outboard : whether it is of all that a frame carries
     """
 
     balance: Balance
     values: tuple[NDArray[Any], ...]
+    outboard: bool = False
 
     @cached_property
     def holds(self) -> frozenset[int]:

@@ -34,10 +34,12 @@ class Balances:
     """The efforts and loads of a machine, and the balances made of them.
 
     expressions : of balances that were written out before
+    single      : whether there are those of single bodies, about mass centres, alone
     """
 
     frames: Frames
     expressions: dict[ValuedBalance, Expr] = field(default_factory=dict)
+    single: bool = False
 
     @cached_property
     def sides(self) -> Sides:
@@ -59,6 +61,34 @@ class Balances:
     def alone(self) -> tuple[ValuedBalance, ...]:
         """Return the balances of single bodies."""
         return self._every(range(1, 2))
+
+    @cached_property
+    def spanning(self) -> tuple[ValuedBalance, ...]:
+        """Return balances of single bodies that all others are sums of, at every place.
+
+        They are those of forces and of moments about the mass centre, or all where it has no place.
+        """
+        found: list[ValuedBalance] = []
+        with mp.workdps(DIGITS):
+            for name, own in self.sides.efforts.items():
+                if self.reachable(own.centre[0], (name,)):
+                    found += self.about((name,), own.centre, own.frame)
+                else:
+                    found += self._on((name,), self._valued)
+        return tuple(row for row in found if not row.empty)
+
+    def about(
+        self, bodies: tuple[str, ...], place: Located, *frames: str
+    ) -> Iterator[ValuedBalance]:
+        """Yield balances of forces and of moments about one point, along the axes of frames."""
+        axes = self._valued[0].distinct((f, axis) for f in frames for axis in AXES)
+        spot = f"the origin of {frame_called(place[0])}"
+        forces = [v.force(bodies) for v in self._valued]
+        moments = [v.moment(bodies, place) for v in self._valued]
+        for frame, axis in axes:
+            yield self._row(Balance(bodies, "force", None, "", frame, axis), self._valued, forces)
+            moment = Balance(bodies, "moment", place, spot, frame, axis)
+            yield self._row(moment, self._valued, moments)
 
     @cached_property
     def _valued(self) -> list[Valued]:
@@ -117,7 +147,7 @@ class Balances:
     def _central(self, bodies: tuple[str, ...], place: Located, valued: Valued) -> bool:
         """Tell whether a point is the mass centre of the one body, whatever it is called."""
         centre = self.sides.efforts[bodies[0]].centre
-        if len(bodies) > 1 or not self._reachable(centre[0], bodies):
+        if len(bodies) > 1 or not self.reachable(centre[0], bodies):
             return False
         return bool(max(abs(valued.place(centre) - valued.place(place))) < NOTHING)
 
@@ -133,17 +163,10 @@ class Balances:
         return [name for name in found if self.frames.linked(own[0], name)]
 
     def _axes(self, bodies: tuple[str, ...], valued: Valued) -> list[tuple[str, str]]:
-        found: list[tuple[str, str]] = []
-        seen: list[NDArray[Any]] = []
         members = [self.frames.machine.body(name) for name in bodies]
         spun = [(m.frame, m.name) for m in members if m.spin_axis is not None]
         whole = [(frame, axis) for frame in self._frames_of(bodies) for axis in AXES]
-        for frame, axis in (*whole, *spun):
-            e = valued.direction(frame, axis)
-            if not any(abs(abs(e @ other) - 1) < NOTHING for other in seen):
-                found.append((frame, axis))
-                seen.append(e)
-        return found
+        return valued.distinct([*whole, *spun])
 
     def _points(self, bodies: tuple[str, ...], valued: Valued) -> list[tuple[str, Located]]:
         """Return the points that moments of these bodies may be taken about."""
@@ -161,7 +184,7 @@ class Balances:
         found: list[tuple[str, Located]] = []
         seen: list[NDArray[Any]] = []
         for spot, place in near:
-            if not self._reachable(place[0], bodies):
+            if not self.reachable(place[0], bodies):
                 continue
             at = valued.place(place)
             if not any(max(abs(at - other)) < NOTHING for other in seen):
@@ -169,7 +192,7 @@ class Balances:
                 seen.append(at)
         return found
 
-    def _reachable(self, frame: str, bodies: tuple[str, ...]) -> bool:
+    def reachable(self, frame: str, bodies: tuple[str, ...]) -> bool:
         """Tell whether all that acts on bodies has a known place from a frame's origin."""
         ends = [self.sides.efforts[b].centre[0] for b in bodies]
         ends += [w.point[0] for w in self.sides.wrenches if w.body in bodies and w.force != ZERO]
@@ -182,7 +205,7 @@ class Balances:
         return self.expressions[row]
 
     def _written(self, row: ValuedBalance) -> Expr:
-        frames, sheet, balance = self.frames, self.frames.sheet, row.balance
+        frames, balance = self.frames, row.balance
         e = frames.direction(balance.axis)
         total: Expr = Integer(0)
         for body in balance.bodies:
@@ -201,6 +224,11 @@ class Balances:
         for w in self.sides.wrenches:
             if w.body in balance.bodies:
                 total -= (e.T * self._load(balance, w))[0]
+        return self.without_what_drops_out(row, total)
+
+    def without_what_drops_out(self, row: ValuedBalance, total: Expr) -> Expr:
+        """Return a balance that is zero, its coefficients named, without unknowns it holds not."""
+        sheet = self.frames.sheet
         rest, slopes = sheet.split(total)
         kept = {u: c for u, c in slopes.items() if self.unknowns.index(u) in row.holds}
         return sheet.linear("balance", rest + sum((c * u for u, c in kept.items()), Integer(0)))
@@ -225,7 +253,7 @@ class Balances:
 
     def body_by_body(self) -> "Balances":
         """Return the balances of single bodies, about their mass centres only."""
-        fewer = Balances(self.frames, self.expressions)
+        fewer = Balances(self.frames, self.expressions, single=True)
         fewer.alone = self.alone
         fewer.rows = tuple(r for r in self.alone if r.balance.kind == "force" or r.balance.central)
         return fewer

@@ -1,6 +1,6 @@
 """Which balances to use: the fewest unknowns beside those wanted, then the plainest equations."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 from typing import Any
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from derive.mechanics.balance import ValuedBalance
 from derive.mechanics.balances import Balances
+from derive.mechanics.outboard import outboard, write_out
 from derive.mechanics.probe import (
     DIGITS,
     Probe,
@@ -23,6 +24,7 @@ from derive.scene.machine import Force
 
 GROUND = "the ground"
 FLOORS = (0.1, 0.02, 0.004)  # of a row of size one: what must be left of it beside the others
+FEW_BODIES = 3  # whose balances are all looked at, before those of outboard bodies
 MOST_EXTRA = 5  # unknowns that are solved along without being asked for, before all are
 MOST_SETS = 20_000
 MOST_TOLD = 2  # balances that a sentence names
@@ -38,17 +40,44 @@ def chosen(balances: Balances, wanted: frozenset[int], hard: Sequence[Probe] = (
     """
     if not wanted:
         return (), frozenset()
-    rows = sorted(
-        (row for row in balances.rows if row.holds),
+    if _cannot_be_told(balances, wanted):
+        raise SceneError(undetermined(balances, wanted))
+    found = None
+    if len(balances.frames.machine.bodies) > FEW_BODIES and not balances.single:
+        of = outboard(balances)
+        rows = _plainest_first(balances, of)
+        free = [m.unknown for m in balances.frames.machine.moving if m.free]
+        names = enumerate(map(balances.frames.sheet.label, balances.unknowns))
+        moving = frozenset(k for k, name in names if name in free)
+        found = _first(balances, rows, (wanted, wanted | moving), hard)
+        write_out(balances, found[0] if found else (), of)
+    if found is None:
+        rows = _plainest_first(balances, balances.rows)
+        found = _first(balances, rows, _sets(rows, wanted), hard)
+    if found is None:
+        raise SceneError(undetermined(balances, wanted))
+    return found
+
+
+def _plainest_first(balances: Balances, rows: Iterable[ValuedBalance]) -> list[ValuedBalance]:
+    return sorted(
+        (row for row in rows if row.holds),
         key=lambda row: (
             len(row.holds),
             len(row.balance.bodies),
             balances.carried_vectors(row.balance),
         ),
     )
-    if _cannot_be_told(balances, rows, wanted):
-        raise SceneError(undetermined(balances, wanted))
-    for unknowns in _sets(rows, wanted):
+
+
+def _first(
+    balances: Balances,
+    rows: Sequence[ValuedBalance],
+    sets: Iterable[frozenset[int]],
+    hard: Sequence[Probe],
+) -> Chosen | None:
+    """Return balances that determine the first set of unknowns which some determine."""
+    for unknowns in sets:
         within = [row for row in rows if row.holds <= unknowns]
         covered = frozenset(k for row in within for k in row.holds)
         if len(within) < len(unknowns) or covered != unknowns:
@@ -64,7 +93,7 @@ def chosen(balances: Balances, wanted: frozenset[int], hard: Sequence[Probe] = (
             both = independent_at_all([here, at_rest], len(unknowns))
             kept = both if len(both) == len(kept) else kept
             return tuple(within[k] for k in kept), unknowns
-    raise SceneError(undetermined(balances, wanted))
+    return None
 
 
 def _clear(
@@ -128,23 +157,21 @@ def clearly_told(balances: Balances, unknowns: frozenset[int], place: Probe) -> 
 
 
 def require_no_ring(balances: Balances, wanted: frozenset[int]) -> None:
-    """Refuse a closed loop of bodies, by balances of single bodies, of which all others are sums.
-
-    So the thousands of balances of several bodies need not be valued to be found wanting.
-    """
+    """Refuse a closed loop of bodies."""
     label = balances.frames.sheet.label
     names = {label(balances.unknowns[k]) for k in wanted}
     loop = closed_loop(balances.frames.machine, names)
-    if loop and _cannot_be_told(balances, [r for r in balances.alone if r.holds], wanted):
+    if loop and _cannot_be_told(balances, wanted):
         raise SceneError(loop)
 
 
-def _cannot_be_told(
-    balances: Balances, rows: Sequence[ValuedBalance], wanted: frozenset[int]
-) -> bool:
-    """Tell whether even all balances together leave some wanted unknown open."""
+def _cannot_be_told(balances: Balances, wanted: frozenset[int]) -> bool:
+    """Tell whether even all balances together leave some wanted unknown open.
+
+    Those that span all others tell, so the thousands of several bodies need not be valued.
+    """
     count = len(balances.unknowns)
-    matrix = [_coefficients(row) for row in rows]
+    matrix = [_coefficients(row) for row in balances.spanning if row.holds]
     others = [{k: v for k, v in row.items() if k not in wanted} for row in matrix]
     return len(independent(matrix, count)) - len(independent(others, count)) < len(wanted)
 

@@ -39,14 +39,13 @@ def _leaves_something(row: ValuedBalance) -> bool:
 
 def contradiction(balances: Balances) -> str:
     """Return a sentence on balances that nothing can satisfy, or nothing if there are none."""
+    if not all(_contradicted(balances.spanning, point) for point in range(PROBES)):
+        return ""
     rows = unbalanced(balances)
     if rows:
         return (f"the {rows[0].balance} does not vanish and holds no unknown: "
                 "declare a load with an unknown there, or leave a motion free")  # fmt: skip
-    against = [_contradicted(balances.rows, point) for point in range(PROBES)]
-    if not all(against):
-        return ""
-    together = _least(against[0], 0)
+    together = _least(_contradicted(balances.rows, 0), 0)
     told = " and ".join(f"the {row.balance}" for row in together[:MOST_TOLD])
     more = f" and {len(together) - MOST_TOLD} more" if len(together) > MOST_TOLD else ""
     return (f"{told}{more} contradict each other, whatever their unknowns are: "

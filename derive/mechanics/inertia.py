@@ -16,7 +16,7 @@ NONE = "0, or nothing beside what else the balances hold"
 
 def require_held(balances: Balances, unknowns: Iterable[Symbol]) -> None:
     """Refuse an unknown that no balance holds; of an acceleration it is said why."""
-    held = {balances.unknowns[k] for row in balances.alone for k in row.holds}
+    held = {balances.unknowns[k] for row in balances.spanning for k in row.holds}
     for name in sorted(balances.frames.sheet.label(u) for u in unknowns if u not in held):
         motion = _motion(balances.frames.machine, name)
         why = f": the inertia of all that moves with '{motion}' is {NONE}" if motion else ""

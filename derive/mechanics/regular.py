@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 from sympy import Expr, Integer, Symbol
 
@@ -13,7 +13,15 @@ from derive.mechanics.contradiction import contradiction
 from derive.mechanics.frames import Frames
 from derive.mechanics.inertia import require_held, vanishing
 from derive.mechanics.probe import Probe
-from derive.mechanics.sweep import Weakest, probe_at, ranges, regular, weakest
+from derive.mechanics.sweep import (
+    LEAST,
+    LEAST_OF_MASSES,
+    Weakest,
+    probe_at,
+    ranges,
+    regular,
+    weakest,
+)
 from derive.scene import SceneError
 
 TRIES = 6  # places at which balances must be independent, found one after another
@@ -63,7 +71,10 @@ class Regular:
             return Weakest(1.0, {})
         entries = self._entries(rows, unknowns)
         below = self.frames.sheet.needed([e for row in entries for e in row])
-        return weakest(ranges(self.frames.words), below, lambda at: regular(at, entries))
+        of_masses = all(row.outboard for row in rows)
+        bound = LEAST_OF_MASSES if of_masses else LEAST
+        measure = partial(regular, entries=entries, of_masses=of_masses)
+        return weakest(ranges(self.frames.words), below, measure, bound)
 
     def _entries(
         self, rows: tuple[ValuedBalance, ...], unknowns: tuple[Symbol, ...]

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 
-from sympy import Expr, Integer, Matrix, Symbol
+from sympy import Add, Expr, Integer, Matrix, Mul, Symbol
 
 from derive.scene import SceneError
 
@@ -133,6 +133,21 @@ def _plain(value: Expr) -> bool:
 def split(value: Expr, unknowns: AbstractSet[Symbol]) -> Split:
     """Return the part of ``value`` without unknowns, and the coefficients that are not zero."""
     found = sorted(value.free_symbols & unknowns, key=str)
-    slopes = {u: value.diff(u) for u in found}
+    if not found:
+        return value, {}
+    slopes = _slopes(value, frozenset(found))
     rest = value.xreplace(dict.fromkeys(found, Integer(0)))
-    return rest, {u: slope for u, slope in slopes.items() if slope != 0}
+    return rest, {u: slopes[u] for u in found if slopes.get(u, 0) != 0}
+
+
+def _slopes(value: Expr, unknowns: AbstractSet[Symbol]) -> dict[Symbol, Expr]:
+    """Return the slope of a value by each of the unknowns, of sums and products part by part."""
+    held = value.free_symbols & unknowns
+    if value.is_Add:
+        parts = [_slopes(a, held) for a in value.args if a.free_symbols & held]
+        return {u: Add(*(own[u] for own in parts if u in own)) for u in held}
+    varying = [a for a in value.args if a.free_symbols & held]
+    if value.is_Mul and len(varying) == 1:
+        others = Mul(*(a for a in value.args if a is not varying[0]))
+        return {u: others * slope for u, slope in _slopes(varying[0], held).items()}
+    return {u: value.diff(u) for u in held}

@@ -27,6 +27,7 @@ SPECIAL = (0.0, np.pi / 4, np.pi / 2, np.pi, 3 * np.pi / 2)
 STARTS, ROUNDS = 3, 40  # a round halves the steps at least every second time
 LOW = 0.1  # what is nowhere smaller than this at the points is not searched for
 LEAST = 1e-4  # of the size of its terms: a divisor that loses more digits than that is a pole
+LEAST_OF_MASSES = 1e-6  # of a mass matrix beside its entries; 20 equal rods in line have 1.4e-5
 SEED = "derive: sweep"
 
 
@@ -162,15 +163,19 @@ def probe_at(words: Words, place: Mapping[str, float], definitions: Mapping[Symb
 
 @dataclass(frozen=True)
 class Weakest:
-    """The smallest that a divisor becomes beside its terms, and where."""
+    """The smallest that a divisor becomes beside its terms, and where.
+
+    bound : what it must not be below
+    """
 
     least: float
     place: Mapping[str, float]
+    bound: float = LEAST
 
     @property
     def vanishes(self) -> bool:
         """Tell whether it is a pole."""
-        return not self.least > LEAST
+        return not self.least > self.bound
 
     @property
     def where(self) -> str:
@@ -183,7 +188,10 @@ class Weakest:
 
 
 def weakest(
-    of: Box, definitions: Mapping[Symbol, Expr], measure: Callable[[Sweep], Any]
+    of: Box,
+    definitions: Mapping[Symbol, Expr],
+    measure: Callable[[Sweep], Any],
+    bound: float = LEAST,
 ) -> Weakest:
     """Return the smallest value of a measure on the ranges that points and a search find."""
 
@@ -200,7 +208,7 @@ def weakest(
     if best[0] < LOW:
         best = min((_followed(of, at, points[n], float(sizes[n])) for n in order),
                    key=lambda found: found[0])  # fmt: skip
-    return Weakest(best[0], dict(zip(of.names, map(float, best[1]), strict=True)))
+    return Weakest(best[0], dict(zip(of.names, map(float, best[1]), strict=True)), bound)
 
 
 def _followed(
@@ -221,14 +229,18 @@ def _followed(
     return size, here
 
 
-def matrices(found: Sweep, entries: list[list[Expr]]) -> NDArray[Any]:
-    """Return matrices of entries at all points, rows and columns scaled by the sizes of terms."""
+def matrices(found: Sweep, entries: list[list[Expr]], *, of_masses: bool = False) -> NDArray[Any]:
+    """Return matrices of entries at all points, rows and columns scaled by the sizes of terms.
+
+    of_masses : scaled by what the entries are instead, of which none is what rounding leaves
+    """
     pairs = [[found.of(e) for e in row] for row in entries]
     shape = np.broadcast_shapes(*(v.shape for row in pairs for v, _ in row), (1,))
     values, sizes = (
         np.moveaxis(np.array([[np.broadcast_to(p[k], shape) for p in row] for row in pairs]), -1, 0)
         for k in (0, 1)
     )
+    sizes = abs(values) if of_masses else sizes
     for axis in (2, 1, 2, 1):
         scale = sizes.max(axis=axis, keepdims=True)
         scale = np.where(scale > 0, scale, 1)
@@ -237,7 +249,8 @@ def matrices(found: Sweep, entries: list[list[Expr]]) -> NDArray[Any]:
     return scaled
 
 
-def regular(found: Sweep, entries: list[list[Expr]]) -> NDArray[Any]:
+def regular(found: Sweep, entries: list[list[Expr]], *, of_masses: bool = False) -> NDArray[Any]:
     """Return the smallest singular value of scaled matrices at all points."""
-    sizes: NDArray[Any] = np.linalg.svd(matrices(found, entries), compute_uv=False)
+    scaled = matrices(found, entries, of_masses=of_masses)
+    sizes: NDArray[Any] = np.linalg.svd(scaled, compute_uv=False)
     return sizes[:, -1]

@@ -1,6 +1,6 @@
 """Vectors of a machine at a trial point: what motion needs and what acts, in common axes."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,7 @@ from sympy import Matrix, Symbol
 from derive.mechanics.bodies import Effort, effort
 from derive.mechanics.frames import ZERO, ByFrame, Frames, Located
 from derive.mechanics.loads import Wrench, wrenches
-from derive.mechanics.probe import PROBES, Probe, at_rest, random_probe
+from derive.mechanics.probe import NOTHING, PROBES, Probe, at_rest, random_probe
 from derive.scene.machine import INERTIAL
 
 
@@ -77,6 +77,17 @@ class Valued:
         found: NDArray[Any] = (
             self.rotation(frame) @ self.array(self.sides.frames.direction(axis))[:, 0]
         )
+        return found
+
+    def distinct(self, axes: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+        """Return axes of frames without those along others."""
+        found: list[tuple[str, str]] = []
+        seen: list[NDArray[Any]] = []
+        for frame, axis in axes:
+            e = self.direction(frame, axis)
+            if not any(abs(abs(e @ other) - 1) < NOTHING for other in seen):
+                found.append((frame, axis))
+                seen.append(e)
         return found
 
     def array(self, matrix: Matrix) -> NDArray[Any]:
