@@ -16,7 +16,7 @@ from derive.command.solve import values_named
 from derive.command.terminal import OUT, complain, console, error_console, progress
 from derive.scene.escape import visible
 from derive.solve.fixed import fix, try_ranges
-from derive.solve.generation import CASADI, STATED
+from derive.solve.generation import BATCH, CASADI, STATED, extent
 from derive.solve.handle import Handle
 
 VIEWS = {"costs": usual, "savings": full}
@@ -57,11 +57,18 @@ def options(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument(
         f"--{CASADI}",
-        action="store_const",
+        action="append_const",
         dest="parts",
         const=CASADI,
-        default="usual",
+        default=[],
         help="write C, too, by which CasADi takes all steps of a horizon in one call",
+    )
+    command.add_argument(
+        f"--{BATCH}",
+        action="append_const",
+        dest="parts",
+        const=BATCH,
+        help="write C, too, of every function over many members, which compilers make vectors of",
     )
     samples_argument(command, STATED, "samples that each stated error is looked for at")
     command.add_argument(
@@ -95,7 +102,13 @@ def generate(given: argparse.Namespace) -> int:
             packaged.made(scenes[0], given, told)
             if given.package
             else derive.generate(
-                scenes, given.out, given.samples, given.figures, given.tell, told, given.parts
+                scenes,
+                given.out,
+                given.samples,
+                given.figures,
+                given.tell,
+                told,
+                extent(given.parts),
             )
         )
     warn(made.warnings)
@@ -150,7 +163,7 @@ def _compare(given: argparse.Namespace) -> int:
     scenes = _scenes(given)
     with progress() as shown:
         made = derive.compare(
-            scenes, given.out, given.samples, given.figures, telling(shown), given.parts
+            scenes, given.out, given.samples, given.figures, telling(shown), extent(given.parts)
         )
     warn(made.warnings)
     if not made.differences:
@@ -173,7 +186,7 @@ def _mending(given: argparse.Namespace, found: Sequence[derive.Difference]) -> l
         out = [] if given.out == OUT else ["--out", str(given.out)]
         few = given.samples != STATED
         samples = ["--samples", str(given.samples)] if few else []
-        wider = [f"--{CASADI}"] if given.parts != "usual" else []
+        wider = [f"--{part}" for part in dict.fromkeys(given.parts)]
         tried = ["--check-ranges"] if given.ranges == "tried" else []
         more = [*samples, *tried, *(f"--fixed={text}" for text in given.fixed), *out, *wider]
         commands.append(shlex.join(["derive", "generate", *given.scenes, *more]))

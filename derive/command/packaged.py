@@ -49,7 +49,7 @@ def require_sense(given: argparse.Namespace) -> None:
         if without:
             raise derive.DeriveError(f"generate: {without} needs --package DIR")
         return
-    other = {"--check": given.check, "--casadi-external": given.parts != "usual"}
+    other = {"--check": given.check, **{f"--{part}": True for part in given.parts}}
     if beside := next((option for option, value in other.items() if value), ""):
         raise derive.DeriveError(f"generate: --package does not go with {beside}")
     if len(given.scenes) != 1:

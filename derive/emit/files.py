@@ -14,6 +14,7 @@ from difflib import unified_diff
 from pathlib import Path
 
 from derive.emit.c.external import external_file
+from derive.emit.c.members_file import BATCH, members_files
 from derive.emit.c.relations import every_relation
 from derive.emit.c.source import c_files
 from derive.emit.casadi_text import casadi_file
@@ -55,18 +56,22 @@ def scene_files(
     digest: Digests = UNDIGESTED,
     by: Beside = NOTHING_BESIDE,
     of: StepDerivatives | None = None,
+    parts: Sequence[str] = (),
 ) -> dict[str, str]:
     """Return the path below the output folder and the text of every file of a scene.
 
     digest : of what errors and bounds depend on      by : what lies beside them
     of     : the derivatives of a step, where C for CasADi is to lie beside the rest
+    parts  : with "batch" C of functions over members lies there
     """
     name = library.scene.name
     texts = c_files(library, figures, by.on_target, every_relation(library)) | {
         f"{name}_casadi.py": casadi_file(library, figures, of),
-        f"{name}.json": manifest(library, figures, digest, by.on_target),
+        f"{name}.json": manifest(library, figures, digest, by.on_target, parts),
         f"{name}.html": scene_page(library, figures, by),
     }
+    if BATCH in parts:
+        texts |= members_files(library, figures)
     if of is not None:
         texts |= dict([external_file(library, of, figures)])
     return {f"{name}/{file}": text for file, text in texts.items()}

@@ -8,6 +8,7 @@ from typing import Any
 from derive import __version__
 from derive.emit.c.comment import BOUND_OF_WHAT, SETUP_ERROR, holds, of_what
 from derive.emit.c.fixed import fixed_symbol
+from derive.emit.c.members_file import BATCH, batch_described
 from derive.emit.c.signature import CNames, dense
 from derive.emit.c.source import JACOBIAN_DENSE, command
 from derive.emit.c.text import pair_functions
@@ -28,17 +29,19 @@ def manifest(
     figures: Sequence[Measurement],
     digest: Digests = UNDIGESTED,
     costs: OnTarget = UNKNOWN,
+    parts: Sequence[str] = (),
 ) -> str:
     """Return the text of ``<scene>.json``.
 
     digest : of what errors and bounds depend on      costs : what functions cost on cores
+    parts  : with "batch" functions over members are listed too
     """
     scene = library.scene
     whole = {
         "scene": scene.name,
         "title": scene.title,
         "generator": f"derive {__version__}",
-        "command": command(library, figures),
+        "command": command(library, figures, [f"--{part}" for part in parts]),
         "source": {
             "file": f"{scene.name}.toml",
             "sha256": hashlib.sha256(scene.text.encode()).hexdigest(),
@@ -56,6 +59,7 @@ def manifest(
         "constants": [{"name": c, "formula": f} for c, f in library.constants.items()],
         **_fixed(library),
         "functions": [f | _on_cores(f["name"], costs) for f in _functions(library, figures)],
+        **({"batch": batch_described(library)} if BATCH in parts else {}),
         "taken": list(library.mechanism.signs),
         "warnings": list(library.mechanism.doubts()),
         "measured": {"digest": digest.errors, "bounds": digest.bounds},

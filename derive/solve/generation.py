@@ -1,6 +1,6 @@
 """From the programs of a scene to its files: proved, measured, printed and written."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import isfinite
 from pathlib import Path
@@ -8,6 +8,7 @@ from typing import Literal, get_args
 
 from derive.check.emitted import SAMPLES, sampling_of
 from derive.emit.c.comment import of_what
+from derive.emit.c.members_file import BATCH as BATCH
 from derive.emit.files import scene_files, unfinished, write
 from derive.emit.gallery.card import Card, card, gallery
 from derive.emit.page.lecture import lecture_page
@@ -30,8 +31,9 @@ from derive.verify.search import SAMPLING, sampled_at
 
 FigureSource = Literal["kept", "anew"]
 """Whether stated errors are taken over from before, where nothing has changed."""
-Extent = Literal["usual", "casadi-external"]
-"""Which files a scene becomes: the usual ones, or these and C that CasADi calls."""
+Extent = Literal["usual", "casadi-external", "batch", "all"]
+"""Which files a scene becomes: the usual ones, or these and C that CasADi calls, or C of functions
+over many members, or both."""
 Telling = Literal["costs", "savings"]
 """What is said of functions beside their errors: what was found not to matter to answers, too."""
 NUMBERS = SAMPLES
@@ -40,6 +42,9 @@ STATED = SAMPLING.samples
 """Samples that each stated error is looked for at."""
 MANY = 1e4
 """u on the declared ranges of which a reader is warned: 4 of the 7 digits of a float are gone."""
+PARTS: Mapping[str, tuple[str, ...]] = {
+    "usual": (), CASADI: (CASADI,), BATCH: (BATCH,), "all": (CASADI, BATCH),
+}  # fmt: skip
 LECTURE_PAGE = "lecture.html"
 GALLERY_PAGE = "index.html"
 
@@ -96,6 +101,13 @@ class Generation:
     def warnings(self) -> tuple[str, ...]:
         """Return what readers of the scenes should be told."""
         return tuple(warning for one in self.made for warning in one.warnings)
+
+
+def extent(parts: Collection[str]) -> Extent:
+    """Return which files a scene becomes with some parts more than the usual ones."""
+    if BATCH in parts:
+        return "all" if CASADI in parts else "batch"
+    return "casadi-external" if CASADI in parts else "usual"
 
 
 def measuring(folder: Path, samples: int, figures: FigureSource) -> Measuring:
@@ -158,8 +170,8 @@ def made(
     Raises SceneError for formulas without a value in the ranges, ProofError for a wrong program.
     """
     scene = programs.scene
-    wider = one_of(parts, "parts", get_args(Extent)) == CASADI
-    of = derivatives_of_step(programs) if wider else None
+    whole = PARTS[one_of(parts, "parts", get_args(Extent))]
+    of = derivatives_of_step(programs) if CASADI in whole else None
     try:
         prove(programs)
         measured = figures_of(programs, by)
@@ -171,7 +183,7 @@ def made(
     doubts = (*programs.mechanism.doubts(), *few_digits(measured.each), *unstated_values(programs))
     warnings = tuple(f"scene '{scene.name}': {warning}" for warning in doubts)
     lies = NOTHING_BESIDE if reports is None else lying_beside(programs, reports)
-    texts = scene_files(programs, measured.each, measured.digest, lies, of)
+    texts = scene_files(programs, measured.each, measured.digest, lies, of, whole)
     costs, shown = cost_rows(programs, measured.each), card(programs, lies.best)
     stale, stated = lies.on_target.stale, tuple(measured.each)
     return Made(texts, warnings, costs, card=shown, stale=stale, figures=stated)

@@ -189,7 +189,8 @@ class Handle:
 
         samples : that each stated error is looked for at; 256 are quick
         figures : "kept" takes over those in ``folder`` that nothing has changed, "anew" measures
-        parts   : "casadi-external" adds C by which CasADi takes all steps of a horizon at once
+        parts   : "casadi-external" adds C by which CasADi takes all steps of a horizon at once,
+                  "batch" C of functions over many members, "all" both
         Raises DeriveError for a scene whose ranges hold a pole, and for a folder that cannot be
         written to. Files are replaced all or none.
         """

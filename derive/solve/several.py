@@ -57,7 +57,8 @@ def generate(
     figures : "kept" takes over those in ``folder`` that nothing has changed, "anew" measures all
     tell    : "savings" also says what was found not to matter to each answer
     told    : hears how far it is
-    parts   : "casadi-external" adds C by which CasADi takes all steps of a horizon at once
+    parts   : "casadi-external" adds C by which CasADi takes all steps of a horizon at once,
+              "batch" C of functions over many members, "all" both
     Raises DeriveError for scenes of one name, for any that can have no programs, before one of
     them is measured, and for a folder that cannot be written to. Files are replaced all or none.
     """
