@@ -16,7 +16,7 @@ from derive.command.solve import values_named
 from derive.command.terminal import OUT, complain, console, error_console, progress
 from derive.scene.escape import visible
 from derive.solve.fixed import fix, try_ranges
-from derive.solve.generation import BATCH, CASADI, STATED, extent
+from derive.solve.generation import CASADI, OVER_MEMBERS, STATED, extent_of
 from derive.solve.handle import Handle
 
 VIEWS = {"costs": usual, "savings": full}
@@ -64,10 +64,10 @@ def options(command: argparse.ArgumentParser) -> None:
         help="write C, too, by which CasADi takes all steps of a horizon in one call",
     )
     command.add_argument(
-        f"--{BATCH}",
+        f"--{OVER_MEMBERS}",
         action="append_const",
         dest="parts",
-        const=BATCH,
+        const=OVER_MEMBERS,
         help="write C, too, of every function over many members, which compilers make vectors of",
     )
     samples_argument(command, STATED, "samples that each stated error is looked for at")
@@ -108,7 +108,7 @@ def generate(given: argparse.Namespace) -> int:
                 given.figures,
                 given.tell,
                 told,
-                extent(given.parts),
+                extent_of(given.parts),
             )
         )
     warn(made.warnings)
@@ -163,7 +163,7 @@ def _compare(given: argparse.Namespace) -> int:
     scenes = _scenes(given)
     with progress() as shown:
         made = derive.compare(
-            scenes, given.out, given.samples, given.figures, telling(shown), extent(given.parts)
+            scenes, given.out, given.samples, given.figures, telling(shown), extent_of(given.parts)
         )
     warn(made.warnings)
     if not made.differences:

@@ -14,7 +14,7 @@ from difflib import unified_diff
 from pathlib import Path
 
 from derive.emit.c.external import external_file
-from derive.emit.c.members_file import BATCH, members_files
+from derive.emit.c.members_file import OVER_MEMBERS, members_files
 from derive.emit.c.relations import every_relation
 from derive.emit.c.source import c_files
 from derive.emit.casadi_text import casadi_file
@@ -70,7 +70,7 @@ def scene_files(
         f"{name}.json": manifest(library, figures, digest, by.on_target, parts),
         f"{name}.html": scene_page(library, figures, by),
     }
-    if BATCH in parts:
+    if OVER_MEMBERS in parts:
         texts |= members_files(library, figures)
     if of is not None:
         texts |= dict([external_file(library, of, figures)])

@@ -8,7 +8,7 @@ from typing import Any
 from derive import __version__
 from derive.emit.c.comment import BOUND_OF_WHAT, SETUP_ERROR, holds, of_what
 from derive.emit.c.fixed import fixed_symbol
-from derive.emit.c.members_file import BATCH, batch_described
+from derive.emit.c.members_file import OVER_MEMBERS, batch_described
 from derive.emit.c.signature import CNames, dense
 from derive.emit.c.source import JACOBIAN_DENSE, command
 from derive.emit.c.text import pair_functions
@@ -59,7 +59,7 @@ def manifest(
         "constants": [{"name": c, "formula": f} for c, f in library.constants.items()],
         **_fixed(library),
         "functions": [f | _on_cores(f["name"], costs) for f in _functions(library, figures)],
-        **({"batch": batch_described(library)} if BATCH in parts else {}),
+        **({"batch": batch_described(library)} if OVER_MEMBERS in parts else {}),
         "taken": list(library.mechanism.signs),
         "warnings": list(library.mechanism.doubts()),
         "measured": {"digest": digest.errors, "bounds": digest.bounds},

@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 from derive.check.emitted import SAMPLES, sampling_of
 from derive.emit.c.comment import of_what
-from derive.emit.c.members_file import BATCH as BATCH
+from derive.emit.c.members_file import OVER_MEMBERS as OVER_MEMBERS
 from derive.emit.files import scene_files, unfinished, write
 from derive.emit.gallery.card import Card, card, gallery
 from derive.emit.page.lecture import lecture_page
@@ -42,8 +42,8 @@ STATED = SAMPLING.samples
 """Samples that each stated error is looked for at."""
 MANY = 1e4
 """u on the declared ranges of which a reader is warned: 4 of the 7 digits of a float are gone."""
-PARTS: Mapping[str, tuple[str, ...]] = {
-    "usual": (), CASADI: (CASADI,), BATCH: (BATCH,), "all": (CASADI, BATCH),
+EXTENTS: Mapping[str, tuple[str, ...]] = {
+    "usual": (), CASADI: (CASADI,), OVER_MEMBERS: (OVER_MEMBERS,), "all": (CASADI, OVER_MEMBERS),
 }  # fmt: skip
 LECTURE_PAGE = "lecture.html"
 GALLERY_PAGE = "index.html"
@@ -103,9 +103,9 @@ class Generation:
         return tuple(warning for one in self.made for warning in one.warnings)
 
 
-def extent(parts: Collection[str]) -> Extent:
+def extent_of(parts: Collection[str]) -> Extent:
     """Return which files a scene becomes with some parts more than the usual ones."""
-    if BATCH in parts:
+    if OVER_MEMBERS in parts:
         return "all" if CASADI in parts else "batch"
     return "casadi-external" if CASADI in parts else "usual"
 
@@ -170,7 +170,7 @@ def made(
     Raises SceneError for formulas without a value in the ranges, ProofError for a wrong program.
     """
     scene = programs.scene
-    whole = PARTS[one_of(parts, "parts", get_args(Extent))]
+    whole = EXTENTS[one_of(parts, "parts", get_args(Extent))]
     of = derivatives_of_step(programs) if CASADI in whole else None
     try:
         prove(programs)

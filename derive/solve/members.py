@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 
 from derive.check.compiler import Compiler, answer_of, callable_library
 from derive.emit.c.batch import is_prepared
-from derive.emit.c.members import COMMON, Sets, members_symbol
-from derive.emit.c.members_file import BATCH, FAST, members_files
+from derive.emit.c.members import IN_COMMON, Sets, members_symbol
+from derive.emit.c.members_file import OVER_MEMBERS, VECTOR_OPTIONS, members_files
 from derive.emit.c.source import c_files
 from derive.library.library import Library
 from derive.program.precision import Precision
 from derive.program.program import Program, component_names
 
-Columns = NDArray[Any]
+ByMember = NDArray[Any]
 ALWAYS = ("-std=c99", "-fPIC", "-shared", "-w")
 
 
@@ -36,15 +36,15 @@ class MembersCompiled:
     shared: Any
     symbols: dict[str, Any] = field(default_factory=dict)
 
-    def setup(self, parameters: Columns) -> tuple[Columns, NDArray[np.int32]]:
+    def setup(self, parameters: ByMember) -> tuple[ByMember, NDArray[np.int32]]:
         """Return the constants of every member, (constants, members), and what set-up says.
 
         parameters : (parameters, members), in set-up's order
         """
         program, members = self.library.setup, parameters.shape[1]
-        made: Columns = np.zeros((len(component_names(program)), members), self.precision.dtype)
+        made: ByMember = np.zeros((len(component_names(program)), members), self.precision.dtype)
         status = np.zeros(members, np.int32)
-        rows: Columns = np.ascontiguousarray(parameters, self.precision.dtype)
+        rows: ByMember = np.ascontiguousarray(parameters, self.precision.dtype)
         call = self._symbol("setup")
         call.restype = c_ssize_t
         call(c_ssize_t(members), c_ssize_t(members),
@@ -54,9 +54,9 @@ class MembersCompiled:
     def __call__(
         self,
         function: str,
-        constants: Columns | None,
-        given: Mapping[str, Columns | float],
-        found: Sequence[Columns],
+        constants: ByMember | None,
+        given: Mapping[str, ByMember | float],
+        found: Sequence[ByMember],
         members: int,
     ) -> None:
         """Fill ``found`` with what a function gives for so many members.
@@ -72,14 +72,14 @@ class MembersCompiled:
         for q in program.inputs:
             if q.role == "constants":
                 arguments.append(_at(constants))
-            elif q.name in COMMON:
+            elif q.name in IN_COMMON:
                 arguments.append(scalar(given[q.name]))
             else:
                 arguments.append(_at(given[q.name]))
         each = is_prepared(program) and constants is not None and constants.ndim > 1
         self._symbol(function, "each" if each else "shared")(*arguments, *map(_at, found))
 
-    def results(self, program: Program, members: int) -> list[Columns]:
+    def results(self, program: Program, members: int) -> list[ByMember]:
         """Return memory for the results of a function."""
         return [np.zeros((len(q.components), members), self.precision.dtype)
                 for q in program.outputs]  # fmt: skip
@@ -100,7 +100,7 @@ def members_compiled(
     library: Library,
     precision: Precision,
     with_: Compiler,
-    options: Sequence[str] = FAST,
+    options: Sequence[str] = VECTOR_OPTIONS,
 ) -> MembersCompiled:
     """Return a scene's functions over members, compiled beside its own.
 
@@ -120,7 +120,9 @@ def shared_members(
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
     sources = sorted(name for name in texts if name.endswith(".c"))
-    answer_of((*with_.command, *ALWAYS, *options, *sources, "-o", f"{BATCH}.so", "-lm"), folder)
-    if not (folder / f"{BATCH}.so").exists():
+    answer_of(
+        (*with_.command, *ALWAYS, *options, *sources, "-o", f"{OVER_MEMBERS}.so", "-lm"), folder
+    )
+    if not (folder / f"{OVER_MEMBERS}.so").exists():
         raise NoLibraryError("the compiler made no library, and did not say why")
-    return folder / f"{BATCH}.so"
+    return folder / f"{OVER_MEMBERS}.so"

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from derive.check.compiler import WARNINGS, Compiler
-from derive.emit.c.members import COMMON, ENDINGS, Sets, is_in_vectors
-from derive.emit.c.members_file import FAST, members_files, members_of
+from derive.emit.c.members import IN_COMMON, SET_ENDINGS, Sets, is_in_vectors
+from derive.emit.c.members_file import VECTOR_OPTIONS, members_files, members_of
 from derive.emit.c.source import c_files
 from derive.library.library import Library
 from derive.program.precision import F32, F64, PRECISIONS, Precision
@@ -26,7 +26,7 @@ from tests.made import library_of
 
 MANY = 4099
 COMPILERS = tuple(name for name in ("gcc", "clang") if shutil.which(name))
-OPTIONS = (("-O2",), FAST)
+OPTIONS = (("-O2",), VECTOR_OPTIONS)
 FEW = ("heavy_top", "free_body_principal", "attitude")
 """Sines and constants; a machine without either; choices and ``atan2``."""
 SCENES = [
@@ -39,7 +39,7 @@ SCENES = [
 def supplied(made: Library, precision: Precision, many: int, sets: Sets) -> Supplied:
     """Return inputs of all functions; what members have in common is the same for all."""
     at = inputs_at(made, precision, many)
-    same = {*COMMON}
+    same = {*IN_COMMON}
     if sets == "shared":
         same |= {c for q in made.setup.inputs for c in q.components}
         same |= {*component_names(made.setup)}
@@ -71,7 +71,7 @@ def called(
         q.name: np.array([at.own[c] for c in q.components], precision.dtype)
         for q in program.inputs if q.role != "constants"
     }  # fmt: skip
-    given |= {name: float(given[name][0, 0]) for name in COMMON if name in given}
+    given |= {name: float(given[name][0, 0]) for name in IN_COMMON if name in given}
     found = by.results(program, many)
     by(program.name, constants, given, found, many)
     return np.concatenate(found).T
@@ -85,7 +85,7 @@ def test_thousands_of_members_have_the_bits_of_the_scenes_own_function(
     made = library_of(scene)
     for precision in PRECISIONS:
         own = shared(made, precision, c_files(made, ()), tmp_path / precision.name)
-        for sets in ENDINGS:
+        for sets in SET_ENDINGS:
             at = supplied(made, precision, MANY, sets)
             expected = returned_at(made, precision, at, own)
             for options in OPTIONS:
@@ -135,8 +135,8 @@ def test_any_number_of_members_at_any_address_and_results_over_inputs(scene: str
                                              precision, off, stride=many + 5)
                     for q in program.inputs if q.role != "constants"
                 }  # fmt: skip
-                given |= {n: at.own[n][0] for n in COMMON if n in given}
-                _coincide(program, constants, given, by, whole, many)
+                given |= {n: at.own[n][0] for n in IN_COMMON if n in given}
+                assert _same(program, constants, given, by, whole[:, :many])
 
 
 def _at_an_odd_place(values: Any, precision: Precision, off: int, stride: int = 0) -> Any:
@@ -149,31 +149,27 @@ def _at_an_odd_place(values: Any, precision: Precision, off: int, stride: int = 
     return placed
 
 
-def _coincide(
-    program: Program,
-    constants: Any,
-    given: dict[str, Any],
-    by: MembersCompiled,
-    whole: Any,
-    many: int,
-) -> None:
-    """Try a function with results beside its inputs, then over them."""
-    stride = many + 5
+def _same(
+    program: Program, constants: Any, given: dict[str, Any], by: MembersCompiled, whole: Any
+) -> bool:
+    """Tell whether results have the bits of a whole run, beside their inputs and over them."""
+    many = whole.shape[1]
     like = {q.shape: given[q.name] for q in program.inputs
             if isinstance(given.get(q.name), np.ndarray)}  # fmt: skip
-    for over in (False, True):
-        found = [like[q.shape] if over and q.shape in like
-                 else np.full((len(q.components), stride), 77.0, whole.dtype)
-                 for q in program.outputs]  # fmt: skip
-        if over and len({a.ctypes.data for a in found}) < len(found):
-            continue
-        by(program.name, constants, given, found, many)
-        place = 0
-        for own in found:
-            expected = whole[place : place + len(own), :many]
-            place += len(own)
-            assert np.array_equal(own[:, :many].view(np.uint8), expected.copy().view(np.uint8))
-            assert (own[:, many:] == 77.0).all()
+    found = [np.full((len(q.components), many + 5), 77.0, whole.dtype) for q in program.outputs]
+    by(program.name, constants, given, found, many)
+    over = [like.get(q.shape, own) for q, own in zip(program.outputs, found, strict=True)]
+    right = [_holds(found, whole)]
+    if len({id(own) for own in over}) == len(over):
+        by(program.name, constants, given, over, many)
+        right.append(_holds(over, whole))
+    return all(right)
+
+
+def _holds(found: list[Any], whole: Any) -> bool:
+    table, many = np.concatenate(found), whole.shape[1]
+    own, right = (np.ascontiguousarray(a).view(np.uint8) for a in (table[:, :many], whole))
+    return np.array_equal(own, right) and bool((table[:, many:] == 77.0).all())
 
 
 def loops_of(source: str) -> dict[int, str]:
@@ -216,7 +212,7 @@ def test_the_compiler_reports_that_every_loop_became_vectors(
         loops = loops_of(text)
         in_vectors = [p for p in made.printed() if is_in_vectors(p)]
         assert len(loops) == sum(len(members_of(made, p, precision)) for p in in_vectors)
-        reported = vectors_reported(tmp_path, file, compiler, FAST)
+        reported = vectors_reported(tmp_path, file, compiler, VECTOR_OPTIONS)
         assert [name for line, name in loops.items() if line not in reported] == []
 
 
@@ -227,4 +223,4 @@ def test_the_report_tells_of_loops_that_are_none(compiler: str, tmp_path: Path) 
         slow = re.sub(r"const (\w+) angle = ", r"volatile \1 angle = ", text)
         (tmp_path / file).write_text(slow, encoding="utf-8")
         at = {n for n, name in loops_of(text).items() if "energy" in name or "momentum" in name}
-        assert vectors_reported(tmp_path, file, compiler, FAST) & {*loops_of(text)} == at
+        assert vectors_reported(tmp_path, file, compiler, VECTOR_OPTIONS) & {*loops_of(text)} == at

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from derive.check.compiler import Compiler, find_compiler
-from derive.emit.c.members_file import BATCH, FAST, members_files
+from derive.emit.c.members_file import OVER_MEMBERS, VECTOR_OPTIONS, members_files
 from derive.emit.c.source import c_files
 from derive.emit.manifest import manifest
 from derive.library.fixed import with_fixed
-from derive.solve.generation import PARTS, extent
+from derive.solve.generation import EXTENTS, extent_of
 from derive.solve.members import shared_members
 from tests.made import library_of
 from tests.pages import blocks
@@ -28,7 +28,7 @@ def test_the_program_of_the_page_prints_what_stands_below_it(tmp_path: Path) -> 
     for name, text in texts.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     sources = ("main.c", "heavy_top_f64.c", "heavy_top_batch_f64.c")
-    command = (*find_compiler().command, "-std=c99", *FAST, *sources, "-o", "main", "-lm")
+    command = (*find_compiler().command, "-std=c99", *VECTOR_OPTIONS, *sources, "-o", "main", "-lm")
     subprocess.run(command, cwd=tmp_path, check=True)
     done = subprocess.run("./main", cwd=tmp_path, check=True, capture_output=True, text=True)
     assert done.stdout == program.shown
@@ -36,7 +36,7 @@ def test_the_program_of_the_page_prints_what_stands_below_it(tmp_path: Path) -> 
 
 def test_the_json_is_enough_to_call_a_function(tmp_path: Path) -> None:
     made = library_of("heavy_top")
-    told = json.loads(manifest(made, (), parts=[BATCH]))["batch"]
+    told = json.loads(manifest(made, (), parts=[OVER_MEMBERS]))["batch"]
     texts = c_files(made, ()) | members_files(made, ())
     own = {name: text for name, text in texts.items() if "_f64" in name}
     assert {told["files"]["f64"]["header"], told["files"]["f64"]["source"]} < own.keys()
@@ -51,8 +51,7 @@ def test_the_json_is_enough_to_call_a_function(tmp_path: Path) -> None:
     assert (setup["name"], rate["name"], rate["vectors"]) == ("setup", "state_rate", True)
     for of, symbol in ((setup, setup["symbols"]["f64"]), (rate, rate["each"]["f64"])):
         given = [arrays[name] for name in of["arguments"]]
-        shared[symbol].restype = ctypes.c_ssize_t if of is setup else None
-        assert not shared[symbol](*map(_argument, given))
+        shared[symbol](*map(_argument, given))
     assert arrays["status"].tolist() == [0] * many
     assert arrays["omega_dot"][0].tolist() == [13.5 * k for k in range(many)]
 
@@ -66,7 +65,7 @@ def _argument(value: object) -> object:
 
 def test_without_the_option_nothing_speaks_of_members() -> None:
     made = library_of("heavy_top")
-    assert BATCH not in json.loads(manifest(made, ()))
+    assert OVER_MEMBERS not in json.loads(manifest(made, ()))
     assert not any("_batch_" in text for text in c_files(made, ()).values())
 
 
@@ -77,6 +76,6 @@ def test_fixed_parameters_leave_one_set_of_constants() -> None:
                    for name, text in texts.items() if name.endswith(".h"))  # fmt: skip
 
 
-@pytest.mark.parametrize("whole", PARTS)
+@pytest.mark.parametrize("whole", EXTENTS)
 def test_options_add_up(whole: str) -> None:
-    assert extent(PARTS[whole]) == whole
+    assert extent_of(EXTENTS[whole]) == whole

@@ -5,32 +5,33 @@ function gives, to the last bit: the same operations, in loops without branches.
 sines do not serve, loops and ``atan2`` are left to the scene's own function.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Literal
 
+from derive.emit.c.members_layout import at_member, behind_first, braced, within_braces
 from derive.emit.c.scope import declared_in_c, require_free
 from derive.emit.c.signature import CNames, declaration
 from derive.emit.c.sines import takes_sines
-from derive.emit.c.text import body
+from derive.emit.c.text import function_body
 from derive.emit.operators import literal
 from derive.emit.sines import TOGETHER, together
 from derive.program.own_sine import FITTED
 from derive.program.precision import Precision
 from derive.program.program import Op, Program, Quantity, read_by
 
-COMMON = ("time_step",)
+IN_COMMON = ("time_step",)
 """What all members have in common: they move by steps of one length."""
-KEPT = 64
-"""Members whose inputs are kept until it is known that no angle was too large."""
+MEMBERS_KEPT = 64
+"""OverMembers whose inputs are kept until it is known that no angle was too large."""
 Sets = Literal["shared", "each"]
 """Whether all members have one set of constants, or every member its own."""
-ENDINGS: Mapping[Sets, str] = {"shared": "batch", "each": "batch_each"}
+SET_ENDINGS: Mapping[Sets, str] = {"shared": "batch", "each": "batch_each"}
 
 
 @dataclass(frozen=True)
-class Members:
+class OverMembers:
     """A function of a scene over many members in one precision.
 
     sets : "shared" constants are a struct, those of "each" member an array
@@ -71,7 +72,7 @@ class Members:
     @property
     def given(self) -> list[tuple[str, str]]:
         """Return each component that members have, and where the first member's stands."""
-        own = [q for q in self.program.inputs if q.role != "constants" and q.name not in COMMON]
+        own = [q for q in self.program.inputs if q.role != "constants" and q.name not in IN_COMMON]
         return [(c, _start(q, i)) for q in own for i, c in enumerate(q.components)]
 
     @property
@@ -88,7 +89,7 @@ class Members:
     @property
     def common(self) -> list[str]:
         """Return what all members have in common."""
-        return [q.name for q in self.program.inputs if q.name in COMMON]
+        return [q.name for q in self.program.inputs if q.name in IN_COMMON]
 
     @property
     def components(self) -> list[str]:
@@ -109,10 +110,10 @@ def is_in_vectors(program: Program) -> bool:
 
 def members_symbol(scene: str, function: str, precision: Precision, sets: Sets = "shared") -> str:
     """Return what C calls a function over members."""
-    return CNames(scene).symbol(f"{function}_{ENDINGS[sets]}", precision)
+    return CNames(scene).symbol(f"{function}_{SET_ENDINGS[sets]}", precision)
 
 
-def members_prototype(of: Members) -> str:
+def members_prototype(of: OverMembers) -> str:
     """Return the declaration of a function over members, without its semicolon."""
     scalar = of.precision.scalar
     arguments = ["ptrdiff_t members", "ptrdiff_t stride"]
@@ -120,13 +121,13 @@ def members_prototype(of: Members) -> str:
         if q.role == "constants":
             arguments.append(f"const {scalar if of.each else of.struct} *constants")
         else:
-            arguments.append(f"{scalar} {q.name}" if q.name in COMMON
+            arguments.append(f"{scalar} {q.name}" if q.name in IN_COMMON
                              else f"const {scalar} *{q.name}")  # fmt: skip
     arguments += [f"{scalar} *{q.name}" for q in of.program.outputs]
     return declaration(f"void {of.symbol}", arguments)
 
 
-def lane(of: Members) -> str:
+def lane(of: OverMembers) -> str:
     """Return the operations for one member: values in, values out; no branch, no array.
 
     It returns whether an angle is too large, which makes its results those of no angle.
@@ -138,7 +139,7 @@ def lane(of: Members) -> str:
         inputs=tuple(_alone(c) for c in inputs),
         outputs=tuple(_alone(c) for c in outputs),
     )
-    lines = body(alone, f"{of.scene}_batch", of.precision)
+    lines = function_body(alone, f"{of.scene}_batch", of.precision)
     if of.sines:
         lines.append(f"return {' | '.join(_too_large(of))};")
     head = f"DERIVE_LANE {'int' if of.sines else 'void'} {of.lane}"
@@ -147,7 +148,7 @@ def lane(of: Members) -> str:
     return braced(declaration(head, arguments), lines)
 
 
-def _too_large(of: Members) -> Iterator[str]:
+def _too_large(of: OverMembers) -> Iterator[str]:
     """Yield what is true where an angle is larger than our own sines serve, or no number."""
     most = literal(Fraction(FITTED[of.precision.bits].largest), of.precision)
     angles = [line.operands[0] for line in together(of.program.ops)
@@ -161,7 +162,7 @@ def _alone(name: str) -> Quantity:
     return Quantity(name, (name,), (), "", "", None, None, "")
 
 
-def members_definition(of: Members) -> str:
+def members_definition(of: OverMembers) -> str:
     """Return the function over members."""
     scalar, read = of.precision.scalar, of.read
     vectors = is_in_vectors(of.program)
@@ -169,13 +170,13 @@ def members_definition(of: Members) -> str:
     lines = [f"const {scalar} *const in_{n} = {of.given[n][1]};" for n in pointed]
     lines += [f"{scalar} *const out_{j} = {at};" for j, at in enumerate(of.found)]
     if vectors and of.each:
-        lines += [f"const {scalar} *const made_{n} = constants{_times(at)};"
+        lines += [f"const {scalar} *const made_{n} = constants{behind_first(at)};"
                   for n, at in enumerate(read.values())]  # fmt: skip
     elif vectors:
         lines += [f"const {scalar} made_{n} = constants->{c};" for n, c in enumerate(read)]
     lines.append("ptrdiff_t k;")
     if not vectors:
-        lines += ["for (k = 0; k < members; ++k) {", *indented(_called(of, "in_{0}[k]")), "}"]
+        lines += ["for (k = 0; k < members; ++k) {", *within_braces(_called(of, "in_{0}[k]")), "}"]
     else:
         lines += _kept(of) if of.sines else _looped(of)
     if not any("stride" in line for line in lines):
@@ -185,7 +186,7 @@ def members_definition(of: Members) -> str:
     return braced(members_prototype(of), lines)
 
 
-def _own(of: Members) -> Iterator[str]:
+def _own(of: OverMembers) -> Iterator[str]:
     """Yield the names of what a function over members declares itself."""
     yield from ("members", "stride", "k", "start", "end", "far", "any", "own")
     for name, many in (("in", of.given), ("out", of.found), ("made", of.read), ("kept", of.given)):
@@ -194,44 +195,46 @@ def _own(of: Members) -> Iterator[str]:
     yield from (f"{q.name}_own" for q in (*of.program.inputs, *of.program.outputs))
 
 
-def _looped(of: Members) -> list[str]:
+def _looped(of: OverMembers) -> list[str]:
     return [
         "DERIVE_MEMBERS",
         "for (k = 0; k < members; ++k) {",
-        *indented([*_laned(of, ""), *_stored(of)]),
+        *within_braces([*_laned(of, ""), *_stored(of)]),
         "}",
     ]
 
 
-def _kept(of: Members) -> list[str]:
+def _kept(of: OverMembers) -> list[str]:
     """Return a loop by parts: inputs are kept, as results may lie over them, for larger angles."""
-    kept = [f"{of.precision.scalar} kept_{n}[{KEPT}];" for n in range(len(of.given))]
+    many = MEMBERS_KEPT
+    kept = [f"{of.precision.scalar} kept_{n}[{many}];" for n in range(len(of.given))]
     keep = [f"kept_{n}[k - start] = in_{n}[k];" for n in range(len(of.given))]
     again = _called(of, "kept_{0}[k - start]")
+    work = [*keep, *_laned(of, "far[k - start] = "), *_stored(of)]
     return [
         *kept,
-        f"int far[{KEPT}];",
+        f"int far[{many}];",
         "ptrdiff_t start;",
-        f"for (start = 0; start < members; start += {KEPT}) {{",
-        f"    const ptrdiff_t end = members - start < {KEPT} ? members : start + {KEPT};",
+        f"for (start = 0; start < members; start += {many}) {{",
+        f"    const ptrdiff_t end = members - start < {many} ? members : start + {many};",
         "    int any = 0;",
         "    DERIVE_MEMBERS",
         "    for (k = start; k < end; ++k) {",
-        *indented(indented([*keep, *_laned(of, "far[k - start] = "), *_stored(of)])),
+        *within_braces(within_braces(work)),
         "    }",
         "    for (k = start; k < end; ++k) {",
         "        any |= far[k - start];",
         "    }",
         "    for (k = start; any != 0 && k < end; ++k) {",
         "        if (far[k - start] != 0) {",
-        *indented(indented(indented(again))),
+        *within_braces(within_braces(within_braces(again))),
         "        }",
         "    }",
         "}",
     ]
 
 
-def _laned(of: Members, into: str) -> list[str]:
+def _laned(of: OverMembers, into: str) -> list[str]:
     """Return the call of the operations for one member."""
     many = range(len(of.found))
     made = [f"made_{n}[k]" if of.each else f"made_{n}" for n in range(len(of.read))]
@@ -242,18 +245,18 @@ def _laned(of: Members, into: str) -> list[str]:
     return [f"{of.precision.scalar} {names};", *f"{call};".split("\n")]
 
 
-def _stored(of: Members) -> list[str]:
+def _stored(of: OverMembers) -> list[str]:
     return [f"out_{j}[k] = found_{j};" for j in range(len(of.found))]
 
 
-def _called(of: Members, read: str) -> list[str]:
+def _called(of: OverMembers, read: str) -> list[str]:
     """Return the call of the scene's own function for member k; ``read`` gives inputs."""
     scalar, lines, arguments, n = of.precision.scalar, list[str](), list[str](), 0
     for q in of.program.inputs:
         if q.role == "constants":
             arguments.append("&own" if of.each else "constants")
             lines += _struct(of, q) if of.each else []
-        elif q.name in COMMON:
+        elif q.name in IN_COMMON:
             arguments.append(q.name)
         else:
             values = [read.format(n + i) for i in range(len(q.components))]
@@ -273,30 +276,10 @@ def _called(of: Members, read: str) -> list[str]:
     return [*lines, *f"{call};".split("\n"), *stores]
 
 
-def _struct(of: Members, q: Quantity) -> list[str]:
+def _struct(of: OverMembers, q: Quantity) -> list[str]:
     lines = [f"own.{c} = constants[{at_member(i)}];" for i, c in enumerate(q.components)]
     return [f"{of.struct} own;", *lines]
 
 
 def _start(q: Quantity, place: int) -> str:
-    return f"{q.name}{_times(place)}"
-
-
-def _times(place: int) -> str:
-    """Return what is added to an array's address for one of its components."""
-    return "" if place == 0 else " + stride" if place == 1 else f" + {place} * stride"
-
-
-def at_member(place: int) -> str:
-    """Return the index of a component of member k."""
-    return "k" if place == 0 else f"k{_times(place)}"
-
-
-def indented(lines: Sequence[str]) -> list[str]:
-    """Return lines within braces."""
-    return [f"    {line}" for line in lines]
-
-
-def braced(head: str, lines: Sequence[str]) -> str:
-    """Return a function by its declaration and its lines."""
-    return "\n".join([head, "{", *indented(lines), "}"])
+    return f"{q.name}{behind_first(place)}"

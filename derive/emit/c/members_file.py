@@ -9,9 +9,9 @@ from derive.emit.c.batch import is_prepared
 from derive.emit.c.columns import within_columns
 from derive.emit.c.comment import wrapped
 from derive.emit.c.members import (
-    COMMON,
-    KEPT,
-    Members,
+    IN_COMMON,
+    MEMBERS_KEPT,
+    OverMembers,
     Sets,
     is_in_vectors,
     lane,
@@ -23,7 +23,7 @@ from derive.emit.c.members_setup import setup_definition, setup_prototype
 from derive.emit.c.scope import require_no_symbol
 from derive.emit.c.signature import CNames
 from derive.emit.c.sines import numbers_of_sines, sines_type, takes_sines
-from derive.emit.c.source import first_line, names_in
+from derive.emit.c.source import first_line, names_declared
 from derive.emit.operators import literal
 from derive.emit.sines import TOGETHER
 from derive.emit.templates import TEMPLATES
@@ -31,9 +31,9 @@ from derive.library.library import Library
 from derive.program.precision import MATH, PRECISIONS, Precision
 from derive.program.program import Measurement, Program
 
-BATCH = "batch"
+OVER_MEMBERS = "batch"
 """The option of ``derive generate`` that prints them."""
-FAST = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math")
+VECTOR_OPTIONS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math")
 """By which compilers make vectors of them; no option changes a bit."""
 
 
@@ -41,7 +41,7 @@ def members_files(library: Library, figures: Sequence[Measurement]) -> dict[str,
     """Return name and text of the C files over members, both precisions."""
     files: dict[str, str] = {}
     for precision in PRECISIONS:
-        names = CNames(f"{library.scene.name}_{BATCH}")
+        names = CNames(f"{library.scene.name}_{OVER_MEMBERS}")
         header, source = _header(library, precision, figures), _source(library, precision, figures)
         every = [q for p in (library.setup, *library.printed()) for q in (*p.inputs, *p.outputs)]
         require_no_symbol(library.scene.name, [q.name for q in every], header + source)
@@ -49,9 +49,11 @@ def members_files(library: Library, figures: Sequence[Measurement]) -> dict[str,
     return files
 
 
-def members_of(library: Library, program: Program, precision: Precision) -> list[Members]:
+def members_of(library: Library, program: Program, precision: Precision) -> list[OverMembers]:
     """Return a function with one set of constants for all, and with one for every member."""
-    return [Members(program, library.scene.name, precision, s) for s in sets_of(library, program)]
+    return [
+        OverMembers(program, library.scene.name, precision, s) for s in sets_of(library, program)
+    ]
 
 
 def sets_of(library: Library, program: Program) -> tuple[Sets, ...]:
@@ -62,7 +64,7 @@ def sets_of(library: Library, program: Program) -> tuple[Sets, ...]:
 
 def batch_described(library: Library) -> dict[str, Any]:
     """Return what the JSON says of functions over members: all that a caller must know."""
-    names, scene = CNames(f"{library.scene.name}_{BATCH}"), library.scene.name
+    names, scene = CNames(f"{library.scene.name}_{OVER_MEMBERS}"), library.scene.name
     files = {p.name: {"header": names.file(p, "h"), "source": names.file(p, "c")}
              for p in PRECISIONS}  # fmt: skip
     found = [_described(library, p) for p in library.printed()]
@@ -74,8 +76,13 @@ def batch_described(library: Library) -> dict[str, Any]:
             "returns": "ptrdiff_t: the number of members that set-up refuses",
         })  # fmt: skip
     layout = "component c of member k at [c * stride + k]; constants of members in that way too"
-    return {"files": files, "layout": layout, "common": list(COMMON), "options": list(FAST),
-            "functions": found}  # fmt: skip
+    return {
+        "files": files,
+        "layout": layout,
+        "common": list(IN_COMMON),
+        "options": list(VECTOR_OPTIONS),
+        "functions": found,
+    }
 
 
 def _described(library: Library, program: Program) -> dict[str, Any]:
@@ -95,7 +102,7 @@ def _described(library: Library, program: Program) -> dict[str, Any]:
 
 def _header(library: Library, precision: Precision, figures: Sequence[Measurement]) -> str:
     scene = library.scene
-    names, batch = CNames(scene.name), CNames(f"{scene.name}_{BATCH}")
+    names, batch = CNames(scene.name), CNames(f"{scene.name}_{OVER_MEMBERS}")
     found = []
     if library.setup in library.in_c():
         says = "Make the constants of every member; return how many set-up refuses, and say which."
@@ -109,13 +116,13 @@ def _header(library: Library, precision: Precision, figures: Sequence[Measuremen
                           members_prototype(of)))  # fmt: skip
     return within_columns(
         TEMPLATES.get_template("members.h.jinja").render(
-            first_line=f"/* {first_line(library, figures, (f'--{BATCH}',))}",
+            first_line=f"/* {first_line(library, figures, (f'--{OVER_MEMBERS}',))}",
             title=scene.title,
             header=names.file(precision, "h"),
             own=batch.file(precision, "h"),
             guard=batch.file(precision, "h").upper().replace(".", "_"),
             constants=bool(library.constants) and not library.fixed,
-            aside=any("I" in names_in(p) for p in library.emitted()),
+            aside=any("I" in names_declared(p) for p in library.emitted()),
             struct=f"{scene.name}_constants_{precision.name}",
             scalar=precision.scalar,
             functions=[(wrapped(says), prototype) for says, prototype in found],
@@ -124,7 +131,7 @@ def _header(library: Library, precision: Precision, figures: Sequence[Measuremen
 
 
 def _source(library: Library, precision: Precision, figures: Sequence[Measurement]) -> str:
-    scene, batch = library.scene.name, CNames(f"{library.scene.name}_{BATCH}")
+    scene, batch = library.scene.name, CNames(f"{library.scene.name}_{OVER_MEMBERS}")
     texts = []
     if library.setup in library.in_c():
         texts.append(setup_definition(library.setup, scene, precision))
@@ -137,10 +144,10 @@ def _source(library: Library, precision: Precision, figures: Sequence[Measuremen
     sines = any(map(takes_sines, vectors))
     return within_columns(
         TEMPLATES.get_template("members.c.jinja").render(
-            first_line=f"/* {first_line(library, figures, (f'--{BATCH}',))}",
+            first_line=f"/* {first_line(library, figures, (f'--{OVER_MEMBERS}',))}",
             header=batch.file(precision, "h"),
             uses_math=sines or any(kind in MATH for p in vectors for kind in p.count),
-            aside=any("I" in names_in(p) for p in library.emitted()),
+            aside=any("I" in names_declared(p) for p in library.emitted()),
             sines=_sines(library, precision) if sines else "",
             vectors=bool(vectors),
             functions=texts,
@@ -149,7 +156,7 @@ def _source(library: Library, precision: Precision, figures: Sequence[Measuremen
 
 
 def _sines(library: Library, precision: Precision) -> str:
-    scene, text = f"{library.scene.name}_{BATCH}", partial(literal, precision=precision)
+    scene, text = f"{library.scene.name}_{OVER_MEMBERS}", partial(literal, precision=precision)
     return (
         TEMPLATES.get_template("members_sine_cosine.c.jinja")
         .render(
@@ -158,7 +165,7 @@ def _sines(library: Library, precision: Precision) -> str:
             kind=sines_type(scene, precision),
             scalar=precision.scalar,
             zero=text(Fraction(0)),
-            many=KEPT,
+            many=MEMBERS_KEPT,
             **numbers_of_sines(precision.bits, text),
             **precision.functions,
         )

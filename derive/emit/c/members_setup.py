@@ -1,6 +1,7 @@
 """Set-up over many members as C: the scene's own, member after member, in pairs of floats."""
 
-from derive.emit.c.members import at_member, braced, indented, members_symbol
+from derive.emit.c.members import members_symbol
+from derive.emit.c.members_layout import at_member, braced, within_braces
 from derive.emit.c.scope import require_free
 from derive.emit.c.signature import CNames, declaration
 from derive.emit.c.text import places
@@ -36,7 +37,7 @@ def setup_definition(program: Program, scene: str, precision: Precision) -> str:
         f"{scene}_constants_{precision.name} own;",
         "ptrdiff_t k, refused = 0;",
         "for (k = 0; k < members; ++k) {",
-        *indented(loop),
+        *within_braces(loop),
         "}",
         "return refused;",
     ]

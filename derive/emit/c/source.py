@@ -129,7 +129,7 @@ def _header(
         digest=digest,
         guard=names.file(precision, "h").upper().replace(".", "_"),
         constants=library.constants,
-        aside=any("I" in names_in(p) for p in library.emitted()),
+        aside=any("I" in names_declared(p) for p in library.emitted()),
         setup={"symbol": names.symbol("setup", precision)},
         fixed=fixed_symbol(library, precision),
         values=fixed_text(library.fixed).replace(",", ", ").replace("=", " = "),
@@ -140,7 +140,7 @@ def _header(
     )
 
 
-def names_in(program: Program) -> set[str]:
+def names_declared(program: Program) -> set[str]:
     """Return the names that a function's declaration and the struct of constants hold."""
     every = (*program.inputs, *program.outputs)
     members = {c for q in every if q.role == "constants" for c in q.components}
@@ -160,7 +160,7 @@ def _source(
         first_line=f"/* {first_line(library, figures)}",
         header=names.file(precision, "h"),
         uses_math=any(kind in MATH for p in programs for kind in p.count),
-        aside=any("I" in names_in(p) for p in programs),
+        aside=any("I" in names_declared(p) for p in programs),
         pair_functions=operations,
         apart=any(APART in text for text in operations),
         scalar=precision.scalar,
