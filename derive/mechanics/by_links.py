@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from sympy import Expr, Integer, Symbol
 
 from derive.mechanics.absolute_angles import absolute_angles, relative
+from derive.mechanics.articulated_plane import articulated_plane
 from derive.mechanics.links import Links, links
 from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.probe import NOTHING, PROBES, random_probe
@@ -44,6 +45,10 @@ def _solved(machine: Links, unknowns: Sequence[Symbol]) -> Iterator[tuple[str, O
         return
     if machine.drives or any(link.unknown is None for link in machine.links):
         return
+    turning = {link.unknown for link in machine.links}
+    articulated = articulated_plane(machine, [u for u in unknowns if u not in turning])
+    if articulated is not None:
+        yield "articulated bodies", articulated
     systems = absolute_angles(machine), recursion(machine)
     for order in _orders(machine, unknowns):
         for absolute, system in zip((True, False), systems, strict=True):

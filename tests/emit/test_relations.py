@@ -3,9 +3,12 @@
 import re
 
 import pytest
+from sympy import Symbol
 
 from derive.emit.c.relations import MOST, every_relation
+from derive.emit.equations.section import Paragraph, Section
 from derive.emit.files import scene_files
+from derive.emit.page.glance import short_forms
 from derive.library.library import Library
 from derive.program.precision import F64
 from derive.program.program import Program
@@ -80,3 +83,13 @@ def test_they_stand_in_the_header_by_the_names_of_arguments() -> None:
     ]
     own = "omega_dot[0] = (moment[0] + (I_yy - I_zz)*omega[1]*omega[2])/I_xx"
     assert f" * In this scene: {own}\n" in header
+
+
+def test_equations_that_stand_on_each_other_many_times_are_followed_once() -> None:
+    x = [Symbol(f"x{n}") for n in range(60)]
+    sides = tuple((x[n], x[n - 1] + 2 * x[n - 2]) for n in range(2, len(x)))
+    one = Section(
+        "f", "", (), (Paragraph("definition", (), sides),), {"x": x[-1]}, {}, {}, {}, {}, {}
+    )
+    assert short_forms(one, MOST) == []
+    assert short_forms(one, len(x)) == [*sides]

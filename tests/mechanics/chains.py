@@ -35,6 +35,16 @@ ON_A_CART = "\n".join(
 )
 """Two links and one on a cart, pushed and driven, the second hinge aside of the first link."""
 
+PUSHED = "\n".join(
+    [
+        chain("yyy").replace('["?u_2", "0", "?w_2"]', '["?u_2", "P*l", "?w_2"]'),
+        'across = { on = "rod2", frame = "link2", at = ["l/7", "0", "-l/3"], force = ["P", "0", "0"] }',
+        "[inputs]",
+        'P = { unit = "N", range = [-1, 1], meaning = "push on the middle rod, and motor" }',
+    ]
+)
+"""Three rods in line, the one in the middle pushed aside of that line and driven."""
+
 
 def driven(axes: str) -> str:
     """Return the scene of a chain whose angles are given, and the moments at its joints sought."""

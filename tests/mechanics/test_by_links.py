@@ -1,4 +1,4 @@
-"""Machines of links cost what their mass matrix costs by hand or less, whatever they carry."""
+"""Machines of links cost what they cost by hand or less, whatever they carry."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -15,13 +15,12 @@ from derive.mechanics.links import BASE, Link, Links, links
 from derive.mechanics.mechanism import Mechanism, mechanism
 from derive.scene import parse_scene
 from derive.verify.prove import prove
-from tests.mechanics.chains import ON_A_CART, driven
+from tests.mechanics.chains import ON_A_CART, PUSHED, driven
 
-BY_HAND = {2: 25, 3: 68, 4: 133, 5: 222, 6: 337}
-"""Operations of a chain of equal rods in absolute angles, solved by L D L^T."""
+PLANAR = {2: 25, 3: 71, 4: 134, 5: 187, 6: 240, 10: 452}
+"""Operations of a chain of equal rods; absolute angles and L D L^T by hand take 25 to 337."""
 IN_TURN = {2: 25, 3: 130, 4: 260, 5: 430}
 """Operations of a chain of equal rods with axes in turn; a plain recursion takes 46 to 555."""
-MARGIN = 1.1
 T = TypeVar("T")
 
 
@@ -30,11 +29,11 @@ def machine_of(text: str) -> Mechanism:
 
 
 @pytest.mark.parametrize(
-    "rods", [n if n < 3 else pytest.param(n, marks=pytest.mark.long) for n in BY_HAND]
+    "rods", [n if n < 3 else pytest.param(n, marks=pytest.mark.long) for n in PLANAR]
 )
-def test_a_planar_chain_costs_no_more_than_by_hand(rods: int) -> None:
+def test_a_planar_chain_takes_the_same_for_each_rod_from_four_on(rods: int) -> None:
     made = library(parse_scene(chain("y" * rods), "chain"))
-    assert made["accelerations"].flops() <= MARGIN * BY_HAND[rods]
+    assert made["accelerations"].flops() <= PLANAR[rods]
     prove(made)
 
 
@@ -50,15 +49,16 @@ def test_a_chain_with_axes_in_turn_costs_less_than_a_plain_recursion(rods: int) 
 ARM = (Path(__file__).parent / "arm.toml").read_text(encoding="utf-8")
 WAYS = {
     "arm": (ARM, 3),
-    "chain": (chain("yy"), 4),
+    "chain": (chain("yy"), 5),
     "in turn": (chain("yx"), 2),
-    "cart": (ON_A_CART, 6),
+    "pushed": (PUSHED, 5),
+    "cart": (ON_A_CART, 7),
 }
-"""Machines, and in how many ways they are solved: by one or two systems, each in some orders."""
+"""Machines, and in how many ways they are solved: by systems, each in some orders, one by one."""
 
 
 @pytest.mark.parametrize(
-    "name", [n if n == "chain" else pytest.param(n, marks=pytest.mark.long) for n in WAYS]
+    "name", [n if n == "pushed" else pytest.param(n, marks=pytest.mark.long) for n in WAYS]
 )
 def test_links_are_solved_whatever_carries_and_pushes_them(name: str) -> None:
     text, ways_ = WAYS[name]

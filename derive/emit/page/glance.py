@@ -38,7 +38,7 @@ def short_forms(one: Section, most: int) -> list[TwoSides]:
     """Return the closed forms of as many answers as fit on so many lines, where these are short."""
     defined, shown = _defined(one), dict[TwoSides, None]()
     for symbol in one.answers.values():
-        chain = _chain(symbol, defined, ())
+        chain = _chain(symbol, defined, set())
         whole = {**shown, **dict.fromkeys(chain)}
         if len(whole) <= most and all(is_short(right) for _, right in chain):
             shown = whole
@@ -50,11 +50,15 @@ def _defined(one: Section) -> dict[Symbol, TwoSides]:
 
 
 def _chain(
-    symbol: Symbol, defined: Mapping[Symbol, TwoSides], above: tuple[Symbol, ...]
+    symbol: Symbol, defined: Mapping[Symbol, TwoSides], seen: set[Symbol]
 ) -> list[TwoSides]:
-    """Return the equations that a symbol stands on, its own last; none if it is zero or given."""
-    if symbol not in defined or symbol in above or defined[symbol][1] == 0:
+    """Return the equations that a symbol stands on, its own last, each once.
+
+    seen : symbols whose equations are not asked for again; one that is zero or given has none
+    """
+    if symbol not in defined or symbol in seen or defined[symbol][1] == 0:
         return []
+    seen.add(symbol)
     sides = defined[symbol]
     below = sorted(sides[1].free_symbols & defined.keys(), key=str)
-    return [*(line for s in below for line in _chain(s, defined, (*above, symbol))), sides]
+    return [*(line for s in below for line in _chain(s, defined, seen)), sides]
