@@ -38,7 +38,7 @@ ON_A_CART = "\n".join(
 PUSHED = "\n".join(
     [
         chain("yyy").replace('["?u_2", "0", "?w_2"]', '["?u_2", "P*l", "?w_2"]'),
-        'across = { on = "rod2", frame = "link2", at = ["l/7", "0", "-l/3"], force = ["P", "0", "0"] }',
+        'side = { on = "rod2", frame = "link2", at = ["l/7", "0", "-l"], force = ["P", "0", "0"] }',
         "[inputs]",
         'P = { unit = "N", range = [-1, 1], meaning = "push on the middle rod, and motor" }',
     ]
