@@ -192,7 +192,7 @@ class _Articulated:
             moment += _across(hinge).dot(pulled)
         across, inverse = column("across", across), cut("inverse", 1 / inertia)
         slope = column("slope", across * inverse)
-        moment = cut("moment", moment)
+        moment = cut("effort", moment)
         self.turned[k] = Swing(cut("rest", inverse * moment), slope)
         mass = mass - across * slope.T
         own = _symmetric(column("mass", Matrix(mass.diagonal())), cut("mass", mass[0, 1]))
@@ -208,7 +208,7 @@ class _Articulated:
         driven = self.moment[k] / beam.across
         inverse = cut("inverse", 1 / (beam.inertia + mass[b, b]))
         slope, left = cut("slope", inverse * mass[a, b]), cut("left", beam.inertia * inverse)
-        moment = cut("moment", across - driven)
+        moment = cut("effort", across - driven)
         rest = cut("rest", inverse * moment)
         self.turned[k] = Swing(rest, _placed(a, slope, left))
         both = cut("mass", left * mass[a, b])
