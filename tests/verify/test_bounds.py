@@ -30,7 +30,7 @@ from derive.verify.scale import measured_outputs
 from tests.made import library_of
 
 GENERATED = Path(__file__).parents[2] / "generated"
-QUICK = Proof(WORK // 16, Search(1024, 6, 256))
+QUICK = Proof(WORK // 64, Search(2048, 24, 512))
 LEAST = Search(16, 1, 16)
 BITS = 200
 WITHIN = ("ordinary", "extremes", "at rest")

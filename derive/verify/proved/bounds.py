@@ -26,7 +26,7 @@ from derive.verify.proved.unfolded import Operation, unfolded
 from derive.verify.scale import measured_outputs
 from derive.verify.search import SAMPLING, Sampling
 
-WORK = 12_000_000
+WORK = 48_000_000
 """Operations, of a box for a result, after which no part is cut any more."""
 LONGEST = 2000
 """Operations of a function that bounds are tried of."""
@@ -63,7 +63,7 @@ def proof_of(sampling: Sampling) -> Proof:
         return PROOF
     share = sampling.samples / SAMPLING.samples
     few = Search(max(256, int(SEARCH.samples * share)), SEARCH.rounds // 2, 512)
-    return Proof(max(WORK // 32, int(WORK * share)), few)
+    return Proof(max(WORK // 128, int(WORK * share)), few)
 
 
 def proved_bounds(library: Library, by: Proof) -> tuple[Bound, ...]:
@@ -101,7 +101,8 @@ def cutting(library: Library, program: Program, precision: Precision, work: int)
     whole = any(q.is_quaternion for q in program.inputs)
     of = traits(trace, precision, quaternions=whole)
     name = f"derive: {library.scene.name} {F32.name} bound {program.name}"
-    return Cutting(of, box(library, program, of), work, Dice(name))
+    outputs = [span for _, span in measured_outputs(program)]
+    return Cutting(of, box(library, program, of), work, Dice(name), outputs)
 
 
 def box(library: Library, program: Program, of: Traits) -> Region:

@@ -20,9 +20,13 @@ TIGHT = 1.1
 """A bound is no more than this of one at a point: nothing is left to cut for."""
 UNIT = (0.999, 1.001)
 """Of the squared length of a quaternion that is given."""
+MARGIN = 1e-12
+"""More than rounding takes from ends that are found by roots."""
 FINEST = 4
 TRIED_AT = 512
-MOST = 16384
+PIECES = 8
+"""Into so many a side is cut to see what cutting it takes from a bound."""
+MOST = 32768
 """Cells that a box is cut into at most."""
 BATCH = 256
 FULL = 1 << 15
@@ -61,12 +65,16 @@ def joined(each: Sequence[Cells]) -> Cells:
 
 @dataclass
 class Cutting:
-    """A bound in the making: work is counted in operations over one box, for one result."""
+    """A bound in the making: work is counted in operations over one box, for one result.
+
+    outputs : which results are components of one, whose bound is that of the largest
+    """
 
     traits: Traits
     box: Region
     work: int
     dice: Dice
+    outputs: Sequence[slice]
     spent: int = 0
 
     def valued(self, lows: Column, highs: Column) -> Cells:
@@ -89,7 +97,7 @@ class Cutting:
 
     def scores(self, parts: Cells) -> Column:
         """Return how much the bound of each part is above what is certain at points."""
-        over = parts.shifts / np.maximum(self.least, 1e-280)[:, None]
+        over = self._of_outputs(parts.shifts) / np.maximum(self.least, 1e-280)[:, None]
         return np.asarray(np.where(np.isnan(over), np.inf, over).max(axis=0))
 
     def run(self) -> Cells:
@@ -109,7 +117,7 @@ class Cutting:
 
     @cached_property
     def least(self) -> Column:
-        """Return the largest bound of each result at points, below which none of all can be."""
+        """Return the largest bound of each output at points, below which none of all can be."""
         d = len(self.box.names)
         dice = self.dice.uniform(d, TRIED_AT)
         dice[:, : TRIED_AT // 2] = np.round(dice[:, : TRIED_AT // 2])
@@ -123,7 +131,11 @@ class Cutting:
         ends[0][free], ends[1][free] = 0.0, 1.0
         found = self.valued(*ends)
         bounds = np.where(np.isfinite(found.shifts), found.shifts, 0.0)
-        return np.asarray(bounds.max(axis=1, initial=0.0))
+        return np.asarray(self._of_outputs(bounds).max(axis=1, initial=0.0))
+
+    def _of_outputs(self, each: Column) -> Column:
+        """Return the largest of each output's components, a row an output."""
+        return np.array([each[span].max(axis=0) for span in self.outputs])
 
     def _started(self) -> tuple[Column, Column]:
         """Return parts to begin with: quaternions, of the sphere alone, cut as finely as pays."""
@@ -142,11 +154,16 @@ class Cutting:
         return ends
 
     def _on_the_sphere(self, lows: Column, highs: Column) -> tuple[Column, Column]:
-        """Return boxes without those that hold no unit quaternion."""
+        """Return boxes without those that hold no unit quaternion, each as small as holds all."""
         fits = np.ones(lows.shape[1], dtype=bool)
+        lows, highs = lows.copy(), highs.copy()
         for places in self.box.quaternions:
             low, high = _squares(lows[list(places)], highs[list(places)])
             fits &= (low <= UNIT[1]) & (high >= UNIT[0])
+            for place in places:
+                others = [k for k in places if k != place]
+                _narrow(lows, highs, place, _squares(lows[others], highs[others]))
+        fits &= np.all(lows <= highs, axis=0)
         return lows[:, fits], highs[:, fits]
 
     def _halved(self, parts: Cells) -> Cells:
@@ -164,19 +181,17 @@ class Cutting:
     def _best(self, parts: Cells) -> Column:
         """Return along which of its sides each part is to be cut, as the first one tells."""
         width = (parts.highs - parts.lows) / (self.box.highs - self.box.lows)[:, None]
-        d = len(width)
-        low, high = (np.repeat(x[:, :1], 2 * d, axis=1) for x in (parts.lows, parts.highs))
-        for k in range(d):
-            middle = (parts.lows[k, 0] + parts.highs[k, 0]) / 2
-            high[k, 2 * k] = middle
-            low[k, 2 * k + 1] = middle
-        gains = self._gains(parts, low, high)
-        return np.asarray(np.argmax(gains[:, None] * width / width[:, :1], axis=0))
+        first = np.maximum(width[:, :1], 1e-12)
+        return np.asarray(np.argmax(self._gains(parts)[:, None] * width / first, axis=0))
 
-    def _gains(self, parts: Cells, low: Column, high: Column) -> Column:
+    def _gains(self, parts: Cells) -> Column:
         """Return what cutting each side takes from the bound, or from what keeps it from being."""
-        low, high = (np.concatenate([x[:, :1], y], axis=1)
-                     for x, y in ((parts.lows, low), (parts.highs, high)))  # fmt: skip
+        d = len(self.box.names)
+        low, high = (np.repeat(x[:, :1], 1 + PIECES * d, axis=1) for x in (parts.lows, parts.highs))
+        for k in range(d):
+            ends = np.linspace(parts.lows[k, 0], parts.highs[k, 0], PIECES + 1)
+            own = slice(1 + PIECES * k, 1 + PIECES * (k + 1))
+            low[k, own], high[k, own] = ends[:-1], ends[1:]
         ranges = {n: (low[k], high[k]) for k, n in enumerate(self.box.names)}
         self._count(low.shape[1])
         with np.errstate(all="ignore"):
@@ -184,10 +199,9 @@ class Cutting:
             over = self.scores(Cells(low, high, shifts(found), found.blamed))
         if not np.isfinite(over[0]):
             over = _width(found)
-        halves = over[1:].reshape(-1, 2)
         width = (parts.highs[:, 0] - parts.lows[:, 0]) / (self.box.highs - self.box.lows)
         with np.errstate(all="ignore"):
-            gains = 2 - halves.sum(axis=1) / over[0]
+            gains = 1 - over[1:].reshape(d, PIECES).mean(axis=1) / over[0]
         return np.asarray(np.maximum(np.where(np.isfinite(gains), gains, 0.0), 1e-6 * width))
 
     def _count(self, boxes: int) -> None:
@@ -216,3 +230,12 @@ def _squares(lows: Column, highs: Column) -> tuple[Column, Column]:
     for a, b in zip(least, most, strict=True):
         low, high = low + a * a, high + b * b
     return low, high
+
+
+def _narrow(lows: Column, highs: Column, place: int, others: tuple[Column, Column]) -> None:
+    """Make a side of boxes as short as holds all unit quaternions, the others' squares known."""
+    most = np.sqrt(np.maximum(UNIT[1] - others[0], 0.0)) * (1 + MARGIN)
+    least = np.sqrt(np.maximum(UNIT[0] - others[1], 0.0)) * (1 - MARGIN)
+    low, high = np.maximum(lows[place], -most), np.minimum(highs[place], most)
+    lows[place] = np.where(low > -least, np.maximum(low, least), low)
+    highs[place] = np.where(high < least, np.minimum(high, -least), high)

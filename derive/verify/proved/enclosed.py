@@ -23,6 +23,7 @@ from derive.verify.proved.ranges import (
     inverse,
     magnitude,
     negated,
+    one_power,
     outward,
     powers_of_two,
     root_of,
@@ -277,6 +278,8 @@ def exactly(of: Traits, index: int, step: Operation, each: Sequence[Interval]) -
     """Return the range of an operation without rounding."""
     if step.operator == "mul" and step.operands[0] == step.operands[1]:
         return squared(each[0])
+    if step.operator == "power_of_two" and of.any_power:
+        return one_power(each[0])
     kind = of.kinds[index]
     if kind in ("least", "most"):
         return MEANT[kind](each[1], each[2])

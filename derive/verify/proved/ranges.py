@@ -114,6 +114,11 @@ def powers_of_two(a: Interval) -> Interval:
     return np.where(first[0] > 0, np.ldexp(1.0, least - 1), 0.0), np.ldexp(1.0, most - 1)
 
 
+def one_power(a: Interval) -> Interval:
+    """Return one of these powers, for programs that any of them serves alike."""
+    return (powers_of_two(a)[1],) * 2
+
+
 def half_unit(most: Column, bits: int, least: float) -> Column:
     """Return how far rounding to floats of so many bits may move a number up to ``most``."""
     mantissa, exponent = np.frexp(most)

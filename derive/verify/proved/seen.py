@@ -26,11 +26,11 @@ class Search:
     """
 
     samples: int = 4096
-    rounds: int = 20
-    batch: int = 1536
-    kept: int = 12
+    rounds: int = 80
+    batch: int = 4096
+    kept: int = 6
     finest: int = 24
-    operations: int = 300_000
+    operations: int = 600_000
 
     def of(self, program: Program) -> "Search":
         """Return a search of as many samples a round as so many operations take, or 128."""

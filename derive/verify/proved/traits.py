@@ -10,6 +10,8 @@ from derive.program.precision import Precision
 from derive.verify.proved.unfolded import Operation, Unfolded
 
 COMPARED = ("less", "at_most")
+ALIKE = (*COMPARED, "add", "sub", "neg", "abs", "select", "power_of_two", "rounded")
+"""What gives, of values with a common factor, a value with that factor, or none."""
 MOST_CHOICES = 12
 
 
@@ -41,6 +43,13 @@ class Traits:
                 asked.update(steps[n].operands)
         own = (n for n in sorted(asked) if steps[n].operator in COMPARED and self.exact[n])
         return tuple(own)[:MOST_CHOICES]
+
+    @cached_property
+    def any_power(self) -> bool:
+        """Tell whether results are the same whichever powers of two values are scaled by."""
+        steps = self.trace.steps
+        scales = [n for n, step in enumerate(steps) if step.operator == "power_of_two"]
+        return all(_falls_out(self.trace, n) for n in scales)
 
     def jumps(self, index: int) -> bool:
         """Tell whether a place is a choice that may have a jump."""
@@ -78,6 +87,28 @@ def traits(trace: Unfolded, precision: Precision, *, quaternions: bool) -> Trait
     for step in trace.steps:
         exact.append(_is_exact(step, [exact[o] for o in step.operands], precision))
     return Traits(trace, precision, tuple(exact), quaternions)
+
+
+def _falls_out(trace: Unfolded, scale: int) -> bool:
+    """Tell whether twice a scale gives the same results, as exactly: each value times 2^degree."""
+    degrees: list[int | None] = []  # None of a zero, which has any
+    for index, step in enumerate(trace.steps):
+        own = [degrees[o] for o in step.operands]
+        one = [d for d in own[step.operator == "select" :] if d is not None]
+        if index == scale:
+            degrees.append(1)
+        elif step.operator in ("mul", "div"):
+            sign = -1 if step.operator == "div" else 1
+            degrees.append(one[0] + sign * one[1] if len(one) == len(own) else None)
+        elif step.operator == "sqrt" and one[0] % 2 == 0:
+            degrees.append(one[0] // 2)
+        elif step.operator in ALIKE and len(set(one)) <= 1:
+            degrees.append(0 if step.operator in COMPARED else next(iter(one), None))
+        elif not any(one):
+            degrees.append(None if step.number == 0 else 0)
+        else:
+            return False
+    return not any(degrees[r] for r in trace.results)
 
 
 def _is_exact(step: Operation, operands: Sequence[bool], precision: Precision) -> bool:
