@@ -9,7 +9,7 @@ from derive.scene.machine import LEFT_OVER, Steady
 from derive.scene.unit import behind
 from derive.scene.wanted import moves
 from derive.solve.instrument import Instrument
-from derive.solve.motions import roots, small_motion
+from derive.solve.motions import SmallMotion, roots, small_motion
 
 Lasting = Mapping[str, Mapping[str, float]]
 """Values in steady motions, by what each is called."""
@@ -69,8 +69,7 @@ def every_answer(found: Instrument, values: Mapping[str, float]) -> Answered:
     rows: list[AnswerRow] = []
     unanswered: dict[str, tuple[str, ...]] = {}
     scene = found.library.scene
-    lasting = {name: own for name in scene.wanted if name in scene.steady
-               if (own := _steady_motions(found, name, values)) is not None}  # fmt: skip
+    lasting = _lasting(found, values)
     motions = {said: own for each in lasting.values() for said, own in each.items()}
     sought = {c for name in lasting for c in _sought(found, name, values)}
     for name in scene.wanted:
@@ -87,6 +86,35 @@ def every_answer(found: Instrument, values: Mapping[str, float]) -> Answered:
     doubts = dict.fromkeys(doubt for own in each for doubt in found.doubts(own))
     nowhere = [_nowhere(scene.steady[name]) for name, own in lasting.items() if not own]
     return Answered(tuple(rows), unanswered, (*doubts, *nowhere))
+
+
+def _lasting(found: Instrument, values: Mapping[str, float]) -> dict[str, Lasting]:
+    scene = found.library.scene
+    return {name: own for name in scene.wanted if name in scene.steady
+            if (own := _steady_motions(found, name, values)) is not None}  # fmt: skip
+
+
+def around(found: Instrument, values: Mapping[str, float]) -> list[Mapping[str, float]]:
+    """Return the values of all motions that small ones are around: as given, or each steady one."""
+    missing = _missing(found, "linearised", values)
+    if not missing or "linearised" not in found.library.scene.wanted:
+        return [values]
+    lasting = _lasting(found, values).values()
+    motions = {said: own for each in lasting for said, own in each.items()}
+    every = [*_enough(motions, missing).values()]
+    return every if every or motions or any(not own for own in lasting) else [values]
+
+
+def small_motion_of(found: Instrument, values: Mapping[str, float]) -> SmallMotion:
+    """Return small motion around the only motion that values tell.
+
+    Raises SceneError where there are several, or none.
+    """
+    each = around(found, values)
+    if len(each) != 1:
+        says = f"small motion is around one steady motion; with these values there are {len(each)}"
+        raise SceneError(f"scene '{found.name}': {says}: `solve` tells of all")
+    return small_motion(found, each[0])
 
 
 def _enough(motions: Lasting, missing: Iterable[str]) -> Lasting:

@@ -1,6 +1,6 @@
 """An event that ends a motion: an equation such as ``theta = 0``, met between two steps."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -100,20 +100,63 @@ def first_met(left: Any, columns: NDArray[np.float64], moved: Any, step: float) 
 
     left : the residual       moved : the state after a time, of the state and that time
     None if it does not happen; a sign that changes where the residual grows beyond both ends is
-    that of a pole.
+    that of a pole. A residual that turns back within a step is followed to where it turns.
     """
     values = np.array(left.map(columns.shape[1])(columns)).ravel()
-    changes = [k for k in range(1, len(values)) if values[k - 1] * values[k] < 0
-               or (values[k] == 0 and values[k - 1] != 0)]  # fmt: skip
-    for k in changes:
-        start, before, low, high = columns[:, k - 1], values[k - 1], 0.0, step
+    way = _along(left, moved)
+    for k, part in _brackets(values, columns, way, step):
+        start, before, low, high = columns[:, k - 1], values[k - 1], 0.0, part
+        beyond = max(abs(before), abs(float(way[0](start, high))))
         for _ in range(HALVINGS):
             middle = (low + high) / 2
-            if float(left(moved(start, middle))) * before > 0:
+            if float(way[0](start, middle)) * before > 0:
                 low = middle
             else:
                 high = middle
         state = np.array(moved(start, high)).ravel()
-        if abs(float(left(state))) <= max(abs(before), abs(values[k])):
+        if abs(float(left(state))) <= beyond:
             return k, high, state
     return None
+
+
+Way = tuple[Any, Any]
+
+
+def _along(left: Any, moved: Any) -> Way:
+    """Return a residual and its slope in time, of the state before a step and the time since."""
+    x, h = casadi.SX.sym("x", moved.size1_in(0)), casadi.SX.sym("h")
+    value = left(moved(x, h))
+    return (
+        casadi.Function("value", [x, h], [value]),
+        casadi.Function("slope", [x, h], [casadi.jacobian(value, h)]),
+    )
+
+
+def _brackets(
+    values: NDArray[np.float64], columns: NDArray[np.float64], way: Way, step: float
+) -> Iterator[tuple[int, float]]:
+    """Yield the steps, counted from one, and the times in them by which a residual has crossed."""
+    slopes = [
+        np.array(way[1].map(len(values))(columns, np.full(len(values), time))).ravel()
+        for time in (0.0, step)
+    ]
+    for k in range(1, len(values)):
+        before, after = values[k - 1], values[k]
+        if before * after < 0 or (after == 0 and before != 0):
+            yield k, step
+        elif before * slopes[0][k - 1] < 0 < after * slopes[1][k - 1]:
+            turn = _turn(columns[:, k - 1], way, step)
+            if float(way[0](columns[:, k - 1], turn)) * before <= 0:
+                yield k, turn
+
+
+def _turn(start: NDArray[np.float64], way: Way, step: float) -> float:
+    """Return the time within a step at which a residual turns back."""
+    first, low, high = float(way[1](start, 0.0)), 0.0, step
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        if float(way[1](start, middle)) * first > 0:
+            low = middle
+        else:
+            high = middle
+    return high

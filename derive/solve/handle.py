@@ -16,7 +16,7 @@ from derive.report import SceneReport, report, report_files
 from derive.scene import Scene, SceneError, contents, document_text, parse_scene
 from derive.scene.table import one_of
 from derive.scene.unit import behind
-from derive.solve.answers import Answered, every_answer
+from derive.solve.answers import Answered, around, every_answer, small_motion_of
 from derive.solve.arguments import one_number
 from derive.solve.bound import Accuracy, By, bound, evaluation, kernel_of, program_of
 from derive.solve.function import Kernel, SceneFunction
@@ -32,7 +32,7 @@ from derive.solve.generation import (
     stored,
 )
 from derive.solve.instrument import Instrument, instrument
-from derive.solve.motions import limits, roots, small_motion
+from derive.solve.motions import limits, roots
 from derive.solve.settings import NamedValues, settable, settings
 from derive.solve.simulation import Simulation, plot_of, simulated
 from derive.solve.told import listener, met, path, require_another_file
@@ -135,11 +135,11 @@ class Handle:
 
     def frequencies(self, values: NamedValues) -> list[float]:
         """Return the circular frequencies of small motion, rising, in rad/s."""
-        return small_motion(self._instrument, self._settings(values)).frequencies
+        return small_motion_of(self._instrument, self._settings(values)).frequencies
 
     def growth(self, values: NamedValues) -> float:
         """Return the fastest growth of small motion, in 1/s; 0 if it is no more than rounding."""
-        return small_motion(self._instrument, self._settings(values)).growth
+        return small_motion_of(self._instrument, self._settings(values)).growth
 
     def limits(self, values: NamedValues, name: str) -> list[float]:
         """Return the values of one quantity, in its range, at which stability changes."""
@@ -149,7 +149,8 @@ class Handle:
         if name not in q.components:
             says = f"the limit of one component is found, of {', '.join(q.components)}"
             raise SceneError(f"scene '{self.name}': {says}, not of {name}")
-        return limits(self._instrument, self._settings(values), name)
+        by = partial(around, self._instrument)
+        return limits(self._instrument, self._settings(values), name, by)
 
     def doubts(self, values: NamedValues) -> tuple[str, ...]:
         """Return warnings about values: inertias that no masses have, motions off equilibrium."""

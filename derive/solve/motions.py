@@ -1,6 +1,6 @@
 """Steady and small motions of a machine: roots by CasADi, frequencies by an eigenvalue routine."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
 from typing import Any
@@ -144,22 +144,34 @@ def growth(found: Instrument, given: Mapping[str, float]) -> float:
     return small_motion(found, given).growth
 
 
-def limits(found: Instrument, given: Mapping[str, float], name: str) -> list[float]:
-    """Return the values of one quantity, in its declared range, at which stability changes."""
-    grid = np.linspace(*_bounds(found, name), STARTS)
-    stable = [growth(found, dict(given) | {name: float(v)}) == 0 for v in grid]
-    changes = [k for k in range(STARTS - 1) if stable[k] != stable[k + 1]]
-    return [_halved(found, given, name, (float(grid[k]), float(grid[k + 1]))) for k in changes]
+Carried = Callable[[Mapping[str, float]], Sequence[Mapping[str, float]]]
+"""From values to those of each motion that is small around: themselves, or each steady one."""
 
 
-def _halved(
-    found: Instrument, given: Mapping[str, float], name: str, ends: tuple[float, float]
-) -> float:
+def limits(
+    found: Instrument, given: Mapping[str, float], name: str, carried: Carried = lambda v: (v,)
+) -> list[float]:
+    """Return the values of one quantity, in its declared range, at which stability changes.
+
+    Of steady motions that are looked for at each value, so are those at which their number does.
+    """
+
+    def stable(value: float) -> tuple[bool, ...]:
+        each = carried(dict(given) | {name: value})
+        return tuple(growth(found, values) == 0 for values in each)
+
+    grid = list(map(float, np.linspace(*_bounds(found, name), STARTS)))
+    told = list(map(stable, grid))
+    changes = [k for k in range(STARTS - 1) if told[k] != told[k + 1]]
+    return [_halved(stable, (grid[k], grid[k + 1])) for k in changes]
+
+
+def _halved(stable: Callable[[float], tuple[bool, ...]], ends: tuple[float, float]) -> float:
     low, high = ends
-    first = growth(found, dict(given) | {name: low}) == 0
+    first = stable(low)
     for _ in range(HALVINGS):
         middle = (low + high) / 2
-        if (growth(found, dict(given) | {name: middle}) == 0) == first:
+        if stable(middle) == first:
             low = middle
         else:
             high = middle

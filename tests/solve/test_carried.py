@@ -1,6 +1,6 @@
 """A root of steady motion is carried into every other answer, and into small motion about it."""
 
-from math import acos, sin
+from math import acos, cos, sin
 
 import pytest
 
@@ -125,3 +125,17 @@ def test_a_scene_without_values_shows_ranges_and_an_example_that_is_answered(
 def test_an_example_is_short_and_lies_in_its_range(low: float, high: float, shown: str) -> None:
     assert example(low, high, "") == shown
     assert [example(-1, 1, f"q_{part}") for part in "wxyz"] == ["1", "0", "0", "0"]
+
+
+def test_roots_are_carried_into_frequencies_and_limits_of_stability() -> None:
+    (frequency,) = hoop().frequencies(VALUES)
+    assert frequency == pytest.approx(8.0 * sin(acos(0.6125)), rel=1e-9)
+    assert hoop().growth(VALUES) == 0
+    whole = hoop(coordinates={"theta": {"unit": "rad", "range": [-1.5, 1.5]}})
+    still = {name: value for name, value in VALUES.items() if name != "W"}
+    ends = [(9.8 / 0.25) ** 0.5, (9.8 / (0.25 * cos(1.5))) ** 0.5]
+    assert whole.limits(still, "W") == pytest.approx(ends, rel=1e-5)
+    with pytest.raises(SceneError, match="one steady motion; with these values there are 3"):
+        whole.frequencies(VALUES)
+    with pytest.raises(SceneError, match="there are 0"):
+        hoop().frequencies(VALUES | {"W": 1.0})

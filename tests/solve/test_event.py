@@ -32,11 +32,15 @@ def turning() -> Handle:
 @pytest.mark.parametrize(
     ("stop", "time"),
     [("q = 0", 0.125), ("q=1", 0.625), ("q/2 = q - 0.5", 0.625), ("height = 1", 0.910398163),
-     ("2*q = pi", 0.910398163), ("tan(q) = 0", 0.125)],
+     ("2*q = pi", 0.910398163), ("tan(q) = 0", 0.125),
+     ("(q - 0.5)*(q - 0.5) = 0.0001", 0.37), ("1 - height = 0.9999", 0.117928873)],
 )  # fmt: skip
 @pytest.mark.parametrize("step", [0.1, 0.0625])
 def test_a_motion_stops_where_an_equation_holds_first(stop: str, time: float, step: float) -> None:
-    """A whole step that ends there, as 0.0625 does of q = 0, is met as any other."""
+    """A whole step that ends there, as 0.0625 does of q = 0, is met as any other.
+
+    So is what holds twice within a step: near q = 0.5, and around the lowest place.
+    """
     motion = turning().simulate(START, 3, step, stop=stop)
     assert motion.times[-1] == pytest.approx(time, abs=1e-9)
     assert motion.states["q"][-1] == pytest.approx(-0.25 + 2 * time, abs=1e-9)
