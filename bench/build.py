@@ -28,7 +28,7 @@ class Column:
 
 
 O2 = Column("O2", ("-O2",))
-O3_NATIVE = Column("O3-native", NATIVE)
+O3_NATIVE = Column("O3-native", (*NATIVE, "-ffp-contract=off"))
 O3_CONTRACTED = Column("O3-native, contracted", (*NATIVE, "-DDERIVE_ALLOW_CONTRACTION"))
 
 

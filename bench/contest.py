@@ -8,7 +8,7 @@ from pathlib import Path
 
 from bench import handwritten, own
 from bench.accuracy import Accuracy, accuracy
-from bench.build import O2, O3_NATIVE, BuildError, Column, answers, build
+from bench.build import O2, O3_CONTRACTED, O3_NATIVE, BuildError, answers, build
 from bench.callgrind import instructions
 from bench.candidate import SAMPLES, Argument, Candidate, Source, pointer_glue
 from bench.flops import Flops, count
@@ -17,17 +17,16 @@ from bench.problem import FREE_BODY, HEAVY_TOP, PROBLEMS, Problem
 from bench.sample import SETS, samples
 from bench.truth import truth
 
-COLUMNS = (O2, O3_NATIVE)
+COLUMNS = (O2, O3_NATIVE, O3_CONTRACTED)
 
 
 @dataclass(frozen=True)
 class Author:
-    """Who answers which problems, in which columns its code is measured."""
+    """Who answers which problems."""
 
     name: str
     answer: Callable[[Problem], Candidate]
     problems: tuple[Problem, ...] = PROBLEMS
-    columns: tuple[Column, ...] = COLUMNS
 
 
 @dataclass(frozen=True)
@@ -45,7 +44,7 @@ class Entry:
 def authors(generated: Path) -> tuple[Author, ...]:
     """Return all authors, ours first; ours stands in the folder ``generated``."""
     return (
-        Author(own.AUTHOR, partial(own.candidate, generated), PROBLEMS, own.COLUMNS),
+        Author(own.AUTHOR, partial(own.candidate, generated)),
         Author(handwritten.AUTHOR, handwritten.candidate),
         Author(kane.AUTHOR, kane.candidate),
         Author(kane.SIMPLIFIED, kane.simplified, (HEAVY_TOP,)),
@@ -75,7 +74,7 @@ def entry(author: Author, problem: Problem, number: int, folder: Path) -> Entry:
         return Entry(author.name, problem.name, None, {}, {}, f"not run: {absent}")
     flops = operations(candidate)
     try:
-        programs = {c.name: build(candidate, c, folder / c.name) for c in author.columns}
+        programs = {c.name: build(candidate, c, folder / c.name) for c in COLUMNS}
         cost = _cost(problem, programs)
         errors = {kind: _accuracy(candidate, programs[O2.name], kind, number) for kind in SETS}
     except (BuildError, FileNotFoundError) as failed:

@@ -9,12 +9,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from bench.build import O2, O3_CONTRACTED, O3_NATIVE
 from bench.candidate import Candidate, Source, sizes
 from bench.problem import Problem
 
 AUTHOR = "ours"
-COLUMNS = (O2, O3_NATIVE, O3_CONTRACTED)
 GLUE = """\
 #include <string.h>
 #include "{header}"

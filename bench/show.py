@@ -11,15 +11,14 @@ from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
-from bench.build import O2, O3_CONTRACTED, O3_NATIVE, versions
-from bench.contest import Entry, authors, contest, overhead
+from bench.build import versions
+from bench.contest import COLUMNS, Entry, authors, contest, overhead
 from bench.problem import PROBLEMS, Problem
 from bench.sample import SETS
 from derive import __version__
 from derive.emit.files import write
 
 SAMPLES_IN_A_SET = 1000
-COLUMNS = (O2.name, O3_NATIVE.name, O3_CONTRACTED.name)
 
 
 def bench(generated: Path, out: Path | None, console: Console, progress: Progress) -> int:
@@ -48,7 +47,7 @@ def bench(generated: Path, out: Path | None, console: Console, progress: Progres
 def table(entries: Sequence[Entry], problems: Sequence[Problem]) -> Table:
     """Return the figures as a table, one section a problem."""
     shown = Table("problem", "by", box=None)
-    for name in ("+ - * /", "div", "sin cos", *(f"Ir {c}" for c in COLUMNS), *SETS):
+    for name in ("+ - * /", "div", "sin cos", *(f"Ir {c.name}" for c in COLUMNS), *SETS):
         shown.add_column(name, justify="right")
     for problem in problems:
         for place, entry in enumerate(e for e in entries if e.problem == problem.name):
@@ -67,9 +66,13 @@ def cells(entry: Entry) -> tuple[str, ...]:
         return ("not run", *[""] * (2 + len(COLUMNS) + len(SETS)))
     trig = entry.flops.sin + entry.flops.cos + entry.flops.tan
     counts = (str(entry.flops.total), str(entry.flops.div), str(trig))
-    cost = (f"{entry.instructions[c]:.0f}" if c in entry.instructions else "" for c in COLUMNS)
+    cost = (_instructions(entry, c.name) for c in COLUMNS)
     errors = (_error(entry, kind) for kind in SETS)
     return (*counts, *cost, *errors)
+
+
+def _instructions(entry: Entry, column: str) -> str:
+    return f"{entry.instructions[column]:.0f}" if column in entry.instructions else ""
 
 
 def _error(entry: Entry, kind: str) -> str:
