@@ -51,7 +51,7 @@ def manifest(
             "quaternion": "scalar first, Hamilton, body to inertial",
             "products_of_inertia": "I_xy = +sum x y dm",
             "jacobian": "nonzeros in compressed-column order; dense is column-major",
-            "aliasing": "outputs may lie over inputs",
+            "aliasing": "outputs but jacobian may lie over inputs",
             "units": "SI, angles in rad",
         },
         "parameters": [_quantity(q) for q in library.vocabulary.parameters],

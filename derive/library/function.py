@@ -27,7 +27,7 @@ from derive.mechanics.problem import Problem
 from derive.mechanics.rotation import FreeRotation
 from derive.mechanics.vocabulary import Vocabulary
 from derive.program.pattern import compressed
-from derive.program.program import Program, Quantity, Sparsity
+from derive.program.program import MATRIX, Program, Quantity, Sparsity
 from derive.scene import Scene, SceneError
 from derive.scene.wanted import JACOBIAN, SENSITIVITY, without_ending
 
@@ -150,7 +150,7 @@ def _with_jacobian(terms: Graphed, wanted: Arranged, name: str) -> Program:
         name=name,
         says=problem.says.rstrip(".") + ", with its Jacobian.",
         outputs=(*program.outputs, _jacobian_quantity(pattern)),
-        sparsity={"jacobian": pattern},
+        sparsity={MATRIX: pattern},
     )
 
 
@@ -202,7 +202,7 @@ def _in_groups(
 def _jacobian_quantity(pattern: Sparsity) -> Quantity:
     parts = tuple(f"d({pattern.rows[i]})/d({pattern.columns[k]})" for i, k in pattern.places())
     says = "nonzeros of the Jacobian, in compressed-column order, each in its own unit"
-    return Quantity("jacobian", parts, (len(parts),), "", "", None, None, says)
+    return Quantity(MATRIX, parts, (len(parts),), "", "", None, None, says)
 
 
 def _columns(terms: Graphed, wanted: Arranged, name: str) -> tuple[Quantity, ...]:

@@ -1,9 +1,9 @@
 """The order of a program's operations: what is made is read soon, while it is in a register.
 
 Operations are taken greedily, as list scheduling does (Muchnick, Advanced Compiler Design, 17.1):
-of those whose operands are there, one that reads what was made last and ends the life of what it
-reads. One classic step of 13 states with its derivatives takes 4490 instructions so, 5130 in the
-order of its formulas (gcc 12, -O3 -march=native).
+of those whose operands are there, one that ends the most values' lives, of several the one that
+reads what was made last. One classic step of 13 states with its derivatives, in float, takes 4279
+instructions of a Cortex-M4F so, 4665 in the order of its formulas (gcc 12, -O2).
 """
 
 from __future__ import annotations
@@ -13,9 +13,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from derive.program.program import Op, Program
-
-WINDOW = 8  # operations that became ready last are looked at
-END_OF_LIFE = 20  # operations back that a value is worth whose life an operation ends
 
 
 def with_values_read_soon(program: Program) -> Program:
@@ -43,13 +40,13 @@ def _order(reads: Mapping[str, Sequence[str]], kept: Sequence[str]) -> list[str]
     ready = [name for name in reversed(list(reads)) if not waiting[name]]
     made: dict[str, int] = {}
 
-    def merit(name: str) -> tuple[int, int]:
+    def merit(name: str) -> tuple[int, int, int]:
         last = max((made[o] for o in reads[name]), default=-1)
         ended = sum(readings[o] == 1 for o in reads[name])
-        return last + END_OF_LIFE * ended, -place[name]
+        return ended, last, -place[name]
 
     while ready:
-        best = max(ready[-WINDOW:], key=merit)
+        best = max(ready, key=merit)
         ready.remove(best)
         made[best] = len(made)
         readings.subtract(reads[best])

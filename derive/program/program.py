@@ -15,7 +15,8 @@ from derive.program.arithmetic import FLOPS
 from derive.program.indexed import Arrays, Even, Indexed, Integers, Loop, names_in, operators_in
 
 Operand = str | Fraction
-
+MATRIX = "jacobian"
+"""What outputs are called that hold a Jacobian; no quantity of a scene may be called so."""
 
 Role = Literal["value", "attitude", "constants", "plan", "remainder"]
 """What a quantity is for: a value of its own, be it an attitude, or made for others to read."""

@@ -1,11 +1,12 @@
 """What a scene's C functions are called and given: symbols, prototypes, files."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from math import prod
 
 from derive.program.precision import Precision
-from derive.program.program import Program, Quantity
+from derive.program.program import MATRIX, Operand, Program, Quantity
 
 WIDTH = 100
 
@@ -59,13 +60,19 @@ def declaration(name: str, arguments: Sequence[str]) -> str:
 
 
 def dense(program: Program) -> Program:
-    """Return the description of the dense convenience: the same, with the whole matrix last."""
+    """Return the dense convenience: the same operations, with the whole matrix last."""
     pattern = next(iter((program.sparsity or {}).values()))
     size = len(pattern.rows) * len(pattern.columns)
     says = "the whole Jacobian, column by column, each in its own unit"
-    whole = Quantity("jacobian", (), (size,), "", "", None, None, says)
-    outputs = (*program.outputs[:-1], whole)
-    return Program(f"{program.name}_dense", program.says, program.inputs, outputs, (), ())
+    names = tuple(f"{MATRIX}_{k}" for k in range(size))
+    whole = Quantity(MATRIX, names, (size,), "", "", None, None, says)
+    first = len(program.results) - len(pattern.row)
+    entries: list[Operand] = [Fraction(0)] * size
+    for (row, column), value in zip(pattern.places(), program.results[first:], strict=True):
+        entries[column * len(pattern.rows) + row] = value
+    outputs, results = (*program.outputs[:-1], whole), (*program.results[:first], *entries)
+    name = f"{program.name}_dense"
+    return replace(program, name=name, outputs=outputs, results=results, sparsity=None)
 
 
 def dense_size(program: Program) -> int:

@@ -14,7 +14,13 @@ from derive.emit.c.relations import UNSAID, Relations
 from derive.emit.c.scope import declared_in_c, require_free, require_no_symbol
 from derive.emit.c.signature import CNames, dense, dense_size, prototype
 from derive.emit.c.sines import own_sines, takes_sines
-from derive.emit.c.text import constant_array, function_body, pair_body, pair_functions
+from derive.emit.c.text import (
+    constant_array,
+    function_body,
+    is_long,
+    pair_body,
+    pair_functions,
+)
 from derive.emit.on_target import UNKNOWN, OnTarget
 from derive.emit.operators import literal
 from derive.emit.templates import TEMPLATES
@@ -25,7 +31,7 @@ from derive.program.arithmetic import pair_of, rounded
 from derive.program.pair_sine import PI, coefficients, quarter_turn
 from derive.program.pairs import splitter
 from derive.program.precision import MATH, PRECISIONS, Precision
-from derive.program.program import Measurement, Program
+from derive.program.program import MATRIX, Measurement, Program
 from derive.scene import argument
 from derive.scene.said import potential_said
 from derive.verify.search import SAMPLING
@@ -175,16 +181,31 @@ def _source(
 def _definitions(library: Library, names: CNames, precision: Precision) -> list[dict[str, str]]:
     found = []
     for program in library.printed():
-        written = function_body(program, names.scene, precision)
-        arguments = [q.name for q in (*program.inputs, *program.outputs)]
-        require_free(names.scene, program.name, arguments, declared_in_c(written))
-        lines = "\n".join(f"    {line}" for line in written)
-        text = f"{prototype(program, names, precision)}\n{{\n{lines}\n}}"
-        found.append({"says": program.says, "definition": text})
+        found.append(_definition(program, names, precision))
         if program.sparsity:
-            text = _dense_definition(program, names, precision)
-            found.append({"says": f"{program.says} Dense.", "definition": text})
+            whole = _scattered if program.has_arrays else _dense_definition
+            found.append({**whole(program, names, precision), "says": f"{program.says} Dense."})
     return found
+
+
+def _definition(program: Program, names: CNames, precision: Precision) -> dict[str, str]:
+    return _defined(program, names, precision, function_body(program, names.scene, precision))
+
+
+def _dense_definition(program: Program, names: CNames, precision: Precision) -> dict[str, str]:
+    return _definition(dense(program), names, precision)
+
+
+def _defined(
+    program: Program, names: CNames, precision: Precision, written: Sequence[str]
+) -> dict[str, str]:
+    """Return what a function is for, with its lines between head and brace."""
+    arguments = [q.name for q in (*program.inputs, *program.outputs)]
+    require_free(names.scene, program.name, arguments, declared_in_c(written))
+    lines = "\n".join(f"    {line}" for line in written)
+    text = f"{prototype(program, names, precision)}\n{{\n{lines}\n}}"
+    in_order = "yes" if is_long(program) else ""
+    return {"says": program.says, "definition": text, "in_order": in_order}
 
 
 def apart(operations: Sequence[str], setup: str) -> list[str]:
@@ -260,7 +281,8 @@ def _setup_definition(program: Program, names: CNames, precision: Precision) -> 
     return f"{prototype(program, names, precision)}\n{{\n{text}\n}}"
 
 
-def _dense_definition(program: Program, names: CNames, precision: Precision) -> str:
+def _scattered(program: Program, names: CNames, precision: Precision) -> dict[str, str]:
+    """Return the dense function of one whose loops fill the nonzeros: it calls that one."""
     pattern = next(iter((program.sparsity or {}).values()))
     spots = [c * len(pattern.rows) + r for r, c in pattern.places()]
     passed = [q.name for q in (*program.inputs, *program.outputs[:-1])] + ["nonzeros"]
@@ -270,13 +292,10 @@ def _dense_definition(program: Program, names: CNames, precision: Precision) -> 
         "int entry;",
         f"{names.symbol(program.name, precision)}({', '.join(passed)});",
         f"for (entry = 0; entry < {dense_size(program)}; ++entry) {{",
-        f"    jacobian[entry] = {literal(Fraction(0), precision)};",
+        f"    {MATRIX}[entry] = {literal(Fraction(0), precision)};",
         "}",
         f"for (entry = 0; entry < {len(spots)}; ++entry) {{",
-        "    jacobian[places[entry]] = nonzeros[entry];",
+        f"    {MATRIX}[places[entry]] = nonzeros[entry];",
         "}",
     ]
-    whole = f"{program.name}_dense"
-    require_free(names.scene, whole, passed[:-1], declared_in_c(lines))
-    text = "\n".join(f"    {line}" for line in lines)
-    return f"{prototype(dense(program), names, precision)}\n{{\n{text}\n}}"
+    return _defined(dense(program), names, precision, lines)

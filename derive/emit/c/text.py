@@ -1,6 +1,10 @@
-"""A program as C99 text: one line an operation, everything computed before anything is stored."""
+"""A program as C99 text: one line an operation, results stored where they are computed.
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+Inputs are read first, for outputs may lie over them; long functions read where they need, and
+store nothing early but entries of a Jacobian, which may not.
+"""
+
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
@@ -13,9 +17,10 @@ from derive.emit.sines import TOGETHER, together
 from derive.program.arithmetic import TRUTHS, pair_of
 from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, Row
 from derive.program.precision import Precision
-from derive.program.program import Op, Operand, Program, Quantity, every_op
+from derive.program.program import MATRIX, Op, Operand, Program, Quantity, every_op, read_by
 
 UNSIGNED_CHAR = 255
+LONG = 400  # operations: with so many, inputs that are read first are values too many at once
 OWN = {name: row.c for name, row in WRITTEN.items() if row.c}
 
 
@@ -23,7 +28,7 @@ def function_body(program: Program, scene: str, precision: Precision) -> list[st
     """Return the lines between the braces of any function but set-up."""
     if program.arithmetic == "pairs":
         return pair_body(program, scene, precision)
-    return body(program, scene, precision)
+    return float_body(program, scene, precision)
 
 
 def places(quantities: tuple[Quantity, ...]) -> dict[str, str]:
@@ -38,10 +43,12 @@ def places(quantities: tuple[Quantity, ...]) -> dict[str, str]:
     return found
 
 
-def body(program: Program, scene: str, precision: Precision) -> list[str]:
+def float_body(program: Program, scene: str, precision: Precision) -> list[str]:
     """Return the lines between the braces of a hot function."""
     place = places(program.inputs)
     place |= {n: literal(q[precision.bits], precision) for n, q in program.numbers.items()}
+    loads, loaded = _loads(program, place, precision)
+    place |= loaded
 
     def text(operand: Operand) -> str:
         if isinstance(operand, Fraction):
@@ -53,7 +60,45 @@ def body(program: Program, scene: str, precision: Precision) -> list[str]:
     own = patterns(OWN | makes, partial(literal, precision=precision), precision.bits)
     of = _language(text, own, precision.functions.__getitem__, precision.scalar, precision)
     of = replace(of, line=partial(_line, sines_type(scene, precision), of.line))
-    return [*written(of, together(program.ops)), *_stores(program, text, precision)]
+    early = _early(program)
+    lines = loads
+    for one in together(program.ops):
+        lines += written(of, [one])
+        if isinstance(one, Op):
+            lines += [f"{slot} = {one.result};" for slot in early.get(one.result, ())]
+    done = {slot for slots in early.values() for slot in slots}
+    return [*lines, *_stores(program, text, done)]
+
+
+def is_long(program: Program) -> bool:
+    """Tell whether a function's values are more than registers hold, and few live at once."""
+    jacobian = any(q.name == MATRIX for q in program.outputs)
+    return jacobian and not program.has_arrays and len(program.ops) >= LONG
+
+
+def _loads(
+    program: Program, place: Mapping[str, str], precision: Precision
+) -> tuple[list[str], dict[str, str]]:
+    """Return lines that read what is given in arrays, with names of what they read.
+
+    That is all that is needed, or, where operations read arrays themselves, results alone.
+    """
+    arrays = {c for q in program.inputs if q.shape and q.role != "constants" for c in q.components}
+    late = program.has_arrays or is_long(program)
+    read = arrays & ({*program.results} if late else read_by(program))
+    loaded = {name: f"{name}_in" for name in place if name in read}
+    lines = [f"const {precision.scalar} {own} = {place[name]};" for name, own in loaded.items()]
+    return lines, loaded
+
+
+def _early(program: Program) -> dict[str, list[str]]:
+    """Return the places of results that are stored where they are computed, by their values."""
+    found = dict[str, list[str]]()
+    made = {op.result for op in program.ops if isinstance(op, Op)}
+    for slot, value in [] if program.has_arrays else _slotted(program):
+        if value in made and (slot.startswith(f"{MATRIX}[") or not is_long(program)):
+            found.setdefault(str(value), []).append(slot)
+    return found
 
 
 def _line(kind: str, otherwise: Callable[[Op, str], str], op: Op, value: str) -> str:
@@ -87,7 +132,7 @@ def pair_body(program: Program, scene: str, precision: Precision) -> list[str]:
     # Of truths, or a choice between two structs.
     own = {n: row.c or row.sign for n, row in WRITTEN.items() if row.rests is None}
     of = _language(text, own, call, pair, precision)
-    lines = written(of, program.ops) + _stores(program, stored, precision)
+    lines = written(of, program.ops) + _stores(program, stored)
     return [*lines, *(status(program, stored, zero) if program.makes("constants") else ())]
 
 
@@ -166,15 +211,22 @@ def _head(line: Loop | Even) -> list[str]:
     return [f"for (int {i} = {line.first}, {m} = {start}; {i} < {end}; ++{i}, --{m}) {{"]
 
 
-def _stores(program: Program, text: Callable[[Operand], str], precision: Precision) -> list[str]:
-    """Return the stores; an input that is also a result is read first: outputs may lie over it."""
-    slots = [slot for q in program.outputs for slot in _slots(q)]
-    arrays = {c for q in program.inputs if q.shape and q.role != "constants" for c in q.components}
-    read = [r for r in dict.fromkeys(program.results) if r in arrays]
-    loads = [f"const {precision.scalar} {name}_in = {text(name)};" for name in read]
-    held = [f"{r}_in" if r in arrays else text(r) for r in program.results]
-    stored = [pair for pair in zip(slots, held, strict=True) if pair[0] != pair[1]]
-    return [*loads, *(f"{slot} = {value};" for slot, value in stored)]
+def _stores(
+    program: Program, text: Callable[[Operand], str], done: Container[str] = ()
+) -> list[str]:
+    """Return the stores at the end, of all places but those that are done."""
+    held = [(slot, text(r)) for slot, r in _slotted(program) if slot not in done]
+    return [f"{slot} = {value};" for slot, value in held if slot != value]
+
+
+def _slotted(program: Program) -> list[tuple[str, Operand]]:
+    """Return where in C each result is stored, with the result."""
+    return list(zip(result_slots(program), program.results, strict=True))
+
+
+def result_slots(program: Program) -> list[str]:
+    """Return where in C each component of the outputs is stored."""
+    return [slot for q in program.outputs for slot in _slots(q)]
 
 
 def _slots(q: Quantity) -> list[str]:

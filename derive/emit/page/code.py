@@ -7,11 +7,11 @@ from html import escape
 from markupsafe import Markup
 
 from derive.emit.c.signature import CNames, prototype
-from derive.emit.c.text import function_body
+from derive.emit.c.text import function_body, result_slots
 from derive.program.precision import F64
-from derive.program.program import Program
+from derive.program.program import Program, component_names
 
-_STORE = re.compile(r"\*?\w+(\[\d+\])? = .*;")
+_STORE = re.compile(r"(\*?\w+(?:\[\d+\])?) = .*;")
 
 
 def listing(program: Program, scene: str, links: Mapping[str, str]) -> Markup:
@@ -19,19 +19,15 @@ def listing(program: Program, scene: str, links: Mapping[str, str]) -> Markup:
 
     links : from an output's component to the place of its equation on the page
     """
-    lines = function_body(program, scene, F64)
-    components = [c for q in program.outputs for c in q.components] if links else []
-    first_store = len(lines) - len(components)
-    shown = [escape(prototype(program, CNames(scene), F64)), "{"]
-    shown += [f"    {escape(line)}" for line in lines[:first_store]]
-    for line, component in zip(lines[first_store:], components, strict=True):
-        shown.append(f"    {_store(line, component, links)}")
+    stored = dict(zip(result_slots(program), component_names(program), strict=True))
+    lines = (_line(line, stored, links) for line in function_body(program, scene, F64))
+    shown = [escape(prototype(program, CNames(scene), F64)), "{", *(f"    {x}" for x in lines)]
     return Markup("\n".join([*shown, "}"]))  # noqa: S704 (escaped above)
 
 
-def _store(line: str, component: str, links: Mapping[str, str]) -> str:
-    if not _STORE.fullmatch(line):
-        raise ValueError(f"a stored result looks like 'name[0] = value;', not '{line}'")
+def _line(line: str, stored: Mapping[str, str], links: Mapping[str, str]) -> str:
+    store = _STORE.fullmatch(line)
+    component = stored.get(store[1], "") if store else ""
     determined = component.split(")/")[0].removeprefix("d(")
     if determined not in links:
         return escape(line)

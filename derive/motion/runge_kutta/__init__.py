@@ -16,7 +16,7 @@ from derive.motion.runge_kutta import classic, lie, sensitivity, unit
 from derive.motion.runge_kutta.matrices import Matrix, NumberRow
 from derive.motion.runge_kutta.system import System, next_of, slopes_of, tape_for
 from derive.program.pattern import compressed
-from derive.program.program import Operand, Program, Quantity, Sparsity
+from derive.program.program import MATRIX, Operand, Program, Quantity, Sparsity
 from derive.program.recorded import needed
 from derive.program.tape import Tape
 
@@ -156,7 +156,7 @@ def _with_slopes(how: Method, system: System, kind: str) -> Recorded:
     pattern, nonzeros = compressed(matrix, after_step, columns, lambda x: x.exact == 0)
     parts = tuple(f"d({pattern.rows[i]})/d({pattern.columns[k]})" for i, k in pattern.places())
     says = f"nonzeros of the {JACOBIANS[kind]}, in compressed-column order, each in its own unit"
-    jacobian = Quantity("jacobian", parts, (len(parts),), "", "", None, None, says)
+    jacobian = Quantity(MATRIX, parts, (len(parts),), "", "", None, None, says)
     return Recorded(tape, [*after, *nonzeros], (), (jacobian,), {"jacobian": pattern})
 
 
