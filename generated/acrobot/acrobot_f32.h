@@ -23,11 +23,11 @@
  *     acrobot_state_rate_f32(&constants, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, &q_1_rate, &q_1_dot_rate, &q_2_rate,
  *       &q_2_dot_rate);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 938068d633c889e1.
+ * Body of these files: sha256 258ca18a4f9b465e.
  */
 #ifndef ACROBOT_F32_H
 #define ACROBOT_F32_H
@@ -110,7 +110,7 @@ int acrobot_setup_f32(float m_1, float m_2, float l_1, float c_1, float c_2, flo
  *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 4 add, 6 sub, 16 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 10234 to 11746 instructions, 872 B of code, 144 B of stack.
+ * On Cortex-M0+, -O2: 10233 to 11746 instructions, 872 B of code, 144 B of stack.
  * On Cortex-M4F, -O2: 232 to 234 instructions, 640 B of code, 84 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -146,8 +146,8 @@ void acrobot_state_rate_f32(const acrobot_constants_f32 *constants, float q_1, f
  *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 22 add, 8 sub, 52 mul, 1 div, 5 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 15733 to 17356 instructions, 1472 B of code, 208 B of stack.
- * On Cortex-M4F, -O2: 308 to 310 instructions, 940 B of code, 116 B of stack.
+ * On Cortex-M0+, -O2: 15716 to 17339 instructions, 1440 B of code, 192 B of stack.
+ * On Cortex-M4F, -O2: 313 to 315 instructions, 960 B of code, 116 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -157,8 +157,8 @@ void acrobot_state_rate_jacobian_f32(const acrobot_constants_f32 *constants, flo
     float *q_2_rate, float *q_2_dot_rate, float jacobian[12]);
 
 /* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 15995 to 17654 instructions, 1548 B of code, 12 B of tables, 304 B of stack.
- * On Cortex-M4F, -O2: 462 to 464 instructions, 1004 B of code, 12 B of tables, 188 B of stack.
+ * On Cortex-M0+, -O2: 15802 to 17460 instructions, 1456 B of code, 192 B of stack.
+ * On Cortex-M4F, -O2: 321 to 323 instructions, 976 B of code, 116 B of stack.
  */
 void acrobot_state_rate_jacobian_dense_f32(const acrobot_constants_f32 *constants, float q_1,
     float q_1_dot, float q_2, float q_2_dot, float T, float *q_1_rate, float *q_1_dot_rate,
@@ -225,7 +225,7 @@ void acrobot_linearised_f32(const acrobot_constants_f32 *constants, float mass_m
  * Error: median 0.82, largest 23 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 0.0004 J (seen 0.00019);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 0.00039 J (seen 0.0003);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 6 add, 1 sub, 10 mul, 2 sin, 2 cos.
  * On Cortex-M0+, -O2: 8797 to 10398 instructions, 740 B of code, 128 B of stack.
@@ -263,8 +263,8 @@ void acrobot_energy_f32(const acrobot_constants_f32 *constants, float q_1, float
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 44 add, 24 sub, 99 mul, 8 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 47754 to 53928 instructions, 2248 B of code, 288 B of stack.
- * On Cortex-M4F, -O2: 975 to 983 instructions, 1528 B of code, 228 B of stack.
+ * On Cortex-M0+, -O2: 47744 to 53931 instructions, 2228 B of code, 288 B of stack.
+ * On Cortex-M4F, -O2: 974 to 982 instructions, 1524 B of code, 228 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -21,11 +21,11 @@
  *     double q_1_rate, q_1_dot_rate, q_2_rate, q_2_dot_rate;
  *     acrobot_state_rate_f64(&constants, 0.0, 0.0, 0.0, 0.0, 0.0, &q_1_rate, &q_1_dot_rate, &q_2_rate, &q_2_dot_rate);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 101e4e350e8f9118.
+ * Body of these files: sha256 67530af39f73463b.
  */
 #ifndef ACROBOT_F64_H
 #define ACROBOT_F64_H
@@ -142,7 +142,7 @@ void acrobot_state_rate_f64(const acrobot_constants_f64 *constants, double q_1, 
  *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 22 add, 8 sub, 52 mul, 1 div, 5 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 38888 to 42422 instructions, 2352 B of code, 368 B of stack.
+ * On Cortex-M0+, -O2: 38854 to 42388 instructions, 2284 B of code, 336 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -152,7 +152,7 @@ void acrobot_state_rate_jacobian_f64(const acrobot_constants_f64 *constants, dou
     double *q_2_rate, double *q_2_dot_rate, double jacobian[12]);
 
 /* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 39313 to 42821 instructions, 2456 B of code, 12 B of tables, 544 B of stack.
+ * On Cortex-M0+, -O2: 39053 to 42561 instructions, 2344 B of code, 336 B of stack.
  */
 void acrobot_state_rate_jacobian_dense_f64(const acrobot_constants_f64 *constants, double q_1,
     double q_1_dot, double q_2, double q_2_dot, double T, double *q_1_rate, double *q_1_dot_rate,
@@ -218,8 +218,8 @@ void acrobot_linearised_f64(const acrobot_constants_f64 *constants, double mass_
  * Error: median 0.83, largest 30 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 7.4e-13 J (seen
- *            5.4e-13); assumed: sines and cosines of our own within 0.79 ulp.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 7.3e-13 J (seen
+ *            5.3e-13); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 6 add, 1 sub, 10 mul, 2 sin, 2 cos.
  * On Cortex-M0+, -O2: 22977 to 26410 instructions, 1188 B of code, 216 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
@@ -255,7 +255,7 @@ void acrobot_energy_f64(const acrobot_constants_f64 *constants, double q_1, doub
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 44 add, 24 sub, 99 mul, 8 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 119492 to 132818 instructions, 3520 B of code, 512 B of stack.
+ * On Cortex-M0+, -O2: 119480 to 132816 instructions, 3492 B of code, 512 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -84,47 +84,59 @@ static attitude_sines_f32 attitude_sine_cosine_f32(float angle)
 /* product of two quaternions: the rotation of the second, then that of the first */
 void attitude_quaternion_product_f32(const float left[4], const float right[4], float attitude[4])
 {
-    const float t0 = left[0] * right[0];
-    const float t1 = left[1] * right[1];
+    const float left_w_in = left[0];
+    const float left_x_in = left[1];
+    const float left_y_in = left[2];
+    const float left_z_in = left[3];
+    const float right_w_in = right[0];
+    const float right_x_in = right[1];
+    const float right_y_in = right[2];
+    const float right_z_in = right[3];
+    const float t0 = left_w_in * right_w_in;
+    const float t1 = left_x_in * right_x_in;
     const float t2 = t0 - t1;
-    const float t3 = left[2] * right[2];
-    const float t4 = left[3] * right[3];
+    const float t3 = left_y_in * right_y_in;
+    const float t4 = left_z_in * right_z_in;
     const float t5 = t3 + t4;
     const float t6 = t2 - t5;
-    const float t7 = left[0] * right[1];
-    const float t8 = left[1] * right[0];
+    attitude[0] = t6;
+    const float t7 = left_w_in * right_x_in;
+    const float t8 = left_x_in * right_w_in;
     const float t9 = t7 + t8;
-    const float t10 = left[2] * right[3];
-    const float t11 = left[3] * right[2];
+    const float t10 = left_y_in * right_z_in;
+    const float t11 = left_z_in * right_y_in;
     const float t12 = t10 - t11;
     const float t13 = t9 + t12;
-    const float t14 = left[0] * right[2];
-    const float t15 = left[2] * right[0];
+    attitude[1] = t13;
+    const float t14 = left_w_in * right_y_in;
+    const float t15 = left_y_in * right_w_in;
     const float t16 = t14 + t15;
-    const float t17 = left[3] * right[1];
-    const float t18 = left[1] * right[3];
+    const float t17 = left_z_in * right_x_in;
+    const float t18 = left_x_in * right_z_in;
     const float t19 = t17 - t18;
     const float t20 = t16 + t19;
-    const float t21 = left[0] * right[3];
-    const float t22 = left[3] * right[0];
+    attitude[2] = t20;
+    const float t21 = left_w_in * right_z_in;
+    const float t22 = left_z_in * right_w_in;
     const float t23 = t21 + t22;
-    const float t24 = left[1] * right[2];
-    const float t25 = left[2] * right[1];
+    const float t24 = left_x_in * right_y_in;
+    const float t25 = left_y_in * right_x_in;
     const float t26 = t24 - t25;
     const float t27 = t23 + t26;
-    attitude[0] = t6;
-    attitude[1] = t13;
-    attitude[2] = t20;
     attitude[3] = t27;
 }
 
 /* quaternion of length 1 along one of any length; (1, 0, 0, 0) for the quaternion 0 */
 void attitude_quaternion_normalise_f32(const float quaternion[4], float attitude[4])
 {
-    const float t0 = fabsf(quaternion[0]);
-    const float t1 = fabsf(quaternion[1]);
-    const float t2 = fabsf(quaternion[2]);
-    const float t3 = fabsf(quaternion[3]);
+    const float quaternion_w_in = quaternion[0];
+    const float quaternion_x_in = quaternion[1];
+    const float quaternion_y_in = quaternion[2];
+    const float quaternion_z_in = quaternion[3];
+    const float t0 = fabsf(quaternion_w_in);
+    const float t1 = fabsf(quaternion_x_in);
+    const float t2 = fabsf(quaternion_y_in);
+    const float t3 = fabsf(quaternion_z_in);
     const _Bool t4 = t0 < t1;
     const float t5 = t4 ? t1 : t0;
     const _Bool t6 = t5 < t2;
@@ -138,11 +150,11 @@ void attitude_quaternion_normalise_f32(const float quaternion[4], float attitude
     const float t14 = t10 ? t11 : t13;
     const float t15 = ((8388608.0F * t14) + t14) - (((8388608.0F * t14) + t14) - (5.96046448e-08F * ((8388608.0F *
         t14) + t14)));
-    const float t16 = t12 ? quaternion[0] : 1.0F;
+    const float t16 = t12 ? quaternion_w_in : 1.0F;
     const float t17 = t16 / t15;
-    const float t18 = quaternion[1] / t15;
-    const float t19 = quaternion[2] / t15;
-    const float t20 = quaternion[3] / t15;
+    const float t18 = quaternion_x_in / t15;
+    const float t19 = quaternion_y_in / t15;
+    const float t20 = quaternion_z_in / t15;
     const float t21 = t17 * t17;
     const float t22 = t18 * t18;
     const float t23 = t19 * t19;
@@ -152,21 +164,24 @@ void attitude_quaternion_normalise_f32(const float quaternion[4], float attitude
     const float t27 = t25 + t26;
     const float t28 = sqrtf(t27);
     const float t29 = t17 / t28;
-    const float t30 = t18 / t28;
-    const float t31 = t19 / t28;
-    const float t32 = t20 / t28;
     attitude[0] = t29;
+    const float t30 = t18 / t28;
     attitude[1] = t30;
+    const float t31 = t19 / t28;
     attitude[2] = t31;
+    const float t32 = t20 / t28;
     attitude[3] = t32;
 }
 
 /* unit quaternion of a rotation vector */
 void attitude_quaternion_exp_f32(const float rotation_vector[3], float attitude[4])
 {
-    const float t0 = fabsf(rotation_vector[0]);
-    const float t1 = fabsf(rotation_vector[1]);
-    const float t2 = fabsf(rotation_vector[2]);
+    const float rotation_vector_x_in = rotation_vector[0];
+    const float rotation_vector_y_in = rotation_vector[1];
+    const float rotation_vector_z_in = rotation_vector[2];
+    const float t0 = fabsf(rotation_vector_x_in);
+    const float t1 = fabsf(rotation_vector_y_in);
+    const float t2 = fabsf(rotation_vector_z_in);
     const _Bool t3 = t0 < t1;
     const float t4 = t3 ? t1 : t0;
     const _Bool t5 = t4 < t2;
@@ -177,9 +192,9 @@ void attitude_quaternion_exp_f32(const float rotation_vector[3], float attitude[
     const float t10 = t8 ? t9 : 1.0F;
     const float t11 = ((8388608.0F * t10) + t10) - (((8388608.0F * t10) + t10) - (5.96046448e-08F * ((8388608.0F *
         t10) + t10)));
-    const float t12 = rotation_vector[0] / t11;
-    const float t13 = rotation_vector[1] / t11;
-    const float t14 = rotation_vector[2] / t11;
+    const float t12 = rotation_vector_x_in / t11;
+    const float t13 = rotation_vector_y_in / t11;
+    const float t14 = rotation_vector_z_in / t11;
     const float t15 = 4097.0F;
     const float t16 = t15 - 1.0F;
     const float t17 = t16 * t12;
@@ -253,22 +268,26 @@ void attitude_quaternion_exp_f32(const float rotation_vector[3], float attitude[
     const float t84 = t77 * t71;
     const float t85 = t72 - t84;
     const float t86 = t7 ? t83 : t85;
-    const float t87 = t81 * t12;
-    const float t88 = t81 * t13;
-    const float t89 = t81 * t14;
     attitude[0] = t86;
+    const float t87 = t81 * t12;
     attitude[1] = t87;
+    const float t88 = t81 * t13;
     attitude[2] = t88;
+    const float t89 = t81 * t14;
     attitude[3] = t89;
 }
 
 /* rotation vector of a quaternion of any length, angle at most pi; 0 for the quaternion 0 */
 void attitude_quaternion_log_f32(const float quaternion[4], float rotation_vector[3])
 {
-    const float t0 = fabsf(quaternion[0]);
-    const float t1 = fabsf(quaternion[1]);
-    const float t2 = fabsf(quaternion[2]);
-    const float t3 = fabsf(quaternion[3]);
+    const float quaternion_w_in = quaternion[0];
+    const float quaternion_x_in = quaternion[1];
+    const float quaternion_y_in = quaternion[2];
+    const float quaternion_z_in = quaternion[3];
+    const float t0 = fabsf(quaternion_w_in);
+    const float t1 = fabsf(quaternion_x_in);
+    const float t2 = fabsf(quaternion_y_in);
+    const float t3 = fabsf(quaternion_z_in);
     const _Bool t4 = t0 < t1;
     const float t5 = t4 ? t1 : t0;
     const _Bool t6 = t5 < t2;
@@ -277,10 +296,10 @@ void attitude_quaternion_log_f32(const float quaternion[4], float rotation_vecto
     const float t9 = t8 ? t3 : t7;
     const _Bool t10 = 1.1529215e+18F < t9;
     const float t11 = t10 ? 8.67361738e-19F : 1.1529215e+18F;
-    const float t12 = quaternion[0] * t11;
-    const float t13 = quaternion[1] * t11;
-    const float t14 = quaternion[2] * t11;
-    const float t15 = quaternion[3] * t11;
+    const float t12 = quaternion_w_in * t11;
+    const float t13 = quaternion_x_in * t11;
+    const float t14 = quaternion_y_in * t11;
+    const float t15 = quaternion_z_in * t11;
     const float t16 = fabsf(t13);
     const float t17 = fabsf(t14);
     const float t18 = fabsf(t15);
@@ -312,14 +331,14 @@ void attitude_quaternion_log_f32(const float quaternion[4], float rotation_vecto
     const float t43 = atan2f(t41, t42);
     const float t44 = t43 * 2.0F;
     const float t45 = t44 / t40;
-    const _Bool t46 = quaternion[0] < 0.0F;
+    const _Bool t46 = quaternion_w_in < 0.0F;
     const float t47 = -t45;
     const float t48 = t46 ? t47 : t45;
     const float t49 = t48 * t31;
-    const float t50 = t48 * t32;
-    const float t51 = t48 * t33;
     rotation_vector[0] = t49;
+    const float t50 = t48 * t32;
     rotation_vector[1] = t50;
+    const float t51 = t48 * t33;
     rotation_vector[2] = t51;
 }
 
@@ -327,49 +346,56 @@ void attitude_quaternion_log_f32(const float quaternion[4], float rotation_vecto
 void attitude_quaternion_rotate_f32(const float attitude[4], const float vector_B[3],
     float vector_N[3])
 {
-    const float t0 = attitude[1] * vector_B[0];
-    const float t1 = attitude[2] * vector_B[1];
+    const float attitude_w_in = attitude[0];
+    const float attitude_x_in = attitude[1];
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
+    const float vector_B_x_in = vector_B[0];
+    const float vector_B_y_in = vector_B[1];
+    const float vector_B_z_in = vector_B[2];
+    const float t0 = attitude_x_in * vector_B_x_in;
+    const float t1 = attitude_y_in * vector_B_y_in;
     const float t2 = t0 + t1;
-    const float t3 = attitude[3] * vector_B[2];
+    const float t3 = attitude_z_in * vector_B_z_in;
     const float t4 = t2 + t3;
-    const float t5 = attitude[2] * vector_B[2];
-    const float t6 = attitude[3] * vector_B[1];
+    const float t5 = attitude_y_in * vector_B_z_in;
+    const float t6 = attitude_z_in * vector_B_y_in;
     const float t7 = t5 - t6;
-    const float t8 = attitude[3] * vector_B[0];
-    const float t9 = attitude[1] * vector_B[2];
+    const float t8 = attitude_z_in * vector_B_x_in;
+    const float t9 = attitude_x_in * vector_B_z_in;
     const float t10 = t8 - t9;
-    const float t11 = attitude[1] * vector_B[1];
-    const float t12 = attitude[2] * vector_B[0];
+    const float t11 = attitude_x_in * vector_B_y_in;
+    const float t12 = attitude_y_in * vector_B_x_in;
     const float t13 = t11 - t12;
-    const float t14 = attitude[0] * vector_B[0];
+    const float t14 = attitude_w_in * vector_B_x_in;
     const float t15 = t14 + t7;
-    const float t16 = attitude[0] * vector_B[1];
+    const float t16 = attitude_w_in * vector_B_y_in;
     const float t17 = t16 + t10;
-    const float t18 = attitude[0] * vector_B[2];
+    const float t18 = attitude_w_in * vector_B_z_in;
     const float t19 = t18 + t13;
-    const float t20 = attitude[2] * t19;
-    const float t21 = attitude[3] * t17;
+    const float t20 = attitude_y_in * t19;
+    const float t21 = attitude_z_in * t17;
     const float t22 = t20 - t21;
-    const float t23 = attitude[3] * t15;
-    const float t24 = attitude[1] * t19;
+    const float t23 = attitude_z_in * t15;
+    const float t24 = attitude_x_in * t19;
     const float t25 = t23 - t24;
-    const float t26 = attitude[1] * t17;
-    const float t27 = attitude[2] * t15;
+    const float t26 = attitude_x_in * t17;
+    const float t27 = attitude_y_in * t15;
     const float t28 = t26 - t27;
-    const float t29 = attitude[0] * t15;
-    const float t30 = t4 * attitude[1];
+    const float t29 = attitude_w_in * t15;
+    const float t30 = t4 * attitude_x_in;
     const float t31 = t29 + t30;
     const float t32 = t31 + t22;
-    const float t33 = attitude[0] * t17;
-    const float t34 = t4 * attitude[2];
+    vector_N[0] = t32;
+    const float t33 = attitude_w_in * t17;
+    const float t34 = t4 * attitude_y_in;
     const float t35 = t33 + t34;
     const float t36 = t35 + t25;
-    const float t37 = attitude[0] * t19;
-    const float t38 = t4 * attitude[3];
+    vector_N[1] = t36;
+    const float t37 = attitude_w_in * t19;
+    const float t38 = t4 * attitude_z_in;
     const float t39 = t37 + t38;
     const float t40 = t39 + t28;
-    vector_N[0] = t32;
-    vector_N[1] = t36;
     vector_N[2] = t40;
 }
 
@@ -377,125 +403,145 @@ void attitude_quaternion_rotate_f32(const float attitude[4], const float vector_
 void attitude_quaternion_rotate_back_f32(const float attitude[4], const float vector_N[3],
     float vector_B[3])
 {
-    const float t0 = attitude[1] * vector_N[0];
-    const float t1 = attitude[2] * vector_N[1];
+    const float attitude_w_in = attitude[0];
+    const float attitude_x_in = attitude[1];
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
+    const float vector_N_x_in = vector_N[0];
+    const float vector_N_y_in = vector_N[1];
+    const float vector_N_z_in = vector_N[2];
+    const float t0 = attitude_x_in * vector_N_x_in;
+    const float t1 = attitude_y_in * vector_N_y_in;
     const float t2 = t0 + t1;
-    const float t3 = attitude[3] * vector_N[2];
+    const float t3 = attitude_z_in * vector_N_z_in;
     const float t4 = t2 + t3;
-    const float t5 = vector_N[1] * attitude[3];
-    const float t6 = vector_N[2] * attitude[2];
+    const float t5 = vector_N_y_in * attitude_z_in;
+    const float t6 = vector_N_z_in * attitude_y_in;
     const float t7 = t5 - t6;
-    const float t8 = vector_N[2] * attitude[1];
-    const float t9 = vector_N[0] * attitude[3];
+    const float t8 = vector_N_z_in * attitude_x_in;
+    const float t9 = vector_N_x_in * attitude_z_in;
     const float t10 = t8 - t9;
-    const float t11 = vector_N[0] * attitude[2];
-    const float t12 = vector_N[1] * attitude[1];
+    const float t11 = vector_N_x_in * attitude_y_in;
+    const float t12 = vector_N_y_in * attitude_x_in;
     const float t13 = t11 - t12;
-    const float t14 = attitude[0] * vector_N[0];
+    const float t14 = attitude_w_in * vector_N_x_in;
     const float t15 = t14 + t7;
-    const float t16 = attitude[0] * vector_N[1];
+    const float t16 = attitude_w_in * vector_N_y_in;
     const float t17 = t16 + t10;
-    const float t18 = attitude[0] * vector_N[2];
+    const float t18 = attitude_w_in * vector_N_z_in;
     const float t19 = t18 + t13;
-    const float t20 = t17 * attitude[3];
-    const float t21 = t19 * attitude[2];
+    const float t20 = t17 * attitude_z_in;
+    const float t21 = t19 * attitude_y_in;
     const float t22 = t20 - t21;
-    const float t23 = t19 * attitude[1];
-    const float t24 = t15 * attitude[3];
+    const float t23 = t19 * attitude_x_in;
+    const float t24 = t15 * attitude_z_in;
     const float t25 = t23 - t24;
-    const float t26 = t15 * attitude[2];
-    const float t27 = t17 * attitude[1];
+    const float t26 = t15 * attitude_y_in;
+    const float t27 = t17 * attitude_x_in;
     const float t28 = t26 - t27;
-    const float t29 = attitude[0] * t15;
-    const float t30 = t4 * attitude[1];
+    const float t29 = attitude_w_in * t15;
+    const float t30 = t4 * attitude_x_in;
     const float t31 = t29 + t30;
     const float t32 = t31 + t22;
-    const float t33 = attitude[0] * t17;
-    const float t34 = t4 * attitude[2];
+    vector_B[0] = t32;
+    const float t33 = attitude_w_in * t17;
+    const float t34 = t4 * attitude_y_in;
     const float t35 = t33 + t34;
     const float t36 = t35 + t25;
-    const float t37 = attitude[0] * t19;
-    const float t38 = t4 * attitude[3];
+    vector_B[1] = t36;
+    const float t37 = attitude_w_in * t19;
+    const float t38 = t4 * attitude_z_in;
     const float t39 = t37 + t38;
     const float t40 = t39 + t28;
-    vector_B[0] = t32;
-    vector_B[1] = t36;
     vector_B[2] = t40;
 }
 
 /* rotation matrix of an attitude quaternion */
 void attitude_quaternion_to_matrix_f32(const float attitude[4], float matrix[9])
 {
-    const float t0 = attitude[1] + attitude[1];
-    const float t1 = attitude[2] + attitude[2];
-    const float t2 = attitude[3] + attitude[3];
-    const float t3 = attitude[1] * t1;
-    const float t4 = attitude[1] * t2;
-    const float t5 = attitude[2] * t2;
-    const float t6 = attitude[0] * t0;
-    const float t7 = attitude[0] * t1;
-    const float t8 = attitude[0] * t2;
-    const float t9 = attitude[0] * attitude[0];
-    const float t10 = attitude[1] * attitude[1];
-    const float t11 = attitude[2] * attitude[2];
-    const float t12 = attitude[3] * attitude[3];
+    const float attitude_w_in = attitude[0];
+    const float attitude_x_in = attitude[1];
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
+    const float t0 = attitude_x_in + attitude_x_in;
+    const float t1 = attitude_y_in + attitude_y_in;
+    const float t2 = attitude_z_in + attitude_z_in;
+    const float t3 = attitude_x_in * t1;
+    const float t4 = attitude_x_in * t2;
+    const float t5 = attitude_y_in * t2;
+    const float t6 = attitude_w_in * t0;
+    const float t7 = attitude_w_in * t1;
+    const float t8 = attitude_w_in * t2;
+    const float t9 = attitude_w_in * attitude_w_in;
+    const float t10 = attitude_x_in * attitude_x_in;
+    const float t11 = attitude_y_in * attitude_y_in;
+    const float t12 = attitude_z_in * attitude_z_in;
     const float t13 = t9 + t10;
     const float t14 = t9 - t10;
     const float t15 = t11 + t12;
     const float t16 = t11 - t12;
     const float t17 = t13 - t15;
-    const float t18 = t3 + t8;
-    const float t19 = t4 - t7;
-    const float t20 = t3 - t8;
-    const float t21 = t14 + t16;
-    const float t22 = t5 + t6;
-    const float t23 = t4 + t7;
-    const float t24 = t5 - t6;
-    const float t25 = t14 - t16;
     matrix[0] = t17;
+    const float t18 = t3 + t8;
     matrix[1] = t18;
+    const float t19 = t4 - t7;
     matrix[2] = t19;
+    const float t20 = t3 - t8;
     matrix[3] = t20;
+    const float t21 = t14 + t16;
     matrix[4] = t21;
+    const float t22 = t5 + t6;
     matrix[5] = t22;
+    const float t23 = t4 + t7;
     matrix[6] = t23;
+    const float t24 = t5 - t6;
     matrix[7] = t24;
+    const float t25 = t14 - t16;
     matrix[8] = t25;
 }
 
 /* attitude quaternion of a rotation matrix, scalar part not negative */
 void attitude_quaternion_from_matrix_f32(const float matrix[9], float attitude[4])
 {
-    const float t0 = matrix[5] - matrix[7];
-    const float t1 = matrix[6] - matrix[2];
-    const float t2 = matrix[1] - matrix[3];
-    const float t3 = matrix[1] + matrix[3];
-    const float t4 = matrix[6] + matrix[2];
-    const float t5 = matrix[5] + matrix[7];
-    const float t6 = matrix[4] + matrix[8];
+    const float matrix_xx_in = matrix[0];
+    const float matrix_yx_in = matrix[1];
+    const float matrix_zx_in = matrix[2];
+    const float matrix_xy_in = matrix[3];
+    const float matrix_yy_in = matrix[4];
+    const float matrix_zy_in = matrix[5];
+    const float matrix_xz_in = matrix[6];
+    const float matrix_yz_in = matrix[7];
+    const float matrix_zz_in = matrix[8];
+    const float t0 = matrix_zy_in - matrix_yz_in;
+    const float t1 = matrix_xz_in - matrix_zx_in;
+    const float t2 = matrix_yx_in - matrix_xy_in;
+    const float t3 = matrix_yx_in + matrix_xy_in;
+    const float t4 = matrix_xz_in + matrix_zx_in;
+    const float t5 = matrix_zy_in + matrix_yz_in;
+    const float t6 = matrix_yy_in + matrix_zz_in;
     const _Bool t7 = t6 < 0.0F;
-    const float t8 = matrix[0] - matrix[4];
+    const float t8 = matrix_xx_in - matrix_yy_in;
     const float t9 = 1.0F + t8;
-    const float t10 = t9 - matrix[8];
-    const float t11 = matrix[0] + matrix[4];
+    const float t10 = t9 - matrix_zz_in;
+    const float t11 = matrix_xx_in + matrix_yy_in;
     const float t12 = 1.0F + t11;
-    const float t13 = t12 + matrix[8];
+    const float t13 = t12 + matrix_zz_in;
     const float t14 = t7 ? t0 : t13;
     const float t15 = t7 ? t10 : t0;
     const float t16 = t7 ? t3 : t1;
     const float t17 = t7 ? t4 : t2;
-    const _Bool t18 = matrix[4] < matrix[8];
-    const float t19 = matrix[8] - matrix[0];
+    const _Bool t18 = matrix_yy_in < matrix_zz_in;
+    const float t19 = matrix_zz_in - matrix_xx_in;
     const float t20 = 1.0F + t19;
-    const float t21 = t20 - matrix[4];
-    const float t22 = matrix[4] - matrix[0];
+    const float t21 = t20 - matrix_yy_in;
+    const float t22 = matrix_yy_in - matrix_xx_in;
     const float t23 = 1.0F + t22;
-    const float t24 = t23 - matrix[8];
+    const float t24 = t23 - matrix_zz_in;
     const float t25 = t18 ? t2 : t1;
     const float t26 = t18 ? t4 : t3;
     const float t27 = t18 ? t5 : t24;
     const float t28 = t18 ? t21 : t5;
-    const _Bool t29 = matrix[0] < 0.0F;
+    const _Bool t29 = matrix_xx_in < 0.0F;
     const float t30 = t29 ? t25 : t14;
     const float t31 = t29 ? t26 : t15;
     const float t32 = t29 ? t27 : t16;
@@ -512,37 +558,44 @@ void attitude_quaternion_from_matrix_f32(const float matrix[9], float attitude[4
     const float t43 = -t41;
     const float t44 = t42 ? t43 : t41;
     const float t45 = t30 / t44;
-    const float t46 = t31 / t44;
-    const float t47 = t32 / t44;
-    const float t48 = t33 / t44;
     attitude[0] = t45;
+    const float t46 = t31 / t44;
     attitude[1] = t46;
+    const float t47 = t32 / t44;
     attitude[2] = t47;
+    const float t48 = t33 / t44;
     attitude[3] = t48;
 }
 
 /* modified Rodrigues parameters of an attitude quaternion, of length at most 1 */
 void attitude_quaternion_to_mrp_f32(const float attitude[4], float mrp[3])
 {
-    const float t0 = fabsf(attitude[0]);
+    const float attitude_w_in = attitude[0];
+    const float attitude_x_in = attitude[1];
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
+    const float t0 = fabsf(attitude_w_in);
     const float t1 = 1.0F + t0;
-    const _Bool t2 = attitude[0] < 0.0F;
+    const _Bool t2 = attitude_w_in < 0.0F;
     const float t3 = -t1;
     const float t4 = t2 ? t3 : t1;
-    const float t5 = attitude[1] / t4;
-    const float t6 = attitude[2] / t4;
-    const float t7 = attitude[3] / t4;
+    const float t5 = attitude_x_in / t4;
     mrp[0] = t5;
+    const float t6 = attitude_y_in / t4;
     mrp[1] = t6;
+    const float t7 = attitude_z_in / t4;
     mrp[2] = t7;
 }
 
 /* attitude quaternion of modified Rodrigues parameters of any length */
 void attitude_quaternion_from_mrp_f32(const float mrp[3], float attitude[4])
 {
-    const float t0 = fabsf(mrp[0]);
-    const float t1 = fabsf(mrp[1]);
-    const float t2 = fabsf(mrp[2]);
+    const float mrp_x_in = mrp[0];
+    const float mrp_y_in = mrp[1];
+    const float mrp_z_in = mrp[2];
+    const float t0 = fabsf(mrp_x_in);
+    const float t1 = fabsf(mrp_y_in);
+    const float t2 = fabsf(mrp_z_in);
     const _Bool t3 = t0 < t1;
     const float t4 = t3 ? t1 : t0;
     const _Bool t5 = t4 < t2;
@@ -553,9 +606,9 @@ void attitude_quaternion_from_mrp_f32(const float mrp[3], float attitude[4])
     const float t10 = ((8388608.0F * t9) + t9) - (((8388608.0F * t9) + t9) - (5.96046448e-08F * ((8388608.0F * t9) +
         t9)));
     const float t11 = 1.0F / t10;
-    const float t12 = mrp[0] * t11;
-    const float t13 = mrp[1] * t11;
-    const float t14 = mrp[2] * t11;
+    const float t12 = mrp_x_in * t11;
+    const float t13 = mrp_y_in * t11;
+    const float t14 = mrp_z_in * t11;
     const float t15 = t11 * t11;
     const float t16 = t12 * t12;
     const float t17 = t13 * t13;
@@ -566,27 +619,31 @@ void attitude_quaternion_from_mrp_f32(const float mrp[3], float attitude[4])
     const float t22 = t15 + t20;
     const float t23 = t15 - t20;
     const float t24 = t23 / t22;
+    attitude[0] = t24;
     const float t25 = t12 / t22;
     const float t26 = t21 * t25;
+    attitude[1] = t26;
     const float t27 = t13 / t22;
     const float t28 = t21 * t27;
+    attitude[2] = t28;
     const float t29 = t14 / t22;
     const float t30 = t21 * t29;
-    attitude[0] = t24;
-    attitude[1] = t26;
-    attitude[2] = t28;
     attitude[3] = t30;
 }
 
 /* Euler angles zyx of an attitude quaternion; the third is 0 at gimbal lock */
 void attitude_quaternion_to_euler_zyx_f32(const float attitude[4], float angles[3])
 {
-    const float t0 = attitude[0] + attitude[2];
-    const float t1 = attitude[3] + attitude[1];
-    const float t2 = attitude[0] - attitude[2];
-    const float t3 = attitude[3] - attitude[1];
-    const float t4 = attitude[0] * attitude[2];
-    const float t5 = attitude[3] * attitude[1];
+    const float attitude_w_in = attitude[0];
+    const float attitude_x_in = attitude[1];
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
+    const float t0 = attitude_w_in + attitude_y_in;
+    const float t1 = attitude_z_in + attitude_x_in;
+    const float t2 = attitude_w_in - attitude_y_in;
+    const float t3 = attitude_z_in - attitude_x_in;
+    const float t4 = attitude_w_in * attitude_y_in;
+    const float t5 = attitude_z_in * attitude_x_in;
     const float t7 = t4 - t5;
     const float t8 = t2 * t2;
     const float t9 = t1 * t1;
@@ -615,28 +672,31 @@ void attitude_quaternion_to_euler_zyx_f32(const float attitude[4], float angles[
     const float t32 = t30 + t31;
     const float t33 = t28 - t29;
     const float t34 = atan2f(t32, t33);
+    angles[0] = t34;
     const float t35 = t30 - t31;
     const float t36 = t28 + t29;
     const float t37 = atan2f(t35, t36);
+    angles[2] = t37;
     const float t38 = t7 + t7;
     const float t39 = atan2f(t38, t15);
-    angles[0] = t34;
     angles[1] = t39;
-    angles[2] = t37;
 }
 
 /* attitude quaternion of Euler angles zyx */
 void attitude_quaternion_from_euler_zyx_f32(const float angles[3], float attitude[4])
 {
-    const float t0 = angles[0] * 0.5F;
+    const float angle_first_in = angles[0];
+    const float angle_second_in = angles[1];
+    const float angle_third_in = angles[2];
+    const float t0 = angle_first_in * 0.5F;
     const attitude_sines_f32 t1_both = attitude_sine_cosine_f32(t0);
     const float t1 = t1_both.cosine;
     const float t2 = t1_both.sine;
-    const float t3 = angles[1] * 0.5F;
+    const float t3 = angle_second_in * 0.5F;
     const attitude_sines_f32 t4_both = attitude_sine_cosine_f32(t3);
     const float t4 = t4_both.cosine;
     const float t5 = t4_both.sine;
-    const float t6 = angles[2] * 0.5F;
+    const float t6 = angle_third_in * 0.5F;
     const attitude_sines_f32 t7_both = attitude_sine_cosine_f32(t6);
     const float t7 = t7_both.cosine;
     const float t8 = t7_both.sine;
@@ -648,37 +708,41 @@ void attitude_quaternion_from_euler_zyx_f32(const float angles[3], float attitud
     const float t14 = t9 * t7;
     const float t15 = t11 * t8;
     const float t16 = t14 - t15;
+    attitude[0] = t16;
     const float t17 = t9 * t8;
     const float t18 = t11 * t7;
     const float t19 = t17 + t18;
+    attitude[1] = t19;
     const float t20 = t12 * t7;
     const float t21 = t13 * t8;
     const float t22 = t20 + t21;
+    attitude[2] = t22;
     const float t23 = t13 * t7;
     const float t24 = t12 * t8;
     const float t25 = -t24;
     const float t26 = t23 + t25;
-    attitude[0] = t16;
-    attitude[1] = t19;
-    attitude[2] = t22;
     attitude[3] = t26;
 }
 
 /* Euler angles zxz of an attitude quaternion; the third is 0 at gimbal lock */
 void attitude_quaternion_to_euler_zxz_f32(const float attitude[4], float angles[3])
 {
-    const float t0 = attitude[0] * 1.1529215e+18F;
-    const float t1 = attitude[3] * 1.1529215e+18F;
-    const float t2 = fabsf(attitude[1]);
-    const float t3 = fabsf(attitude[2]);
+    const float attitude_w_in = attitude[0];
+    const float attitude_x_in = attitude[1];
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
+    const float t0 = attitude_w_in * 1.1529215e+18F;
+    const float t1 = attitude_z_in * 1.1529215e+18F;
+    const float t2 = fabsf(attitude_x_in);
+    const float t3 = fabsf(attitude_y_in);
     const _Bool t4 = t2 < t3;
     const float t5 = t4 ? t3 : t2;
     const _Bool t6 = 0.0F < t5;
     const float t7 = t6 ? t5 : 1.0F;
     const float t8 = ((8388608.0F * t7) + t7) - (((8388608.0F * t7) + t7) - (5.96046448e-08F * ((8388608.0F * t7) +
         t7)));
-    const float t9 = attitude[1] / t8;
-    const float t10 = attitude[2] / t8;
+    const float t9 = attitude_x_in / t8;
+    const float t10 = attitude_y_in / t8;
     const float t11 = fabsf(t0);
     const float t12 = fabsf(t1);
     const float t13 = t11 + t12;
@@ -698,9 +762,11 @@ void attitude_quaternion_to_euler_zxz_f32(const float attitude[4], float angles[
     const float t27 = t25 + t26;
     const float t28 = t23 - t24;
     const float t29 = atan2f(t27, t28);
+    angles[0] = t29;
     const float t30 = t25 - t26;
     const float t31 = t23 + t24;
     const float t32 = atan2f(t30, t31);
+    angles[2] = t32;
     const float t33 = t8 * 1.1529215e+18F;
     const float t34 = t9 * t9;
     const float t35 = t10 * t10;
@@ -713,23 +779,24 @@ void attitude_quaternion_to_euler_zxz_f32(const float attitude[4], float angles[
     const float t42 = sqrtf(t41);
     const float t43 = atan2f(t38, t42);
     const float t44 = t43 * 2.0F;
-    angles[0] = t29;
     angles[1] = t44;
-    angles[2] = t32;
 }
 
 /* attitude quaternion of Euler angles zxz */
 void attitude_quaternion_from_euler_zxz_f32(const float angles[3], float attitude[4])
 {
-    const float t0 = angles[0] * 0.5F;
+    const float angle_first_in = angles[0];
+    const float angle_second_in = angles[1];
+    const float angle_third_in = angles[2];
+    const float t0 = angle_first_in * 0.5F;
     const attitude_sines_f32 t1_both = attitude_sine_cosine_f32(t0);
     const float t1 = t1_both.cosine;
     const float t2 = t1_both.sine;
-    const float t3 = angles[1] * 0.5F;
+    const float t3 = angle_second_in * 0.5F;
     const attitude_sines_f32 t4_both = attitude_sine_cosine_f32(t3);
     const float t4 = t4_both.cosine;
     const float t5 = t4_both.sine;
-    const float t6 = angles[2] * 0.5F;
+    const float t6 = angle_third_in * 0.5F;
     const attitude_sines_f32 t7_both = attitude_sine_cosine_f32(t6);
     const float t7 = t7_both.cosine;
     const float t8 = t7_both.sine;
@@ -740,18 +807,18 @@ void attitude_quaternion_from_euler_zxz_f32(const float angles[3], float attitud
     const float t13 = t9 * t7;
     const float t14 = t12 * t8;
     const float t15 = t13 - t14;
+    attitude[0] = t15;
     const float t16 = t10 * t7;
     const float t17 = t11 * t8;
     const float t18 = t16 + t17;
+    attitude[1] = t18;
     const float t19 = t11 * t7;
     const float t20 = t10 * t8;
     const float t21 = -t20;
     const float t22 = t19 + t21;
+    attitude[2] = t22;
     const float t23 = t9 * t8;
     const float t24 = t12 * t7;
     const float t25 = t23 + t24;
-    attitude[0] = t15;
-    attitude[1] = t18;
-    attitude[2] = t22;
     attitude[3] = t25;
 }

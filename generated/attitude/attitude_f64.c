@@ -84,47 +84,59 @@ static attitude_sines_f64 attitude_sine_cosine_f64(double angle)
 void attitude_quaternion_product_f64(const double left[4], const double right[4],
     double attitude[4])
 {
-    const double t0 = left[0] * right[0];
-    const double t1 = left[1] * right[1];
+    const double left_w_in = left[0];
+    const double left_x_in = left[1];
+    const double left_y_in = left[2];
+    const double left_z_in = left[3];
+    const double right_w_in = right[0];
+    const double right_x_in = right[1];
+    const double right_y_in = right[2];
+    const double right_z_in = right[3];
+    const double t0 = left_w_in * right_w_in;
+    const double t1 = left_x_in * right_x_in;
     const double t2 = t0 - t1;
-    const double t3 = left[2] * right[2];
-    const double t4 = left[3] * right[3];
+    const double t3 = left_y_in * right_y_in;
+    const double t4 = left_z_in * right_z_in;
     const double t5 = t3 + t4;
     const double t6 = t2 - t5;
-    const double t7 = left[0] * right[1];
-    const double t8 = left[1] * right[0];
+    attitude[0] = t6;
+    const double t7 = left_w_in * right_x_in;
+    const double t8 = left_x_in * right_w_in;
     const double t9 = t7 + t8;
-    const double t10 = left[2] * right[3];
-    const double t11 = left[3] * right[2];
+    const double t10 = left_y_in * right_z_in;
+    const double t11 = left_z_in * right_y_in;
     const double t12 = t10 - t11;
     const double t13 = t9 + t12;
-    const double t14 = left[0] * right[2];
-    const double t15 = left[2] * right[0];
+    attitude[1] = t13;
+    const double t14 = left_w_in * right_y_in;
+    const double t15 = left_y_in * right_w_in;
     const double t16 = t14 + t15;
-    const double t17 = left[3] * right[1];
-    const double t18 = left[1] * right[3];
+    const double t17 = left_z_in * right_x_in;
+    const double t18 = left_x_in * right_z_in;
     const double t19 = t17 - t18;
     const double t20 = t16 + t19;
-    const double t21 = left[0] * right[3];
-    const double t22 = left[3] * right[0];
+    attitude[2] = t20;
+    const double t21 = left_w_in * right_z_in;
+    const double t22 = left_z_in * right_w_in;
     const double t23 = t21 + t22;
-    const double t24 = left[1] * right[2];
-    const double t25 = left[2] * right[1];
+    const double t24 = left_x_in * right_y_in;
+    const double t25 = left_y_in * right_x_in;
     const double t26 = t24 - t25;
     const double t27 = t23 + t26;
-    attitude[0] = t6;
-    attitude[1] = t13;
-    attitude[2] = t20;
     attitude[3] = t27;
 }
 
 /* quaternion of length 1 along one of any length; (1, 0, 0, 0) for the quaternion 0 */
 void attitude_quaternion_normalise_f64(const double quaternion[4], double attitude[4])
 {
-    const double t0 = fabs(quaternion[0]);
-    const double t1 = fabs(quaternion[1]);
-    const double t2 = fabs(quaternion[2]);
-    const double t3 = fabs(quaternion[3]);
+    const double quaternion_w_in = quaternion[0];
+    const double quaternion_x_in = quaternion[1];
+    const double quaternion_y_in = quaternion[2];
+    const double quaternion_z_in = quaternion[3];
+    const double t0 = fabs(quaternion_w_in);
+    const double t1 = fabs(quaternion_x_in);
+    const double t2 = fabs(quaternion_y_in);
+    const double t3 = fabs(quaternion_z_in);
     const _Bool t4 = t0 < t1;
     const double t5 = t4 ? t1 : t0;
     const _Bool t6 = t5 < t2;
@@ -138,11 +150,11 @@ void attitude_quaternion_normalise_f64(const double quaternion[4], double attitu
     const double t14 = t10 ? t11 : t13;
     const double t15 = ((4503599627370496.0 * t14) + t14) - (((4503599627370496.0 * t14) + t14) -
         (1.1102230246251565e-16 * ((4503599627370496.0 * t14) + t14)));
-    const double t16 = t12 ? quaternion[0] : 1.0;
+    const double t16 = t12 ? quaternion_w_in : 1.0;
     const double t17 = t16 / t15;
-    const double t18 = quaternion[1] / t15;
-    const double t19 = quaternion[2] / t15;
-    const double t20 = quaternion[3] / t15;
+    const double t18 = quaternion_x_in / t15;
+    const double t19 = quaternion_y_in / t15;
+    const double t20 = quaternion_z_in / t15;
     const double t21 = t17 * t17;
     const double t22 = t18 * t18;
     const double t23 = t19 * t19;
@@ -152,21 +164,24 @@ void attitude_quaternion_normalise_f64(const double quaternion[4], double attitu
     const double t27 = t25 + t26;
     const double t28 = sqrt(t27);
     const double t29 = t17 / t28;
-    const double t30 = t18 / t28;
-    const double t31 = t19 / t28;
-    const double t32 = t20 / t28;
     attitude[0] = t29;
+    const double t30 = t18 / t28;
     attitude[1] = t30;
+    const double t31 = t19 / t28;
     attitude[2] = t31;
+    const double t32 = t20 / t28;
     attitude[3] = t32;
 }
 
 /* unit quaternion of a rotation vector */
 void attitude_quaternion_exp_f64(const double rotation_vector[3], double attitude[4])
 {
-    const double t0 = fabs(rotation_vector[0]);
-    const double t1 = fabs(rotation_vector[1]);
-    const double t2 = fabs(rotation_vector[2]);
+    const double rotation_vector_x_in = rotation_vector[0];
+    const double rotation_vector_y_in = rotation_vector[1];
+    const double rotation_vector_z_in = rotation_vector[2];
+    const double t0 = fabs(rotation_vector_x_in);
+    const double t1 = fabs(rotation_vector_y_in);
+    const double t2 = fabs(rotation_vector_z_in);
     const _Bool t3 = t0 < t1;
     const double t4 = t3 ? t1 : t0;
     const _Bool t5 = t4 < t2;
@@ -177,9 +192,9 @@ void attitude_quaternion_exp_f64(const double rotation_vector[3], double attitud
     const double t10 = t8 ? t9 : 1.0;
     const double t11 = ((4503599627370496.0 * t10) + t10) - (((4503599627370496.0 * t10) + t10) -
         (1.1102230246251565e-16 * ((4503599627370496.0 * t10) + t10)));
-    const double t12 = rotation_vector[0] / t11;
-    const double t13 = rotation_vector[1] / t11;
-    const double t14 = rotation_vector[2] / t11;
+    const double t12 = rotation_vector_x_in / t11;
+    const double t13 = rotation_vector_y_in / t11;
+    const double t14 = rotation_vector_z_in / t11;
     const double t15 = 134217729.0;
     const double t16 = t15 - 1.0;
     const double t17 = t16 * t12;
@@ -253,22 +268,26 @@ void attitude_quaternion_exp_f64(const double rotation_vector[3], double attitud
     const double t84 = t77 * t71;
     const double t85 = t72 - t84;
     const double t86 = t7 ? t83 : t85;
-    const double t87 = t81 * t12;
-    const double t88 = t81 * t13;
-    const double t89 = t81 * t14;
     attitude[0] = t86;
+    const double t87 = t81 * t12;
     attitude[1] = t87;
+    const double t88 = t81 * t13;
     attitude[2] = t88;
+    const double t89 = t81 * t14;
     attitude[3] = t89;
 }
 
 /* rotation vector of a quaternion of any length, angle at most pi; 0 for the quaternion 0 */
 void attitude_quaternion_log_f64(const double quaternion[4], double rotation_vector[3])
 {
-    const double t0 = fabs(quaternion[0]);
-    const double t1 = fabs(quaternion[1]);
-    const double t2 = fabs(quaternion[2]);
-    const double t3 = fabs(quaternion[3]);
+    const double quaternion_w_in = quaternion[0];
+    const double quaternion_x_in = quaternion[1];
+    const double quaternion_y_in = quaternion[2];
+    const double quaternion_z_in = quaternion[3];
+    const double t0 = fabs(quaternion_w_in);
+    const double t1 = fabs(quaternion_x_in);
+    const double t2 = fabs(quaternion_y_in);
+    const double t3 = fabs(quaternion_z_in);
     const _Bool t4 = t0 < t1;
     const double t5 = t4 ? t1 : t0;
     const _Bool t6 = t5 < t2;
@@ -277,10 +296,10 @@ void attitude_quaternion_log_f64(const double quaternion[4], double rotation_vec
     const double t9 = t8 ? t3 : t7;
     const _Bool t10 = 1.152921504606847e+18 < t9;
     const double t11 = t10 ? 8.673617379884035e-19 : 1.152921504606847e+18;
-    const double t12 = quaternion[0] * t11;
-    const double t13 = quaternion[1] * t11;
-    const double t14 = quaternion[2] * t11;
-    const double t15 = quaternion[3] * t11;
+    const double t12 = quaternion_w_in * t11;
+    const double t13 = quaternion_x_in * t11;
+    const double t14 = quaternion_y_in * t11;
+    const double t15 = quaternion_z_in * t11;
     const double t16 = fabs(t13);
     const double t17 = fabs(t14);
     const double t18 = fabs(t15);
@@ -312,14 +331,14 @@ void attitude_quaternion_log_f64(const double quaternion[4], double rotation_vec
     const double t43 = atan2(t41, t42);
     const double t44 = t43 * 2.0;
     const double t45 = t44 / t40;
-    const _Bool t46 = quaternion[0] < 0.0;
+    const _Bool t46 = quaternion_w_in < 0.0;
     const double t47 = -t45;
     const double t48 = t46 ? t47 : t45;
     const double t49 = t48 * t31;
-    const double t50 = t48 * t32;
-    const double t51 = t48 * t33;
     rotation_vector[0] = t49;
+    const double t50 = t48 * t32;
     rotation_vector[1] = t50;
+    const double t51 = t48 * t33;
     rotation_vector[2] = t51;
 }
 
@@ -327,49 +346,56 @@ void attitude_quaternion_log_f64(const double quaternion[4], double rotation_vec
 void attitude_quaternion_rotate_f64(const double attitude[4], const double vector_B[3],
     double vector_N[3])
 {
-    const double t0 = attitude[1] * vector_B[0];
-    const double t1 = attitude[2] * vector_B[1];
+    const double attitude_w_in = attitude[0];
+    const double attitude_x_in = attitude[1];
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
+    const double vector_B_x_in = vector_B[0];
+    const double vector_B_y_in = vector_B[1];
+    const double vector_B_z_in = vector_B[2];
+    const double t0 = attitude_x_in * vector_B_x_in;
+    const double t1 = attitude_y_in * vector_B_y_in;
     const double t2 = t0 + t1;
-    const double t3 = attitude[3] * vector_B[2];
+    const double t3 = attitude_z_in * vector_B_z_in;
     const double t4 = t2 + t3;
-    const double t5 = attitude[2] * vector_B[2];
-    const double t6 = attitude[3] * vector_B[1];
+    const double t5 = attitude_y_in * vector_B_z_in;
+    const double t6 = attitude_z_in * vector_B_y_in;
     const double t7 = t5 - t6;
-    const double t8 = attitude[3] * vector_B[0];
-    const double t9 = attitude[1] * vector_B[2];
+    const double t8 = attitude_z_in * vector_B_x_in;
+    const double t9 = attitude_x_in * vector_B_z_in;
     const double t10 = t8 - t9;
-    const double t11 = attitude[1] * vector_B[1];
-    const double t12 = attitude[2] * vector_B[0];
+    const double t11 = attitude_x_in * vector_B_y_in;
+    const double t12 = attitude_y_in * vector_B_x_in;
     const double t13 = t11 - t12;
-    const double t14 = attitude[0] * vector_B[0];
+    const double t14 = attitude_w_in * vector_B_x_in;
     const double t15 = t14 + t7;
-    const double t16 = attitude[0] * vector_B[1];
+    const double t16 = attitude_w_in * vector_B_y_in;
     const double t17 = t16 + t10;
-    const double t18 = attitude[0] * vector_B[2];
+    const double t18 = attitude_w_in * vector_B_z_in;
     const double t19 = t18 + t13;
-    const double t20 = attitude[2] * t19;
-    const double t21 = attitude[3] * t17;
+    const double t20 = attitude_y_in * t19;
+    const double t21 = attitude_z_in * t17;
     const double t22 = t20 - t21;
-    const double t23 = attitude[3] * t15;
-    const double t24 = attitude[1] * t19;
+    const double t23 = attitude_z_in * t15;
+    const double t24 = attitude_x_in * t19;
     const double t25 = t23 - t24;
-    const double t26 = attitude[1] * t17;
-    const double t27 = attitude[2] * t15;
+    const double t26 = attitude_x_in * t17;
+    const double t27 = attitude_y_in * t15;
     const double t28 = t26 - t27;
-    const double t29 = attitude[0] * t15;
-    const double t30 = t4 * attitude[1];
+    const double t29 = attitude_w_in * t15;
+    const double t30 = t4 * attitude_x_in;
     const double t31 = t29 + t30;
     const double t32 = t31 + t22;
-    const double t33 = attitude[0] * t17;
-    const double t34 = t4 * attitude[2];
+    vector_N[0] = t32;
+    const double t33 = attitude_w_in * t17;
+    const double t34 = t4 * attitude_y_in;
     const double t35 = t33 + t34;
     const double t36 = t35 + t25;
-    const double t37 = attitude[0] * t19;
-    const double t38 = t4 * attitude[3];
+    vector_N[1] = t36;
+    const double t37 = attitude_w_in * t19;
+    const double t38 = t4 * attitude_z_in;
     const double t39 = t37 + t38;
     const double t40 = t39 + t28;
-    vector_N[0] = t32;
-    vector_N[1] = t36;
     vector_N[2] = t40;
 }
 
@@ -377,125 +403,145 @@ void attitude_quaternion_rotate_f64(const double attitude[4], const double vecto
 void attitude_quaternion_rotate_back_f64(const double attitude[4], const double vector_N[3],
     double vector_B[3])
 {
-    const double t0 = attitude[1] * vector_N[0];
-    const double t1 = attitude[2] * vector_N[1];
+    const double attitude_w_in = attitude[0];
+    const double attitude_x_in = attitude[1];
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
+    const double vector_N_x_in = vector_N[0];
+    const double vector_N_y_in = vector_N[1];
+    const double vector_N_z_in = vector_N[2];
+    const double t0 = attitude_x_in * vector_N_x_in;
+    const double t1 = attitude_y_in * vector_N_y_in;
     const double t2 = t0 + t1;
-    const double t3 = attitude[3] * vector_N[2];
+    const double t3 = attitude_z_in * vector_N_z_in;
     const double t4 = t2 + t3;
-    const double t5 = vector_N[1] * attitude[3];
-    const double t6 = vector_N[2] * attitude[2];
+    const double t5 = vector_N_y_in * attitude_z_in;
+    const double t6 = vector_N_z_in * attitude_y_in;
     const double t7 = t5 - t6;
-    const double t8 = vector_N[2] * attitude[1];
-    const double t9 = vector_N[0] * attitude[3];
+    const double t8 = vector_N_z_in * attitude_x_in;
+    const double t9 = vector_N_x_in * attitude_z_in;
     const double t10 = t8 - t9;
-    const double t11 = vector_N[0] * attitude[2];
-    const double t12 = vector_N[1] * attitude[1];
+    const double t11 = vector_N_x_in * attitude_y_in;
+    const double t12 = vector_N_y_in * attitude_x_in;
     const double t13 = t11 - t12;
-    const double t14 = attitude[0] * vector_N[0];
+    const double t14 = attitude_w_in * vector_N_x_in;
     const double t15 = t14 + t7;
-    const double t16 = attitude[0] * vector_N[1];
+    const double t16 = attitude_w_in * vector_N_y_in;
     const double t17 = t16 + t10;
-    const double t18 = attitude[0] * vector_N[2];
+    const double t18 = attitude_w_in * vector_N_z_in;
     const double t19 = t18 + t13;
-    const double t20 = t17 * attitude[3];
-    const double t21 = t19 * attitude[2];
+    const double t20 = t17 * attitude_z_in;
+    const double t21 = t19 * attitude_y_in;
     const double t22 = t20 - t21;
-    const double t23 = t19 * attitude[1];
-    const double t24 = t15 * attitude[3];
+    const double t23 = t19 * attitude_x_in;
+    const double t24 = t15 * attitude_z_in;
     const double t25 = t23 - t24;
-    const double t26 = t15 * attitude[2];
-    const double t27 = t17 * attitude[1];
+    const double t26 = t15 * attitude_y_in;
+    const double t27 = t17 * attitude_x_in;
     const double t28 = t26 - t27;
-    const double t29 = attitude[0] * t15;
-    const double t30 = t4 * attitude[1];
+    const double t29 = attitude_w_in * t15;
+    const double t30 = t4 * attitude_x_in;
     const double t31 = t29 + t30;
     const double t32 = t31 + t22;
-    const double t33 = attitude[0] * t17;
-    const double t34 = t4 * attitude[2];
+    vector_B[0] = t32;
+    const double t33 = attitude_w_in * t17;
+    const double t34 = t4 * attitude_y_in;
     const double t35 = t33 + t34;
     const double t36 = t35 + t25;
-    const double t37 = attitude[0] * t19;
-    const double t38 = t4 * attitude[3];
+    vector_B[1] = t36;
+    const double t37 = attitude_w_in * t19;
+    const double t38 = t4 * attitude_z_in;
     const double t39 = t37 + t38;
     const double t40 = t39 + t28;
-    vector_B[0] = t32;
-    vector_B[1] = t36;
     vector_B[2] = t40;
 }
 
 /* rotation matrix of an attitude quaternion */
 void attitude_quaternion_to_matrix_f64(const double attitude[4], double matrix[9])
 {
-    const double t0 = attitude[1] + attitude[1];
-    const double t1 = attitude[2] + attitude[2];
-    const double t2 = attitude[3] + attitude[3];
-    const double t3 = attitude[1] * t1;
-    const double t4 = attitude[1] * t2;
-    const double t5 = attitude[2] * t2;
-    const double t6 = attitude[0] * t0;
-    const double t7 = attitude[0] * t1;
-    const double t8 = attitude[0] * t2;
-    const double t9 = attitude[0] * attitude[0];
-    const double t10 = attitude[1] * attitude[1];
-    const double t11 = attitude[2] * attitude[2];
-    const double t12 = attitude[3] * attitude[3];
+    const double attitude_w_in = attitude[0];
+    const double attitude_x_in = attitude[1];
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
+    const double t0 = attitude_x_in + attitude_x_in;
+    const double t1 = attitude_y_in + attitude_y_in;
+    const double t2 = attitude_z_in + attitude_z_in;
+    const double t3 = attitude_x_in * t1;
+    const double t4 = attitude_x_in * t2;
+    const double t5 = attitude_y_in * t2;
+    const double t6 = attitude_w_in * t0;
+    const double t7 = attitude_w_in * t1;
+    const double t8 = attitude_w_in * t2;
+    const double t9 = attitude_w_in * attitude_w_in;
+    const double t10 = attitude_x_in * attitude_x_in;
+    const double t11 = attitude_y_in * attitude_y_in;
+    const double t12 = attitude_z_in * attitude_z_in;
     const double t13 = t9 + t10;
     const double t14 = t9 - t10;
     const double t15 = t11 + t12;
     const double t16 = t11 - t12;
     const double t17 = t13 - t15;
-    const double t18 = t3 + t8;
-    const double t19 = t4 - t7;
-    const double t20 = t3 - t8;
-    const double t21 = t14 + t16;
-    const double t22 = t5 + t6;
-    const double t23 = t4 + t7;
-    const double t24 = t5 - t6;
-    const double t25 = t14 - t16;
     matrix[0] = t17;
+    const double t18 = t3 + t8;
     matrix[1] = t18;
+    const double t19 = t4 - t7;
     matrix[2] = t19;
+    const double t20 = t3 - t8;
     matrix[3] = t20;
+    const double t21 = t14 + t16;
     matrix[4] = t21;
+    const double t22 = t5 + t6;
     matrix[5] = t22;
+    const double t23 = t4 + t7;
     matrix[6] = t23;
+    const double t24 = t5 - t6;
     matrix[7] = t24;
+    const double t25 = t14 - t16;
     matrix[8] = t25;
 }
 
 /* attitude quaternion of a rotation matrix, scalar part not negative */
 void attitude_quaternion_from_matrix_f64(const double matrix[9], double attitude[4])
 {
-    const double t0 = matrix[5] - matrix[7];
-    const double t1 = matrix[6] - matrix[2];
-    const double t2 = matrix[1] - matrix[3];
-    const double t3 = matrix[1] + matrix[3];
-    const double t4 = matrix[6] + matrix[2];
-    const double t5 = matrix[5] + matrix[7];
-    const double t6 = matrix[4] + matrix[8];
+    const double matrix_xx_in = matrix[0];
+    const double matrix_yx_in = matrix[1];
+    const double matrix_zx_in = matrix[2];
+    const double matrix_xy_in = matrix[3];
+    const double matrix_yy_in = matrix[4];
+    const double matrix_zy_in = matrix[5];
+    const double matrix_xz_in = matrix[6];
+    const double matrix_yz_in = matrix[7];
+    const double matrix_zz_in = matrix[8];
+    const double t0 = matrix_zy_in - matrix_yz_in;
+    const double t1 = matrix_xz_in - matrix_zx_in;
+    const double t2 = matrix_yx_in - matrix_xy_in;
+    const double t3 = matrix_yx_in + matrix_xy_in;
+    const double t4 = matrix_xz_in + matrix_zx_in;
+    const double t5 = matrix_zy_in + matrix_yz_in;
+    const double t6 = matrix_yy_in + matrix_zz_in;
     const _Bool t7 = t6 < 0.0;
-    const double t8 = matrix[0] - matrix[4];
+    const double t8 = matrix_xx_in - matrix_yy_in;
     const double t9 = 1.0 + t8;
-    const double t10 = t9 - matrix[8];
-    const double t11 = matrix[0] + matrix[4];
+    const double t10 = t9 - matrix_zz_in;
+    const double t11 = matrix_xx_in + matrix_yy_in;
     const double t12 = 1.0 + t11;
-    const double t13 = t12 + matrix[8];
+    const double t13 = t12 + matrix_zz_in;
     const double t14 = t7 ? t0 : t13;
     const double t15 = t7 ? t10 : t0;
     const double t16 = t7 ? t3 : t1;
     const double t17 = t7 ? t4 : t2;
-    const _Bool t18 = matrix[4] < matrix[8];
-    const double t19 = matrix[8] - matrix[0];
+    const _Bool t18 = matrix_yy_in < matrix_zz_in;
+    const double t19 = matrix_zz_in - matrix_xx_in;
     const double t20 = 1.0 + t19;
-    const double t21 = t20 - matrix[4];
-    const double t22 = matrix[4] - matrix[0];
+    const double t21 = t20 - matrix_yy_in;
+    const double t22 = matrix_yy_in - matrix_xx_in;
     const double t23 = 1.0 + t22;
-    const double t24 = t23 - matrix[8];
+    const double t24 = t23 - matrix_zz_in;
     const double t25 = t18 ? t2 : t1;
     const double t26 = t18 ? t4 : t3;
     const double t27 = t18 ? t5 : t24;
     const double t28 = t18 ? t21 : t5;
-    const _Bool t29 = matrix[0] < 0.0;
+    const _Bool t29 = matrix_xx_in < 0.0;
     const double t30 = t29 ? t25 : t14;
     const double t31 = t29 ? t26 : t15;
     const double t32 = t29 ? t27 : t16;
@@ -512,37 +558,44 @@ void attitude_quaternion_from_matrix_f64(const double matrix[9], double attitude
     const double t43 = -t41;
     const double t44 = t42 ? t43 : t41;
     const double t45 = t30 / t44;
-    const double t46 = t31 / t44;
-    const double t47 = t32 / t44;
-    const double t48 = t33 / t44;
     attitude[0] = t45;
+    const double t46 = t31 / t44;
     attitude[1] = t46;
+    const double t47 = t32 / t44;
     attitude[2] = t47;
+    const double t48 = t33 / t44;
     attitude[3] = t48;
 }
 
 /* modified Rodrigues parameters of an attitude quaternion, of length at most 1 */
 void attitude_quaternion_to_mrp_f64(const double attitude[4], double mrp[3])
 {
-    const double t0 = fabs(attitude[0]);
+    const double attitude_w_in = attitude[0];
+    const double attitude_x_in = attitude[1];
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
+    const double t0 = fabs(attitude_w_in);
     const double t1 = 1.0 + t0;
-    const _Bool t2 = attitude[0] < 0.0;
+    const _Bool t2 = attitude_w_in < 0.0;
     const double t3 = -t1;
     const double t4 = t2 ? t3 : t1;
-    const double t5 = attitude[1] / t4;
-    const double t6 = attitude[2] / t4;
-    const double t7 = attitude[3] / t4;
+    const double t5 = attitude_x_in / t4;
     mrp[0] = t5;
+    const double t6 = attitude_y_in / t4;
     mrp[1] = t6;
+    const double t7 = attitude_z_in / t4;
     mrp[2] = t7;
 }
 
 /* attitude quaternion of modified Rodrigues parameters of any length */
 void attitude_quaternion_from_mrp_f64(const double mrp[3], double attitude[4])
 {
-    const double t0 = fabs(mrp[0]);
-    const double t1 = fabs(mrp[1]);
-    const double t2 = fabs(mrp[2]);
+    const double mrp_x_in = mrp[0];
+    const double mrp_y_in = mrp[1];
+    const double mrp_z_in = mrp[2];
+    const double t0 = fabs(mrp_x_in);
+    const double t1 = fabs(mrp_y_in);
+    const double t2 = fabs(mrp_z_in);
     const _Bool t3 = t0 < t1;
     const double t4 = t3 ? t1 : t0;
     const _Bool t5 = t4 < t2;
@@ -553,9 +606,9 @@ void attitude_quaternion_from_mrp_f64(const double mrp[3], double attitude[4])
     const double t10 = ((4503599627370496.0 * t9) + t9) - (((4503599627370496.0 * t9) + t9) - (1.1102230246251565e-16 *
         ((4503599627370496.0 * t9) + t9)));
     const double t11 = 1.0 / t10;
-    const double t12 = mrp[0] * t11;
-    const double t13 = mrp[1] * t11;
-    const double t14 = mrp[2] * t11;
+    const double t12 = mrp_x_in * t11;
+    const double t13 = mrp_y_in * t11;
+    const double t14 = mrp_z_in * t11;
     const double t15 = t11 * t11;
     const double t16 = t12 * t12;
     const double t17 = t13 * t13;
@@ -566,27 +619,31 @@ void attitude_quaternion_from_mrp_f64(const double mrp[3], double attitude[4])
     const double t22 = t15 + t20;
     const double t23 = t15 - t20;
     const double t24 = t23 / t22;
+    attitude[0] = t24;
     const double t25 = t12 / t22;
     const double t26 = t21 * t25;
+    attitude[1] = t26;
     const double t27 = t13 / t22;
     const double t28 = t21 * t27;
+    attitude[2] = t28;
     const double t29 = t14 / t22;
     const double t30 = t21 * t29;
-    attitude[0] = t24;
-    attitude[1] = t26;
-    attitude[2] = t28;
     attitude[3] = t30;
 }
 
 /* Euler angles zyx of an attitude quaternion; the third is 0 at gimbal lock */
 void attitude_quaternion_to_euler_zyx_f64(const double attitude[4], double angles[3])
 {
-    const double t0 = attitude[0] + attitude[2];
-    const double t1 = attitude[3] + attitude[1];
-    const double t2 = attitude[0] - attitude[2];
-    const double t3 = attitude[3] - attitude[1];
-    const double t4 = attitude[0] * attitude[2];
-    const double t5 = attitude[3] * attitude[1];
+    const double attitude_w_in = attitude[0];
+    const double attitude_x_in = attitude[1];
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
+    const double t0 = attitude_w_in + attitude_y_in;
+    const double t1 = attitude_z_in + attitude_x_in;
+    const double t2 = attitude_w_in - attitude_y_in;
+    const double t3 = attitude_z_in - attitude_x_in;
+    const double t4 = attitude_w_in * attitude_y_in;
+    const double t5 = attitude_z_in * attitude_x_in;
     const double t7 = t4 - t5;
     const double t8 = t2 * t2;
     const double t9 = t1 * t1;
@@ -615,28 +672,31 @@ void attitude_quaternion_to_euler_zyx_f64(const double attitude[4], double angle
     const double t32 = t30 + t31;
     const double t33 = t28 - t29;
     const double t34 = atan2(t32, t33);
+    angles[0] = t34;
     const double t35 = t30 - t31;
     const double t36 = t28 + t29;
     const double t37 = atan2(t35, t36);
+    angles[2] = t37;
     const double t38 = t7 + t7;
     const double t39 = atan2(t38, t15);
-    angles[0] = t34;
     angles[1] = t39;
-    angles[2] = t37;
 }
 
 /* attitude quaternion of Euler angles zyx */
 void attitude_quaternion_from_euler_zyx_f64(const double angles[3], double attitude[4])
 {
-    const double t0 = angles[0] * 0.5;
+    const double angle_first_in = angles[0];
+    const double angle_second_in = angles[1];
+    const double angle_third_in = angles[2];
+    const double t0 = angle_first_in * 0.5;
     const attitude_sines_f64 t1_both = attitude_sine_cosine_f64(t0);
     const double t1 = t1_both.cosine;
     const double t2 = t1_both.sine;
-    const double t3 = angles[1] * 0.5;
+    const double t3 = angle_second_in * 0.5;
     const attitude_sines_f64 t4_both = attitude_sine_cosine_f64(t3);
     const double t4 = t4_both.cosine;
     const double t5 = t4_both.sine;
-    const double t6 = angles[2] * 0.5;
+    const double t6 = angle_third_in * 0.5;
     const attitude_sines_f64 t7_both = attitude_sine_cosine_f64(t6);
     const double t7 = t7_both.cosine;
     const double t8 = t7_both.sine;
@@ -648,37 +708,41 @@ void attitude_quaternion_from_euler_zyx_f64(const double angles[3], double attit
     const double t14 = t9 * t7;
     const double t15 = t11 * t8;
     const double t16 = t14 - t15;
+    attitude[0] = t16;
     const double t17 = t9 * t8;
     const double t18 = t11 * t7;
     const double t19 = t17 + t18;
+    attitude[1] = t19;
     const double t20 = t12 * t7;
     const double t21 = t13 * t8;
     const double t22 = t20 + t21;
+    attitude[2] = t22;
     const double t23 = t13 * t7;
     const double t24 = t12 * t8;
     const double t25 = -t24;
     const double t26 = t23 + t25;
-    attitude[0] = t16;
-    attitude[1] = t19;
-    attitude[2] = t22;
     attitude[3] = t26;
 }
 
 /* Euler angles zxz of an attitude quaternion; the third is 0 at gimbal lock */
 void attitude_quaternion_to_euler_zxz_f64(const double attitude[4], double angles[3])
 {
-    const double t0 = attitude[0] * 1.152921504606847e+18;
-    const double t1 = attitude[3] * 1.152921504606847e+18;
-    const double t2 = fabs(attitude[1]);
-    const double t3 = fabs(attitude[2]);
+    const double attitude_w_in = attitude[0];
+    const double attitude_x_in = attitude[1];
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
+    const double t0 = attitude_w_in * 1.152921504606847e+18;
+    const double t1 = attitude_z_in * 1.152921504606847e+18;
+    const double t2 = fabs(attitude_x_in);
+    const double t3 = fabs(attitude_y_in);
     const _Bool t4 = t2 < t3;
     const double t5 = t4 ? t3 : t2;
     const _Bool t6 = 0.0 < t5;
     const double t7 = t6 ? t5 : 1.0;
     const double t8 = ((4503599627370496.0 * t7) + t7) - (((4503599627370496.0 * t7) + t7) - (1.1102230246251565e-16 *
         ((4503599627370496.0 * t7) + t7)));
-    const double t9 = attitude[1] / t8;
-    const double t10 = attitude[2] / t8;
+    const double t9 = attitude_x_in / t8;
+    const double t10 = attitude_y_in / t8;
     const double t11 = fabs(t0);
     const double t12 = fabs(t1);
     const double t13 = t11 + t12;
@@ -698,9 +762,11 @@ void attitude_quaternion_to_euler_zxz_f64(const double attitude[4], double angle
     const double t27 = t25 + t26;
     const double t28 = t23 - t24;
     const double t29 = atan2(t27, t28);
+    angles[0] = t29;
     const double t30 = t25 - t26;
     const double t31 = t23 + t24;
     const double t32 = atan2(t30, t31);
+    angles[2] = t32;
     const double t33 = t8 * 1.152921504606847e+18;
     const double t34 = t9 * t9;
     const double t35 = t10 * t10;
@@ -713,23 +779,24 @@ void attitude_quaternion_to_euler_zxz_f64(const double attitude[4], double angle
     const double t42 = sqrt(t41);
     const double t43 = atan2(t38, t42);
     const double t44 = t43 * 2.0;
-    angles[0] = t29;
     angles[1] = t44;
-    angles[2] = t32;
 }
 
 /* attitude quaternion of Euler angles zxz */
 void attitude_quaternion_from_euler_zxz_f64(const double angles[3], double attitude[4])
 {
-    const double t0 = angles[0] * 0.5;
+    const double angle_first_in = angles[0];
+    const double angle_second_in = angles[1];
+    const double angle_third_in = angles[2];
+    const double t0 = angle_first_in * 0.5;
     const attitude_sines_f64 t1_both = attitude_sine_cosine_f64(t0);
     const double t1 = t1_both.cosine;
     const double t2 = t1_both.sine;
-    const double t3 = angles[1] * 0.5;
+    const double t3 = angle_second_in * 0.5;
     const attitude_sines_f64 t4_both = attitude_sine_cosine_f64(t3);
     const double t4 = t4_both.cosine;
     const double t5 = t4_both.sine;
-    const double t6 = angles[2] * 0.5;
+    const double t6 = angle_third_in * 0.5;
     const attitude_sines_f64 t7_both = attitude_sine_cosine_f64(t6);
     const double t7 = t7_both.cosine;
     const double t8 = t7_both.sine;
@@ -740,18 +807,18 @@ void attitude_quaternion_from_euler_zxz_f64(const double angles[3], double attit
     const double t13 = t9 * t7;
     const double t14 = t12 * t8;
     const double t15 = t13 - t14;
+    attitude[0] = t15;
     const double t16 = t10 * t7;
     const double t17 = t11 * t8;
     const double t18 = t16 + t17;
+    attitude[1] = t18;
     const double t19 = t11 * t7;
     const double t20 = t10 * t8;
     const double t21 = -t20;
     const double t22 = t19 + t21;
+    attitude[2] = t22;
     const double t23 = t9 * t8;
     const double t24 = t12 * t7;
     const double t25 = t23 + t24;
-    attitude[0] = t15;
-    attitude[1] = t18;
-    attitude[2] = t22;
     attitude[3] = t25;
 }

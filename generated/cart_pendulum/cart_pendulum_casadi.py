@@ -622,11 +622,6 @@ def _step_rk4():
     t118 = t18 + t117
     t81 = t74 * 2.0
     t84 = x_dot[0] + t81
-    t92 = t84 * constants[1]
-    t103 = t84 * t0
-    t114 = t113 + t103
-    t115 = t114 * 0.3333333333333333
-    t131 = x[0] + t115
     t75 = t56 * t0
     t121 = t48 + t75
     t122 = t121 * 2.0
@@ -644,6 +639,11 @@ def _step_rk4():
     t101 = constants[4] - t100
     t97 = t88 * constants[3]
     t98 = t96 * t97
+    t92 = t84 * constants[1]
+    t103 = t84 * t0
+    t114 = t113 + t103
+    t115 = t114 * 0.3333333333333333
+    t131 = x[0] + t115
     t87 = t86 * t86
     t89 = t87 * t88
     t90 = t89 * constants[0]
@@ -659,12 +659,12 @@ def _step_rk4():
     t134 = theta_dot[0] + t130
     t104 = t102 * t0
     t119 = t118 + t104
-    t120 = t119 * 0.3333333333333333
-    t132 = x_dot[0] + t120
     t105 = t86 * t0
     t124 = t123 + t105
     t125 = t124 * 0.3333333333333333
     t133 = theta[0] + t125
+    t120 = t119 * 0.3333333333333333
+    t132 = x_dot[0] + t120
     return ca.Function(
         "cart_pendulum_step_rk4_hot",
         [constants, x, x_dot, theta, theta_dot, F, time_step],

@@ -278,13 +278,13 @@ void cart_pendulum_state_rate_f32(const cart_pendulum_constants_f32 *constants, 
     const float t13 = t8 * t9;
     const float t14 = constants->M_plus_m - t13;
     const float t15 = t12 / t14;
+    *x_dot_rate = t15;
     const float t16 = t8 * t15;
     const float t17 = t10 - t16;
     const float t18 = t17 * constants->k1;
-    *x_rate = x_dot;
-    *x_dot_rate = t15;
-    *theta_rate = theta_dot;
     *theta_dot_rate = t18;
+    *x_rate = x_dot;
+    *theta_rate = theta_dot;
 }
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. */
@@ -299,6 +299,7 @@ void cart_pendulum_state_rate_jacobian_f32(const cart_pendulum_constants_f32 *co
     const float t3 = t1 * t2;
     const float t4 = constants->M_plus_m - t3;
     const float t5 = 1.0F / t4;
+    jacobian[8] = t5;
     const float t6 = x_dot * constants->minus_b;
     const float t7 = F + t6;
     const float t8 = t0_both.sine;
@@ -310,12 +311,16 @@ void cart_pendulum_state_rate_jacobian_f32(const cart_pendulum_constants_f32 *co
     const float t14 = t12 * t13;
     const float t15 = t11 - t14;
     const float t16 = t5 * t15;
+    *x_dot_rate = t16;
     const float t17 = t1 * t16;
     const float t18 = t17 + t9;
     const float t19 = t18 * constants->k1;
+    *theta_dot_rate = t19;
     const float t20 = t5 * constants->minus_b;
+    jacobian[1] = t20;
     const float t21 = t1 * t5;
     const float t22 = t21 * constants->k2;
+    jacobian[2] = t22;
     const float t23 = t0 * constants->m_l_g;
     const float t24 = t2 * t23;
     const float t25 = t8 * t8;
@@ -331,31 +336,26 @@ void cart_pendulum_state_rate_jacobian_f32(const cart_pendulum_constants_f32 *co
     const float t35 = t32 - t34;
     const float t36 = t31 * t35;
     const float t37 = t30 - t36;
+    jacobian[3] = t37;
     const float t38 = t1 * t37;
     const float t39 = t23 + t38;
     const float t40 = t16 * t12;
     const float t41 = t39 - t40;
     const float t42 = t41 * constants->k1;
+    jacobian[4] = t42;
     const float t43 = theta_dot * t8;
     const float t44 = t5 * t43;
     const float t45 = t44 * constants->twice_m_l;
+    jacobian[5] = t45;
     const float t46 = t21 * t43;
     const float t47 = t46 * constants->k4;
-    const float t48 = t21 * constants->k1;
-    *x_rate = x_dot;
-    *x_dot_rate = t16;
-    *theta_rate = theta_dot;
-    *theta_dot_rate = t19;
-    jacobian[0] = 1.0F;
-    jacobian[1] = t20;
-    jacobian[2] = t22;
-    jacobian[3] = t37;
-    jacobian[4] = t42;
-    jacobian[5] = t45;
-    jacobian[6] = 1.0F;
     jacobian[7] = t47;
-    jacobian[8] = t5;
+    const float t48 = t21 * constants->k1;
     jacobian[9] = t48;
+    *x_rate = x_dot;
+    *theta_rate = theta_dot;
+    jacobian[0] = 1.0F;
+    jacobian[6] = 1.0F;
 }
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. Dense. */
@@ -363,19 +363,80 @@ void cart_pendulum_state_rate_jacobian_dense_f32(const cart_pendulum_constants_f
     float x_dot, float theta, float theta_dot, float F, float *x_rate, float *x_dot_rate,
     float *theta_rate, float *theta_dot_rate, float jacobian[20])
 {
-    static const unsigned char places[10] = {
-        4, 5, 7, 9, 11, 13, 14, 15, 17, 19
-    };
-    float nonzeros[10];
-    int entry;
-    cart_pendulum_state_rate_jacobian_f32(constants, x_dot, theta, theta_dot, F, x_rate, x_dot_rate, theta_rate,
-        theta_dot_rate, nonzeros);
-    for (entry = 0; entry < 20; ++entry) {
-        jacobian[entry] = 0.0F;
-    }
-    for (entry = 0; entry < 10; ++entry) {
-        jacobian[places[entry]] = nonzeros[entry];
-    }
+    const cart_pendulum_sines_f32 t0_both = cart_pendulum_sine_cosine_f32(theta);
+    const float t0 = t0_both.cosine;
+    const float t1 = t0 * constants->minus_m_l;
+    const float t2 = t1 * constants->pivot;
+    const float t3 = t1 * t2;
+    const float t4 = constants->M_plus_m - t3;
+    const float t5 = 1.0F / t4;
+    jacobian[17] = t5;
+    const float t6 = x_dot * constants->minus_b;
+    const float t7 = F + t6;
+    const float t8 = t0_both.sine;
+    const float t9 = t8 * constants->m_l_g;
+    const float t10 = t2 * t9;
+    const float t11 = t7 + t10;
+    const float t12 = t8 * constants->minus_m_l;
+    const float t13 = theta_dot * theta_dot;
+    const float t14 = t12 * t13;
+    const float t15 = t11 - t14;
+    const float t16 = t5 * t15;
+    *x_dot_rate = t16;
+    const float t17 = t1 * t16;
+    const float t18 = t17 + t9;
+    const float t19 = t18 * constants->k1;
+    *theta_dot_rate = t19;
+    const float t20 = t5 * constants->minus_b;
+    jacobian[5] = t20;
+    const float t21 = t1 * t5;
+    const float t22 = t21 * constants->k2;
+    jacobian[7] = t22;
+    const float t23 = t0 * constants->m_l_g;
+    const float t24 = t2 * t23;
+    const float t25 = t8 * t8;
+    const float t26 = t25 * constants->k3;
+    const float t27 = t24 + t26;
+    const float t28 = t1 * t13;
+    const float t29 = t27 - t28;
+    const float t30 = t5 * t29;
+    const float t31 = t5 * t16;
+    const float t32 = t2 * t12;
+    const float t33 = t1 * t8;
+    const float t34 = t33 * constants->m_l_pivot;
+    const float t35 = t32 - t34;
+    const float t36 = t31 * t35;
+    const float t37 = t30 - t36;
+    jacobian[9] = t37;
+    const float t38 = t1 * t37;
+    const float t39 = t23 + t38;
+    const float t40 = t16 * t12;
+    const float t41 = t39 - t40;
+    const float t42 = t41 * constants->k1;
+    jacobian[11] = t42;
+    const float t43 = theta_dot * t8;
+    const float t44 = t5 * t43;
+    const float t45 = t44 * constants->twice_m_l;
+    jacobian[13] = t45;
+    const float t46 = t21 * t43;
+    const float t47 = t46 * constants->k4;
+    jacobian[15] = t47;
+    const float t48 = t21 * constants->k1;
+    jacobian[19] = t48;
+    *x_rate = x_dot;
+    *theta_rate = theta_dot;
+    jacobian[0] = 0.0F;
+    jacobian[1] = 0.0F;
+    jacobian[2] = 0.0F;
+    jacobian[3] = 0.0F;
+    jacobian[4] = 1.0F;
+    jacobian[6] = 0.0F;
+    jacobian[8] = 0.0F;
+    jacobian[10] = 0.0F;
+    jacobian[12] = 0.0F;
+    jacobian[14] = 1.0F;
+    jacobian[16] = 0.0F;
+    jacobian[18] = 0.0F;
 }
 
 /* Mass, damping and stiffness matrices of small motion. */
@@ -554,11 +615,6 @@ void cart_pendulum_step_rk4_f32(const cart_pendulum_constants_f32 *constants, fl
     const float t118 = t18 + t117;
     const float t81 = t74 * 2.0F;
     const float t84 = x_dot + t81;
-    const float t92 = t84 * constants->b;
-    const float t103 = t84 * t0;
-    const float t114 = t113 + t103;
-    const float t115 = t114 * 0.333333343F;
-    const float t131 = x + t115;
     const float t75 = t56 * t0;
     const float t121 = t48 + t75;
     const float t122 = t121 * 2.0F;
@@ -576,6 +632,12 @@ void cart_pendulum_step_rk4_f32(const cart_pendulum_constants_f32 *constants, fl
     const float t101 = constants->M_plus_m - t100;
     const float t97 = t88 * constants->m_l_g;
     const float t98 = t96 * t97;
+    const float t92 = t84 * constants->b;
+    const float t103 = t84 * t0;
+    const float t114 = t113 + t103;
+    const float t115 = t114 * 0.333333343F;
+    const float t131 = x + t115;
+    *x_next = t131;
     const float t87 = t86 * t86;
     const float t89 = t87 * t88;
     const float t90 = t89 * constants->m_l;
@@ -589,16 +651,15 @@ void cart_pendulum_step_rk4_f32(const cart_pendulum_constants_f32 *constants, fl
     const float t129 = t128 + t110;
     const float t130 = t129 * 0.333333343F;
     const float t134 = theta_dot + t130;
+    *theta_dot_next = t134;
     const float t104 = t102 * t0;
     const float t119 = t118 + t104;
-    const float t120 = t119 * 0.333333343F;
-    const float t132 = x_dot + t120;
     const float t105 = t86 * t0;
     const float t124 = t123 + t105;
     const float t125 = t124 * 0.333333343F;
     const float t133 = theta + t125;
-    *x_next = t131;
-    *x_dot_next = t132;
     *theta_next = t133;
-    *theta_dot_next = t134;
+    const float t120 = t119 * 0.333333343F;
+    const float t132 = x_dot + t120;
+    *x_dot_next = t132;
 }

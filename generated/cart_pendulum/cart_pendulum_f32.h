@@ -23,11 +23,11 @@
  *     cart_pendulum_state_rate_f32(&constants, 0.0F, 0.0F, 0.0F, 0.0F, &x_rate, &x_dot_rate, &theta_rate,
  *       &theta_dot_rate);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 149b0b3ffb48c2f1.
+ * Body of these files: sha256 dcb6fac103262afa.
  */
 #ifndef CART_PENDULUM_F32_H
 #define CART_PENDULUM_F32_H
@@ -111,11 +111,11 @@ int cart_pendulum_setup_f32(float M, float m, float l, float I, float b, float g
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: x_rate 0 m/s (seen 0),
- *            x_dot_rate 3.6e-05 m/s^2 (seen 1.1e-05), theta_rate 0 rad/s (seen 0), theta_dot_rate
- *            0.00015 rad/s^2 (seen 4.6e-05); assumed: sines and cosines of our own within 0.79
+ *            x_dot_rate 2e-05 m/s^2 (seen 9.3e-06), theta_rate 0 rad/s (seen 0), theta_dot_rate
+ *            8.8e-05 rad/s^2 (seen 4.1e-05); assumed: sines and cosines of our own within 0.79
  *            ulp.
  * Cost: 1 add, 4 sub, 11 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 5628 to 6416 instructions, 764 B of code, 128 B of stack.
+ * On Cortex-M0+, -O2: 5627 to 6415 instructions, 760 B of code, 128 B of stack.
  * On Cortex-M4F, -O2: 130 to 131 instructions, 580 B of code, 60 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
@@ -144,12 +144,12 @@ void cart_pendulum_state_rate_f32(const cart_pendulum_constants_f32 *constants, 
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: x_rate 0 m/s (seen 0),
- *            x_dot_rate 3.8e-05 m/s^2 (seen 1e-05), theta_rate 0 rad/s (seen 0), theta_dot_rate
- *            0.00016 rad/s^2 (seen 4.3e-05), jacobian 0.00056 (seen 5.4e-05); assumed: sines and
+ *            x_dot_rate 3e-05 m/s^2 (seen 1.1e-05), theta_rate 0 rad/s (seen 0), theta_dot_rate
+ *            0.00015 rad/s^2 (seen 4.3e-05), jacobian 0.00017 (seen 5.1e-05); assumed: sines and
  *            cosines of our own within 0.79 ulp.
  * Cost: 5 add, 6 sub, 35 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 9040 to 9925 instructions, 1076 B of code, 168 B of stack.
- * On Cortex-M4F, -O2: 178 to 179 instructions, 768 B of code, 60 B of stack.
+ * On Cortex-M0+, -O2: 9023 to 9910 instructions, 1048 B of code, 152 B of stack.
+ * On Cortex-M4F, -O2: 182 to 183 instructions, 784 B of code, 60 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -158,8 +158,8 @@ void cart_pendulum_state_rate_jacobian_f32(const cart_pendulum_constants_f32 *co
     float *theta_rate, float *theta_dot_rate, float jacobian[10]);
 
 /* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 9205 to 10032 instructions, 1148 B of code, 10 B of tables, 248 B of stack.
- * On Cortex-M4F, -O2: 320 to 321 instructions, 832 B of code, 10 B of tables, 124 B of stack.
+ * On Cortex-M0+, -O2: 9031 to 9858 instructions, 1068 B of code, 152 B of stack.
+ * On Cortex-M4F, -O2: 193 to 194 instructions, 812 B of code, 60 B of stack.
  */
 void cart_pendulum_state_rate_jacobian_dense_f32(const cart_pendulum_constants_f32 *constants,
     float x_dot, float theta, float theta_dot, float F, float *x_rate, float *x_dot_rate,
@@ -215,7 +215,7 @@ void cart_pendulum_linearised_f32(const cart_pendulum_constants_f32 *constants,
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 2.8e-06 J (seen
- *            1.7e-06); assumed: sines and cosines of our own within 0.79 ulp.
+ *            2.2e-06); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 7 mul, 1 cos.
  * On Cortex-M0+, -O2: 4513 to 5409 instructions, 668 B of code, 112 B of stack.
  * On Cortex-M4F, -O2: 114 to 115 instructions, 520 B of code, 44 B of stack.
@@ -245,7 +245,7 @@ void cart_pendulum_energy_f32(const cart_pendulum_constants_f32 *constants, floa
  * In this scene: rail = c/Delta
  * Error: median 0.85, largest 9.4 u of the largest product or sum in the equation (of rail; 200000
  *            samples of the ranges, 65536 searched from the worst); at 120 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: rail 2.3e-05 N (seen 7e-06);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: rail 2.3e-05 N (seen 9.6e-06);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 5 add, 3 sub, 18 mul, 1 div, 1 neg, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 6694 to 7532 instructions, 836 B of code, 120 B of stack.
@@ -276,13 +276,13 @@ void cart_pendulum_rail_f32(const cart_pendulum_constants_f32 *constants, float 
  * Error: median 0.36, largest 5.8e+02 u of the largest component, before or after, or of the
  *            largest product of what the step adds, by rounding alone (of x_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: x_next 1.6e-07 m (seen
- *            1.3e-07), x_dot_next 2e-06 m/s (seen 3e-07), theta_next 2.2e-07 rad (seen 1.5e-07),
- *            theta_dot_next 6.7e-06 rad/s (seen 1e-06); assumed: sines and cosines of our own
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: x_next 1.5e-07 m (seen
+ *            1.3e-07), x_dot_next 9.1e-07 m/s (seen 3.6e-07), theta_next 2e-07 rad (seen 1.5e-07),
+ *            theta_dot_next 3.5e-06 rad/s (seen 1e-06); assumed: sines and cosines of our own
  *            within 0.79 ulp.
  * Cost: 29 add, 16 sub, 78 mul, 4 div, 4 sin, 4 cos.
- * On Cortex-M0+, -O2: 27832 to 30946 instructions, 1740 B of code, 232 B of stack.
- * On Cortex-M4F, -O2: 534 to 538 instructions, 1156 B of code, 164 B of stack.
+ * On Cortex-M0+, -O2: 27845 to 30959 instructions, 1756 B of code, 224 B of stack.
+ * On Cortex-M4F, -O2: 533 to 537 instructions, 1152 B of code, 164 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */

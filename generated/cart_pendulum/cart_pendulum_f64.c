@@ -277,13 +277,13 @@ void cart_pendulum_state_rate_f64(const cart_pendulum_constants_f64 *constants, 
     const double t13 = t8 * t9;
     const double t14 = constants->M_plus_m - t13;
     const double t15 = t12 / t14;
+    *x_dot_rate = t15;
     const double t16 = t8 * t15;
     const double t17 = t10 - t16;
     const double t18 = t17 * constants->k1;
-    *x_rate = x_dot;
-    *x_dot_rate = t15;
-    *theta_rate = theta_dot;
     *theta_dot_rate = t18;
+    *x_rate = x_dot;
+    *theta_rate = theta_dot;
 }
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. */
@@ -298,6 +298,7 @@ void cart_pendulum_state_rate_jacobian_f64(const cart_pendulum_constants_f64 *co
     const double t3 = t1 * t2;
     const double t4 = constants->M_plus_m - t3;
     const double t5 = 1.0 / t4;
+    jacobian[8] = t5;
     const double t6 = x_dot * constants->minus_b;
     const double t7 = F + t6;
     const double t8 = t0_both.sine;
@@ -309,12 +310,16 @@ void cart_pendulum_state_rate_jacobian_f64(const cart_pendulum_constants_f64 *co
     const double t14 = t12 * t13;
     const double t15 = t11 - t14;
     const double t16 = t5 * t15;
+    *x_dot_rate = t16;
     const double t17 = t1 * t16;
     const double t18 = t17 + t9;
     const double t19 = t18 * constants->k1;
+    *theta_dot_rate = t19;
     const double t20 = t5 * constants->minus_b;
+    jacobian[1] = t20;
     const double t21 = t1 * t5;
     const double t22 = t21 * constants->k2;
+    jacobian[2] = t22;
     const double t23 = t0 * constants->m_l_g;
     const double t24 = t2 * t23;
     const double t25 = t8 * t8;
@@ -330,31 +335,26 @@ void cart_pendulum_state_rate_jacobian_f64(const cart_pendulum_constants_f64 *co
     const double t35 = t32 - t34;
     const double t36 = t31 * t35;
     const double t37 = t30 - t36;
+    jacobian[3] = t37;
     const double t38 = t1 * t37;
     const double t39 = t23 + t38;
     const double t40 = t16 * t12;
     const double t41 = t39 - t40;
     const double t42 = t41 * constants->k1;
+    jacobian[4] = t42;
     const double t43 = theta_dot * t8;
     const double t44 = t5 * t43;
     const double t45 = t44 * constants->twice_m_l;
+    jacobian[5] = t45;
     const double t46 = t21 * t43;
     const double t47 = t46 * constants->k4;
-    const double t48 = t21 * constants->k1;
-    *x_rate = x_dot;
-    *x_dot_rate = t16;
-    *theta_rate = theta_dot;
-    *theta_dot_rate = t19;
-    jacobian[0] = 1.0;
-    jacobian[1] = t20;
-    jacobian[2] = t22;
-    jacobian[3] = t37;
-    jacobian[4] = t42;
-    jacobian[5] = t45;
-    jacobian[6] = 1.0;
     jacobian[7] = t47;
-    jacobian[8] = t5;
+    const double t48 = t21 * constants->k1;
     jacobian[9] = t48;
+    *x_rate = x_dot;
+    *theta_rate = theta_dot;
+    jacobian[0] = 1.0;
+    jacobian[6] = 1.0;
 }
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. Dense. */
@@ -362,19 +362,80 @@ void cart_pendulum_state_rate_jacobian_dense_f64(const cart_pendulum_constants_f
     double x_dot, double theta, double theta_dot, double F, double *x_rate, double *x_dot_rate,
     double *theta_rate, double *theta_dot_rate, double jacobian[20])
 {
-    static const unsigned char places[10] = {
-        4, 5, 7, 9, 11, 13, 14, 15, 17, 19
-    };
-    double nonzeros[10];
-    int entry;
-    cart_pendulum_state_rate_jacobian_f64(constants, x_dot, theta, theta_dot, F, x_rate, x_dot_rate, theta_rate,
-        theta_dot_rate, nonzeros);
-    for (entry = 0; entry < 20; ++entry) {
-        jacobian[entry] = 0.0;
-    }
-    for (entry = 0; entry < 10; ++entry) {
-        jacobian[places[entry]] = nonzeros[entry];
-    }
+    const cart_pendulum_sines_f64 t0_both = cart_pendulum_sine_cosine_f64(theta);
+    const double t0 = t0_both.cosine;
+    const double t1 = t0 * constants->minus_m_l;
+    const double t2 = t1 * constants->pivot;
+    const double t3 = t1 * t2;
+    const double t4 = constants->M_plus_m - t3;
+    const double t5 = 1.0 / t4;
+    jacobian[17] = t5;
+    const double t6 = x_dot * constants->minus_b;
+    const double t7 = F + t6;
+    const double t8 = t0_both.sine;
+    const double t9 = t8 * constants->m_l_g;
+    const double t10 = t2 * t9;
+    const double t11 = t7 + t10;
+    const double t12 = t8 * constants->minus_m_l;
+    const double t13 = theta_dot * theta_dot;
+    const double t14 = t12 * t13;
+    const double t15 = t11 - t14;
+    const double t16 = t5 * t15;
+    *x_dot_rate = t16;
+    const double t17 = t1 * t16;
+    const double t18 = t17 + t9;
+    const double t19 = t18 * constants->k1;
+    *theta_dot_rate = t19;
+    const double t20 = t5 * constants->minus_b;
+    jacobian[5] = t20;
+    const double t21 = t1 * t5;
+    const double t22 = t21 * constants->k2;
+    jacobian[7] = t22;
+    const double t23 = t0 * constants->m_l_g;
+    const double t24 = t2 * t23;
+    const double t25 = t8 * t8;
+    const double t26 = t25 * constants->k3;
+    const double t27 = t24 + t26;
+    const double t28 = t1 * t13;
+    const double t29 = t27 - t28;
+    const double t30 = t5 * t29;
+    const double t31 = t5 * t16;
+    const double t32 = t2 * t12;
+    const double t33 = t1 * t8;
+    const double t34 = t33 * constants->m_l_pivot;
+    const double t35 = t32 - t34;
+    const double t36 = t31 * t35;
+    const double t37 = t30 - t36;
+    jacobian[9] = t37;
+    const double t38 = t1 * t37;
+    const double t39 = t23 + t38;
+    const double t40 = t16 * t12;
+    const double t41 = t39 - t40;
+    const double t42 = t41 * constants->k1;
+    jacobian[11] = t42;
+    const double t43 = theta_dot * t8;
+    const double t44 = t5 * t43;
+    const double t45 = t44 * constants->twice_m_l;
+    jacobian[13] = t45;
+    const double t46 = t21 * t43;
+    const double t47 = t46 * constants->k4;
+    jacobian[15] = t47;
+    const double t48 = t21 * constants->k1;
+    jacobian[19] = t48;
+    *x_rate = x_dot;
+    *theta_rate = theta_dot;
+    jacobian[0] = 0.0;
+    jacobian[1] = 0.0;
+    jacobian[2] = 0.0;
+    jacobian[3] = 0.0;
+    jacobian[4] = 1.0;
+    jacobian[6] = 0.0;
+    jacobian[8] = 0.0;
+    jacobian[10] = 0.0;
+    jacobian[12] = 0.0;
+    jacobian[14] = 1.0;
+    jacobian[16] = 0.0;
+    jacobian[18] = 0.0;
 }
 
 /* Mass, damping and stiffness matrices of small motion. */
@@ -553,11 +614,6 @@ void cart_pendulum_step_rk4_f64(const cart_pendulum_constants_f64 *constants, do
     const double t118 = t18 + t117;
     const double t81 = t74 * 2.0;
     const double t84 = x_dot + t81;
-    const double t92 = t84 * constants->b;
-    const double t103 = t84 * t0;
-    const double t114 = t113 + t103;
-    const double t115 = t114 * 0.3333333333333333;
-    const double t131 = x + t115;
     const double t75 = t56 * t0;
     const double t121 = t48 + t75;
     const double t122 = t121 * 2.0;
@@ -575,6 +631,12 @@ void cart_pendulum_step_rk4_f64(const cart_pendulum_constants_f64 *constants, do
     const double t101 = constants->M_plus_m - t100;
     const double t97 = t88 * constants->m_l_g;
     const double t98 = t96 * t97;
+    const double t92 = t84 * constants->b;
+    const double t103 = t84 * t0;
+    const double t114 = t113 + t103;
+    const double t115 = t114 * 0.3333333333333333;
+    const double t131 = x + t115;
+    *x_next = t131;
     const double t87 = t86 * t86;
     const double t89 = t87 * t88;
     const double t90 = t89 * constants->m_l;
@@ -588,16 +650,15 @@ void cart_pendulum_step_rk4_f64(const cart_pendulum_constants_f64 *constants, do
     const double t129 = t128 + t110;
     const double t130 = t129 * 0.3333333333333333;
     const double t134 = theta_dot + t130;
+    *theta_dot_next = t134;
     const double t104 = t102 * t0;
     const double t119 = t118 + t104;
-    const double t120 = t119 * 0.3333333333333333;
-    const double t132 = x_dot + t120;
     const double t105 = t86 * t0;
     const double t124 = t123 + t105;
     const double t125 = t124 * 0.3333333333333333;
     const double t133 = theta + t125;
-    *x_next = t131;
-    *x_dot_next = t132;
     *theta_next = t133;
-    *theta_dot_next = t134;
+    const double t120 = t119 * 0.3333333333333333;
+    const double t132 = x_dot + t120;
+    *x_dot_next = t132;
 }

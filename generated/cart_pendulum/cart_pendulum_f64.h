@@ -21,11 +21,11 @@
  *     double x_rate, x_dot_rate, theta_rate, theta_dot_rate;
  *     cart_pendulum_state_rate_f64(&constants, 0.0, 0.0, 0.0, 0.0, &x_rate, &x_dot_rate, &theta_rate, &theta_dot_rate);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 8a3d4af1ab198dd7.
+ * Body of these files: sha256 d81dc66f989d1167.
  */
 #ifndef CART_PENDULUM_F64_H
 #define CART_PENDULUM_F64_H
@@ -80,7 +80,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 25 operations on pairs.
- * On Cortex-M0+, -O2: 119274 to 126514 instructions, 3444 B of code, 1160 B of stack.
+ * On Cortex-M0+, -O2: 119274 to 126515 instructions, 3444 B of code, 1160 B of stack.
  */
 int cart_pendulum_setup_f64(double M, double m, double l, double I, double b, double g,
     cart_pendulum_constants_f64 *constants);
@@ -108,8 +108,8 @@ int cart_pendulum_setup_f64(double M, double m, double l, double I, double b, do
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: x_rate 0 m/s (seen 0),
- *            x_dot_rate 6.6e-14 m/s^2 (seen 1.6e-14), theta_rate 0 rad/s (seen 0), theta_dot_rate
- *            2.8e-13 rad/s^2 (seen 8.2e-14); assumed: sines and cosines of our own within 0.79
+ *            x_dot_rate 3.7e-14 m/s^2 (seen 1.7e-14), theta_rate 0 rad/s (seen 0), theta_dot_rate
+ *            1.7e-13 rad/s^2 (seen 9.5e-14); assumed: sines and cosines of our own within 0.79
  *            ulp.
  * Cost: 1 add, 4 sub, 11 mul, 1 div, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 14226 to 16006 instructions, 1216 B of code, 216 B of stack.
@@ -140,11 +140,11 @@ void cart_pendulum_state_rate_f64(const cart_pendulum_constants_f64 *constants, 
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: x_rate 0 m/s (seen 0),
- *            x_dot_rate 6.9e-14 m/s^2 (seen 1.8e-14), theta_rate 0 rad/s (seen 0), theta_dot_rate
- *            2.9e-13 rad/s^2 (seen 8.2e-14), jacobian 1.1e-12 (seen 1.1e-13); assumed: sines and
+ *            x_dot_rate 5.5e-14 m/s^2 (seen 1.8e-14), theta_rate 0 rad/s (seen 0), theta_dot_rate
+ *            2.7e-13 rad/s^2 (seen 8.5e-14), jacobian 3.2e-13 (seen 1.1e-13); assumed: sines and
  *            cosines of our own within 0.79 ulp.
  * Cost: 5 add, 6 sub, 35 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 22255 to 24107 instructions, 1760 B of code, 296 B of stack.
+ * On Cortex-M0+, -O2: 22238 to 24090 instructions, 1724 B of code, 264 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -153,7 +153,7 @@ void cart_pendulum_state_rate_jacobian_f64(const cart_pendulum_constants_f64 *co
     double *theta_rate, double *theta_dot_rate, double jacobian[10]);
 
 /* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 22549 to 24369 instructions, 1856 B of code, 10 B of tables, 448 B of stack.
+ * On Cortex-M0+, -O2: 22303 to 24123 instructions, 1736 B of code, 264 B of stack.
  */
 void cart_pendulum_state_rate_jacobian_dense_f64(const cart_pendulum_constants_f64 *constants,
     double x_dot, double theta, double theta_dot, double F, double *x_rate, double *x_dot_rate,
@@ -210,7 +210,7 @@ void cart_pendulum_linearised_f64(const cart_pendulum_constants_f64 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 5.2e-15 J (seen
  *            4.1e-15); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 7 mul, 1 cos.
- * On Cortex-M0+, -O2: 12010 to 13772 instructions, 1084 B of code, 184 B of stack.
+ * On Cortex-M0+, -O2: 12009 to 13771 instructions, 1084 B of code, 184 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass,
  *            rate_seen_from_N, rigid.
  */
@@ -237,10 +237,10 @@ void cart_pendulum_energy_f64(const cart_pendulum_constants_f64 *constants, doub
  * In this scene: rail = c/Delta
  * Error: median 0.85, largest 8.8 u of the largest product or sum in the equation (of rail; 200000
  *            samples of the ranges, 65536 searched from the worst); at 120 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: rail 4.1e-14 N (seen 1.3e-14);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: rail 4.2e-14 N (seen 1.5e-14);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 5 add, 3 sub, 18 mul, 1 div, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 16586 to 18465 instructions, 1384 B of code, 232 B of stack.
+ * On Cortex-M0+, -O2: 16586 to 18466 instructions, 1384 B of code, 232 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -267,12 +267,12 @@ void cart_pendulum_rail_f64(const cart_pendulum_constants_f64 *constants, double
  * Error: median 0.36, largest 5.3e+02 u of the largest component, before or after, or of the
  *            largest product of what the step adds, by rounding alone (of theta_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: x_next 2.9e-16 m (seen
- *            2.4e-16), x_dot_next 3.6e-15 m/s (seen 6.3e-16), theta_next 4e-16 rad (seen 2.7e-16),
- *            theta_dot_next 1.3e-14 rad/s (seen 1.8e-15); assumed: sines and cosines of our own
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: x_next 2.7e-16 m (seen
+ *            2.4e-16), x_dot_next 1.7e-15 m/s (seen 6e-16), theta_next 3.6e-16 rad (seen 2.8e-16),
+ *            theta_dot_next 6.4e-15 rad/s (seen 1.9e-15); assumed: sines and cosines of our own
  *            within 0.79 ulp.
  * Cost: 29 add, 16 sub, 78 mul, 4 div, 4 sin, 4 cos.
- * On Cortex-M0+, -O2: 68936 to 75888 instructions, 2740 B of code, 408 B of stack.
+ * On Cortex-M0+, -O2: 68935 to 75887 instructions, 2740 B of code, 392 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */

@@ -332,16 +332,16 @@ void centrifuge_gondola_F_f32(const centrifuge_gondola_constants_f32 *constants,
     const float t70 = t69 * constants->m;
     const float t71 = t66 * t70;
     const float t72 = t65 - t71;
+    F[0] = t72;
     const float t73 = a_y * constants->m;
     const float t74 = t63 * t66;
     const float t75 = t73 + t74;
     const float t76 = t1 * t70;
     const float t77 = t75 + t76;
+    F[1] = t77;
     const float t78 = t53 * t61;
     const float t79 = t60 * t54;
     const float t80 = t78 - t79;
-    F[0] = t72;
-    F[1] = t77;
     F[2] = t80;
 }
 
@@ -442,13 +442,13 @@ void centrifuge_gondola_M_f32(const centrifuge_gondola_constants_f32 *constants,
     const float t86 = t84 + t85;
     const float t87 = t35 * t86;
     const float t88 = t83 - t87;
+    M[0] = t88;
     const float t89 = t0 * t86;
     const float t90 = t82 * t35;
     const float t91 = t89 + t90;
+    M[1] = t91;
     const float t92 = t1 * t80;
     const float t93 = t46 * t2;
     const float t94 = t92 - t93;
-    M[0] = t88;
-    M[1] = t91;
     M[2] = t94;
 }

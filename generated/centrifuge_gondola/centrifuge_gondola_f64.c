@@ -331,16 +331,16 @@ void centrifuge_gondola_F_f64(const centrifuge_gondola_constants_f64 *constants,
     const double t70 = t69 * constants->m;
     const double t71 = t66 * t70;
     const double t72 = t65 - t71;
+    F[0] = t72;
     const double t73 = a_y * constants->m;
     const double t74 = t63 * t66;
     const double t75 = t73 + t74;
     const double t76 = t1 * t70;
     const double t77 = t75 + t76;
+    F[1] = t77;
     const double t78 = t53 * t61;
     const double t79 = t60 * t54;
     const double t80 = t78 - t79;
-    F[0] = t72;
-    F[1] = t77;
     F[2] = t80;
 }
 
@@ -441,13 +441,13 @@ void centrifuge_gondola_M_f64(const centrifuge_gondola_constants_f64 *constants,
     const double t86 = t84 + t85;
     const double t87 = t35 * t86;
     const double t88 = t83 - t87;
+    M[0] = t88;
     const double t89 = t0 * t86;
     const double t90 = t82 * t35;
     const double t91 = t89 + t90;
+    M[1] = t91;
     const double t92 = t1 * t80;
     const double t93 = t46 * t2;
     const double t94 = t92 - t93;
-    M[0] = t88;
-    M[1] = t91;
     M[2] = t94;
 }

@@ -19,11 +19,11 @@
  *     double F[3];
  *     centrifuge_gondola_F_f64(&constants, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, F);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 2c92d9e3a914ad3e.
+ * Body of these files: sha256 f01e1ae0c898c2aa.
  */
 #ifndef CENTRIFUGE_GONDOLA_F64_H
 #define CENTRIFUGE_GONDOLA_F64_H
@@ -86,10 +86,10 @@ int centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.64, largest 20 u of the largest product or sum in the equation (of F; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8342 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: F 1.3e-11 N (seen 5.4e-12);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: F 1.1e-11 N (seen 6e-12);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 11 add, 16 sub, 48 mul, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 46893 to 51953 instructions, 2120 B of code, 360 B of stack.
+ * On Cortex-M0+, -O2: 46902 to 51962 instructions, 2136 B of code, 368 B of stack.
  * Rests on: axes_are_orthonormal, composed_turns, constant_mass, further_axes_are_right_handed,
  *            newton, rate_seen_from_N, third_law.
  */
@@ -117,7 +117,7 @@ void centrifuge_gondola_F_f64(const centrifuge_gondola_constants_f64 *constants,
  * Error: median 0.97, largest 17 u of the largest product or sum in the equation (of M; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8342 hard samples 18 u (of
  *            M, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: M 5.7e-11 N m (seen 3.6e-12);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: M 2.2e-11 N m (seen 4e-12);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 15 add, 18 sub, 56 mul, 3 sin, 3 cos.
  * On Cortex-M0+, -O2: 50213 to 55244 instructions, 2340 B of code, 392 B of stack.

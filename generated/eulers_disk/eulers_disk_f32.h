@@ -17,8 +17,8 @@
  *     float steady;
  *     eulers_disk_steady_f32(&constants, 105.0F, &steady);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
  * Body of these files: sha256 2ac93533c57175c4.
@@ -102,7 +102,7 @@ void eulers_disk_spin_rel_f32(const eulers_disk_constants_f32 *constants, float 
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: tipping 7.5e-09 N m (seen
- *            7.4e-09).
+ *            7.5e-09).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 2 to 3 instructions, 8 B of code, 0 B of stack.
  * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.

@@ -14,11 +14,11 @@
  *     float omega_dot[3];
  *     free_body_acceleration_f32(&constants, omega, moment, omega_dot);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 1fafc28e0ad7b8f0.
+ * Body of these files: sha256 42d78f8b39695ac0.
  */
 #ifndef FREE_BODY_F32_H
 #define FREE_BODY_F32_H
@@ -107,11 +107,11 @@ int free_body_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_
  * Error: median 0.24, largest 12 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 7.2e-05 rad/s^2 (seen
- *            2.7e-05).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 5e-05 rad/s^2 (seen
+ *            2.5e-05).
  * Cost: 13 add, 4 sub, 23 mul.
- * On Cortex-M0+, -O2: 3973 to 4231 instructions, 444 B of code, 88 B of stack.
- * On Cortex-M4F, -O2: 61 instructions, 244 B of code, 0 B of stack.
+ * On Cortex-M0+, -O2: 3972 to 4230 instructions, 428 B of code, 88 B of stack.
+ * On Cortex-M4F, -O2: 64 instructions, 256 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -128,11 +128,11 @@ void free_body_acceleration_f32(const free_body_constants_f32 *constants, const 
  * Error: median 0.28, largest 7.8 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 5e-05 rad/s^2 (seen
- *            1.7e-05), jacobian 2.1e-06 (seen 1.4e-06).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 4.4e-05 rad/s^2 (seen
+ *            2e-05), jacobian 2.2e-06 (seen 1.7e-06).
  * Cost: 21 add, 12 sub, 48 mul.
- * On Cortex-M0+, -O2: 8218 to 8604 instructions, 968 B of code, 152 B of stack.
- * On Cortex-M4F, -O2: 146 instructions, 544 B of code, 48 B of stack.
+ * On Cortex-M0+, -O2: 8176 to 8554 instructions, 872 B of code, 104 B of stack.
+ * On Cortex-M4F, -O2: 156 instructions, 584 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -140,8 +140,8 @@ void free_body_acceleration_jacobian_f32(const free_body_constants_f32 *constant
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[18]);
 
 /* The same, the whole matrix: 18 entries.
- * On Cortex-M0+, -O2: 8374 to 8858 instructions, 1020 B of code, 18 B of tables, 248 B of stack.
- * On Cortex-M4F, -O2: 334 instructions, 604 B of code, 18 B of tables, 144 B of stack.
+ * On Cortex-M0+, -O2: 8131 to 8600 instructions, 888 B of code, 120 B of stack.
+ * On Cortex-M4F, -O2: 157 instructions, 588 B of code, 0 B of stack.
  */
 void free_body_acceleration_jacobian_dense_f32(const free_body_constants_f32 *constants,
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[18]);
@@ -164,11 +164,11 @@ void free_body_acceleration_jacobian_dense_f32(const free_body_constants_f32 *co
  * Error: median 0.44, largest 9.6 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples
  *            9.7 u (of moment, turned, ill-conditioned).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 8.3e-05 N m (seen
- *            4.4e-05).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 6.9e-05 N m (seen
+ *            4.6e-05).
  * Cost: 7 add, 10 sub, 23 mul.
- * On Cortex-M0+, -O2: 3997 to 4188 instructions, 468 B of code, 104 B of stack.
- * On Cortex-M4F, -O2: 58 instructions, 232 B of code, 0 B of stack.
+ * On Cortex-M0+, -O2: 3987 to 4191 instructions, 460 B of code, 96 B of stack.
+ * On Cortex-M4F, -O2: 63 instructions, 252 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -187,10 +187,10 @@ void free_body_moment_f32(const free_body_constants_f32 *constants, const float 
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8348 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 3.1e-06 kg
- *            m^2/s (seen 2.9e-06).
+ *            m^2/s (seen 3e-06).
  * Cost: 6 sub, 9 mul.
- * On Cortex-M0+, -O2: 1530 to 1677 instructions, 204 B of code, 80 B of stack.
- * On Cortex-M4F, -O2: 28 instructions, 112 B of code, 0 B of stack.
+ * On Cortex-M0+, -O2: 1513 to 1660 instructions, 168 B of code, 64 B of stack.
+ * On Cortex-M4F, -O2: 31 instructions, 124 B of code, 0 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_angular_momentum_f32(const free_body_constants_f32 *constants, const float omega[3],
@@ -221,10 +221,10 @@ void free_body_angular_momentum_f32(const free_body_constants_f32 *constants, co
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples
  *            8.2 u (of rate_absolute, turned, ill-conditioned).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 1.3e-05 N m (seen
- *            1.2e-05), rate_absolute 7e-05 N m (seen 3.5e-05).
+ *            1.2e-05), rate_absolute 6.1e-05 N m (seen 3e-05).
  * Cost: 7 add, 10 sub, 23 mul.
- * On Cortex-M0+, -O2: 3973 to 4250 instructions, 460 B of code, 88 B of stack.
- * On Cortex-M4F, -O2: 64 instructions, 252 B of code, 8 B of stack.
+ * On Cortex-M0+, -O2: 3963 to 4240 instructions, 440 B of code, 80 B of stack.
+ * On Cortex-M4F, -O2: 70 instructions, 276 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
  */
 void free_body_angular_momentum_rate_f32(const free_body_constants_f32 *constants,
@@ -241,7 +241,7 @@ void free_body_angular_momentum_rate_f32(const free_body_constants_f32 *constant
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8348
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 7.8e-05 J (seen
- *            5.2e-05).
+ *            5.6e-05).
  * Cost: 2 add, 3 sub, 9 mul.
  * On Cortex-M0+, -O2: 1432 to 1543 instructions, 164 B of code, 64 B of stack.
  * On Cortex-M4F, -O2: 25 instructions, 100 B of code, 0 B of stack.

@@ -14,11 +14,11 @@
  *     double omega_dot[3];
  *     free_body_acceleration_f64(&constants, omega, moment, omega_dot);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 e4e14c0e8dbfae8e.
+ * Body of these files: sha256 140ffa7bf8009107.
  */
 #ifndef FREE_BODY_F64_H
 #define FREE_BODY_F64_H
@@ -106,10 +106,10 @@ int free_body_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doub
  * Error: median 0.24, largest 7.3 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples
  *            8.1 u (of omega_dot, turned, ill-conditioned).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 1.4e-13 rad/s^2 (seen
- *            4.8e-14).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 9.2e-14 rad/s^2 (seen
+ *            4.3e-14).
  * Cost: 13 add, 4 sub, 23 mul.
- * On Cortex-M0+, -O2: 9156 to 9511 instructions, 692 B of code, 152 B of stack.
+ * On Cortex-M0+, -O2: 9157 to 9512 instructions, 676 B of code, 152 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -126,10 +126,10 @@ void free_body_acceleration_f64(const free_body_constants_f64 *constants, const 
  * Error: median 0.28, largest 6.6 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 9.2e-14 rad/s^2 (seen
- *            3.2e-14), jacobian 3.9e-15 (seen 3.1e-15).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 8.1e-14 rad/s^2 (seen
+ *            4.5e-14), jacobian 4.1e-15 (seen 3.4e-15).
  * Cost: 21 add, 12 sub, 48 mul.
- * On Cortex-M0+, -O2: 19076 to 19592 instructions, 1608 B of code, 272 B of stack.
+ * On Cortex-M0+, -O2: 19052 to 19555 instructions, 1552 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -137,7 +137,7 @@ void free_body_acceleration_jacobian_f64(const free_body_constants_f64 *constant
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18]);
 
 /* The same, the whole matrix: 18 entries.
- * On Cortex-M0+, -O2: 19323 to 19886 instructions, 1664 B of code, 18 B of tables, 440 B of stack.
+ * On Cortex-M0+, -O2: 19033 to 19613 instructions, 1568 B of code, 232 B of stack.
  */
 void free_body_acceleration_jacobian_dense_f64(const free_body_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18]);
@@ -160,10 +160,10 @@ void free_body_acceleration_jacobian_dense_f64(const free_body_constants_f64 *co
  * Error: median 0.44, largest 11 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 1.6e-13 N m (seen
- *            8.2e-14).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 1.3e-13 N m (seen
+ *            9e-14).
  * Cost: 7 add, 10 sub, 23 mul.
- * On Cortex-M0+, -O2: 9223 to 9527 instructions, 716 B of code, 192 B of stack.
+ * On Cortex-M0+, -O2: 9227 to 9535 instructions, 712 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -182,9 +182,9 @@ void free_body_moment_f64(const free_body_constants_f64 *constants, const double
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8348 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 5.8e-15 kg
- *            m^2/s (seen 5.5e-15).
+ *            m^2/s (seen 5.6e-15).
  * Cost: 6 sub, 9 mul.
- * On Cortex-M0+, -O2: 3554 to 3776 instructions, 312 B of code, 144 B of stack.
+ * On Cortex-M0+, -O2: 3544 to 3766 instructions, 292 B of code, 112 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_angular_momentum_f64(const free_body_constants_f64 *constants, const double omega[3],
@@ -215,9 +215,9 @@ void free_body_angular_momentum_f64(const free_body_constants_f64 *constants, co
  *            rate_absolute; 200000 samples of the ranges, 65536 searched from the worst); at 8348
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 2.4e-14 N m (seen
- *            2.3e-14), rate_absolute 1.3e-13 N m (seen 6.9e-14).
+ *            2.3e-14), rate_absolute 1.2e-13 N m (seen 7.3e-14).
  * Cost: 7 add, 10 sub, 23 mul.
- * On Cortex-M0+, -O2: 9244 to 9650 instructions, 744 B of code, 176 B of stack.
+ * On Cortex-M0+, -O2: 9229 to 9635 instructions, 712 B of code, 152 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
  */
 void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constants,
@@ -237,7 +237,7 @@ void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constant
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.5e-13 J (seen
  *            1e-13).
  * Cost: 2 add, 3 sub, 9 mul.
- * On Cortex-M0+, -O2: 3343 to 3493 instructions, 260 B of code, 112 B of stack.
+ * On Cortex-M0+, -O2: 3348 to 3498 instructions, 268 B of code, 120 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_kinetic_energy_f64(const free_body_constants_f64 *constants, const double omega[3],

@@ -188,20 +188,26 @@ int free_body_principal_setup_f32(float I_xx, float I_yy, float I_zz,
 void free_body_principal_acceleration_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], const float moment[3], float omega_dot[3])
 {
-    const float t0 = omega[1] * omega[2];
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
+    const float moment_x_in = moment[0];
+    const float moment_y_in = moment[1];
+    const float moment_z_in = moment[2];
+    const float t0 = omega_y_in * omega_z_in;
     const float t1 = t0 * constants->I_yy_minus_I_zz;
-    const float t2 = moment[0] + t1;
+    const float t2 = moment_x_in + t1;
     const float t3 = t2 * constants->one_over_I_xx;
-    const float t4 = omega[2] * omega[0];
-    const float t5 = t4 * constants->I_xx_minus_I_zz;
-    const float t6 = moment[1] - t5;
-    const float t7 = t6 * constants->one_over_I_yy;
-    const float t8 = omega[1] * omega[0];
-    const float t9 = t8 * constants->I_xx_minus_I_yy;
-    const float t10 = moment[2] + t9;
-    const float t11 = t10 * constants->one_over_I_zz;
     omega_dot[0] = t3;
+    const float t4 = omega_z_in * omega_x_in;
+    const float t5 = t4 * constants->I_xx_minus_I_zz;
+    const float t6 = moment_y_in - t5;
+    const float t7 = t6 * constants->one_over_I_yy;
     omega_dot[1] = t7;
+    const float t8 = omega_y_in * omega_x_in;
+    const float t9 = t8 * constants->I_xx_minus_I_yy;
+    const float t10 = moment_z_in + t9;
+    const float t11 = t10 * constants->one_over_I_zz;
     omega_dot[2] = t11;
 }
 
@@ -209,29 +215,35 @@ void free_body_principal_acceleration_f32(const free_body_principal_constants_f3
 void free_body_principal_acceleration_jacobian_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[9])
 {
-    const float t0 = moment[0] * constants->one_over_I_xx;
-    const float t1 = omega[1] * constants->k1;
-    const float t2 = omega[2] * t1;
-    const float t3 = t0 + t2;
-    const float t4 = moment[1] * constants->one_over_I_yy;
-    const float t5 = omega[2] * constants->k2;
-    const float t6 = omega[0] * t5;
-    const float t7 = t4 + t6;
-    const float t8 = moment[2] * constants->one_over_I_zz;
-    const float t9 = omega[1] * constants->k3;
-    const float t10 = omega[0] * t9;
-    const float t11 = t8 + t10;
-    const float t12 = omega[2] * constants->k1;
-    const float t13 = omega[0] * constants->k3;
-    const float t14 = omega[0] * constants->k2;
-    omega_dot[0] = t3;
-    omega_dot[1] = t7;
-    omega_dot[2] = t11;
-    jacobian[0] = t5;
-    jacobian[1] = t9;
-    jacobian[2] = t12;
-    jacobian[3] = t13;
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
+    const float moment_x_in = moment[0];
+    const float moment_y_in = moment[1];
+    const float moment_z_in = moment[2];
+    const float t0 = moment_x_in * constants->one_over_I_xx;
+    const float t1 = omega_y_in * constants->k1;
     jacobian[4] = t1;
+    const float t2 = omega_z_in * t1;
+    const float t3 = t0 + t2;
+    omega_dot[0] = t3;
+    const float t4 = moment_y_in * constants->one_over_I_yy;
+    const float t5 = omega_z_in * constants->k2;
+    jacobian[0] = t5;
+    const float t6 = omega_x_in * t5;
+    const float t7 = t4 + t6;
+    omega_dot[1] = t7;
+    const float t8 = moment_z_in * constants->one_over_I_zz;
+    const float t9 = omega_y_in * constants->k3;
+    jacobian[1] = t9;
+    const float t10 = omega_x_in * t9;
+    const float t11 = t8 + t10;
+    omega_dot[2] = t11;
+    const float t12 = omega_z_in * constants->k1;
+    jacobian[2] = t12;
+    const float t13 = omega_x_in * constants->k3;
+    jacobian[3] = t13;
+    const float t14 = omega_x_in * constants->k2;
     jacobian[5] = t14;
     jacobian[6] = constants->one_over_I_xx;
     jacobian[7] = constants->one_over_I_yy;
@@ -242,38 +254,74 @@ void free_body_principal_acceleration_jacobian_f32(const free_body_principal_con
 void free_body_principal_acceleration_jacobian_dense_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[18])
 {
-    static const unsigned char places[9] = {
-        1, 2, 3, 5, 6, 7, 9, 13, 17
-    };
-    float nonzeros[9];
-    int entry;
-    free_body_principal_acceleration_jacobian_f32(constants, omega, moment, omega_dot, nonzeros);
-    for (entry = 0; entry < 18; ++entry) {
-        jacobian[entry] = 0.0F;
-    }
-    for (entry = 0; entry < 9; ++entry) {
-        jacobian[places[entry]] = nonzeros[entry];
-    }
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
+    const float moment_x_in = moment[0];
+    const float moment_y_in = moment[1];
+    const float moment_z_in = moment[2];
+    const float t0 = moment_x_in * constants->one_over_I_xx;
+    const float t1 = omega_y_in * constants->k1;
+    jacobian[6] = t1;
+    const float t2 = omega_z_in * t1;
+    const float t3 = t0 + t2;
+    omega_dot[0] = t3;
+    const float t4 = moment_y_in * constants->one_over_I_yy;
+    const float t5 = omega_z_in * constants->k2;
+    jacobian[1] = t5;
+    const float t6 = omega_x_in * t5;
+    const float t7 = t4 + t6;
+    omega_dot[1] = t7;
+    const float t8 = moment_z_in * constants->one_over_I_zz;
+    const float t9 = omega_y_in * constants->k3;
+    jacobian[2] = t9;
+    const float t10 = omega_x_in * t9;
+    const float t11 = t8 + t10;
+    omega_dot[2] = t11;
+    const float t12 = omega_z_in * constants->k1;
+    jacobian[3] = t12;
+    const float t13 = omega_x_in * constants->k3;
+    jacobian[5] = t13;
+    const float t14 = omega_x_in * constants->k2;
+    jacobian[7] = t14;
+    jacobian[0] = 0.0F;
+    jacobian[4] = 0.0F;
+    jacobian[8] = 0.0F;
+    jacobian[9] = constants->one_over_I_xx;
+    jacobian[10] = 0.0F;
+    jacobian[11] = 0.0F;
+    jacobian[12] = 0.0F;
+    jacobian[13] = constants->one_over_I_yy;
+    jacobian[14] = 0.0F;
+    jacobian[15] = 0.0F;
+    jacobian[16] = 0.0F;
+    jacobian[17] = constants->one_over_I_zz;
 }
 
 /* External moment that the motion needs (inverse dynamics). */
 void free_body_principal_moment_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], const float omega_dot[3], float moment[3])
 {
-    const float t0 = omega_dot[0] * constants->I_xx;
-    const float t1 = omega[1] * omega[2];
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
+    const float omega_dot_x_in = omega_dot[0];
+    const float omega_dot_y_in = omega_dot[1];
+    const float omega_dot_z_in = omega_dot[2];
+    const float t0 = omega_dot_x_in * constants->I_xx;
+    const float t1 = omega_y_in * omega_z_in;
     const float t2 = t1 * constants->I_yy_minus_I_zz;
     const float t3 = t0 - t2;
-    const float t4 = omega[2] * omega[0];
+    moment[0] = t3;
+    const float t4 = omega_z_in * omega_x_in;
     const float t5 = t4 * constants->I_xx_minus_I_zz;
-    const float t6 = omega_dot[1] * constants->I_yy;
+    const float t6 = omega_dot_y_in * constants->I_yy;
     const float t7 = t5 + t6;
-    const float t8 = omega_dot[2] * constants->I_zz;
-    const float t9 = omega[1] * omega[0];
+    moment[1] = t7;
+    const float t8 = omega_dot_z_in * constants->I_zz;
+    const float t9 = omega_y_in * omega_x_in;
     const float t10 = t9 * constants->I_xx_minus_I_yy;
     const float t11 = t8 - t10;
-    moment[0] = t3;
-    moment[1] = t7;
     moment[2] = t11;
 }
 
@@ -281,11 +329,14 @@ void free_body_principal_moment_f32(const free_body_principal_constants_f32 *con
 void free_body_principal_angular_momentum_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], float angular_momentum[3])
 {
-    const float t0 = omega[0] * constants->I_xx;
-    const float t1 = omega[1] * constants->I_yy;
-    const float t2 = omega[2] * constants->I_zz;
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
+    const float t0 = omega_x_in * constants->I_xx;
     angular_momentum[0] = t0;
+    const float t1 = omega_y_in * constants->I_yy;
     angular_momentum[1] = t1;
+    const float t2 = omega_z_in * constants->I_zz;
     angular_momentum[2] = t2;
 }
 
@@ -293,12 +344,15 @@ void free_body_principal_angular_momentum_f32(const free_body_principal_constant
 void free_body_principal_kinetic_energy_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], float *kinetic_energy)
 {
-    const float t0 = omega[0] * omega[0];
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
+    const float t0 = omega_x_in * omega_x_in;
     const float t1 = t0 * constants->half_I_xx;
-    const float t2 = omega[1] * omega[1];
+    const float t2 = omega_y_in * omega_y_in;
     const float t3 = t2 * constants->half_I_yy;
     const float t4 = t1 + t3;
-    const float t5 = omega[2] * omega[2];
+    const float t5 = omega_z_in * omega_z_in;
     const float t6 = t5 * constants->half_I_zz;
     const float t7 = t4 + t6;
     *kinetic_energy = t7;

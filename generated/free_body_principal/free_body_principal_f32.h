@@ -15,11 +15,11 @@
  *     float omega_dot[3];
  *     free_body_principal_acceleration_f32(&constants, omega, moment, omega_dot);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 f60af9115798f696.
+ * Body of these files: sha256 ba7480356d1ad7cc.
  */
 #ifndef FREE_BODY_PRINCIPAL_F32_H
 #define FREE_BODY_PRINCIPAL_F32_H
@@ -78,7 +78,7 @@ int free_body_principal_setup_f32(float I_xx, float I_yy, float I_zz,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 1.7e-05 rad/s^2 (seen
  *            1.2e-05).
  * Cost: 2 add, 1 sub, 9 mul.
- * On Cortex-M0+, -O2: 1267 to 1407 instructions, 132 B of code, 64 B of stack.
+ * On Cortex-M0+, -O2: 1264 to 1404 instructions, 124 B of code, 64 B of stack.
  * On Cortex-M4F, -O2: 28 instructions, 112 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -97,10 +97,10 @@ void free_body_principal_acceleration_f32(const free_body_principal_constants_f3
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples
  *            3.3 u (of omega_dot, thin rod).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 1.2e-05 rad/s^2 (seen
- *            8.9e-06), jacobian 5.4e-07 (seen 5.4e-07).
+ *            9.7e-06), jacobian 5.4e-07 (seen 5.4e-07).
  * Cost: 3 add, 12 mul.
- * On Cortex-M0+, -O2: 1686 to 1797 instructions, 244 B of code, 96 B of stack.
- * On Cortex-M4F, -O2: 44 instructions, 160 B of code, 0 B of stack.
+ * On Cortex-M0+, -O2: 1674 to 1771 instructions, 208 B of code, 80 B of stack.
+ * On Cortex-M4F, -O2: 49 instructions, 180 B of code, 4 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -108,8 +108,8 @@ void free_body_principal_acceleration_jacobian_f32(const free_body_principal_con
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[9]);
 
 /* The same, the whole matrix: 18 entries.
- * On Cortex-M0+, -O2: 1860 to 1961 instructions, 296 B of code, 9 B of tables, 160 B of stack.
- * On Cortex-M4F, -O2: 178 instructions, 220 B of code, 9 B of tables, 76 B of stack.
+ * On Cortex-M0+, -O2: 1687 to 1796 instructions, 228 B of code, 80 B of stack.
+ * On Cortex-M4F, -O2: 59 instructions, 200 B of code, 4 B of stack.
  */
 void free_body_principal_acceleration_jacobian_dense_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[18]);
@@ -129,7 +129,7 @@ void free_body_principal_acceleration_jacobian_dense_f32(const free_body_princip
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 2.2e-05 N m (seen
  *            1.8e-05).
  * Cost: 1 add, 2 sub, 9 mul.
- * On Cortex-M0+, -O2: 1307 to 1432 instructions, 152 B of code, 72 B of stack.
+ * On Cortex-M0+, -O2: 1304 to 1429 instructions, 148 B of code, 72 B of stack.
  * On Cortex-M4F, -O2: 28 instructions, 112 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -151,7 +151,7 @@ void free_body_principal_moment_f32(const free_body_principal_constants_f32 *con
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 9.6e-07 kg
  *            m^2/s (seen 9.5e-07).
  * Cost: 3 mul.
- * On Cortex-M0+, -O2: 371 to 380 instructions, 48 B of code, 56 B of stack.
+ * On Cortex-M0+, -O2: 370 to 379 instructions, 44 B of code, 56 B of stack.
  * On Cortex-M4F, -O2: 13 instructions, 52 B of code, 0 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
@@ -168,7 +168,7 @@ void free_body_principal_angular_momentum_f32(const free_body_principal_constant
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 5.7e-05 J (seen
- *            3.5e-05).
+ *            3.7e-05).
  * Cost: 2 add, 6 mul.
  * On Cortex-M0+, -O2: 845 to 889 instructions, 88 B of code, 56 B of stack.
  * On Cortex-M4F, -O2: 16 instructions, 64 B of code, 0 B of stack.

@@ -188,20 +188,26 @@ int free_body_principal_setup_f64(double I_xx, double I_yy, double I_zz,
 void free_body_principal_acceleration_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3])
 {
-    const double t0 = omega[1] * omega[2];
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
+    const double moment_x_in = moment[0];
+    const double moment_y_in = moment[1];
+    const double moment_z_in = moment[2];
+    const double t0 = omega_y_in * omega_z_in;
     const double t1 = t0 * constants->I_yy_minus_I_zz;
-    const double t2 = moment[0] + t1;
+    const double t2 = moment_x_in + t1;
     const double t3 = t2 * constants->one_over_I_xx;
-    const double t4 = omega[2] * omega[0];
-    const double t5 = t4 * constants->I_xx_minus_I_zz;
-    const double t6 = moment[1] - t5;
-    const double t7 = t6 * constants->one_over_I_yy;
-    const double t8 = omega[1] * omega[0];
-    const double t9 = t8 * constants->I_xx_minus_I_yy;
-    const double t10 = moment[2] + t9;
-    const double t11 = t10 * constants->one_over_I_zz;
     omega_dot[0] = t3;
+    const double t4 = omega_z_in * omega_x_in;
+    const double t5 = t4 * constants->I_xx_minus_I_zz;
+    const double t6 = moment_y_in - t5;
+    const double t7 = t6 * constants->one_over_I_yy;
     omega_dot[1] = t7;
+    const double t8 = omega_y_in * omega_x_in;
+    const double t9 = t8 * constants->I_xx_minus_I_yy;
+    const double t10 = moment_z_in + t9;
+    const double t11 = t10 * constants->one_over_I_zz;
     omega_dot[2] = t11;
 }
 
@@ -209,29 +215,35 @@ void free_body_principal_acceleration_f64(const free_body_principal_constants_f6
 void free_body_principal_acceleration_jacobian_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[9])
 {
-    const double t0 = moment[0] * constants->one_over_I_xx;
-    const double t1 = omega[1] * constants->k1;
-    const double t2 = omega[2] * t1;
-    const double t3 = t0 + t2;
-    const double t4 = moment[1] * constants->one_over_I_yy;
-    const double t5 = omega[2] * constants->k2;
-    const double t6 = omega[0] * t5;
-    const double t7 = t4 + t6;
-    const double t8 = moment[2] * constants->one_over_I_zz;
-    const double t9 = omega[1] * constants->k3;
-    const double t10 = omega[0] * t9;
-    const double t11 = t8 + t10;
-    const double t12 = omega[2] * constants->k1;
-    const double t13 = omega[0] * constants->k3;
-    const double t14 = omega[0] * constants->k2;
-    omega_dot[0] = t3;
-    omega_dot[1] = t7;
-    omega_dot[2] = t11;
-    jacobian[0] = t5;
-    jacobian[1] = t9;
-    jacobian[2] = t12;
-    jacobian[3] = t13;
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
+    const double moment_x_in = moment[0];
+    const double moment_y_in = moment[1];
+    const double moment_z_in = moment[2];
+    const double t0 = moment_x_in * constants->one_over_I_xx;
+    const double t1 = omega_y_in * constants->k1;
     jacobian[4] = t1;
+    const double t2 = omega_z_in * t1;
+    const double t3 = t0 + t2;
+    omega_dot[0] = t3;
+    const double t4 = moment_y_in * constants->one_over_I_yy;
+    const double t5 = omega_z_in * constants->k2;
+    jacobian[0] = t5;
+    const double t6 = omega_x_in * t5;
+    const double t7 = t4 + t6;
+    omega_dot[1] = t7;
+    const double t8 = moment_z_in * constants->one_over_I_zz;
+    const double t9 = omega_y_in * constants->k3;
+    jacobian[1] = t9;
+    const double t10 = omega_x_in * t9;
+    const double t11 = t8 + t10;
+    omega_dot[2] = t11;
+    const double t12 = omega_z_in * constants->k1;
+    jacobian[2] = t12;
+    const double t13 = omega_x_in * constants->k3;
+    jacobian[3] = t13;
+    const double t14 = omega_x_in * constants->k2;
     jacobian[5] = t14;
     jacobian[6] = constants->one_over_I_xx;
     jacobian[7] = constants->one_over_I_yy;
@@ -242,38 +254,74 @@ void free_body_principal_acceleration_jacobian_f64(const free_body_principal_con
 void free_body_principal_acceleration_jacobian_dense_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18])
 {
-    static const unsigned char places[9] = {
-        1, 2, 3, 5, 6, 7, 9, 13, 17
-    };
-    double nonzeros[9];
-    int entry;
-    free_body_principal_acceleration_jacobian_f64(constants, omega, moment, omega_dot, nonzeros);
-    for (entry = 0; entry < 18; ++entry) {
-        jacobian[entry] = 0.0;
-    }
-    for (entry = 0; entry < 9; ++entry) {
-        jacobian[places[entry]] = nonzeros[entry];
-    }
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
+    const double moment_x_in = moment[0];
+    const double moment_y_in = moment[1];
+    const double moment_z_in = moment[2];
+    const double t0 = moment_x_in * constants->one_over_I_xx;
+    const double t1 = omega_y_in * constants->k1;
+    jacobian[6] = t1;
+    const double t2 = omega_z_in * t1;
+    const double t3 = t0 + t2;
+    omega_dot[0] = t3;
+    const double t4 = moment_y_in * constants->one_over_I_yy;
+    const double t5 = omega_z_in * constants->k2;
+    jacobian[1] = t5;
+    const double t6 = omega_x_in * t5;
+    const double t7 = t4 + t6;
+    omega_dot[1] = t7;
+    const double t8 = moment_z_in * constants->one_over_I_zz;
+    const double t9 = omega_y_in * constants->k3;
+    jacobian[2] = t9;
+    const double t10 = omega_x_in * t9;
+    const double t11 = t8 + t10;
+    omega_dot[2] = t11;
+    const double t12 = omega_z_in * constants->k1;
+    jacobian[3] = t12;
+    const double t13 = omega_x_in * constants->k3;
+    jacobian[5] = t13;
+    const double t14 = omega_x_in * constants->k2;
+    jacobian[7] = t14;
+    jacobian[0] = 0.0;
+    jacobian[4] = 0.0;
+    jacobian[8] = 0.0;
+    jacobian[9] = constants->one_over_I_xx;
+    jacobian[10] = 0.0;
+    jacobian[11] = 0.0;
+    jacobian[12] = 0.0;
+    jacobian[13] = constants->one_over_I_yy;
+    jacobian[14] = 0.0;
+    jacobian[15] = 0.0;
+    jacobian[16] = 0.0;
+    jacobian[17] = constants->one_over_I_zz;
 }
 
 /* External moment that the motion needs (inverse dynamics). */
 void free_body_principal_moment_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], const double omega_dot[3], double moment[3])
 {
-    const double t0 = omega_dot[0] * constants->I_xx;
-    const double t1 = omega[1] * omega[2];
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
+    const double omega_dot_x_in = omega_dot[0];
+    const double omega_dot_y_in = omega_dot[1];
+    const double omega_dot_z_in = omega_dot[2];
+    const double t0 = omega_dot_x_in * constants->I_xx;
+    const double t1 = omega_y_in * omega_z_in;
     const double t2 = t1 * constants->I_yy_minus_I_zz;
     const double t3 = t0 - t2;
-    const double t4 = omega[2] * omega[0];
+    moment[0] = t3;
+    const double t4 = omega_z_in * omega_x_in;
     const double t5 = t4 * constants->I_xx_minus_I_zz;
-    const double t6 = omega_dot[1] * constants->I_yy;
+    const double t6 = omega_dot_y_in * constants->I_yy;
     const double t7 = t5 + t6;
-    const double t8 = omega_dot[2] * constants->I_zz;
-    const double t9 = omega[1] * omega[0];
+    moment[1] = t7;
+    const double t8 = omega_dot_z_in * constants->I_zz;
+    const double t9 = omega_y_in * omega_x_in;
     const double t10 = t9 * constants->I_xx_minus_I_yy;
     const double t11 = t8 - t10;
-    moment[0] = t3;
-    moment[1] = t7;
     moment[2] = t11;
 }
 
@@ -281,11 +329,14 @@ void free_body_principal_moment_f64(const free_body_principal_constants_f64 *con
 void free_body_principal_angular_momentum_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], double angular_momentum[3])
 {
-    const double t0 = omega[0] * constants->I_xx;
-    const double t1 = omega[1] * constants->I_yy;
-    const double t2 = omega[2] * constants->I_zz;
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
+    const double t0 = omega_x_in * constants->I_xx;
     angular_momentum[0] = t0;
+    const double t1 = omega_y_in * constants->I_yy;
     angular_momentum[1] = t1;
+    const double t2 = omega_z_in * constants->I_zz;
     angular_momentum[2] = t2;
 }
 
@@ -293,12 +344,15 @@ void free_body_principal_angular_momentum_f64(const free_body_principal_constant
 void free_body_principal_kinetic_energy_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], double *kinetic_energy)
 {
-    const double t0 = omega[0] * omega[0];
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
+    const double t0 = omega_x_in * omega_x_in;
     const double t1 = t0 * constants->half_I_xx;
-    const double t2 = omega[1] * omega[1];
+    const double t2 = omega_y_in * omega_y_in;
     const double t3 = t2 * constants->half_I_yy;
     const double t4 = t1 + t3;
-    const double t5 = omega[2] * omega[2];
+    const double t5 = omega_z_in * omega_z_in;
     const double t6 = t5 * constants->half_I_zz;
     const double t7 = t4 + t6;
     *kinetic_energy = t7;

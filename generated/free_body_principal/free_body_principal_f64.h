@@ -15,11 +15,11 @@
  *     double omega_dot[3];
  *     free_body_principal_acceleration_f64(&constants, omega, moment, omega_dot);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 e01c0f9b45ab3024.
+ * Body of these files: sha256 844fb9e9abb58e35.
  */
 #ifndef FREE_BODY_PRINCIPAL_F64_H
 #define FREE_BODY_PRINCIPAL_F64_H
@@ -57,7 +57,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 12 operations on pairs.
- * On Cortex-M0+, -O2: 89681 to 96397 instructions, 2576 B of code, 1024 B of stack.
+ * On Cortex-M0+, -O2: 89681 to 96396 instructions, 2576 B of code, 1024 B of stack.
  */
 int free_body_principal_setup_f64(double I_xx, double I_yy, double I_zz,
     free_body_principal_constants_f64 *constants);
@@ -75,9 +75,9 @@ int free_body_principal_setup_f64(double I_xx, double I_yy, double I_zz,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples
  *            4.4 u (of omega_dot, thin rod).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 3.1e-14 rad/s^2 (seen
- *            2.1e-14).
+ *            2.2e-14).
  * Cost: 2 add, 1 sub, 9 mul.
- * On Cortex-M0+, -O2: 3043 to 3215 instructions, 204 B of code, 112 B of stack.
+ * On Cortex-M0+, -O2: 3037 to 3209 instructions, 192 B of code, 120 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -97,7 +97,7 @@ void free_body_principal_acceleration_f64(const free_body_principal_constants_f6
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 2.2e-14 rad/s^2 (seen
  *            1.8e-14), jacobian 1e-15 (seen 1e-15).
  * Cost: 3 add, 12 mul.
- * On Cortex-M0+, -O2: 4029 to 4170 instructions, 380 B of code, 176 B of stack.
+ * On Cortex-M0+, -O2: 4032 to 4151 instructions, 368 B of code, 136 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -105,7 +105,7 @@ void free_body_principal_acceleration_jacobian_f64(const free_body_principal_con
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[9]);
 
 /* The same, the whole matrix: 18 entries.
- * On Cortex-M0+, -O2: 4231 to 4373 instructions, 436 B of code, 9 B of tables, 272 B of stack.
+ * On Cortex-M0+, -O2: 4041 to 4207 instructions, 416 B of code, 136 B of stack.
  */
 void free_body_principal_acceleration_jacobian_dense_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18]);
@@ -125,7 +125,7 @@ void free_body_principal_acceleration_jacobian_dense_f64(const free_body_princip
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 4e-14 N m (seen
  *            3.4e-14).
  * Cost: 1 add, 2 sub, 9 mul.
- * On Cortex-M0+, -O2: 3100 to 3258 instructions, 240 B of code, 120 B of stack.
+ * On Cortex-M0+, -O2: 3105 to 3273 instructions, 248 B of code, 136 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -146,7 +146,7 @@ void free_body_principal_moment_f64(const free_body_principal_constants_f64 *con
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 1.8e-15 kg
  *            m^2/s (seen 1.8e-15).
  * Cost: 3 mul.
- * On Cortex-M0+, -O2: 898 to 934 instructions, 92 B of code, 96 B of stack.
+ * On Cortex-M0+, -O2: 895 to 931 instructions, 88 B of code, 96 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_principal_angular_momentum_f64(const free_body_principal_constants_f64 *constants,
@@ -162,7 +162,7 @@ void free_body_principal_angular_momentum_f64(const free_body_principal_constant
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.1e-13 J (seen
- *            6.6e-14).
+ *            8.2e-14).
  * Cost: 2 add, 6 mul.
  * On Cortex-M0+, -O2: 2010 to 2078 instructions, 140 B of code, 104 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.

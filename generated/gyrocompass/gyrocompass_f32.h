@@ -18,8 +18,8 @@
  *     float alpha_ddot;
  *     gyrocompass_alpha_ddot_f32(&constants, 0.0F, &alpha_ddot);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
  * Body of these files: sha256 6174384fbcb65b3d.
@@ -70,7 +70,7 @@ int gyrocompass_setup_f32(float m, float r, float w3, float lat, float we,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8324 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_ddot 3.3e-08 rad/s^2
- *            (seen 2.2e-08); assumed: sines and cosines of our own within 0.79 ulp.
+ *            (seen 2.3e-08); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 sub, 2 mul, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 3839 to 3924 instructions, 572 B of code, 80 B of stack.
  * On Cortex-M4F, -O2: 92 instructions, 424 B of code, 24 B of stack.

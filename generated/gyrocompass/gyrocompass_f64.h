@@ -17,8 +17,8 @@
  *     double alpha_ddot;
  *     gyrocompass_alpha_ddot_f64(&constants, 0.0, &alpha_ddot);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
  * Body of these files: sha256 be16039da1c3810f.
@@ -68,7 +68,7 @@ int gyrocompass_setup_f64(double m, double r, double w3, double lat, double we,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8324 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_ddot 6e-17 rad/s^2 (seen
- *            5.2e-17); assumed: sines and cosines of our own within 0.79 ulp.
+ *            5.1e-17); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 sub, 2 mul, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 10212 to 10354 instructions, 936 B of code, 136 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,

@@ -25,11 +25,11 @@
  *     gyrostat_state_rate_f32(&constants, 0.0F, 0.0F, omega, wheel_speeds, moment, wheel_torques, coordinate_rates,
  *       omega_dot, wheel_accelerations);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 ec4ca1e94d67d5a6.
+ * Body of these files: sha256 1c3a04ccfaaf9696.
  */
 #ifndef GYROSTAT_F32_H
 #define GYROSTAT_F32_H
@@ -135,13 +135,13 @@ int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_x
  * Error: median 0.72, largest 14 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 1.5e-05 rad/s
- *            (seen 4.3e-06), omega_dot 1.9e-05 rad/s^2 (seen 5.1e-06), wheel_accelerations 2.6e-05
- *            rad/s^2 (seen 6.9e-06); assumed: sines and cosines of our own within 0.79 ulp.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 1.2e-05 rad/s
+ *            (seen 5.3e-06), omega_dot 2.5e-05 rad/s^2 (seen 7.9e-06), wheel_accelerations 3.2e-05
+ *            rad/s^2 (seen 1.2e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot infinite, no number or beyond all measure.
  * Cost: 15 add, 14 sub, 34 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 13758 to 15339 instructions, 1288 B of code, 176 B of stack.
- * On Cortex-M4F, -O2: 296 to 298 instructions, 892 B of code, 76 B of stack.
+ * On Cortex-M0+, -O2: 13760 to 15340 instructions, 1276 B of code, 176 B of stack.
+ * On Cortex-M4F, -O2: 297 to 299 instructions, 900 B of code, 108 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -169,15 +169,15 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
  * Error: median 0.72, largest 14 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 1.6e-05 rad/s
- *            (seen 4.5e-06), omega_dot 2.3e-05 rad/s^2 (seen 5.2e-06), wheel_accelerations 3e-05
- *            rad/s^2 (seen 8.8e-06), jacobian 0.00016 (seen 3.8e-05); assumed: sines and cosines
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 1.2e-05 rad/s
+ *            (seen 4.3e-06), omega_dot 2.5e-05 rad/s^2 (seen 5.9e-06), wheel_accelerations 3.2e-05
+ *            rad/s^2 (seen 9.8e-06), jacobian 0.00012 (seen 3.8e-05); assumed: sines and cosines
  *            of our own within 0.79 ulp.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 33 add, 37 sub, 96 mul, 1 div, 20 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 24746 to 26429 instructions, 3052 B of code, 272 B of stack.
- * On Cortex-M4F, -O2: 588 to 590 instructions, 2028 B of code, 180 B of stack.
+ * On Cortex-M0+, -O2: 24682 to 26377 instructions, 2936 B of code, 224 B of stack.
+ * On Cortex-M4F, -O2: 592 to 594 instructions, 2052 B of code, 116 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -188,8 +188,8 @@ void gyrostat_state_rate_jacobian_f32(const gyrostat_constants_f32 *constants, f
     float wheel_accelerations[3], float jacobian[84]);
 
 /* The same, the whole matrix: 135 entries.
- * On Cortex-M0+, -O2: 25617 to 27380 instructions, 3132 B of code, 84 B of tables, 656 B of stack.
- * On Cortex-M4F, -O2: 1386 to 1388 instructions, 2104 B of code, 84 B of tables, 556 B of stack.
+ * On Cortex-M0+, -O2: 24880 to 26656 instructions, 3404 B of code, 224 B of stack.
+ * On Cortex-M4F, -O2: 644 to 646 instructions, 2208 B of code, 116 B of stack.
  */
 void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *constants, float theta,
     float phi, const float omega[3], const float wheel_speeds[3], const float moment[3],
@@ -213,9 +213,9 @@ void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *consta
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 0.0009 J (seen
- *            0.00064).
+ *            0.00068).
  * Cost: 5 add, 6 sub, 17 mul.
- * On Cortex-M0+, -O2: 2840 to 3006 instructions, 316 B of code, 80 B of stack.
+ * On Cortex-M0+, -O2: 2838 to 3004 instructions, 312 B of code, 80 B of stack.
  * On Cortex-M4F, -O2: 47 instructions, 188 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
@@ -242,8 +242,8 @@ void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 2e-06 kg m^2/s
  *            (seen 1.8e-06).
  * Cost: 3 add, 6 sub, 12 mul.
- * On Cortex-M0+, -O2: 2074 to 2284 instructions, 268 B of code, 88 B of stack.
- * On Cortex-M4F, -O2: 40 instructions, 160 B of code, 0 B of stack.
+ * On Cortex-M0+, -O2: 2064 to 2274 instructions, 248 B of code, 72 B of stack.
+ * On Cortex-M4F, -O2: 43 instructions, 172 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

@@ -24,11 +24,11 @@
  *     gyrostat_state_rate_f64(&constants, 0.0, 0.0, omega, wheel_speeds, moment, wheel_torques, coordinate_rates,
  *       omega_dot, wheel_accelerations);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 c618458111fb6cce.
+ * Body of these files: sha256 b7e56be773c2fce5.
  */
 #ifndef GYROSTAT_F64_H
 #define GYROSTAT_F64_H
@@ -107,7 +107,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 83 operations on pairs.
- * On Cortex-M0+, -O2: 454210 to 471689 instructions, 9676 B of code, 3008 B of stack.
+ * On Cortex-M0+, -O2: 454211 to 471689 instructions, 9676 B of code, 3008 B of stack.
  */
 int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, double I_xz, double I_yz,
     double C_1, double C_2, double C_3, gyrostat_constants_f64 *constants);
@@ -133,12 +133,12 @@ int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doubl
  * Error: median 0.72, largest 12 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.7e-14 rad/s
- *            (seen 8.2e-15), omega_dot 3.5e-14 rad/s^2 (seen 8.7e-15), wheel_accelerations 4.9e-14
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.1e-14 rad/s
+ *            (seen 1e-14), omega_dot 4.5e-14 rad/s^2 (seen 1.2e-14), wheel_accelerations 5.9e-14
  *            rad/s^2 (seen 1.5e-14); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot infinite, no number or beyond all measure.
  * Cost: 15 add, 14 sub, 34 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 34282 to 37643 instructions, 2080 B of code, 320 B of stack.
+ * On Cortex-M0+, -O2: 34294 to 37666 instructions, 2104 B of code, 320 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -166,14 +166,14 @@ void gyrostat_state_rate_f64(const gyrostat_constants_f64 *constants, double the
  * Error: median 0.72, largest 14 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.8e-14 rad/s
- *            (seen 8.7e-15), omega_dot 4.3e-14 rad/s^2 (seen 9.8e-15), wheel_accelerations 5.6e-14
- *            rad/s^2 (seen 1.3e-14), jacobian 2.9e-13 (seen 7.6e-14); assumed: sines and cosines
- *            of our own within 0.79 ulp.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.3e-14 rad/s
+ *            (seen 1e-14), omega_dot 4.5e-14 rad/s^2 (seen 1.1e-14), wheel_accelerations 5.9e-14
+ *            rad/s^2 (seen 2e-14), jacobian 2.2e-13 (seen 8.2e-14); assumed: sines and cosines of
+ *            our own within 0.79 ulp.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 33 add, 37 sub, 96 mul, 1 div, 20 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 59545 to 63122 instructions, 5184 B of code, 520 B of stack.
+ * On Cortex-M0+, -O2: 59541 to 63118 instructions, 5176 B of code, 448 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -184,8 +184,7 @@ void gyrostat_state_rate_jacobian_f64(const gyrostat_constants_f64 *constants, d
     double wheel_accelerations[3], double jacobian[84]);
 
 /* The same, the whole matrix: 135 entries.
- * On Cortex-M0+, -O2: 60795 to 64397 instructions, 5288 B of code, 84 B of tables, 1248 B of
- *            stack.
+ * On Cortex-M0+, -O2: 59931 to 63539 instructions, 6096 B of code, 584 B of stack.
  */
 void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *constants, double theta,
     double phi, const double omega[3], const double wheel_speeds[3], const double moment[3],
@@ -209,9 +208,9 @@ void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *consta
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.7e-12 J (seen
- *            1.1e-12).
+ *            1.3e-12).
  * Cost: 5 add, 6 sub, 17 mul.
- * On Cortex-M0+, -O2: 6613 to 6809 instructions, 488 B of code, 144 B of stack.
+ * On Cortex-M0+, -O2: 6618 to 6814 instructions, 496 B of code, 152 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */
@@ -235,9 +234,9 @@ void gyrostat_kinetic_energy_f64(const gyrostat_constants_f64 *constants, const 
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8354 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 3.7e-15 kg
- *            m^2/s (seen 3.3e-15).
+ *            m^2/s (seen 3.4e-15).
  * Cost: 3 add, 6 sub, 12 mul.
- * On Cortex-M0+, -O2: 4861 to 5113 instructions, 428 B of code, 144 B of stack.
+ * On Cortex-M0+, -O2: 4852 to 5104 instructions, 408 B of code, 128 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

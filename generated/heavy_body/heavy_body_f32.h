@@ -17,11 +17,11 @@
  *     float kinetic_energy;
  *     heavy_body_kinetic_energy_f32(&constants, omega, &kinetic_energy);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 6162efeddf5d84a9.
+ * Body of these files: sha256 81b0b151a81bded1.
  */
 #ifndef HEAVY_BODY_F32_H
 #define HEAVY_BODY_F32_H
@@ -79,7 +79,7 @@ int heavy_body_setup_f32(float I_xx, float I_yy, float I_zz, float w,
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 5.7e-05 J (seen
- *            3.5e-05).
+ *            3.6e-05).
  * Cost: 2 add, 6 mul.
  * On Cortex-M0+, -O2: 844 to 892 instructions, 88 B of code, 56 B of stack.
  * On Cortex-M4F, -O2: 16 instructions, 64 B of code, 0 B of stack.
@@ -99,12 +99,12 @@ void heavy_body_kinetic_energy_f32(const heavy_body_constants_f32 *constants, co
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 2 u (of omega_next,
  *            thin disc).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.8e-06 (seen
- *            8.7e-08), omega_next 3.4e-05 rad/s (seen 9.5e-07); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.5e-06 (seen
+ *            8.5e-08), omega_next 3.2e-05 rad/s (seen 1.1e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 93 add, 17 sub, 120 mul, 9 div, 9 neg, 2 less, 30 select.
- * On Cortex-M0+, -O2: 26395 to 27057 instructions, 2916 B of code, 184 B of stack.
- * On Cortex-M4F, -O2: 386 to 414 instructions, 1828 B of code, 96 B of stack.
+ * On Cortex-M0+, -O2: 26305 to 27033 instructions, 2964 B of code, 184 B of stack.
+ * On Cortex-M4F, -O2: 380 to 413 instructions, 1824 B of code, 88 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -123,12 +123,12 @@ void heavy_body_step_split2_f32(const heavy_body_constants_f32 *constants, const
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 3.1 u (of
  *            omega_next, thin disc).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.7e-05 (seen
- *            9.1e-08), omega_next 0.00029 rad/s (seen 1.1e-06); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.1e-05 (seen
+ *            9.5e-08), omega_next 0.00013 rad/s (seen 1.5e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 588 add, 137 sub, 716 mul, 54 div, 49 neg, 2 less, 90 select.
- * On Cortex-M0+, -O2: 159607 to 162783 instructions, 16092 B of code, 272 B of stack.
- * On Cortex-M4F, -O2: 1941 to 2041 instructions, 8960 B of code, 168 B of stack.
+ * On Cortex-M0+, -O2: 159536 to 162775 instructions, 16120 B of code, 272 B of stack.
+ * On Cortex-M4F, -O2: 1940 to 2049 instructions, 8984 B of code, 168 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -149,13 +149,13 @@ void heavy_body_step_split_f32(const heavy_body_constants_f32 *constants, const 
  * Error: median 0.26, largest 3.6 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.2e-06 (seen
- *            1.6e-07), omega_next 1.2e-06 rad/s (seen 6.4e-07); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 6.8e-07 (seen
+ *            1.7e-07), omega_next 1.2e-06 rad/s (seen 8e-07); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 76 add, 24 sub, 144 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 23933 to 24623 instructions, 2296 B of code, 232 B of stack.
- * On Cortex-M4F, -O2: 294 instructions, 1192 B of code, 104 B of stack.
+ * On Cortex-M0+, -O2: 23925 to 24605 instructions, 2292 B of code, 216 B of stack.
+ * On Cortex-M4F, -O2: 295 instructions, 1188 B of code, 104 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -178,7 +178,7 @@ void heavy_body_step_rk4_f32(const heavy_body_constants_f32 *constants, const fl
  *            omega_next, at rest).
  * Bound: not proved: 8474 operations are more than the 2000 tried.
  * Cost: 3062 add, 1125 sub, 4296 mul, 22 div, 21 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * On Cortex-M0+, -O2: 693169 to 855942 instructions, 2964 B of code, 1128 B of stack.
+ * On Cortex-M0+, -O2: 693168 to 855943 instructions, 2964 B of code, 1128 B of stack.
  * On Cortex-M4F, -O2: 15758 instructions, 2248 B of code, 1088 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,

@@ -17,11 +17,11 @@
  *     double kinetic_energy;
  *     heavy_body_kinetic_energy_f64(&constants, omega, &kinetic_energy);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 e6c4dc48f74a07f9.
+ * Body of these files: sha256 4afaf282592afd30.
  */
 #ifndef HEAVY_BODY_F64_H
 #define HEAVY_BODY_F64_H
@@ -78,7 +78,7 @@ int heavy_body_setup_f64(double I_xx, double I_yy, double I_zz, double w,
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.1e-13 J (seen
- *            6.3e-14).
+ *            8.1e-14).
  * Cost: 2 add, 6 mul.
  * On Cortex-M0+, -O2: 2018 to 2072 instructions, 140 B of code, 104 B of stack.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
@@ -97,11 +97,11 @@ void heavy_body_kinetic_energy_f64(const heavy_body_constants_f64 *constants, co
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 2.5 u (of
  *            omega_next, denormal).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 3.3e-15 (seen
- *            1.4e-16), omega_next 6.2e-14 rad/s (seen 1.7e-15); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.7e-15 (seen
+ *            1.5e-16), omega_next 6e-14 rad/s (seen 1.8e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 93 add, 17 sub, 120 mul, 9 div, 9 neg, 2 less, 30 select.
- * On Cortex-M0+, -O2: 57633 to 58636 instructions, 4496 B of code, 360 B of stack.
+ * On Cortex-M0+, -O2: 57497 to 58626 instructions, 4464 B of code, 344 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -120,11 +120,11 @@ void heavy_body_step_split2_f64(const heavy_body_constants_f64 *constants, const
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 3.2 u (of
  *            omega_next, at rest).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.9e-14 (seen
- *            1.3e-16), omega_next 5.4e-13 rad/s (seen 2e-15); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.9e-14 (seen
+ *            1.5e-16), omega_next 2.3e-13 rad/s (seen 2.5e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 588 add, 137 sub, 716 mul, 54 div, 49 neg, 2 less, 90 select.
- * On Cortex-M0+, -O2: 350863 to 354860 instructions, 24204 B of code, 528 B of stack.
+ * On Cortex-M0+, -O2: 350760 to 354877 instructions, 24320 B of code, 520 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -145,12 +145,12 @@ void heavy_body_step_split_f64(const heavy_body_constants_f64 *constants, const 
  * Error: median 0.36, largest 3.8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.2e-15 (seen
- *            2.8e-16), omega_next 2.3e-15 rad/s (seen 1.5e-15); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.3e-15 (seen
+ *            3e-16), omega_next 2.2e-15 rad/s (seen 1.4e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 76 add, 24 sub, 144 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 55280 to 56502 instructions, 3524 B of code, 456 B of stack.
+ * On Cortex-M0+, -O2: 55292 to 56498 instructions, 3516 B of code, 408 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -173,7 +173,7 @@ void heavy_body_step_rk4_f64(const heavy_body_constants_f64 *constants, const do
  *            omega_next, at rest).
  * Bound: not proved: 8474 operations are more than the 2000 tried.
  * Cost: 3062 add, 1125 sub, 4296 mul, 22 div, 21 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * On Cortex-M0+, -O2: 1910744 to 1922174 instructions, 4716 B of code, 2176 B of stack.
+ * On Cortex-M0+, -O2: 1910744 to 1922175 instructions, 4716 B of code, 2176 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

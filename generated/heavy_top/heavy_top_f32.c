@@ -189,24 +189,26 @@ static heavy_top_sines_f32 heavy_top_sine_cosine_f32(float angle)
 void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3])
 {
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
     const heavy_top_sines_f32 t0_both = heavy_top_sine_cosine_f32(theta);
     const float t0 = t0_both.sine;
-    const float t1 = omega[1] / t0;
+    const float t1 = omega_y_in / t0;
+    coordinate_rates[0] = t1;
     const float t2 = t0_both.cosine;
     const float t3 = t1 * t2;
-    const float t4 = omega[2] - t3;
-    const float t5 = t0 * constants->m_g_l_over_A;
-    const float t6 = omega[2] * constants->C_over_A;
-    const float t7 = t6 - t3;
-    const float t8 = omega[1] * t7;
-    const float t9 = t5 - t8;
-    const float t10 = omega[0] * t7;
-    const float omega_x_in = omega[0];
-    coordinate_rates[0] = t1;
-    coordinate_rates[1] = omega_x_in;
+    const float t4 = omega_z_in - t3;
     coordinate_rates[2] = t4;
+    const float t5 = t0 * constants->m_g_l_over_A;
+    const float t6 = omega_z_in * constants->C_over_A;
+    const float t7 = t6 - t3;
+    const float t8 = omega_y_in * t7;
+    const float t9 = t5 - t8;
     omega_dot[0] = t9;
+    const float t10 = omega_x_in * t7;
     omega_dot[1] = t10;
+    coordinate_rates[1] = omega_x_in;
     omega_dot[2] = 0.0F;
 }
 
@@ -214,83 +216,150 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
 void heavy_top_state_rate_jacobian_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[13])
 {
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
     const heavy_top_sines_f32 t0_both = heavy_top_sine_cosine_f32(theta);
     const float t0 = t0_both.sine;
     const float t1 = 1.0F / t0;
-    const float t2 = omega[1] * t1;
+    jacobian[6] = t1;
+    const float t2 = omega_y_in * t1;
+    coordinate_rates[0] = t2;
     const float t3 = t0_both.cosine;
     const float t4 = t1 * t3;
-    const float t5 = omega[1] * t4;
-    const float t6 = omega[2] - t5;
+    const float t5 = omega_y_in * t4;
+    const float t6 = omega_z_in - t5;
+    coordinate_rates[2] = t6;
     const float t7 = t0 * constants->m_g_l_over_A;
-    const float t8 = omega[2] * constants->C_over_A;
+    const float t8 = omega_z_in * constants->C_over_A;
     const float t9 = t8 - t5;
-    const float t10 = omega[1] * t9;
+    jacobian[5] = t9;
+    const float t10 = omega_y_in * t9;
     const float t11 = t7 - t10;
-    const float t12 = omega[0] * t9;
+    omega_dot[0] = t11;
+    const float t12 = omega_x_in * t9;
+    omega_dot[1] = t12;
     const float t13 = t1 * t5;
     const float t14 = -t13;
-    const float t15 = t4 * t5;
-    const float t16 = omega[1] + t15;
-    const float t17 = t3 * constants->m_g_l_over_A;
-    const float t18 = omega[1] * t16;
-    const float t19 = t17 - t18;
-    const float t20 = omega[0] * t16;
-    const float t21 = -t4;
-    const float t22 = t5 - t9;
-    const float t23 = omega[0] * t4;
-    const float t24 = -t23;
-    const float t25 = omega[1] * constants->C_over_A;
-    const float t26 = -t25;
-    const float t27 = omega[0] * constants->C_over_A;
-    const float omega_x_in = omega[0];
-    coordinate_rates[0] = t2;
-    coordinate_rates[1] = omega_x_in;
-    coordinate_rates[2] = t6;
-    omega_dot[0] = t11;
-    omega_dot[1] = t12;
-    omega_dot[2] = 0.0F;
     jacobian[0] = t14;
+    const float t15 = t4 * t5;
+    const float t16 = omega_y_in + t15;
     jacobian[1] = t16;
+    const float t17 = t3 * constants->m_g_l_over_A;
+    const float t18 = omega_y_in * t16;
+    const float t19 = t17 - t18;
     jacobian[2] = t19;
+    const float t20 = omega_x_in * t16;
     jacobian[3] = t20;
-    jacobian[4] = 1.0F;
-    jacobian[5] = t9;
-    jacobian[6] = t1;
+    const float t21 = -t4;
     jacobian[7] = t21;
+    const float t22 = t5 - t9;
     jacobian[8] = t22;
+    const float t23 = omega_x_in * t4;
+    const float t24 = -t23;
     jacobian[9] = t24;
-    jacobian[10] = 1.0F;
+    const float t25 = omega_y_in * constants->C_over_A;
+    const float t26 = -t25;
     jacobian[11] = t26;
+    const float t27 = omega_x_in * constants->C_over_A;
     jacobian[12] = t27;
+    coordinate_rates[1] = omega_x_in;
+    omega_dot[2] = 0.0F;
+    jacobian[4] = 1.0F;
+    jacobian[10] = 1.0F;
 }
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. Dense. */
 void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[36])
 {
-    static const unsigned char places[13] = {
-        6, 8, 9, 10, 19, 22, 24, 26, 27, 28, 32, 33, 34
-    };
-    float nonzeros[13];
-    int entry;
-    heavy_top_state_rate_jacobian_f32(constants, theta, omega, coordinate_rates, omega_dot, nonzeros);
-    for (entry = 0; entry < 36; ++entry) {
-        jacobian[entry] = 0.0F;
-    }
-    for (entry = 0; entry < 13; ++entry) {
-        jacobian[places[entry]] = nonzeros[entry];
-    }
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
+    const heavy_top_sines_f32 t0_both = heavy_top_sine_cosine_f32(theta);
+    const float t0 = t0_both.sine;
+    const float t1 = 1.0F / t0;
+    jacobian[24] = t1;
+    const float t2 = omega_y_in * t1;
+    coordinate_rates[0] = t2;
+    const float t3 = t0_both.cosine;
+    const float t4 = t1 * t3;
+    const float t5 = omega_y_in * t4;
+    const float t6 = omega_z_in - t5;
+    coordinate_rates[2] = t6;
+    const float t7 = t0 * constants->m_g_l_over_A;
+    const float t8 = omega_z_in * constants->C_over_A;
+    const float t9 = t8 - t5;
+    jacobian[22] = t9;
+    const float t10 = omega_y_in * t9;
+    const float t11 = t7 - t10;
+    omega_dot[0] = t11;
+    const float t12 = omega_x_in * t9;
+    omega_dot[1] = t12;
+    const float t13 = t1 * t5;
+    const float t14 = -t13;
+    jacobian[6] = t14;
+    const float t15 = t4 * t5;
+    const float t16 = omega_y_in + t15;
+    jacobian[8] = t16;
+    const float t17 = t3 * constants->m_g_l_over_A;
+    const float t18 = omega_y_in * t16;
+    const float t19 = t17 - t18;
+    jacobian[9] = t19;
+    const float t20 = omega_x_in * t16;
+    jacobian[10] = t20;
+    const float t21 = -t4;
+    jacobian[26] = t21;
+    const float t22 = t5 - t9;
+    jacobian[27] = t22;
+    const float t23 = omega_x_in * t4;
+    const float t24 = -t23;
+    jacobian[28] = t24;
+    const float t25 = omega_y_in * constants->C_over_A;
+    const float t26 = -t25;
+    jacobian[33] = t26;
+    const float t27 = omega_x_in * constants->C_over_A;
+    jacobian[34] = t27;
+    coordinate_rates[1] = omega_x_in;
+    omega_dot[2] = 0.0F;
+    jacobian[0] = 0.0F;
+    jacobian[1] = 0.0F;
+    jacobian[2] = 0.0F;
+    jacobian[3] = 0.0F;
+    jacobian[4] = 0.0F;
+    jacobian[5] = 0.0F;
+    jacobian[7] = 0.0F;
+    jacobian[11] = 0.0F;
+    jacobian[12] = 0.0F;
+    jacobian[13] = 0.0F;
+    jacobian[14] = 0.0F;
+    jacobian[15] = 0.0F;
+    jacobian[16] = 0.0F;
+    jacobian[17] = 0.0F;
+    jacobian[18] = 0.0F;
+    jacobian[19] = 1.0F;
+    jacobian[20] = 0.0F;
+    jacobian[21] = 0.0F;
+    jacobian[23] = 0.0F;
+    jacobian[25] = 0.0F;
+    jacobian[29] = 0.0F;
+    jacobian[30] = 0.0F;
+    jacobian[31] = 0.0F;
+    jacobian[32] = 1.0F;
+    jacobian[35] = 0.0F;
 }
 
 /* Kinetic energy. */
 void heavy_top_kinetic_energy_f32(const heavy_top_constants_f32 *constants, const float omega[3],
     float *kinetic_energy)
 {
-    const float t0 = omega[2] * omega[2];
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
+    const float t0 = omega_z_in * omega_z_in;
     const float t1 = t0 * constants->half_C;
-    const float t2 = omega[1] * omega[1];
-    const float t3 = omega[0] * omega[0];
+    const float t2 = omega_y_in * omega_y_in;
+    const float t3 = omega_x_in * omega_x_in;
     const float t4 = t2 + t3;
     const float t5 = t4 * constants->half_A;
     const float t6 = t1 + t5;
@@ -301,10 +370,13 @@ void heavy_top_kinetic_energy_f32(const heavy_top_constants_f32 *constants, cons
 void heavy_top_angular_momentum_f32(const heavy_top_constants_f32 *constants, const float omega[3],
     float angular_momentum[3])
 {
-    const float t0 = omega[0] * constants->A;
-    const float t1 = omega[1] * constants->A;
-    const float t2 = omega[2] * constants->C;
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
+    const float t0 = omega_x_in * constants->A;
     angular_momentum[0] = t0;
+    const float t1 = omega_y_in * constants->A;
     angular_momentum[1] = t1;
+    const float t2 = omega_z_in * constants->C;
     angular_momentum[2] = t2;
 }

@@ -17,11 +17,11 @@
  *     float coordinate_rates[3], omega_dot[3];
  *     heavy_top_state_rate_f32(&constants, 1.54999995F, omega, coordinate_rates, omega_dot);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 986a92ebd8229046.
+ * Body of these files: sha256 4469e4708d127ab0.
  */
 #ifndef HEAVY_TOP_F32_H
 #define HEAVY_TOP_F32_H
@@ -76,13 +76,13 @@ int heavy_top_setup_f32(float A, float C, float m, float g, float l,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 1.2e-05 rad/s
- *            (seen 8.1e-06), omega_dot 0.0002 rad/s^2 (seen 0.00012); assumed: sines and cosines
+ *            (seen 8.6e-06), omega_dot 0.0002 rad/s^2 (seen 0.00014); assumed: sines and cosines
  *            of our own within 0.79 ulp.
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y infinite, no number or
  *            beyond all measure.
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 4769 to 5615 instructions, 708 B of code, 136 B of stack.
- * On Cortex-M4F, -O2: 117 to 118 instructions, 524 B of code, 44 B of stack.
+ * On Cortex-M0+, -O2: 4762 to 5608 instructions, 696 B of code, 128 B of stack.
+ * On Cortex-M4F, -O2: 118 to 119 instructions, 532 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -102,14 +102,14 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
  * Error: median 0.32, largest 13 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 1.4e-05 rad/s
- *            (seen 9.6e-06), omega_dot 0.00023 rad/s^2 (seen 0.00014), jacobian 0.0016 (seen
- *            0.00087); assumed: sines and cosines of our own within 0.79 ulp.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 1.5e-05 rad/s
+ *            (seen 1.1e-05), omega_dot 0.00023 rad/s^2 (seen 0.00016), jacobian 0.0016 (seen
+ *            0.0011); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y, jacobian infinite, no
  *            number or beyond all measure.
  * Cost: 1 add, 5 sub, 15 mul, 1 div, 4 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 6218 to 7079 instructions, 896 B of code, 152 B of stack.
- * On Cortex-M4F, -O2: 146 to 147 instructions, 640 B of code, 44 B of stack.
+ * On Cortex-M0+, -O2: 6216 to 7077 instructions, 892 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 150 to 151 instructions, 656 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -118,8 +118,8 @@ void heavy_top_state_rate_jacobian_f32(const heavy_top_constants_f32 *constants,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[13]);
 
 /* The same, the whole matrix: 36 entries.
- * On Cortex-M0+, -O2: 6417 to 7289 instructions, 952 B of code, 13 B of tables, 232 B of stack.
- * On Cortex-M4F, -O2: 332 to 333 instructions, 700 B of code, 13 B of tables, 124 B of stack.
+ * On Cortex-M0+, -O2: 6232 to 7105 instructions, 944 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 173 to 174 instructions, 752 B of code, 52 B of stack.
  */
 void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[36]);
@@ -135,7 +135,7 @@ void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *cons
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 4.7e-08 J (seen
- *            3.1e-08).
+ *            3.3e-08).
  * Cost: 2 add, 5 mul.
  * On Cortex-M0+, -O2: 723 to 767 instructions, 80 B of code, 56 B of stack.
  * On Cortex-M4F, -O2: 14 instructions, 56 B of code, 0 B of stack.
@@ -160,8 +160,8 @@ void heavy_top_kinetic_energy_f32(const heavy_top_constants_f32 *constants, cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 9.4e-10 kg
  *            m^2/s (seen 9.3e-10).
  * Cost: 3 mul.
- * On Cortex-M0+, -O2: 372 to 381 instructions, 48 B of code, 56 B of stack.
- * On Cortex-M4F, -O2: 12 instructions, 48 B of code, 0 B of stack.
+ * On Cortex-M0+, -O2: 370 to 379 instructions, 44 B of code, 56 B of stack.
+ * On Cortex-M4F, -O2: 13 instructions, 52 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

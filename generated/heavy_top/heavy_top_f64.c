@@ -188,24 +188,26 @@ static heavy_top_sines_f64 heavy_top_sine_cosine_f64(double angle)
 void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double theta,
     const double omega[3], double coordinate_rates[3], double omega_dot[3])
 {
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
     const heavy_top_sines_f64 t0_both = heavy_top_sine_cosine_f64(theta);
     const double t0 = t0_both.sine;
-    const double t1 = omega[1] / t0;
+    const double t1 = omega_y_in / t0;
+    coordinate_rates[0] = t1;
     const double t2 = t0_both.cosine;
     const double t3 = t1 * t2;
-    const double t4 = omega[2] - t3;
-    const double t5 = t0 * constants->m_g_l_over_A;
-    const double t6 = omega[2] * constants->C_over_A;
-    const double t7 = t6 - t3;
-    const double t8 = omega[1] * t7;
-    const double t9 = t5 - t8;
-    const double t10 = omega[0] * t7;
-    const double omega_x_in = omega[0];
-    coordinate_rates[0] = t1;
-    coordinate_rates[1] = omega_x_in;
+    const double t4 = omega_z_in - t3;
     coordinate_rates[2] = t4;
+    const double t5 = t0 * constants->m_g_l_over_A;
+    const double t6 = omega_z_in * constants->C_over_A;
+    const double t7 = t6 - t3;
+    const double t8 = omega_y_in * t7;
+    const double t9 = t5 - t8;
     omega_dot[0] = t9;
+    const double t10 = omega_x_in * t7;
     omega_dot[1] = t10;
+    coordinate_rates[1] = omega_x_in;
     omega_dot[2] = 0.0;
 }
 
@@ -213,83 +215,150 @@ void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double t
 void heavy_top_state_rate_jacobian_f64(const heavy_top_constants_f64 *constants, double theta,
     const double omega[3], double coordinate_rates[3], double omega_dot[3], double jacobian[13])
 {
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
     const heavy_top_sines_f64 t0_both = heavy_top_sine_cosine_f64(theta);
     const double t0 = t0_both.sine;
     const double t1 = 1.0 / t0;
-    const double t2 = omega[1] * t1;
+    jacobian[6] = t1;
+    const double t2 = omega_y_in * t1;
+    coordinate_rates[0] = t2;
     const double t3 = t0_both.cosine;
     const double t4 = t1 * t3;
-    const double t5 = omega[1] * t4;
-    const double t6 = omega[2] - t5;
+    const double t5 = omega_y_in * t4;
+    const double t6 = omega_z_in - t5;
+    coordinate_rates[2] = t6;
     const double t7 = t0 * constants->m_g_l_over_A;
-    const double t8 = omega[2] * constants->C_over_A;
+    const double t8 = omega_z_in * constants->C_over_A;
     const double t9 = t8 - t5;
-    const double t10 = omega[1] * t9;
+    jacobian[5] = t9;
+    const double t10 = omega_y_in * t9;
     const double t11 = t7 - t10;
-    const double t12 = omega[0] * t9;
+    omega_dot[0] = t11;
+    const double t12 = omega_x_in * t9;
+    omega_dot[1] = t12;
     const double t13 = t1 * t5;
     const double t14 = -t13;
-    const double t15 = t4 * t5;
-    const double t16 = omega[1] + t15;
-    const double t17 = t3 * constants->m_g_l_over_A;
-    const double t18 = omega[1] * t16;
-    const double t19 = t17 - t18;
-    const double t20 = omega[0] * t16;
-    const double t21 = -t4;
-    const double t22 = t5 - t9;
-    const double t23 = omega[0] * t4;
-    const double t24 = -t23;
-    const double t25 = omega[1] * constants->C_over_A;
-    const double t26 = -t25;
-    const double t27 = omega[0] * constants->C_over_A;
-    const double omega_x_in = omega[0];
-    coordinate_rates[0] = t2;
-    coordinate_rates[1] = omega_x_in;
-    coordinate_rates[2] = t6;
-    omega_dot[0] = t11;
-    omega_dot[1] = t12;
-    omega_dot[2] = 0.0;
     jacobian[0] = t14;
+    const double t15 = t4 * t5;
+    const double t16 = omega_y_in + t15;
     jacobian[1] = t16;
+    const double t17 = t3 * constants->m_g_l_over_A;
+    const double t18 = omega_y_in * t16;
+    const double t19 = t17 - t18;
     jacobian[2] = t19;
+    const double t20 = omega_x_in * t16;
     jacobian[3] = t20;
-    jacobian[4] = 1.0;
-    jacobian[5] = t9;
-    jacobian[6] = t1;
+    const double t21 = -t4;
     jacobian[7] = t21;
+    const double t22 = t5 - t9;
     jacobian[8] = t22;
+    const double t23 = omega_x_in * t4;
+    const double t24 = -t23;
     jacobian[9] = t24;
-    jacobian[10] = 1.0;
+    const double t25 = omega_y_in * constants->C_over_A;
+    const double t26 = -t25;
     jacobian[11] = t26;
+    const double t27 = omega_x_in * constants->C_over_A;
     jacobian[12] = t27;
+    coordinate_rates[1] = omega_x_in;
+    omega_dot[2] = 0.0;
+    jacobian[4] = 1.0;
+    jacobian[10] = 1.0;
 }
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. Dense. */
 void heavy_top_state_rate_jacobian_dense_f64(const heavy_top_constants_f64 *constants, double theta,
     const double omega[3], double coordinate_rates[3], double omega_dot[3], double jacobian[36])
 {
-    static const unsigned char places[13] = {
-        6, 8, 9, 10, 19, 22, 24, 26, 27, 28, 32, 33, 34
-    };
-    double nonzeros[13];
-    int entry;
-    heavy_top_state_rate_jacobian_f64(constants, theta, omega, coordinate_rates, omega_dot, nonzeros);
-    for (entry = 0; entry < 36; ++entry) {
-        jacobian[entry] = 0.0;
-    }
-    for (entry = 0; entry < 13; ++entry) {
-        jacobian[places[entry]] = nonzeros[entry];
-    }
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
+    const heavy_top_sines_f64 t0_both = heavy_top_sine_cosine_f64(theta);
+    const double t0 = t0_both.sine;
+    const double t1 = 1.0 / t0;
+    jacobian[24] = t1;
+    const double t2 = omega_y_in * t1;
+    coordinate_rates[0] = t2;
+    const double t3 = t0_both.cosine;
+    const double t4 = t1 * t3;
+    const double t5 = omega_y_in * t4;
+    const double t6 = omega_z_in - t5;
+    coordinate_rates[2] = t6;
+    const double t7 = t0 * constants->m_g_l_over_A;
+    const double t8 = omega_z_in * constants->C_over_A;
+    const double t9 = t8 - t5;
+    jacobian[22] = t9;
+    const double t10 = omega_y_in * t9;
+    const double t11 = t7 - t10;
+    omega_dot[0] = t11;
+    const double t12 = omega_x_in * t9;
+    omega_dot[1] = t12;
+    const double t13 = t1 * t5;
+    const double t14 = -t13;
+    jacobian[6] = t14;
+    const double t15 = t4 * t5;
+    const double t16 = omega_y_in + t15;
+    jacobian[8] = t16;
+    const double t17 = t3 * constants->m_g_l_over_A;
+    const double t18 = omega_y_in * t16;
+    const double t19 = t17 - t18;
+    jacobian[9] = t19;
+    const double t20 = omega_x_in * t16;
+    jacobian[10] = t20;
+    const double t21 = -t4;
+    jacobian[26] = t21;
+    const double t22 = t5 - t9;
+    jacobian[27] = t22;
+    const double t23 = omega_x_in * t4;
+    const double t24 = -t23;
+    jacobian[28] = t24;
+    const double t25 = omega_y_in * constants->C_over_A;
+    const double t26 = -t25;
+    jacobian[33] = t26;
+    const double t27 = omega_x_in * constants->C_over_A;
+    jacobian[34] = t27;
+    coordinate_rates[1] = omega_x_in;
+    omega_dot[2] = 0.0;
+    jacobian[0] = 0.0;
+    jacobian[1] = 0.0;
+    jacobian[2] = 0.0;
+    jacobian[3] = 0.0;
+    jacobian[4] = 0.0;
+    jacobian[5] = 0.0;
+    jacobian[7] = 0.0;
+    jacobian[11] = 0.0;
+    jacobian[12] = 0.0;
+    jacobian[13] = 0.0;
+    jacobian[14] = 0.0;
+    jacobian[15] = 0.0;
+    jacobian[16] = 0.0;
+    jacobian[17] = 0.0;
+    jacobian[18] = 0.0;
+    jacobian[19] = 1.0;
+    jacobian[20] = 0.0;
+    jacobian[21] = 0.0;
+    jacobian[23] = 0.0;
+    jacobian[25] = 0.0;
+    jacobian[29] = 0.0;
+    jacobian[30] = 0.0;
+    jacobian[31] = 0.0;
+    jacobian[32] = 1.0;
+    jacobian[35] = 0.0;
 }
 
 /* Kinetic energy. */
 void heavy_top_kinetic_energy_f64(const heavy_top_constants_f64 *constants, const double omega[3],
     double *kinetic_energy)
 {
-    const double t0 = omega[2] * omega[2];
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
+    const double t0 = omega_z_in * omega_z_in;
     const double t1 = t0 * constants->half_C;
-    const double t2 = omega[1] * omega[1];
-    const double t3 = omega[0] * omega[0];
+    const double t2 = omega_y_in * omega_y_in;
+    const double t3 = omega_x_in * omega_x_in;
     const double t4 = t2 + t3;
     const double t5 = t4 * constants->half_A;
     const double t6 = t1 + t5;
@@ -300,10 +369,13 @@ void heavy_top_kinetic_energy_f64(const heavy_top_constants_f64 *constants, cons
 void heavy_top_angular_momentum_f64(const heavy_top_constants_f64 *constants, const double omega[3],
     double angular_momentum[3])
 {
-    const double t0 = omega[0] * constants->A;
-    const double t1 = omega[1] * constants->A;
-    const double t2 = omega[2] * constants->C;
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
+    const double t0 = omega_x_in * constants->A;
     angular_momentum[0] = t0;
+    const double t1 = omega_y_in * constants->A;
     angular_momentum[1] = t1;
+    const double t2 = omega_z_in * constants->C;
     angular_momentum[2] = t2;
 }

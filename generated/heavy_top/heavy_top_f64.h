@@ -16,11 +16,11 @@
  *     double coordinate_rates[3], omega_dot[3];
  *     heavy_top_state_rate_f64(&constants, 1.55, omega, coordinate_rates, omega_dot);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 175cbc73d9a4aa89.
+ * Body of these files: sha256 368205b95ccf2277.
  */
 #ifndef HEAVY_TOP_F64_H
 #define HEAVY_TOP_F64_H
@@ -73,13 +73,13 @@ int heavy_top_setup_f64(double A, double C, double m, double g, double l,
  * Error: median 0.2, largest 9.8 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.1e-14 rad/s
- *            (seen 1.5e-14), omega_dot 3.7e-13 rad/s^2 (seen 2.6e-13); assumed: sines and cosines
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.2e-14 rad/s
+ *            (seen 1.6e-14), omega_dot 3.7e-13 rad/s^2 (seen 2.4e-13); assumed: sines and cosines
  *            of our own within 0.79 ulp.
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y infinite, no number or
  *            beyond all measure.
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 12130 to 13898 instructions, 1168 B of code, 224 B of stack.
+ * On Cortex-M0+, -O2: 12116 to 13884 instructions, 1140 B of code, 208 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -99,13 +99,13 @@ void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double t
  * Error: median 0.32, largest 14 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.6e-14 rad/s
- *            (seen 1.7e-14), omega_dot 4.3e-13 rad/s^2 (seen 3e-13), jacobian 2.9e-12 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.7e-14 rad/s
+ *            (seen 1.9e-14), omega_dot 4.2e-13 rad/s^2 (seen 3.1e-13), jacobian 2.9e-12 (seen
  *            1.8e-12); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y, jacobian infinite, no
  *            number or beyond all measure.
  * Cost: 1 add, 5 sub, 15 mul, 1 div, 4 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 15609 to 17386 instructions, 1464 B of code, 272 B of stack.
+ * On Cortex-M0+, -O2: 15605 to 17381 instructions, 1456 B of code, 240 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -114,7 +114,7 @@ void heavy_top_state_rate_jacobian_f64(const heavy_top_constants_f64 *constants,
     const double omega[3], double coordinate_rates[3], double omega_dot[3], double jacobian[13]);
 
 /* The same, the whole matrix: 36 entries.
- * On Cortex-M0+, -O2: 15923 to 17733 instructions, 1536 B of code, 13 B of tables, 408 B of stack.
+ * On Cortex-M0+, -O2: 15715 to 17524 instructions, 1656 B of code, 248 B of stack.
  */
 void heavy_top_state_rate_jacobian_dense_f64(const heavy_top_constants_f64 *constants, double theta,
     const double omega[3], double coordinate_rates[3], double omega_dot[3], double jacobian[36]);
@@ -130,7 +130,7 @@ void heavy_top_state_rate_jacobian_dense_f64(const heavy_top_constants_f64 *cons
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 8.7e-17 J (seen
- *            5.8e-17).
+ *            6.2e-17).
  * Cost: 2 add, 5 mul.
  * On Cortex-M0+, -O2: 1704 to 1763 instructions, 128 B of code, 104 B of stack.
  * Rests on: A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
@@ -154,7 +154,7 @@ void heavy_top_kinetic_energy_f64(const heavy_top_constants_f64 *constants, cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 1.8e-18 kg
  *            m^2/s (seen 1.7e-18).
  * Cost: 3 mul.
- * On Cortex-M0+, -O2: 917 to 935 instructions, 96 B of code, 96 B of stack.
+ * On Cortex-M0+, -O2: 913 to 931 instructions, 88 B of code, 96 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

@@ -44,11 +44,11 @@
  *     quadrotor_state_rate_f32(&constants, p_dot, w, s, attitude_hull, u, p_rate, p_dot_rate, w_rate, s_rate,
  *       attitude_hull_rate);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 f1863e595d1ce55e.
+ * Body of these files: sha256 5d1f5a800c861b9f.
  */
 #ifndef QUADROTOR_F32_H
 #define QUADROTOR_F32_H
@@ -114,7 +114,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 71 operations on pairs.
- * On Cortex-M0+, -O2: 163977 to 167034 instructions, 3772 B of code, 1440 B of stack.
+ * On Cortex-M0+, -O2: 163978 to 167034 instructions, 3772 B of code, 1440 B of stack.
  * On Cortex-M4F, -O2: 3431 instructions, 3180 B of code, 1244 B of stack.
  */
 int quadrotor_setup_f32(float m, float I_x, float I_y, float I_z, float d, float m_r, float J_r,
@@ -155,12 +155,12 @@ int quadrotor_setup_f32(float m, float I_x, float I_y, float I_z, float d, float
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: p_rate 0 m/s (seen 0),
- *            p_dot_rate 4.9e-05 m/s^2 (seen 9.5e-06), w_rate 4.9e-05 rad/s^2 (seen 2.3e-05),
- *            s_rate 0.002 rad/s^2 (seen 0.0013), attitude_hull_rate 7.2e-07 1/s (seen 5.1e-07);
+ *            p_dot_rate 3.6e-05 m/s^2 (seen 1.7e-05), w_rate 4.9e-05 rad/s^2 (seen 2.4e-05),
+ *            s_rate 0.002 rad/s^2 (seen 0.0015), attitude_hull_rate 6e-07 1/s (seen 5.3e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 13 add, 22 sub, 49 mul, 2 neg.
- * On Cortex-M0+, -O2: 8609 to 8998 instructions, 952 B of code, 128 B of stack.
- * On Cortex-M4F, -O2: 146 instructions, 560 B of code, 40 B of stack.
+ * On Cortex-M0+, -O2: 8608 to 8997 instructions, 948 B of code, 168 B of stack.
+ * On Cortex-M4F, -O2: 151 instructions, 592 B of code, 36 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -196,13 +196,13 @@ void quadrotor_state_rate_f32(const quadrotor_constants_f32 *constants, const fl
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: p_rate 0 m/s (seen 0),
- *            p_dot_rate 6.9e-05 m/s^2 (seen 9.2e-06), w_rate 4.9e-05 rad/s^2 (seen 2.2e-05),
- *            s_rate 0.002 rad/s^2 (seen 0.0017), attitude_hull_rate 8.4e-07 1/s (seen 5.3e-07),
+ *            p_dot_rate 4.7e-05 m/s^2 (seen 1.7e-05), w_rate 4.9e-05 rad/s^2 (seen 2.2e-05),
+ *            s_rate 0.002 rad/s^2 (seen 0.0014), attitude_hull_rate 7.8e-07 1/s (seen 5.3e-07),
  *            jacobian 0.00098 (seen 0.00098); assumed: quaternions given with |q|^2 in 0.999 ..
  *            1.001.
  * Cost: 19 add, 36 sub, 106 mul, 13 neg.
- * On Cortex-M0+, -O2: 17231 to 17814 instructions, 2156 B of code, 256 B of stack.
- * On Cortex-M4F, -O2: 381 instructions, 1484 B of code, 200 B of stack.
+ * On Cortex-M0+, -O2: 17182 to 17765 instructions, 2060 B of code, 176 B of stack.
+ * On Cortex-M4F, -O2: 340 instructions, 1332 B of code, 72 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -213,9 +213,8 @@ void quadrotor_state_rate_jacobian_f32(const quadrotor_constants_f32 *constants,
     float attitude_hull_rate[4], float jacobian[75]);
 
 /* The same, the whole matrix: 357 entries.
- * On Cortex-M0+, -O2: 18462 to 19045 instructions, 2244 B of code, 150 B of tables, 608 B of
- *            stack.
- * On Cortex-M4F, -O2: 1517 instructions, 1572 B of code, 150 B of tables, 548 B of stack.
+ * On Cortex-M0+, -O2: 18393 to 18976 instructions, 4688 B of code, 816 B of stack.
+ * On Cortex-M4F, -O2: 724 instructions, 2624 B of code, 72 B of stack.
  */
 void quadrotor_state_rate_jacobian_dense_f32(const quadrotor_constants_f32 *constants,
     const float p_dot[3], const float w[3], const float s[4], const float attitude_hull[4],
@@ -241,7 +240,7 @@ void quadrotor_state_rate_jacobian_dense_f32(const quadrotor_constants_f32 *cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 0.0029 J (seen 0.0022);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 23 add, 17 sub, 60 mul.
- * On Cortex-M0+, -O2: 9712 to 10064 instructions, 964 B of code, 168 B of stack.
+ * On Cortex-M0+, -O2: 9709 to 10061 instructions, 960 B of code, 168 B of stack.
  * On Cortex-M4F, -O2: 133 instructions, 528 B of code, 36 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass,
  *            rate_seen_from_N, rigid.
@@ -273,9 +272,9 @@ void quadrotor_energy_f32(const quadrotor_constants_f32 *constants, const float 
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_x 2.9e-07 N m (seen
- *            2.3e-07), gyro_y 2.9e-07 N m (seen 1.7e-07).
+ *            2.3e-07), gyro_y 2.9e-07 N m (seen 2.3e-07).
  * Cost: 2 add, 7 sub, 12 mul, 1 neg.
- * On Cortex-M0+, -O2: 2141 to 2329 instructions, 252 B of code, 80 B of stack.
+ * On Cortex-M0+, -O2: 2137 to 2325 instructions, 244 B of code, 80 B of stack.
  * On Cortex-M4F, -O2: 39 instructions, 152 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -310,14 +309,14 @@ void quadrotor_gyro_f32(const quadrotor_constants_f32 *constants, const float w[
  *            product of what the step adds, by rounding alone (of w_next; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: p_next 3.9e-06 m (seen
- *            3.8e-06), p_dot_next 2e-06 m/s (seen 5.2e-07), w_next 1.6e-06 rad/s (seen 6.2e-07),
- *            s_next 0.00011 rad/s (seen 6.8e-05), attitude_hull_next 9.3e-07 (seen 1.5e-07);
+ *            3.8e-06), p_dot_next 1.5e-06 m/s (seen 5.6e-07), w_next 1.6e-06 rad/s (seen 7.5e-07),
+ *            s_next 0.00011 rad/s (seen 7.7e-05), attitude_hull_next 4.7e-07 (seen 1.6e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude_hull = 0, attitude_hull_next infinite, no number or beyond all measure.
  * Cost: 176 add, 110 sub, 311 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 56592 to 58237 instructions, 5372 B of code, 440 B of stack.
- * On Cortex-M4F, -O2: 856 instructions, 3496 B of code, 288 B of stack.
+ * On Cortex-M0+, -O2: 56615 to 58281 instructions, 5428 B of code, 424 B of stack.
+ * On Cortex-M4F, -O2: 816 instructions, 3284 B of code, 232 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

@@ -44,11 +44,11 @@
  *     quadrotor_state_rate_f64(&constants, p_dot, w, s, attitude_hull, u, p_rate, p_dot_rate, w_rate, s_rate,
  *       attitude_hull_rate);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 3835a49266a44427.
+ * Body of these files: sha256 47fbf0fc3f2dbf2c.
  */
 #ifndef QUADROTOR_F64_H
 #define QUADROTOR_F64_H
@@ -154,11 +154,11 @@ int quadrotor_setup_f64(double m, double I_x, double I_y, double I_z, double d, 
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: p_rate 0 m/s (seen 0),
- *            p_dot_rate 9.1e-14 m/s^2 (seen 2.4e-14), w_rate 9.1e-14 rad/s^2 (seen 4.4e-14),
- *            s_rate 3.6e-12 rad/s^2 (seen 3.1e-12), attitude_hull_rate 1.4e-15 1/s (seen 9.9e-16);
+ *            p_dot_rate 6.6e-14 m/s^2 (seen 2.6e-14), w_rate 9.1e-14 rad/s^2 (seen 4.5e-14),
+ *            s_rate 3.6e-12 rad/s^2 (seen 2.4e-12), attitude_hull_rate 1.2e-15 1/s (seen 1e-15);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 13 add, 22 sub, 49 mul, 2 neg.
- * On Cortex-M0+, -O2: 19892 to 20308 instructions, 1528 B of code, 256 B of stack.
+ * On Cortex-M0+, -O2: 19881 to 20298 instructions, 1508 B of code, 312 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -194,12 +194,12 @@ void quadrotor_state_rate_f64(const quadrotor_constants_f64 *constants, const do
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: p_rate 0 m/s (seen 0),
- *            p_dot_rate 1.3e-13 m/s^2 (seen 1.3e-14), w_rate 9.1e-14 rad/s^2 (seen 3.5e-14),
- *            s_rate 3.6e-12 rad/s^2 (seen 2.3e-12), attitude_hull_rate 1.6e-15 1/s (seen 1e-15),
+ *            p_dot_rate 8.7e-14 m/s^2 (seen 2.9e-14), w_rate 9.1e-14 rad/s^2 (seen 4.4e-14),
+ *            s_rate 3.6e-12 rad/s^2 (seen 2.4e-12), attitude_hull_rate 1.5e-15 1/s (seen 9.9e-16),
  *            jacobian 1.9e-12 (seen 1.8e-12); assumed: quaternions given with |q|^2 in 0.999 ..
  *            1.001.
  * Cost: 19 add, 36 sub, 106 mul, 13 neg.
- * On Cortex-M0+, -O2: 40401 to 41191 instructions, 4012 B of code, 664 B of stack.
+ * On Cortex-M0+, -O2: 40226 to 41016 instructions, 3656 B of code, 424 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -210,8 +210,7 @@ void quadrotor_state_rate_jacobian_f64(const quadrotor_constants_f64 *constants,
     double attitude_hull_rate[4], double jacobian[75]);
 
 /* The same, the whole matrix: 357 entries.
- * On Cortex-M0+, -O2: 42509 to 43269 instructions, 4112 B of code, 150 B of tables, 1312 B of
- *            stack.
+ * On Cortex-M0+, -O2: 42474 to 43234 instructions, 8176 B of code, 1328 B of stack.
  */
 void quadrotor_state_rate_jacobian_dense_f64(const quadrotor_constants_f64 *constants,
     const double p_dot[3], const double w[3], const double s[4], const double attitude_hull[4],
@@ -234,10 +233,10 @@ void quadrotor_state_rate_jacobian_dense_f64(const quadrotor_constants_f64 *cons
  * Error: median 0.83, largest 9.4 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 5.4e-12 J (seen
- *            3.9e-12); assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 5.4e-12 J (seen 4e-12);
+ *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 23 add, 17 sub, 60 mul.
- * On Cortex-M0+, -O2: 22705 to 23075 instructions, 1512 B of code, 360 B of stack.
+ * On Cortex-M0+, -O2: 22702 to 23072 instructions, 1508 B of code, 352 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass,
  *            rate_seen_from_N, rigid.
  */
@@ -268,9 +267,9 @@ void quadrotor_energy_f64(const quadrotor_constants_f64 *constants, const double
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_x 5.4e-16 N m (seen
- *            4.2e-16), gyro_y 5.4e-16 N m (seen 4.3e-16).
+ *            5e-16), gyro_y 5.4e-16 N m (seen 5e-16).
  * Cost: 2 add, 7 sub, 12 mul, 1 neg.
- * On Cortex-M0+, -O2: 4918 to 5156 instructions, 404 B of code, 136 B of stack.
+ * On Cortex-M0+, -O2: 4920 to 5158 instructions, 408 B of code, 152 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -304,13 +303,13 @@ void quadrotor_gyro_f64(const quadrotor_constants_f64 *constants, const double w
  *            product of what the step adds, by rounding alone (of p_dot_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: p_next 7.2e-15 m (seen
- *            7.1e-15), p_dot_next 3.7e-15 m/s (seen 1e-15), w_next 3e-15 rad/s (seen 1e-15),
- *            s_next 2.1e-13 rad/s (seen 1.4e-13), attitude_hull_next 1.8e-15 (seen 2.5e-16);
+ *            7.1e-15), p_dot_next 2.7e-15 m/s (seen 1e-15), w_next 3e-15 rad/s (seen 1.3e-15),
+ *            s_next 2.1e-13 rad/s (seen 1.5e-13), attitude_hull_next 8.7e-16 (seen 2.8e-16);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude_hull = 0, attitude_hull_next infinite, no number or beyond all measure.
  * Cost: 176 add, 110 sub, 311 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 129208 to 131475 instructions, 8384 B of code, 880 B of stack.
+ * On Cortex-M0+, -O2: 129229 to 131496 instructions, 8448 B of code, 824 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

@@ -29,11 +29,11 @@
  *     rattleback_state_rate_f32(&constants, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, &alpha_rate, &alpha_dot_rate, &beta_rate,
  *       &beta_dot_rate, &W_rate);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 92529c8e93f50ce8.
+ * Body of these files: sha256 d9ded112f9890a18.
  */
 #ifndef RATTLEBACK_F32_H
 #define RATTLEBACK_F32_H
@@ -118,8 +118,8 @@ int rattleback_setup_f32(float m, float a, float b, float c, float h, float A, f
  * Singular: at alpha = pi/2 + k pi, beta_dot_rate, W_rate infinite, no number or beyond all
  *            measure.
  * Cost: 54 add, 52 sub, 201 mul, 3 div, 3 neg, 1 sqrt, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 40771 to 41349 instructions, 3560 B of code, 320 B of stack.
- * On Cortex-M4F, -O2: 579 instructions, 2056 B of code, 188 B of stack.
+ * On Cortex-M0+, -O2: 40771 to 41350 instructions, 3560 B of code, 320 B of stack.
+ * On Cortex-M4F, -O2: 579 instructions, 2048 B of code, 188 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -154,7 +154,7 @@ void rattleback_state_rate_f32(const rattleback_constants_f32 *constants, float 
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 5.9e-11 (seen
- *            5.8e-11), damping_matrix 7.5e-09 (seen 7.4e-09), stiffness_matrix 9.6e-07 (seen
+ *            5.8e-11), damping_matrix 7.5e-09 (seen 7.5e-09), stiffness_matrix 9.6e-07 (seen
  *            9.5e-07).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 41 to 42 instructions, 84 B of code, 12 B of stack.
@@ -180,8 +180,8 @@ void rattleback_linearised_f32(const rattleback_constants_f32 *constants, float 
  * Error: median 0.82, largest 9.7 u of the largest product or sum in the equation (of
  *            energy_of_all; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: energy_of_all 7e-07 J (seen
- *            3e-07); assumed: sines and cosines of our own within 0.79 ulp.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: energy_of_all 6.9e-07 J (seen
+ *            2.9e-07); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 12 add, 5 sub, 39 mul, 1 div, 1 sqrt, 2 sin, 2 cos.
  * On Cortex-M0+, -O2: 13781 to 14014 instructions, 1128 B of code, 160 B of stack.
  * On Cortex-M4F, -O2: 266 instructions, 804 B of code, 92 B of stack.
@@ -219,8 +219,8 @@ void rattleback_energy_of_all_f32(const rattleback_constants_f32 *constants, flo
  * Singular: at alpha = pi/2 + k pi, alpha_dot_next, beta_next, beta_dot_next, W_next infinite, no
  *            number or beyond all measure.
  * Cost: 239 add, 224 sub, 860 mul, 12 div, 4 sqrt, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 172007 to 173915 instructions, 13104 B of code, 624 B of stack.
- * On Cortex-M4F, -O2: 2582 instructions, 8232 B of code, 476 B of stack.
+ * On Cortex-M0+, -O2: 171992 to 173898 instructions, 13140 B of code, 616 B of stack.
+ * On Cortex-M4F, -O2: 2574 instructions, 8156 B of code, 476 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

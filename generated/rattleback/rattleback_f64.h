@@ -29,11 +29,11 @@
  *     rattleback_state_rate_f64(&constants, 0.0, 0.0, 0.0, 0.0, 0.0, &alpha_rate, &alpha_dot_rate, &beta_rate,
  *       &beta_dot_rate, &W_rate);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 1d245d4d3141b931.
+ * Body of these files: sha256 68ef2f98f7041772.
  */
 #ifndef RATTLEBACK_F64_H
 #define RATTLEBACK_F64_H
@@ -179,9 +179,9 @@ void rattleback_linearised_f64(const rattleback_constants_f64 *constants, double
  *            energy_of_all; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy_of_all 1.3e-15 J (seen
- *            5.8e-16); assumed: sines and cosines of our own within 0.79 ulp.
+ *            6.3e-16); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 12 add, 5 sub, 39 mul, 1 div, 1 sqrt, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 34782 to 35367 instructions, 1852 B of code, 296 B of stack.
+ * On Cortex-M0+, -O2: 34783 to 35367 instructions, 1852 B of code, 296 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, rigid.
  */
@@ -215,7 +215,7 @@ void rattleback_energy_of_all_f64(const rattleback_constants_f64 *constants, dou
  * Singular: at alpha = pi/2 + k pi, alpha_dot_next, beta_next, beta_dot_next, W_next infinite, no
  *            number or beyond all measure.
  * Cost: 239 add, 224 sub, 860 mul, 12 div, 4 sqrt, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 411239 to 414248 instructions, 20492 B of code, 1192 B of stack.
+ * On Cortex-M0+, -O2: 411248 to 414227 instructions, 20524 B of code, 1192 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

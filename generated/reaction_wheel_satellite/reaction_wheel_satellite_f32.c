@@ -329,18 +329,18 @@ void reaction_wheel_satellite_body_f32(const reaction_wheel_satellite_constants_
     const float t33 = t31 - t32;
     const float t34 = t33 * constants->k3;
     const float t35 = t29 - t34;
+    *w_x_dot = t35;
     const float t36 = t15 * constants->k2;
     const float t37 = t27 * constants->k4;
     const float t38 = t36 - t37;
     const float t39 = t33 * constants->k5;
     const float t40 = t38 - t39;
+    *w_y_dot = t40;
     const float t41 = t15 * constants->k3;
     const float t42 = t27 * constants->k5;
     const float t43 = t41 - t42;
     const float t44 = t33 * constants->k6;
     const float t45 = t43 - t44;
-    *w_x_dot = t35;
-    *w_y_dot = t40;
     *w_z_dot = t45;
 }
 
@@ -387,6 +387,7 @@ void reaction_wheel_satellite_wheels_f32(const reaction_wheel_satellite_constant
     const float t35 = t34 * constants->k3;
     const float t36 = t30 - t35;
     const float t37 = t0 - t36;
+    *s_1_dot = t37;
     const float t38 = u_2 * constants->one_over_I_w;
     const float t39 = t16 * constants->k2;
     const float t40 = t28 * constants->k4;
@@ -394,6 +395,7 @@ void reaction_wheel_satellite_wheels_f32(const reaction_wheel_satellite_constant
     const float t42 = t34 * constants->k5;
     const float t43 = t41 - t42;
     const float t44 = t38 - t43;
+    *s_2_dot = t44;
     const float t45 = u_3 * constants->one_over_I_w;
     const float t46 = t16 * constants->k3;
     const float t47 = t28 * constants->k5;
@@ -401,7 +403,5 @@ void reaction_wheel_satellite_wheels_f32(const reaction_wheel_satellite_constant
     const float t49 = t34 * constants->k6;
     const float t50 = t48 - t49;
     const float t51 = t45 - t50;
-    *s_1_dot = t37;
-    *s_2_dot = t44;
     *s_3_dot = t51;
 }

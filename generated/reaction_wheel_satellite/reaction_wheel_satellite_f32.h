@@ -28,11 +28,11 @@
  *     reaction_wheel_satellite_body_f32(&constants, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, &w_x_dot,
  *       &w_y_dot, &w_z_dot);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 838aefe32862e72b.
+ * Body of these files: sha256 9f25ba4d25faffda.
  */
 #ifndef REACTION_WHEEL_SATELLITE_F32_H
 #define REACTION_WHEEL_SATELLITE_F32_H
@@ -112,12 +112,12 @@ int reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float
  * Error: median 0.75, largest 9.4 u of the largest product or sum in the equation (of w_y_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: w_x_dot 4.8e-06 rad/s^2 (seen
- *            3.6e-07), w_y_dot 4.3e-06 rad/s^2 (seen 3.1e-07), w_z_dot 6.6e-06 rad/s^2 (seen
- *            5.2e-07).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: w_x_dot 9e-07 rad/s^2 (seen
+ *            4.8e-07), w_y_dot 6.4e-07 rad/s^2 (seen 3.7e-07), w_z_dot 9.6e-07 rad/s^2 (seen
+ *            5.8e-07).
  * Cost: 6 add, 14 sub, 26 mul.
- * On Cortex-M0+, -O2: 4616 to 4902 instructions, 520 B of code, 88 B of stack.
- * On Cortex-M4F, -O2: 64 instructions, 256 B of code, 8 B of stack.
+ * On Cortex-M0+, -O2: 4599 to 4885 instructions, 484 B of code, 80 B of stack.
+ * On Cortex-M4F, -O2: 67 instructions, 268 B of code, 8 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -157,12 +157,12 @@ void reaction_wheel_satellite_body_f32(const reaction_wheel_satellite_constants_
  * Error: median 0.51, largest 7.1 u of the largest product or sum in the equation (of s_2_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: s_1_dot 9.2e-06 rad/s^2 (seen
- *            5.3e-06), s_2_dot 8.6e-06 rad/s^2 (seen 5e-06), s_3_dot 1.1e-05 rad/s^2 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: s_1_dot 6.2e-06 rad/s^2 (seen
+ *            5.4e-06), s_2_dot 6.1e-06 rad/s^2 (seen 5.3e-06), s_3_dot 6.3e-06 rad/s^2 (seen
  *            5.4e-06).
  * Cost: 6 add, 17 sub, 29 mul.
- * On Cortex-M0+, -O2: 5185 to 5431 instructions, 552 B of code, 88 B of stack.
- * On Cortex-M4F, -O2: 71 instructions, 284 B of code, 8 B of stack.
+ * On Cortex-M0+, -O2: 5180 to 5425 instructions, 540 B of code, 88 B of stack.
+ * On Cortex-M4F, -O2: 77 instructions, 308 B of code, 8 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

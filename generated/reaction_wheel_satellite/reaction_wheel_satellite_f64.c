@@ -330,18 +330,18 @@ void reaction_wheel_satellite_body_f64(const reaction_wheel_satellite_constants_
     const double t33 = t31 - t32;
     const double t34 = t33 * constants->k3;
     const double t35 = t29 - t34;
+    *w_x_dot = t35;
     const double t36 = t15 * constants->k2;
     const double t37 = t27 * constants->k4;
     const double t38 = t36 - t37;
     const double t39 = t33 * constants->k5;
     const double t40 = t38 - t39;
+    *w_y_dot = t40;
     const double t41 = t15 * constants->k3;
     const double t42 = t27 * constants->k5;
     const double t43 = t41 - t42;
     const double t44 = t33 * constants->k6;
     const double t45 = t43 - t44;
-    *w_x_dot = t35;
-    *w_y_dot = t40;
     *w_z_dot = t45;
 }
 
@@ -388,6 +388,7 @@ void reaction_wheel_satellite_wheels_f64(const reaction_wheel_satellite_constant
     const double t35 = t34 * constants->k3;
     const double t36 = t30 - t35;
     const double t37 = t0 - t36;
+    *s_1_dot = t37;
     const double t38 = u_2 * constants->one_over_I_w;
     const double t39 = t16 * constants->k2;
     const double t40 = t28 * constants->k4;
@@ -395,6 +396,7 @@ void reaction_wheel_satellite_wheels_f64(const reaction_wheel_satellite_constant
     const double t42 = t34 * constants->k5;
     const double t43 = t41 - t42;
     const double t44 = t38 - t43;
+    *s_2_dot = t44;
     const double t45 = u_3 * constants->one_over_I_w;
     const double t46 = t16 * constants->k3;
     const double t47 = t28 * constants->k5;
@@ -402,7 +404,5 @@ void reaction_wheel_satellite_wheels_f64(const reaction_wheel_satellite_constant
     const double t49 = t34 * constants->k6;
     const double t50 = t48 - t49;
     const double t51 = t45 - t50;
-    *s_1_dot = t37;
-    *s_2_dot = t44;
     *s_3_dot = t51;
 }

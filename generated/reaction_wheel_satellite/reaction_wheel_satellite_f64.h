@@ -27,11 +27,11 @@
  *     reaction_wheel_satellite_body_f64(&constants, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, &w_x_dot, &w_y_dot,
  *       &w_z_dot);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 12f37c6eaa2976c6.
+ * Body of these files: sha256 907fece2c295fb42.
  */
 #ifndef REACTION_WHEEL_SATELLITE_F64_H
 #define REACTION_WHEEL_SATELLITE_F64_H
@@ -110,10 +110,11 @@ int reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, do
  * Error: median 0.74, largest 9.7 u of the largest product or sum in the equation (of w_y_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples 12
  *            u (of w_y_dot, turned, ill-conditioned).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: w_x_dot 8.9e-15 rad/s^2 (seen
- *            6.7e-16), w_y_dot 8e-15 rad/s^2 (seen 5.6e-16), w_z_dot 1.3e-14 rad/s^2 (seen 9e-16).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: w_x_dot 1.7e-15 rad/s^2 (seen
+ *            8.2e-16), w_y_dot 1.2e-15 rad/s^2 (seen 6.2e-16), w_z_dot 1.8e-15 rad/s^2 (seen
+ *            7.9e-16).
  * Cost: 6 add, 14 sub, 26 mul.
- * On Cortex-M0+, -O2: 10632 to 10983 instructions, 768 B of code, 136 B of stack.
+ * On Cortex-M0+, -O2: 10615 to 10966 instructions, 732 B of code, 136 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -153,11 +154,10 @@ void reaction_wheel_satellite_body_f64(const reaction_wheel_satellite_constants_
  * Error: median 0.51, largest 7.4 u of the largest product or sum in the equation (of s_2_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: s_1_dot 1.8e-14 rad/s^2 (seen
- *            9.6e-15), s_2_dot 1.6e-14 rad/s^2 (seen 9.6e-15), s_3_dot 1.9e-14 rad/s^2 (seen
- *            9.6e-15).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: s_1_dot 1.2e-14 rad/s^2 (seen
+ *            1e-14), s_2_dot 1.2e-14 rad/s^2 (seen 1e-14), s_3_dot 1.2e-14 rad/s^2 (seen 1e-14).
  * Cost: 6 add, 17 sub, 29 mul.
- * On Cortex-M0+, -O2: 11988 to 12320 instructions, 864 B of code, 152 B of stack.
+ * On Cortex-M0+, -O2: 11967 to 12299 instructions, 824 B of code, 136 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -19,11 +19,11 @@
  *     rigid_body_state_rate_f32(&constants, attitude, velocity, omega, force, moment, position_rate, attitude_rate,
  *       velocity_rate, omega_dot);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 dddcf161c030df75.
+ * Body of these files: sha256 c4d4af23283abade.
  */
 #ifndef RIGID_BODY_F32_H
 #define RIGID_BODY_F32_H
@@ -128,12 +128,12 @@ int rigid_body_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xy
  *            velocity_rate; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_rate 0 m/s (seen 0),
- *            attitude_rate 1.5e-06 1/s (seen 1e-06), velocity_rate 4.7e-05 m/s^2 (seen 8.8e-06),
- *            omega_dot 0.00014 rad/s^2 (seen 2.6e-05); assumed: quaternions given with |q|^2 in
+ *            attitude_rate 1.2e-06 1/s (seen 1.1e-06), velocity_rate 3.1e-05 m/s^2 (seen 9.1e-06),
+ *            omega_dot 0.00014 rad/s^2 (seen 2.4e-05); assumed: quaternions given with |q|^2 in
  *            0.999 .. 1.001.
  * Cost: 21 add, 16 sub, 59 mul, 1 neg.
- * On Cortex-M0+, -O2: 9647 to 10073 instructions, 1068 B of code, 136 B of stack.
- * On Cortex-M4F, -O2: 147 instructions, 576 B of code, 32 B of stack.
+ * On Cortex-M0+, -O2: 9643 to 10069 instructions, 1048 B of code, 128 B of stack.
+ * On Cortex-M4F, -O2: 155 instructions, 596 B of code, 28 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -162,12 +162,12 @@ void rigid_body_state_rate_f32(const rigid_body_constants_f32 *constants, const 
  *            velocity_rate; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples 8.6 u (of jacobian, thin rod).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_rate 0 m/s (seen 0),
- *            attitude_rate 1.7e-06 1/s (seen 1e-06), velocity_rate 6.2e-05 m/s^2 (seen 7.8e-06),
- *            omega_dot 8.1e-05 rad/s^2 (seen 1.5e-05), jacobian 3.5e-05 (seen 1.6e-05); assumed:
+ *            attitude_rate 1.6e-06 1/s (seen 1e-06), velocity_rate 3.6e-05 m/s^2 (seen 1e-05),
+ *            omega_dot 8.1e-05 rad/s^2 (seen 2e-05), jacobian 2.9e-05 (seen 1.6e-05); assumed:
  *            quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 43 add, 30 sub, 98 mul, 11 neg.
- * On Cortex-M0+, -O2: 17451 to 18093 instructions, 2276 B of code, 256 B of stack.
- * On Cortex-M4F, -O2: 384 instructions, 1488 B of code, 160 B of stack.
+ * On Cortex-M0+, -O2: 17374 to 18033 instructions, 2104 B of code, 176 B of stack.
+ * On Cortex-M4F, -O2: 338 instructions, 1316 B of code, 64 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -178,8 +178,8 @@ void rigid_body_state_rate_jacobian_f32(const rigid_body_constants_f32 *constant
     float omega_dot[3], float jacobian[66]);
 
 /* The same, the whole matrix: 247 entries.
- * On Cortex-M0+, -O2: 18319 to 18921 instructions, 2356 B of code, 66 B of tables, 568 B of stack.
- * On Cortex-M4F, -O2: 1274 instructions, 1572 B of code, 66 B of tables, 468 B of stack.
+ * On Cortex-M0+, -O2: 18078 to 18688 instructions, 3736 B of code, 520 B of stack.
+ * On Cortex-M4F, -O2: 520 instructions, 1984 B of code, 64 B of stack.
  */
 void rigid_body_state_rate_jacobian_dense_f32(const rigid_body_constants_f32 *constants,
     const float attitude[4], const float velocity[3], const float omega[3], const float force[3],
@@ -199,7 +199,7 @@ void rigid_body_state_rate_jacobian_dense_f32(const rigid_body_constants_f32 *co
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 0.028 J (seen
- *            0.022).
+ *            0.023).
  * Cost: 5 add, 3 sub, 13 mul.
  * On Cortex-M0+, -O2: 2105 to 2217 instructions, 232 B of code, 72 B of stack.
  * On Cortex-M4F, -O2: 36 instructions, 144 B of code, 0 B of stack.
@@ -226,11 +226,11 @@ void rigid_body_kinetic_energy_f32(const rigid_body_constants_f32 *constants,
  * Error: median 0.44, largest 14 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 8.3e-05 N m (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 6.6e-05 N m (seen
  *            4.2e-05).
  * Cost: 7 add, 10 sub, 23 mul.
- * On Cortex-M0+, -O2: 3977 to 4211 instructions, 464 B of code, 104 B of stack.
- * On Cortex-M4F, -O2: 58 instructions, 232 B of code, 0 B of stack.
+ * On Cortex-M0+, -O2: 3977 to 4205 instructions, 464 B of code, 96 B of stack.
+ * On Cortex-M4F, -O2: 63 instructions, 252 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -18,11 +18,11 @@
  *     rigid_body_state_rate_f64(&constants, attitude, velocity, omega, force, moment, position_rate, attitude_rate,
  *       velocity_rate, omega_dot);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 6c7d4752e4ef98fb.
+ * Body of these files: sha256 9445bf59814e6bf3.
  */
 #ifndef RIGID_BODY_F64_H
 #define RIGID_BODY_F64_H
@@ -87,7 +87,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 123 operations on pairs.
- * On Cortex-M0+, -O2: 552601 to 577122 instructions, 12300 B of code, 3712 B of stack.
+ * On Cortex-M0+, -O2: 552601 to 577123 instructions, 12300 B of code, 3712 B of stack.
  */
 int rigid_body_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xy, double I_xz,
     double I_yz, rigid_body_constants_f64 *constants);
@@ -126,11 +126,11 @@ int rigid_body_setup_f64(double m, double I_xx, double I_yy, double I_zz, double
  *            velocity_rate; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_rate 0 m/s (seen 0),
- *            attitude_rate 2.7e-15 1/s (seen 2.1e-15), velocity_rate 8.8e-14 m/s^2 (seen 1.6e-14),
- *            omega_dot 2.6e-13 rad/s^2 (seen 4.4e-14); assumed: quaternions given with |q|^2 in
+ *            attitude_rate 2.3e-15 1/s (seen 2e-15), velocity_rate 5.8e-14 m/s^2 (seen 1.9e-14),
+ *            omega_dot 2.6e-13 rad/s^2 (seen 5.4e-14); assumed: quaternions given with |q|^2 in
  *            0.999 .. 1.001.
  * Cost: 21 add, 16 sub, 59 mul, 1 neg.
- * On Cortex-M0+, -O2: 22392 to 22948 instructions, 1676 B of code, 280 B of stack.
+ * On Cortex-M0+, -O2: 22397 to 22955 instructions, 1668 B of code, 256 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -159,11 +159,11 @@ void rigid_body_state_rate_f64(const rigid_body_constants_f64 *constants, const 
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_rate 0 m/s (seen 0),
- *            attitude_rate 3.2e-15 1/s (seen 1.9e-15), velocity_rate 1.2e-13 m/s^2 (seen 1.5e-14),
- *            omega_dot 1.5e-13 rad/s^2 (seen 2.7e-14), jacobian 6.5e-14 (seen 3e-14); assumed:
+ *            attitude_rate 2.9e-15 1/s (seen 2.1e-15), velocity_rate 6.7e-14 m/s^2 (seen 1.7e-14),
+ *            omega_dot 1.5e-13 rad/s^2 (seen 3.3e-14), jacobian 5.3e-14 (seen 3.4e-14); assumed:
  *            quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 43 add, 30 sub, 98 mul, 11 neg.
- * On Cortex-M0+, -O2: 40344 to 41044 instructions, 4076 B of code, 576 B of stack.
+ * On Cortex-M0+, -O2: 40177 to 40901 instructions, 3748 B of code, 368 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -174,8 +174,7 @@ void rigid_body_state_rate_jacobian_f64(const rigid_body_constants_f64 *constant
     double velocity_rate[3], double omega_dot[3], double jacobian[66]);
 
 /* The same, the whole matrix: 247 entries.
- * On Cortex-M0+, -O2: 41898 to 42518 instructions, 4168 B of code, 66 B of tables, 1152 B of
- *            stack.
+ * On Cortex-M0+, -O2: 41909 to 42523 instructions, 7164 B of code, 952 B of stack.
  */
 void rigid_body_state_rate_jacobian_dense_f64(const rigid_body_constants_f64 *constants,
     const double attitude[4], const double velocity[3], const double omega[3],
@@ -195,7 +194,7 @@ void rigid_body_state_rate_jacobian_dense_f64(const rigid_body_constants_f64 *co
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 5.2e-11 J (seen
- *            4.1e-11).
+ *            4.5e-11).
  * Cost: 5 add, 3 sub, 13 mul.
  * On Cortex-M0+, -O2: 4932 to 5097 instructions, 376 B of code, 128 B of stack.
  * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
@@ -221,10 +220,10 @@ void rigid_body_kinetic_energy_f64(const rigid_body_constants_f64 *constants,
  * Error: median 0.44, largest 14 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 1.6e-13 N m (seen
- *            8e-14).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 1.3e-13 N m (seen
+ *            8.7e-14).
  * Cost: 7 add, 10 sub, 23 mul.
- * On Cortex-M0+, -O2: 9243 to 9538 instructions, 724 B of code, 192 B of stack.
+ * On Cortex-M0+, -O2: 9241 to 9546 instructions, 720 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

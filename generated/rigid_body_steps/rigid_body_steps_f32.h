@@ -20,8 +20,8 @@
  *     rigid_body_steps_step_rk4_f32(&constants, position, attitude, velocity, omega, force, moment, 0.00999999978F,
  *       position_next, attitude_next, velocity_next, omega_next);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
  * Body of these files: sha256 d3a984156be759ce.
@@ -110,9 +110,9 @@ int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, floa
  *            the ranges, 65536 searched from the worst); at 8282 hard samples 9.5 u (of
  *            attitude_next, turned, ill-conditioned).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_next 4.2e-06 m (seen
- *            4e-06), attitude_next 5.2e-06 (seen 1.5e-07), velocity_next 7.2e-06 m/s (seen 2e-06),
- *            omega_next 1.6e-05 rad/s (seen 7.6e-07); assumed: quaternions given with |q|^2 in
- *            0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
+ *            4e-06), attitude_next 1.7e-06 (seen 1.6e-07), velocity_next 4.5e-06 m/s (seen
+ *            2.1e-06), omega_next 1.5e-05 rad/s (seen 7.5e-07); assumed: quaternions given with
+ *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 204 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
  * On Cortex-M0+, -O2: 62725 to 64119 instructions, 1528 B of code, 16 B of tables, 408 B of stack.

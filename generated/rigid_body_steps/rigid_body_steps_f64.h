@@ -18,8 +18,8 @@
  *     rigid_body_steps_step_rk4_f64(&constants, position, attitude, velocity, omega, force, moment, 0.01,
  *       position_next, attitude_next, velocity_next, omega_next);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
  * Body of these files: sha256 c83a3843beca7d88.
@@ -107,8 +107,8 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  *            the ranges, 65536 searched from the worst); at 8282 hard samples 1.5e+03 u (of
  *            attitude_next, turned, ill-conditioned).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_next 7.7e-15 m (seen
- *            7.4e-15), attitude_next 9.6e-15 (seen 2.8e-16), velocity_next 1.4e-14 m/s (seen
- *            3.7e-15), omega_next 3e-14 rad/s (seen 1.4e-15); assumed: quaternions given with
+ *            7.4e-15), attitude_next 3.2e-15 (seen 3e-16), velocity_next 8.3e-15 m/s (seen
+ *            3.7e-15), omega_next 2.8e-14 rad/s (seen 1.6e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 204 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.

@@ -242,27 +242,27 @@ void rolling_disc_state_rate_f32(const rolling_disc_constants_f32 *constants, fl
     const float t6 = W * t5;
     const float t7 = t4 * t6;
     const float t8 = t1 + t7;
+    *lean_dot_rate = t8;
     const rolling_disc_sines_f32 t9_both = rolling_disc_sine_cosine_f32(yaw);
     const float t9 = t9_both.cosine;
     const float t10 = s * constants->r;
     const float t11 = t9 * t10;
+    *x_rate = t11;
     const float t12 = t9_both.sine;
     const float t13 = t12 * t10;
+    *y_rate = t13;
     const float t14 = lean_dot * s;
     const float t15 = t14 * 2.0F;
     const float t16 = t15 / t5;
     const float t17 = -t16;
+    *W_rate = t17;
     const float t18 = t0 * t16;
     const float t19 = lean_dot * t6;
     const float t20 = t19 * 1.66666663F;
     const float t21 = t18 - t20;
-    *lean_rate = lean_dot;
-    *lean_dot_rate = t8;
-    *yaw_rate = W;
-    *x_rate = t11;
-    *y_rate = t13;
-    *W_rate = t17;
     *s_rate = t21;
+    *lean_rate = lean_dot;
+    *yaw_rate = W;
 }
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. */
@@ -281,27 +281,36 @@ void rolling_disc_state_rate_jacobian_f32(const rolling_disc_constants_f32 *cons
     const float t7 = W * t0;
     const float t8 = t6 * t7;
     const float t9 = t3 + t8;
+    *lean_dot_rate = t9;
     const rolling_disc_sines_f32 t10_both = rolling_disc_sine_cosine_f32(yaw);
     const float t10 = t10_both.cosine;
     const float t11 = s * constants->r;
     const float t12 = t10 * t11;
+    *x_rate = t12;
+    jacobian[7] = t12;
     const float t13 = t10_both.sine;
     const float t14 = t13 * t11;
+    *y_rate = t14;
     const float t15 = s * t1;
     const float t16 = t15 * (-2.0F);
+    jacobian[4] = t16;
     const float t17 = lean_dot * t16;
+    *W_rate = t17;
     const float t18 = lean_dot * (-1.66666663F);
     const float t19 = t7 * t18;
     const float t20 = t2 * t17;
     const float t21 = t19 - t20;
+    *s_rate = t21;
     const float t22 = t7 * t7;
     const float t23 = t0 * constants->k1;
     const float t24 = t22 + t23;
     const float t25 = t6 * t5;
     const float t26 = t24 - t25;
+    jacobian[0] = t26;
     const float t27 = lean_dot * t2;
     const float t28 = t1 * t27;
     const float t29 = t16 * t28;
+    jacobian[1] = t29;
     const float t30 = t2 * t15;
     const float t31 = t28 * t30;
     const float t32 = t31 + t31;
@@ -310,44 +319,35 @@ void rolling_disc_state_rate_jacobian_f32(const rolling_disc_constants_f32 *cons
     const float t35 = t32 - t34;
     const float t36 = t0 * t17;
     const float t37 = t35 - t36;
+    jacobian[2] = t37;
     const float t38 = t7 * (-1.66666663F);
     const float t39 = t38 + t30;
     const float t40 = t39 + t30;
+    jacobian[5] = t40;
     const float t41 = -t14;
+    jacobian[6] = t41;
     const float t42 = t0 * t6;
     const float t43 = t2 * t7;
     const float t44 = t42 + t43;
+    jacobian[8] = t44;
     const float t45 = t0 * t18;
+    jacobian[10] = t45;
     const float t46 = t7 * 1.20000005F;
+    jacobian[11] = t46;
     const float t47 = t10 * constants->r;
+    jacobian[12] = t47;
     const float t48 = t13 * constants->r;
+    jacobian[13] = t48;
     const float t49 = lean_dot * t1;
     const float t50 = t49 * (-2.0F);
+    jacobian[14] = t50;
     const float t51 = t28 * (-2.0F);
     const float t52 = -t51;
-    *lean_rate = lean_dot;
-    *lean_dot_rate = t9;
-    *yaw_rate = W;
-    *x_rate = t12;
-    *y_rate = t14;
-    *W_rate = t17;
-    *s_rate = t21;
-    jacobian[0] = t26;
-    jacobian[1] = t29;
-    jacobian[2] = t37;
-    jacobian[3] = 1.0F;
-    jacobian[4] = t16;
-    jacobian[5] = t40;
-    jacobian[6] = t41;
-    jacobian[7] = t12;
-    jacobian[8] = t44;
-    jacobian[9] = 1.0F;
-    jacobian[10] = t45;
-    jacobian[11] = t46;
-    jacobian[12] = t47;
-    jacobian[13] = t48;
-    jacobian[14] = t50;
     jacobian[15] = t52;
+    *lean_rate = lean_dot;
+    *yaw_rate = W;
+    jacobian[3] = 1.0F;
+    jacobian[9] = 1.0F;
 }
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. Dense. */
@@ -355,19 +355,117 @@ void rolling_disc_state_rate_jacobian_dense_f32(const rolling_disc_constants_f32
     float lean, float lean_dot, float yaw, float W, float s, float *lean_rate, float *lean_dot_rate,
     float *yaw_rate, float *x_rate, float *y_rate, float *W_rate, float *s_rate, float jacobian[49])
 {
-    static const unsigned char places[16] = {
-        1, 5, 6, 7, 12, 13, 17, 18, 36, 37, 41, 43, 45, 46, 47, 48
-    };
-    float nonzeros[16];
-    int entry;
-    rolling_disc_state_rate_jacobian_f32(constants, lean, lean_dot, yaw, W, s, lean_rate, lean_dot_rate, yaw_rate,
-        x_rate, y_rate, W_rate, s_rate, nonzeros);
-    for (entry = 0; entry < 49; ++entry) {
-        jacobian[entry] = 0.0F;
-    }
-    for (entry = 0; entry < 16; ++entry) {
-        jacobian[places[entry]] = nonzeros[entry];
-    }
+    const rolling_disc_sines_f32 t0_both = rolling_disc_sine_cosine_f32(lean);
+    const float t0 = t0_both.cosine;
+    const float t1 = 1.0F / t0;
+    const float t2 = t0_both.sine;
+    const float t3 = t2 * constants->k1;
+    const float t4 = s * 1.20000005F;
+    const float t5 = t2 * W;
+    const float t6 = t4 + t5;
+    const float t7 = W * t0;
+    const float t8 = t6 * t7;
+    const float t9 = t3 + t8;
+    *lean_dot_rate = t9;
+    const rolling_disc_sines_f32 t10_both = rolling_disc_sine_cosine_f32(yaw);
+    const float t10 = t10_both.cosine;
+    const float t11 = s * constants->r;
+    const float t12 = t10 * t11;
+    *x_rate = t12;
+    jacobian[18] = t12;
+    const float t13 = t10_both.sine;
+    const float t14 = t13 * t11;
+    *y_rate = t14;
+    const float t15 = s * t1;
+    const float t16 = t15 * (-2.0F);
+    jacobian[12] = t16;
+    const float t17 = lean_dot * t16;
+    *W_rate = t17;
+    const float t18 = lean_dot * (-1.66666663F);
+    const float t19 = t7 * t18;
+    const float t20 = t2 * t17;
+    const float t21 = t19 - t20;
+    *s_rate = t21;
+    const float t22 = t7 * t7;
+    const float t23 = t0 * constants->k1;
+    const float t24 = t22 + t23;
+    const float t25 = t6 * t5;
+    const float t26 = t24 - t25;
+    jacobian[1] = t26;
+    const float t27 = lean_dot * t2;
+    const float t28 = t1 * t27;
+    const float t29 = t16 * t28;
+    jacobian[5] = t29;
+    const float t30 = t2 * t15;
+    const float t31 = t28 * t30;
+    const float t32 = t31 + t31;
+    const float t33 = W * t27;
+    const float t34 = t33 * (-1.66666663F);
+    const float t35 = t32 - t34;
+    const float t36 = t0 * t17;
+    const float t37 = t35 - t36;
+    jacobian[6] = t37;
+    const float t38 = t7 * (-1.66666663F);
+    const float t39 = t38 + t30;
+    const float t40 = t39 + t30;
+    jacobian[13] = t40;
+    const float t41 = -t14;
+    jacobian[17] = t41;
+    const float t42 = t0 * t6;
+    const float t43 = t2 * t7;
+    const float t44 = t42 + t43;
+    jacobian[36] = t44;
+    const float t45 = t0 * t18;
+    jacobian[41] = t45;
+    const float t46 = t7 * 1.20000005F;
+    jacobian[43] = t46;
+    const float t47 = t10 * constants->r;
+    jacobian[45] = t47;
+    const float t48 = t13 * constants->r;
+    jacobian[46] = t48;
+    const float t49 = lean_dot * t1;
+    const float t50 = t49 * (-2.0F);
+    jacobian[47] = t50;
+    const float t51 = t28 * (-2.0F);
+    const float t52 = -t51;
+    jacobian[48] = t52;
+    *lean_rate = lean_dot;
+    *yaw_rate = W;
+    jacobian[0] = 0.0F;
+    jacobian[2] = 0.0F;
+    jacobian[3] = 0.0F;
+    jacobian[4] = 0.0F;
+    jacobian[7] = 1.0F;
+    jacobian[8] = 0.0F;
+    jacobian[9] = 0.0F;
+    jacobian[10] = 0.0F;
+    jacobian[11] = 0.0F;
+    jacobian[14] = 0.0F;
+    jacobian[15] = 0.0F;
+    jacobian[16] = 0.0F;
+    jacobian[19] = 0.0F;
+    jacobian[20] = 0.0F;
+    jacobian[21] = 0.0F;
+    jacobian[22] = 0.0F;
+    jacobian[23] = 0.0F;
+    jacobian[24] = 0.0F;
+    jacobian[25] = 0.0F;
+    jacobian[26] = 0.0F;
+    jacobian[27] = 0.0F;
+    jacobian[28] = 0.0F;
+    jacobian[29] = 0.0F;
+    jacobian[30] = 0.0F;
+    jacobian[31] = 0.0F;
+    jacobian[32] = 0.0F;
+    jacobian[33] = 0.0F;
+    jacobian[34] = 0.0F;
+    jacobian[35] = 0.0F;
+    jacobian[37] = 1.0F;
+    jacobian[38] = 0.0F;
+    jacobian[39] = 0.0F;
+    jacobian[40] = 0.0F;
+    jacobian[42] = 0.0F;
+    jacobian[44] = 0.0F;
 }
 
 /* Mass, damping and stiffness matrices of small motion. */
@@ -430,6 +528,7 @@ void rolling_disc_ground_f32(const rolling_disc_constants_f32 *constants, float 
     const float t2 = W * t0;
     const float t3 = lean_dot * t2;
     const float t4 = t3 * constants->k6;
+    ground[0] = t4;
     const float t5 = t0_both.sine;
     const float t6 = t0 * constants->k7;
     const float t7 = W * t5;
@@ -446,14 +545,13 @@ void rolling_disc_ground_f32(const rolling_disc_constants_f32 *constants, float 
     const float t18 = t17 * constants->k8;
     const float t19 = t15 + t18;
     const float t20 = -t19;
+    ground[1] = t20;
     const float t21 = t0 * constants->m_g;
     const float t22 = t21 - t13;
     const float t23 = t1 * t22;
     const float t24 = t19 * t5;
     const float t25 = t24 * t1;
     const float t26 = t23 - t25;
-    ground[0] = t4;
-    ground[1] = t20;
     ground[2] = t26;
 }
 
@@ -608,6 +706,7 @@ void rolling_disc_step_rk4_f32(const rolling_disc_constants_f32 *constants, floa
     const float t133 = t132 + t111;
     const float t134 = t133 * 0.333333343F;
     const float t157 = yaw + t134;
+    *yaw_next = t157;
     const float t98 = t95 * 1.20000005F;
     const float t100 = t98 + t99;
     const float t103 = t100 * t102;
@@ -626,11 +725,13 @@ void rolling_disc_step_rk4_f32(const rolling_disc_constants_f32 *constants, floa
     const float t143 = t142 + t114;
     const float t144 = t143 * 0.333333343F;
     const float t159 = y + t144;
+    *y_next = t159;
     const float t136 = t135 * 2.0F;
     const float t137 = t19 + t136;
     const float t138 = t137 + t113;
     const float t139 = t138 * 0.333333343F;
     const float t158 = x + t139;
+    *x_next = t158;
     const float t64 = t61 * 1.20000005F;
     const float t66 = t64 + t65;
     const float t69 = t66 * t68;
@@ -642,6 +743,7 @@ void rolling_disc_step_rk4_f32(const rolling_disc_constants_f32 *constants, floa
     const float t128 = t127 + t110;
     const float t129 = t128 * 0.333333343F;
     const float t156 = lean_dot + t129;
+    *lean_dot_next = t156;
     const float t87 = t76 * 2.0F;
     const float t92 = lean_dot + t87;
     const float t107 = t92 * t95;
@@ -651,6 +753,7 @@ void rolling_disc_step_rk4_f32(const rolling_disc_constants_f32 *constants, floa
     const float t148 = t147 + t116;
     const float t149 = t148 * 0.333333343F;
     const float t160 = W - t149;
+    *W_next = t160;
     const float t108 = t92 * t102;
     const float t118 = t108 * t25;
     const float t119 = t117 - t118;
@@ -659,13 +762,8 @@ void rolling_disc_step_rk4_f32(const rolling_disc_constants_f32 *constants, floa
     const float t123 = t122 + t109;
     const float t124 = t123 * 0.333333343F;
     const float t155 = lean + t124;
+    *lean_next = t155;
     const float t154 = t153 * 0.333333343F;
     const float t161 = s + t154;
-    *lean_next = t155;
-    *lean_dot_next = t156;
-    *yaw_next = t157;
-    *x_next = t158;
-    *y_next = t159;
-    *W_next = t160;
     *s_next = t161;
 }

@@ -18,11 +18,11 @@
  *     rolling_disc_state_rate_f32(&constants, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, &lean_rate, &lean_dot_rate, &yaw_rate,
  *       &x_rate, &y_rate, &W_rate, &s_rate);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 d185e7e2eee32c88.
+ * Body of these files: sha256 9c491eba56a9f1ae.
  */
 #ifndef ROLLING_DISC_F32_H
 #define ROLLING_DISC_F32_H
@@ -100,13 +100,13 @@ int rolling_disc_setup_f32(float m, float r, float n, float g,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: lean_rate 0 rad/s (seen 0),
- *            lean_dot_rate 5.7e-05 rad/s^2 (seen 2.4e-05), yaw_rate 0 rad/s (seen 0), x_rate
- *            7.6e-07 m/s (seen 6.5e-07), y_rate 7.6e-07 m/s (seen 6.4e-07), W_rate 0.00013 rad/s^2
- *            (seen 7.4e-05), s_rate 0.00022 rad/s^2 (seen 0.00011); assumed: sines and cosines of
+ *            lean_dot_rate 4.6e-05 rad/s^2 (seen 3.1e-05), yaw_rate 0 rad/s (seen 0), x_rate
+ *            7.6e-07 m/s (seen 6.5e-07), y_rate 7.6e-07 m/s (seen 6.5e-07), W_rate 9.1e-05 rad/s^2
+ *            (seen 7.5e-05), s_rate 0.00018 rad/s^2 (seen 0.00012); assumed: sines and cosines of
  *            our own within 0.79 ulp.
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate infinite, no number or beyond all measure.
  * Cost: 2 add, 1 sub, 13 mul, 1 div, 1 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 9168 to 10664 instructions, 788 B of code, 128 B of stack.
+ * On Cortex-M0+, -O2: 9166 to 10661 instructions, 780 B of code, 128 B of stack.
  * On Cortex-M4F, -O2: 225 to 227 instructions, 616 B of code, 84 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -142,15 +142,15 @@ void rolling_disc_state_rate_f32(const rolling_disc_constants_f32 *constants, fl
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: lean_rate 0 rad/s (seen 0),
- *            lean_dot_rate 5.7e-05 rad/s^2 (seen 2.4e-05), yaw_rate 0 rad/s (seen 0), x_rate
- *            7.6e-07 m/s (seen 6.4e-07), y_rate 7.6e-07 m/s (seen 6.2e-07), W_rate 0.00015 rad/s^2
- *            (seen 8.4e-05), s_rate 0.00024 rad/s^2 (seen 0.00012), jacobian 0.0013 (seen
- *            0.00055); assumed: sines and cosines of our own within 0.79 ulp.
+ *            lean_dot_rate 4.6e-05 rad/s^2 (seen 3.2e-05), yaw_rate 0 rad/s (seen 0), x_rate
+ *            7.6e-07 m/s (seen 6.5e-07), y_rate 7.6e-07 m/s (seen 6.5e-07), W_rate 0.00011 rad/s^2
+ *            (seen 8.9e-05), s_rate 0.0002 rad/s^2 (seen 0.00012), jacobian 0.00097 (seen
+ *            0.00058); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 7 add, 4 sub, 35 mul, 1 div, 2 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 12506 to 14003 instructions, 1156 B of code, 192 B of stack.
- * On Cortex-M4F, -O2: 273 to 275 instructions, 808 B of code, 108 B of stack.
+ * On Cortex-M0+, -O2: 12481 to 13978 instructions, 1116 B of code, 176 B of stack.
+ * On Cortex-M4F, -O2: 278 to 280 instructions, 824 B of code, 100 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -160,8 +160,8 @@ void rolling_disc_state_rate_jacobian_f32(const rolling_disc_constants_f32 *cons
     float *yaw_rate, float *x_rate, float *y_rate, float *W_rate, float *s_rate, float jacobian[16]);
 
 /* The same, the whole matrix: 49 entries.
- * On Cortex-M0+, -O2: 12773 to 14210 instructions, 1244 B of code, 16 B of tables, 312 B of stack.
- * On Cortex-M4F, -O2: 510 to 512 instructions, 884 B of code, 16 B of tables, 212 B of stack.
+ * On Cortex-M0+, -O2: 12537 to 13972 instructions, 1256 B of code, 176 B of stack.
+ * On Cortex-M4F, -O2: 312 to 314 instructions, 960 B of code, 100 B of stack.
  */
 void rolling_disc_state_rate_jacobian_dense_f32(const rolling_disc_constants_f32 *constants,
     float lean, float lean_dot, float yaw, float W, float s, float *lean_rate, float *lean_dot_rate,
@@ -218,8 +218,8 @@ void rolling_disc_linearised_f32(const rolling_disc_constants_f32 *constants, fl
  * Error: median 0.72, largest 8 u of the largest product or sum in the equation (of steady; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8318 hard samples 8.2 u (of
  *            steady, thin disc).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 5.2e-05 rad/s^2 (seen
- *            3.1e-05); assumed: sines and cosines of our own within 0.79 ulp.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 4.6e-05 rad/s^2 (seen
+ *            3.5e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 add, 5 mul, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 4258 to 5062 instructions, 632 B of code, 112 B of stack.
  * On Cortex-M4F, -O2: 108 to 109 instructions, 500 B of code, 44 B of stack.
@@ -256,10 +256,10 @@ void rolling_disc_steady_f32(const rolling_disc_constants_f32 *constants, float 
  * Error: median 0.25, largest 7.9 u of the largest product or sum in the equation (of ground;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: ground 3.4e-05 N (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: ground 2.7e-05 N (seen
  *            1.5e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 17 mul, 1 div, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 6428 to 7250 instructions, 816 B of code, 136 B of stack.
+ * On Cortex-M0+, -O2: 6422 to 7245 instructions, 808 B of code, 136 B of stack.
  * On Cortex-M4F, -O2: 133 to 134 instructions, 596 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -284,9 +284,9 @@ void rolling_disc_ground_f32(const rolling_disc_constants_f32 *constants, float 
  *            energy_of_all; 200000 samples of the ranges, 65536 searched from the worst); at 8318
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy_of_all 6.4e-06 J (seen
- *            4.5e-06); assumed: sines and cosines of our own within 0.79 ulp.
+ *            5.2e-06); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 5 add, 13 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 5453 to 6252 instructions, 736 B of code, 112 B of stack.
+ * On Cortex-M0+, -O2: 5453 to 6251 instructions, 736 B of code, 112 B of stack.
  * On Cortex-M4F, -O2: 122 to 123 instructions, 552 B of code, 52 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, rigid.
@@ -321,10 +321,10 @@ void rolling_disc_energy_of_all_f32(const rolling_disc_constants_f32 *constants,
  * Error: median 0.37, largest 8.5e+02 u of the largest component, before or after, or of the
  *            largest product of what the step adds, by rounding alone (of x_next; 200000 samples
  *            of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: lean_next 8e-08 rad (seen
- *            6.6e-08), lean_dot_next 2.6e-06 rad/s (seen 3.9e-07), yaw_next 1.7e-07 rad (seen
- *            1.3e-07), x_next 5.3e-07 m (seen 4.8e-07), y_next 5.3e-07 m (seen 4.8e-07), W_next
- *            8.2e-06 rad/s (seen 2.6e-06), s_next 1.1e-05 rad/s (seen 3.1e-06); assumed: sines and
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: lean_next 7.7e-08 rad (seen
+ *            6.7e-08), lean_dot_next 1.2e-06 rad/s (seen 5.4e-07), yaw_next 1.6e-07 rad (seen
+ *            1.3e-07), x_next 5.2e-07 m (seen 4.9e-07), y_next 5.2e-07 m (seen 4.8e-07), W_next
+ *            5.9e-06 rad/s (seen 2.7e-06), s_next 7.5e-06 rad/s (seen 3.5e-06); assumed: sines and
  *            cosines of our own within 0.79 ulp.
  * Singular: at lean = pi/2 + k pi, lean_next, lean_dot_next, yaw_next, x_next, y_next, W_next,
  *            s_next infinite, no number or beyond all measure.
@@ -337,7 +337,7 @@ void rolling_disc_energy_of_all_f32(const rolling_disc_constants_f32 *constants,
  * Singular: where a divisor vanishes, as at lean = 1.551, lean_dot = 3.815, W = 1.724, s = -11.62,
  *            time_step = 0.005105, W_next, s_next infinite, no number or beyond all measure.
  * Cost: 47 add, 8 sub, 87 mul, 4 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 43236 to 49143 instructions, 1964 B of code, 296 B of stack.
+ * On Cortex-M0+, -O2: 43237 to 49144 instructions, 1964 B of code, 296 B of stack.
  * On Cortex-M4F, -O2: 956 to 964 instructions, 1452 B of code, 260 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,

@@ -240,27 +240,27 @@ void rolling_disc_state_rate_f64(const rolling_disc_constants_f64 *constants, do
     const double t6 = W * t5;
     const double t7 = t4 * t6;
     const double t8 = t1 + t7;
+    *lean_dot_rate = t8;
     const rolling_disc_sines_f64 t9_both = rolling_disc_sine_cosine_f64(yaw);
     const double t9 = t9_both.cosine;
     const double t10 = s * constants->r;
     const double t11 = t9 * t10;
+    *x_rate = t11;
     const double t12 = t9_both.sine;
     const double t13 = t12 * t10;
+    *y_rate = t13;
     const double t14 = lean_dot * s;
     const double t15 = t14 * 2.0;
     const double t16 = t15 / t5;
     const double t17 = -t16;
+    *W_rate = t17;
     const double t18 = t0 * t16;
     const double t19 = lean_dot * t6;
     const double t20 = t19 * 1.6666666666666667;
     const double t21 = t18 - t20;
-    *lean_rate = lean_dot;
-    *lean_dot_rate = t8;
-    *yaw_rate = W;
-    *x_rate = t11;
-    *y_rate = t13;
-    *W_rate = t17;
     *s_rate = t21;
+    *lean_rate = lean_dot;
+    *yaw_rate = W;
 }
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. */
@@ -280,27 +280,36 @@ void rolling_disc_state_rate_jacobian_f64(const rolling_disc_constants_f64 *cons
     const double t7 = W * t0;
     const double t8 = t6 * t7;
     const double t9 = t3 + t8;
+    *lean_dot_rate = t9;
     const rolling_disc_sines_f64 t10_both = rolling_disc_sine_cosine_f64(yaw);
     const double t10 = t10_both.cosine;
     const double t11 = s * constants->r;
     const double t12 = t10 * t11;
+    *x_rate = t12;
+    jacobian[7] = t12;
     const double t13 = t10_both.sine;
     const double t14 = t13 * t11;
+    *y_rate = t14;
     const double t15 = s * t1;
     const double t16 = t15 * (-2.0);
+    jacobian[4] = t16;
     const double t17 = lean_dot * t16;
+    *W_rate = t17;
     const double t18 = lean_dot * (-1.6666666666666667);
     const double t19 = t7 * t18;
     const double t20 = t2 * t17;
     const double t21 = t19 - t20;
+    *s_rate = t21;
     const double t22 = t7 * t7;
     const double t23 = t0 * constants->k1;
     const double t24 = t22 + t23;
     const double t25 = t6 * t5;
     const double t26 = t24 - t25;
+    jacobian[0] = t26;
     const double t27 = lean_dot * t2;
     const double t28 = t1 * t27;
     const double t29 = t16 * t28;
+    jacobian[1] = t29;
     const double t30 = t2 * t15;
     const double t31 = t28 * t30;
     const double t32 = t31 + t31;
@@ -309,44 +318,35 @@ void rolling_disc_state_rate_jacobian_f64(const rolling_disc_constants_f64 *cons
     const double t35 = t32 - t34;
     const double t36 = t0 * t17;
     const double t37 = t35 - t36;
+    jacobian[2] = t37;
     const double t38 = t7 * (-1.6666666666666667);
     const double t39 = t38 + t30;
     const double t40 = t39 + t30;
+    jacobian[5] = t40;
     const double t41 = -t14;
+    jacobian[6] = t41;
     const double t42 = t0 * t6;
     const double t43 = t2 * t7;
     const double t44 = t42 + t43;
+    jacobian[8] = t44;
     const double t45 = t0 * t18;
+    jacobian[10] = t45;
     const double t46 = t7 * 1.2;
+    jacobian[11] = t46;
     const double t47 = t10 * constants->r;
+    jacobian[12] = t47;
     const double t48 = t13 * constants->r;
+    jacobian[13] = t48;
     const double t49 = lean_dot * t1;
     const double t50 = t49 * (-2.0);
+    jacobian[14] = t50;
     const double t51 = t28 * (-2.0);
     const double t52 = -t51;
-    *lean_rate = lean_dot;
-    *lean_dot_rate = t9;
-    *yaw_rate = W;
-    *x_rate = t12;
-    *y_rate = t14;
-    *W_rate = t17;
-    *s_rate = t21;
-    jacobian[0] = t26;
-    jacobian[1] = t29;
-    jacobian[2] = t37;
-    jacobian[3] = 1.0;
-    jacobian[4] = t16;
-    jacobian[5] = t40;
-    jacobian[6] = t41;
-    jacobian[7] = t12;
-    jacobian[8] = t44;
-    jacobian[9] = 1.0;
-    jacobian[10] = t45;
-    jacobian[11] = t46;
-    jacobian[12] = t47;
-    jacobian[13] = t48;
-    jacobian[14] = t50;
     jacobian[15] = t52;
+    *lean_rate = lean_dot;
+    *yaw_rate = W;
+    jacobian[3] = 1.0;
+    jacobian[9] = 1.0;
 }
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. Dense. */
@@ -355,19 +355,117 @@ void rolling_disc_state_rate_jacobian_dense_f64(const rolling_disc_constants_f64
     double *lean_dot_rate, double *yaw_rate, double *x_rate, double *y_rate, double *W_rate,
     double *s_rate, double jacobian[49])
 {
-    static const unsigned char places[16] = {
-        1, 5, 6, 7, 12, 13, 17, 18, 36, 37, 41, 43, 45, 46, 47, 48
-    };
-    double nonzeros[16];
-    int entry;
-    rolling_disc_state_rate_jacobian_f64(constants, lean, lean_dot, yaw, W, s, lean_rate, lean_dot_rate, yaw_rate,
-        x_rate, y_rate, W_rate, s_rate, nonzeros);
-    for (entry = 0; entry < 49; ++entry) {
-        jacobian[entry] = 0.0;
-    }
-    for (entry = 0; entry < 16; ++entry) {
-        jacobian[places[entry]] = nonzeros[entry];
-    }
+    const rolling_disc_sines_f64 t0_both = rolling_disc_sine_cosine_f64(lean);
+    const double t0 = t0_both.cosine;
+    const double t1 = 1.0 / t0;
+    const double t2 = t0_both.sine;
+    const double t3 = t2 * constants->k1;
+    const double t4 = s * 1.2;
+    const double t5 = t2 * W;
+    const double t6 = t4 + t5;
+    const double t7 = W * t0;
+    const double t8 = t6 * t7;
+    const double t9 = t3 + t8;
+    *lean_dot_rate = t9;
+    const rolling_disc_sines_f64 t10_both = rolling_disc_sine_cosine_f64(yaw);
+    const double t10 = t10_both.cosine;
+    const double t11 = s * constants->r;
+    const double t12 = t10 * t11;
+    *x_rate = t12;
+    jacobian[18] = t12;
+    const double t13 = t10_both.sine;
+    const double t14 = t13 * t11;
+    *y_rate = t14;
+    const double t15 = s * t1;
+    const double t16 = t15 * (-2.0);
+    jacobian[12] = t16;
+    const double t17 = lean_dot * t16;
+    *W_rate = t17;
+    const double t18 = lean_dot * (-1.6666666666666667);
+    const double t19 = t7 * t18;
+    const double t20 = t2 * t17;
+    const double t21 = t19 - t20;
+    *s_rate = t21;
+    const double t22 = t7 * t7;
+    const double t23 = t0 * constants->k1;
+    const double t24 = t22 + t23;
+    const double t25 = t6 * t5;
+    const double t26 = t24 - t25;
+    jacobian[1] = t26;
+    const double t27 = lean_dot * t2;
+    const double t28 = t1 * t27;
+    const double t29 = t16 * t28;
+    jacobian[5] = t29;
+    const double t30 = t2 * t15;
+    const double t31 = t28 * t30;
+    const double t32 = t31 + t31;
+    const double t33 = W * t27;
+    const double t34 = t33 * (-1.6666666666666667);
+    const double t35 = t32 - t34;
+    const double t36 = t0 * t17;
+    const double t37 = t35 - t36;
+    jacobian[6] = t37;
+    const double t38 = t7 * (-1.6666666666666667);
+    const double t39 = t38 + t30;
+    const double t40 = t39 + t30;
+    jacobian[13] = t40;
+    const double t41 = -t14;
+    jacobian[17] = t41;
+    const double t42 = t0 * t6;
+    const double t43 = t2 * t7;
+    const double t44 = t42 + t43;
+    jacobian[36] = t44;
+    const double t45 = t0 * t18;
+    jacobian[41] = t45;
+    const double t46 = t7 * 1.2;
+    jacobian[43] = t46;
+    const double t47 = t10 * constants->r;
+    jacobian[45] = t47;
+    const double t48 = t13 * constants->r;
+    jacobian[46] = t48;
+    const double t49 = lean_dot * t1;
+    const double t50 = t49 * (-2.0);
+    jacobian[47] = t50;
+    const double t51 = t28 * (-2.0);
+    const double t52 = -t51;
+    jacobian[48] = t52;
+    *lean_rate = lean_dot;
+    *yaw_rate = W;
+    jacobian[0] = 0.0;
+    jacobian[2] = 0.0;
+    jacobian[3] = 0.0;
+    jacobian[4] = 0.0;
+    jacobian[7] = 1.0;
+    jacobian[8] = 0.0;
+    jacobian[9] = 0.0;
+    jacobian[10] = 0.0;
+    jacobian[11] = 0.0;
+    jacobian[14] = 0.0;
+    jacobian[15] = 0.0;
+    jacobian[16] = 0.0;
+    jacobian[19] = 0.0;
+    jacobian[20] = 0.0;
+    jacobian[21] = 0.0;
+    jacobian[22] = 0.0;
+    jacobian[23] = 0.0;
+    jacobian[24] = 0.0;
+    jacobian[25] = 0.0;
+    jacobian[26] = 0.0;
+    jacobian[27] = 0.0;
+    jacobian[28] = 0.0;
+    jacobian[29] = 0.0;
+    jacobian[30] = 0.0;
+    jacobian[31] = 0.0;
+    jacobian[32] = 0.0;
+    jacobian[33] = 0.0;
+    jacobian[34] = 0.0;
+    jacobian[35] = 0.0;
+    jacobian[37] = 1.0;
+    jacobian[38] = 0.0;
+    jacobian[39] = 0.0;
+    jacobian[40] = 0.0;
+    jacobian[42] = 0.0;
+    jacobian[44] = 0.0;
 }
 
 /* Mass, damping and stiffness matrices of small motion. */
@@ -430,6 +528,7 @@ void rolling_disc_ground_f64(const rolling_disc_constants_f64 *constants, double
     const double t2 = W * t0;
     const double t3 = lean_dot * t2;
     const double t4 = t3 * constants->k6;
+    ground[0] = t4;
     const double t5 = t0_both.sine;
     const double t6 = t0 * constants->k7;
     const double t7 = W * t5;
@@ -446,14 +545,13 @@ void rolling_disc_ground_f64(const rolling_disc_constants_f64 *constants, double
     const double t18 = t17 * constants->k8;
     const double t19 = t15 + t18;
     const double t20 = -t19;
+    ground[1] = t20;
     const double t21 = t0 * constants->m_g;
     const double t22 = t21 - t13;
     const double t23 = t1 * t22;
     const double t24 = t19 * t5;
     const double t25 = t24 * t1;
     const double t26 = t23 - t25;
-    ground[0] = t4;
-    ground[1] = t20;
     ground[2] = t26;
 }
 
@@ -608,6 +706,7 @@ void rolling_disc_step_rk4_f64(const rolling_disc_constants_f64 *constants, doub
     const double t133 = t132 + t111;
     const double t134 = t133 * 0.3333333333333333;
     const double t157 = yaw + t134;
+    *yaw_next = t157;
     const double t98 = t95 * 1.2;
     const double t100 = t98 + t99;
     const double t103 = t100 * t102;
@@ -626,11 +725,13 @@ void rolling_disc_step_rk4_f64(const rolling_disc_constants_f64 *constants, doub
     const double t143 = t142 + t114;
     const double t144 = t143 * 0.3333333333333333;
     const double t159 = y + t144;
+    *y_next = t159;
     const double t136 = t135 * 2.0;
     const double t137 = t19 + t136;
     const double t138 = t137 + t113;
     const double t139 = t138 * 0.3333333333333333;
     const double t158 = x + t139;
+    *x_next = t158;
     const double t64 = t61 * 1.2;
     const double t66 = t64 + t65;
     const double t69 = t66 * t68;
@@ -642,6 +743,7 @@ void rolling_disc_step_rk4_f64(const rolling_disc_constants_f64 *constants, doub
     const double t128 = t127 + t110;
     const double t129 = t128 * 0.3333333333333333;
     const double t156 = lean_dot + t129;
+    *lean_dot_next = t156;
     const double t87 = t76 * 2.0;
     const double t92 = lean_dot + t87;
     const double t107 = t92 * t95;
@@ -651,6 +753,7 @@ void rolling_disc_step_rk4_f64(const rolling_disc_constants_f64 *constants, doub
     const double t148 = t147 + t116;
     const double t149 = t148 * 0.3333333333333333;
     const double t160 = W - t149;
+    *W_next = t160;
     const double t108 = t92 * t102;
     const double t118 = t108 * t25;
     const double t119 = t117 - t118;
@@ -659,13 +762,8 @@ void rolling_disc_step_rk4_f64(const rolling_disc_constants_f64 *constants, doub
     const double t123 = t122 + t109;
     const double t124 = t123 * 0.3333333333333333;
     const double t155 = lean + t124;
+    *lean_next = t155;
     const double t154 = t153 * 0.3333333333333333;
     const double t161 = s + t154;
-    *lean_next = t155;
-    *lean_dot_next = t156;
-    *yaw_next = t157;
-    *x_next = t158;
-    *y_next = t159;
-    *W_next = t160;
     *s_next = t161;
 }

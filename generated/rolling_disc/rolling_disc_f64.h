@@ -18,11 +18,11 @@
  *     rolling_disc_state_rate_f64(&constants, 0.0, 0.0, 0.0, 0.0, 0.0, &lean_rate, &lean_dot_rate, &yaw_rate, &x_rate,
  *       &y_rate, &W_rate, &s_rate);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 17a66e7ac42b834d.
+ * Body of these files: sha256 212885c6b764c766.
  */
 #ifndef ROLLING_DISC_F64_H
 #define ROLLING_DISC_F64_H
@@ -63,7 +63,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 18 operations on pairs.
- * On Cortex-M0+, -O2: 93105 to 100828 instructions, 2928 B of code, 48 B of tables, 1024 B of
+ * On Cortex-M0+, -O2: 93105 to 100827 instructions, 2928 B of code, 48 B of tables, 1024 B of
  *            stack.
  */
 int rolling_disc_setup_f64(double m, double r, double n, double g,
@@ -100,13 +100,13 @@ int rolling_disc_setup_f64(double m, double r, double n, double g,
  *            lean_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 8318
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: lean_rate 0 rad/s (seen 0),
- *            lean_dot_rate 1.1e-13 rad/s^2 (seen 4.4e-14), yaw_rate 0 rad/s (seen 0), x_rate
- *            1.5e-15 m/s (seen 1.1e-15), y_rate 1.5e-15 m/s (seen 1.2e-15), W_rate 2.3e-13 rad/s^2
- *            (seen 1.3e-13), s_rate 3.9e-13 rad/s^2 (seen 2e-13); assumed: sines and cosines of
- *            our own within 0.79 ulp.
+ *            lean_dot_rate 8.1e-14 rad/s^2 (seen 6e-14), yaw_rate 0 rad/s (seen 0), x_rate 1.5e-15
+ *            m/s (seen 1.2e-15), y_rate 1.5e-15 m/s (seen 1.2e-15), W_rate 1.7e-13 rad/s^2 (seen
+ *            1.4e-13), s_rate 3.2e-13 rad/s^2 (seen 2.4e-13); assumed: sines and cosines of our
+ *            own within 0.79 ulp.
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate infinite, no number or beyond all measure.
  * Cost: 2 add, 1 sub, 13 mul, 1 div, 1 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 23876 to 27200 instructions, 1260 B of code, 224 B of stack.
+ * On Cortex-M0+, -O2: 23870 to 27194 instructions, 1248 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -141,14 +141,14 @@ void rolling_disc_state_rate_f64(const rolling_disc_constants_f64 *constants, do
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: lean_rate 0 rad/s (seen 0),
- *            lean_dot_rate 1.1e-13 rad/s^2 (seen 4.2e-14), yaw_rate 0 rad/s (seen 0), x_rate
- *            1.5e-15 m/s (seen 1.2e-15), y_rate 1.5e-15 m/s (seen 1.1e-15), W_rate 2.7e-13 rad/s^2
- *            (seen 1.6e-13), s_rate 4.3e-13 rad/s^2 (seen 2.1e-13), jacobian 2.4e-12 (seen 1e-12);
- *            assumed: sines and cosines of our own within 0.79 ulp.
+ *            lean_dot_rate 8.1e-14 rad/s^2 (seen 5.3e-14), yaw_rate 0 rad/s (seen 0), x_rate
+ *            1.5e-15 m/s (seen 1.2e-15), y_rate 1.5e-15 m/s (seen 1.2e-15), W_rate 2.1e-13 rad/s^2
+ *            (seen 1.7e-13), s_rate 3.6e-13 rad/s^2 (seen 2.2e-13), jacobian 1.8e-12 (seen
+ *            1.1e-12); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 7 add, 4 sub, 35 mul, 1 div, 2 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 31689 to 34974 instructions, 1860 B of code, 336 B of stack.
+ * On Cortex-M0+, -O2: 31666 to 34951 instructions, 1812 B of code, 296 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -159,7 +159,7 @@ void rolling_disc_state_rate_jacobian_f64(const rolling_disc_constants_f64 *cons
     double jacobian[16]);
 
 /* The same, the whole matrix: 49 entries.
- * On Cortex-M0+, -O2: 32003 to 35380 instructions, 1980 B of code, 16 B of tables, 544 B of stack.
+ * On Cortex-M0+, -O2: 31780 to 35157 instructions, 2248 B of code, 328 B of stack.
  */
 void rolling_disc_state_rate_jacobian_dense_f64(const rolling_disc_constants_f64 *constants,
     double lean, double lean_dot, double yaw, double W, double s, double *lean_rate,
@@ -216,8 +216,8 @@ void rolling_disc_linearised_f64(const rolling_disc_constants_f64 *constants, do
  * In this scene: steady = (4*(g*sin(lean) + 1/4*r*(6*s + 5*W*sin(lean))*W*cos(lean)))/(5*r)
  * Error: median 0.66, largest 8 u of the largest product or sum in the equation (of steady; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8318 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 9.1e-14 rad/s^2 (seen
- *            5.5e-14); assumed: sines and cosines of our own within 0.79 ulp.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 8e-14 rad/s^2 (seen
+ *            6.4e-14); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 add, 5 mul, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 11250 to 13014 instructions, 1024 B of code, 168 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -253,10 +253,10 @@ void rolling_disc_steady_f64(const rolling_disc_constants_f64 *constants, double
  * Error: median 0.25, largest 7.1 u of the largest product or sum in the equation (of ground;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: ground 6.2e-14 N (seen
- *            2.8e-14); assumed: sines and cosines of our own within 0.79 ulp.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: ground 5e-14 N (seen 3e-14);
+ *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 17 mul, 1 div, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 16069 to 17903 instructions, 1284 B of code, 216 B of stack.
+ * On Cortex-M0+, -O2: 16066 to 17900 instructions, 1280 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -280,7 +280,7 @@ void rolling_disc_ground_f64(const rolling_disc_constants_f64 *constants, double
  *            energy_of_all; 200000 samples of the ranges, 65536 searched from the worst); at 8318
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy_of_all 1.2e-14 J (seen
- *            9.5e-15); assumed: sines and cosines of our own within 0.79 ulp.
+ *            9.3e-15); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 5 add, 13 mul, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 14045 to 15813 instructions, 1200 B of code, 200 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -317,9 +317,9 @@ void rolling_disc_energy_of_all_f64(const rolling_disc_constants_f64 *constants,
  *            product of what the step adds, by rounding alone (of y_next; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8246 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: lean_next 1.5e-16 rad (seen
- *            1.2e-16), lean_dot_next 4.7e-15 rad/s (seen 6.9e-16), yaw_next 3e-16 rad (seen
- *            2.5e-16), x_next 9.8e-16 m (seen 9e-16), y_next 9.8e-16 m (seen 9e-16), W_next
- *            1.6e-14 rad/s (seen 4.8e-15), s_next 1.9e-14 rad/s (seen 5.6e-15); assumed: sines and
+ *            1.2e-16), lean_dot_next 2.2e-15 rad/s (seen 1.1e-15), yaw_next 2.9e-16 rad (seen
+ *            2.4e-16), x_next 9.7e-16 m (seen 9e-16), y_next 9.7e-16 m (seen 9.1e-16), W_next
+ *            1.1e-14 rad/s (seen 4.9e-15), s_next 1.4e-14 rad/s (seen 6.9e-15); assumed: sines and
  *            cosines of our own within 0.79 ulp.
  * Singular: at lean = pi/2 + k pi, lean_next, lean_dot_next, yaw_next, x_next, y_next, W_next,
  *            s_next infinite, no number or beyond all measure.
@@ -332,7 +332,7 @@ void rolling_disc_energy_of_all_f64(const rolling_disc_constants_f64 *constants,
  * Singular: where a divisor vanishes, as at lean = 1.551, lean_dot = 3.815, W = 1.724, s = -11.62,
  *            time_step = 0.005105, W_next, s_next infinite, no number or beyond all measure.
  * Cost: 47 add, 8 sub, 87 mul, 4 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 109860 to 123210 instructions, 2996 B of code, 544 B of stack.
+ * On Cortex-M0+, -O2: 109865 to 123215 instructions, 3004 B of code, 552 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

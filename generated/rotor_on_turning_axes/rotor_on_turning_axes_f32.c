@@ -140,17 +140,17 @@ void rotor_on_turning_axes_moment_f32(const rotor_on_turning_axes_constants_f32 
 {
     const float t0 = W_x_dot + p_dot;
     const float t1 = t0 * constants->C;
+    moment[0] = t1;
     const float t2 = W_y_dot * constants->A;
     const float t3 = W_x * constants->A_minus_C;
     const float t4 = p * constants->C;
     const float t5 = t3 - t4;
     const float t6 = W_z * t5;
     const float t7 = t2 - t6;
+    moment[1] = t7;
     const float t8 = W_z_dot * constants->A;
     const float t9 = t5 * W_y;
     const float t10 = t8 + t9;
-    moment[0] = t1;
-    moment[1] = t7;
     moment[2] = t10;
 }
 
@@ -160,10 +160,10 @@ void rotor_on_turning_axes_angular_momentum_f32(const rotor_on_turning_axes_cons
 {
     const float t0 = W_x + p;
     const float t1 = t0 * constants->C;
-    const float t2 = W_y * constants->A;
-    const float t3 = W_z * constants->A;
     angular_momentum[0] = t1;
+    const float t2 = W_y * constants->A;
     angular_momentum[1] = t2;
+    const float t3 = W_z * constants->A;
     angular_momentum[2] = t3;
 }
 
@@ -174,20 +174,20 @@ void rotor_on_turning_axes_angular_momentum_rate_f32(const rotor_on_turning_axes
 {
     const float t0 = W_x_dot + p_dot;
     const float t1 = t0 * constants->C;
+    rate_in_axes[0] = t1;
+    rate_absolute[0] = t1;
     const float t2 = W_y_dot * constants->A;
+    rate_in_axes[1] = t2;
     const float t3 = W_z_dot * constants->A;
+    rate_in_axes[2] = t3;
     const float t4 = W_x * constants->A_minus_C;
     const float t5 = p * constants->C;
     const float t6 = t4 - t5;
     const float t7 = W_z * t6;
     const float t8 = t2 - t7;
+    rate_absolute[1] = t8;
     const float t9 = t6 * W_y;
     const float t10 = t3 + t9;
-    rate_in_axes[0] = t1;
-    rate_in_axes[1] = t2;
-    rate_in_axes[2] = t3;
-    rate_absolute[0] = t1;
-    rate_absolute[1] = t8;
     rate_absolute[2] = t10;
 }
 

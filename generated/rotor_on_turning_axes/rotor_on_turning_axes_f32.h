@@ -15,11 +15,11 @@
  *     float moment[3];
  *     rotor_on_turning_axes_moment_f32(&constants, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, moment);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 a3eef063737752e2.
+ * Body of these files: sha256 4be23117c678fce1.
  */
 #ifndef ROTOR_ON_TURNING_AXES_F32_H
 #define ROTOR_ON_TURNING_AXES_F32_H
@@ -73,8 +73,8 @@ int rotor_on_turning_axes_setup_f32(float A, float C,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 0.00013 N m (seen
  *            0.00012).
  * Cost: 2 add, 2 sub, 7 mul.
- * On Cortex-M0+, -O2: 1156 to 1198 instructions, 132 B of code, 64 B of stack.
- * On Cortex-M4F, -O2: 18 instructions, 72 B of code, 0 B of stack.
+ * On Cortex-M0+, -O2: 1151 to 1192 instructions, 124 B of code, 56 B of stack.
+ * On Cortex-M4F, -O2: 20 instructions, 80 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -99,8 +99,8 @@ void rotor_on_turning_axes_moment_f32(const rotor_on_turning_axes_constants_f32 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 4.8e-05 kg
  *            m^2/s (seen 4.7e-05).
  * Cost: 1 add, 3 mul.
- * On Cortex-M0+, -O2: 445 to 486 instructions, 64 B of code, 56 B of stack.
- * On Cortex-M4F, -O2: 10 instructions, 40 B of code, 0 B of stack.
+ * On Cortex-M0+, -O2: 439 to 480 instructions, 52 B of code, 56 B of stack.
+ * On Cortex-M4F, -O2: 11 instructions, 44 B of code, 0 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void rotor_on_turning_axes_angular_momentum_f32(const rotor_on_turning_axes_constants_f32 *constants,
@@ -133,8 +133,8 @@ void rotor_on_turning_axes_angular_momentum_f32(const rotor_on_turning_axes_cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 4.1e-06 N m (seen
  *            4e-06), rate_absolute 0.00013 N m (seen 0.00012).
  * Cost: 2 add, 2 sub, 7 mul.
- * On Cortex-M0+, -O2: 1161 to 1210 instructions, 160 B of code, 72 B of stack.
- * On Cortex-M4F, -O2: 21 instructions, 84 B of code, 0 B of stack.
+ * On Cortex-M0+, -O2: 1151 to 1200 instructions, 140 B of code, 64 B of stack.
+ * On Cortex-M4F, -O2: 23 instructions, 92 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
  */
 void rotor_on_turning_axes_angular_momentum_rate_f32(const rotor_on_turning_axes_constants_f32 *constants,

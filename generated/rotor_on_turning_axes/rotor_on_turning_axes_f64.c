@@ -140,17 +140,17 @@ void rotor_on_turning_axes_moment_f64(const rotor_on_turning_axes_constants_f64 
 {
     const double t0 = W_x_dot + p_dot;
     const double t1 = t0 * constants->C;
+    moment[0] = t1;
     const double t2 = W_y_dot * constants->A;
     const double t3 = W_x * constants->A_minus_C;
     const double t4 = p * constants->C;
     const double t5 = t3 - t4;
     const double t6 = W_z * t5;
     const double t7 = t2 - t6;
+    moment[1] = t7;
     const double t8 = W_z_dot * constants->A;
     const double t9 = t5 * W_y;
     const double t10 = t8 + t9;
-    moment[0] = t1;
-    moment[1] = t7;
     moment[2] = t10;
 }
 
@@ -160,10 +160,10 @@ void rotor_on_turning_axes_angular_momentum_f64(const rotor_on_turning_axes_cons
 {
     const double t0 = W_x + p;
     const double t1 = t0 * constants->C;
-    const double t2 = W_y * constants->A;
-    const double t3 = W_z * constants->A;
     angular_momentum[0] = t1;
+    const double t2 = W_y * constants->A;
     angular_momentum[1] = t2;
+    const double t3 = W_z * constants->A;
     angular_momentum[2] = t3;
 }
 
@@ -174,20 +174,20 @@ void rotor_on_turning_axes_angular_momentum_rate_f64(const rotor_on_turning_axes
 {
     const double t0 = W_x_dot + p_dot;
     const double t1 = t0 * constants->C;
+    rate_in_axes[0] = t1;
+    rate_absolute[0] = t1;
     const double t2 = W_y_dot * constants->A;
+    rate_in_axes[1] = t2;
     const double t3 = W_z_dot * constants->A;
+    rate_in_axes[2] = t3;
     const double t4 = W_x * constants->A_minus_C;
     const double t5 = p * constants->C;
     const double t6 = t4 - t5;
     const double t7 = W_z * t6;
     const double t8 = t2 - t7;
+    rate_absolute[1] = t8;
     const double t9 = t6 * W_y;
     const double t10 = t3 + t9;
-    rate_in_axes[0] = t1;
-    rate_in_axes[1] = t2;
-    rate_in_axes[2] = t3;
-    rate_absolute[0] = t1;
-    rate_absolute[1] = t8;
     rate_absolute[2] = t10;
 }
 

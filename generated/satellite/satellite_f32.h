@@ -16,11 +16,11 @@
  *     float attitude_rate[4], omega_dot[3];
  *     satellite_state_rate_f32(&constants, attitude, omega, moment, attitude_rate, omega_dot);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 cb6b12d550e62d28.
+ * Body of these files: sha256 68ba202eb3ecd6b9.
  */
 #ifndef SATELLITE_F32_H
 #define SATELLITE_F32_H
@@ -65,7 +65,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 24 operations on pairs.
- * On Cortex-M0+, -O2: 122369 to 124615 instructions, 2780 B of code, 656 B of stack.
+ * On Cortex-M0+, -O2: 122369 to 124614 instructions, 2780 B of code, 656 B of stack.
  * On Cortex-M4F, -O2: 2662 to 2666 instructions, 1944 B of code, 444 B of stack.
  */
 int satellite_setup_f32(float I_xx, float I_yy, float I_zz, satellite_constants_f32 *constants);
@@ -94,12 +94,12 @@ int satellite_setup_f32(float I_xx, float I_yy, float I_zz, satellite_constants_
  * Error: median 0.46, largest 5 u of the largest product or sum in the equation (of attitude_rate;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_rate 1.5e-06 1/s (seen
- *            1.1e-06), omega_dot 1.2e-05 rad/s^2 (seen 8.4e-06); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_rate 1.2e-06 1/s (seen
+ *            1.1e-06), omega_dot 1.2e-05 rad/s^2 (seen 9e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 7 add, 4 sub, 24 mul, 1 neg.
- * On Cortex-M0+, -O2: 3687 to 3869 instructions, 428 B of code, 88 B of stack.
- * On Cortex-M4F, -O2: 65 instructions, 256 B of code, 8 B of stack.
+ * On Cortex-M0+, -O2: 3699 to 3882 instructions, 440 B of code, 104 B of stack.
+ * On Cortex-M4F, -O2: 63 instructions, 248 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -121,13 +121,13 @@ void satellite_state_rate_f32(const satellite_constants_f32 *constants, const fl
  * Error: median 0.26, largest 5.8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.2e-06 (seen
- *            1.5e-07), omega_next 1.2e-06 rad/s (seen 7.9e-07); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 6.9e-07 (seen
+ *            1.6e-07), omega_next 1.2e-06 rad/s (seen 9.1e-07); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 71 add, 22 sub, 117 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 20846 to 21413 instructions, 1936 B of code, 208 B of stack.
- * On Cortex-M4F, -O2: 254 instructions, 1020 B of code, 88 B of stack.
+ * On Cortex-M0+, -O2: 20852 to 21434 instructions, 1956 B of code, 192 B of stack.
+ * On Cortex-M4F, -O2: 256 instructions, 1028 B of code, 88 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -151,14 +151,14 @@ void satellite_step_rk4_f32(const satellite_constants_f32 *constants, const floa
  * Error: median 0.26, largest 6.7 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.6e-06 (seen
- *            1.5e-07), omega_next 1.2e-06 rad/s (seen 7.2e-07), jacobian 1.1e-05 (seen 3.7e-07);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.3e-06 (seen
+ *            1.6e-07), omega_next 1.2e-06 rad/s (seen 7.8e-07), jacobian 4.6e-06 (seen 4e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 328 add, 110 sub, 458 mul, 2 div, 12 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 83925 to 87084 instructions, 8636 B of code, 632 B of stack.
- * On Cortex-M4F, -O2: 1445 instructions, 5876 B of code, 384 B of stack.
+ * On Cortex-M0+, -O2: 83938 to 87103 instructions, 8624 B of code, 408 B of stack.
+ * On Cortex-M4F, -O2: 1273 instructions, 5188 B of code, 312 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -168,8 +168,8 @@ void satellite_step_rk4_jacobian_f32(const satellite_constants_f32 *constants,
     float attitude_next[4], float omega_next[3], float jacobian[58]);
 
 /* The same, the whole matrix: 70 entries.
- * On Cortex-M0+, -O2: 86337 to 87857 instructions, 8704 B of code, 58 B of tables, 896 B of stack.
- * On Cortex-M4F, -O2: 1968 instructions, 5944 B of code, 58 B of tables, 648 B of stack.
+ * On Cortex-M0+, -O2: 85780 to 87259 instructions, 8692 B of code, 408 B of stack.
+ * On Cortex-M4F, -O2: 1286 instructions, 5212 B of code, 312 B of stack.
  */
 void satellite_step_rk4_jacobian_dense_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
@@ -191,14 +191,14 @@ void satellite_step_rk4_jacobian_dense_f32(const satellite_constants_f32 *consta
  * Error: median 0.26, largest 5.4 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.6e-06 (seen
- *            1.5e-07), omega_next 1.2e-06 rad/s (seen 7.6e-07), jacobian 6.3e-07 (seen 1.8e-07);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.3e-06 (seen
+ *            1.7e-07), omega_next 1.2e-06 rad/s (seen 6.9e-07), jacobian 6.3e-07 (seen 1.8e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 304 add, 89 sub, 394 mul, 6 div, 1 sqrt.
- * On Cortex-M0+, -O2: 74296 to 75905 instructions, 7480 B of code, 648 B of stack.
- * On Cortex-M4F, -O2: 1247 instructions, 5036 B of code, 384 B of stack.
+ * On Cortex-M0+, -O2: 74314 to 75905 instructions, 7488 B of code, 416 B of stack.
+ * On Cortex-M4F, -O2: 1114 instructions, 4524 B of code, 304 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -208,8 +208,8 @@ void satellite_step_rk4_tangent_f32(const satellite_constants_f32 *constants,
     float attitude_next[4], float omega_next[3], float jacobian[45]);
 
 /* The same, the whole matrix: 54 entries.
- * On Cortex-M0+, -O2: 74314 to 76493 instructions, 7544 B of code, 45 B of tables, 864 B of stack.
- * On Cortex-M4F, -O2: 1664 instructions, 5104 B of code, 45 B of tables, 596 B of stack.
+ * On Cortex-M0+, -O2: 73874 to 76053 instructions, 7528 B of code, 416 B of stack.
+ * On Cortex-M4F, -O2: 1124 instructions, 4544 B of code, 304 B of stack.
  */
 void satellite_step_rk4_tangent_dense_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
@@ -231,14 +231,14 @@ void satellite_step_rk4_tangent_dense_f32(const satellite_constants_f32 *constan
  * Error: median 0.26, largest 6.8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.4e-06 (seen
- *            1.5e-07), omega_next 1.2e-06 rad/s (seen 7.3e-07), jacobian 1.2e-06 (seen 4.6e-07);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.3e-06 (seen
+ *            1.5e-07), omega_next 1.2e-06 rad/s (seen 6.7e-07), jacobian 1.2e-06 (seen 5.2e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 254 add, 170 sub, 479 mul, 2 div, 3 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 86741 to 89026 instructions, 8348 B of code, 696 B of stack.
- * On Cortex-M4F, -O2: 1307 instructions, 5308 B of code, 504 B of stack.
+ * On Cortex-M0+, -O2: 86706 to 89001 instructions, 8296 B of code, 512 B of stack.
+ * On Cortex-M4F, -O2: 1320 instructions, 5364 B of code, 360 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -248,8 +248,8 @@ void satellite_step_rk4_sensitivity_f32(const satellite_constants_f32 *constants
     float attitude_next[4], float omega_next[3], float jacobian[21]);
 
 /* The same, the whole matrix: 21 entries.
- * On Cortex-M0+, -O2: 87463 to 89316 instructions, 8412 B of code, 21 B of tables, 816 B of stack.
- * On Cortex-M4F, -O2: 1521 instructions, 5376 B of code, 21 B of tables, 620 B of stack.
+ * On Cortex-M0+, -O2: 87188 to 89091 instructions, 8324 B of code, 536 B of stack.
+ * On Cortex-M4F, -O2: 1321 instructions, 5368 B of code, 360 B of stack.
  */
 void satellite_step_rk4_sensitivity_dense_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
@@ -273,8 +273,8 @@ void satellite_step_rk4_sensitivity_dense_f32(const satellite_constants_f32 *con
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 95 add, 61 sub, 156 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * On Cortex-M0+, -O2: 38591 to 39496 instructions, 4120 B of code, 216 B of stack.
- * On Cortex-M4F, -O2: 601 instructions, 2440 B of code, 116 B of stack.
+ * On Cortex-M0+, -O2: 38592 to 39492 instructions, 4120 B of code, 224 B of stack.
+ * On Cortex-M4F, -O2: 600 instructions, 2440 B of code, 108 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -295,12 +295,12 @@ void satellite_step_lie_f32(const satellite_constants_f32 *constants, const floa
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 5.2 u (of
  *            omega_next, denormal).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.5e-05 (seen
- *            9e-08), omega_next 0.00023 rad/s (seen 1.1e-06); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.9e-05 (seen
+ *            1e-07), omega_next 0.00023 rad/s (seen 1.6e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 531 add, 100 sub, 585 mul, 54 div, 44 neg, 2 less, 24 select.
- * On Cortex-M0+, -O2: 135620 to 138319 instructions, 11980 B of code, 496 B of stack.
- * On Cortex-M4F, -O2: 1591 to 1623 instructions, 6780 B of code, 264 B of stack.
+ * On Cortex-M0+, -O2: 135481 to 138179 instructions, 12004 B of code, 512 B of stack.
+ * On Cortex-M4F, -O2: 1602 to 1635 instructions, 6860 B of code, 280 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

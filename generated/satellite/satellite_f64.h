@@ -15,11 +15,11 @@
  *     double attitude_rate[4], omega_dot[3];
  *     satellite_state_rate_f64(&constants, attitude, omega, moment, attitude_rate, omega_dot);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 c3d0daa617c61c2e.
+ * Body of these files: sha256 7c37ab7747e5a255.
  */
 #ifndef SATELLITE_F64_H
 #define SATELLITE_F64_H
@@ -92,11 +92,11 @@ int satellite_setup_f64(double I_xx, double I_yy, double I_zz, satellite_constan
  * Error: median 0.46, largest 5.1 u of the largest product or sum in the equation (of
  *            attitude_rate; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_rate 2.7e-15 1/s (seen
- *            1.9e-15), omega_dot 2.2e-14 rad/s^2 (seen 1.5e-14); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_rate 2.3e-15 1/s (seen
+ *            2.1e-15), omega_dot 2.2e-14 rad/s^2 (seen 1.7e-14); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 7 add, 4 sub, 24 mul, 1 neg.
- * On Cortex-M0+, -O2: 8672 to 8921 instructions, 660 B of code, 176 B of stack.
+ * On Cortex-M0+, -O2: 8678 to 8936 instructions, 672 B of code, 200 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -118,12 +118,12 @@ void satellite_state_rate_f64(const satellite_constants_f64 *constants, const do
  * Error: median 0.37, largest 4.2 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.2e-15 (seen
- *            2.9e-16), omega_next 2.2e-15 rad/s (seen 1.1e-15); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.3e-15 (seen
+ *            3.1e-16), omega_next 2.2e-15 rad/s (seen 1.2e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 71 add, 22 sub, 117 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 47809 to 48784 instructions, 2932 B of code, 392 B of stack.
+ * On Cortex-M0+, -O2: 47834 to 48810 instructions, 2984 B of code, 376 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -147,13 +147,13 @@ void satellite_step_rk4_f64(const satellite_constants_f64 *constants, const doub
  * Error: median 0.37, largest 8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.8e-15 (seen
- *            2.6e-16), omega_next 2.2e-15 rad/s (seen 1.4e-15), jacobian 1.9e-14 (seen 8.2e-16);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.4e-15 (seen
+ *            2.8e-16), omega_next 2.2e-15 rad/s (seen 1.4e-15), jacobian 8.4e-15 (seen 7.9e-16);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 328 add, 110 sub, 458 mul, 2 div, 12 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 196035 to 198458 instructions, 14180 B of code, 1432 B of stack.
+ * On Cortex-M0+, -O2: 195575 to 198049 instructions, 13328 B of code, 792 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -163,8 +163,7 @@ void satellite_step_rk4_jacobian_f64(const satellite_constants_f64 *constants,
     double attitude_next[4], double omega_next[3], double jacobian[58]);
 
 /* The same, the whole matrix: 70 entries.
- * On Cortex-M0+, -O2: 197312 to 199259 instructions, 14256 B of code, 58 B of tables, 1936 B of
- *            stack.
+ * On Cortex-M0+, -O2: 196132 to 198049 instructions, 13424 B of code, 792 B of stack.
  */
 void satellite_step_rk4_jacobian_dense_f64(const satellite_constants_f64 *constants,
     const double attitude[4], const double omega[3], const double moment[3], double time_step,
@@ -187,13 +186,13 @@ void satellite_step_rk4_jacobian_dense_f64(const satellite_constants_f64 *consta
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 4.4 u (of
  *            omega_next, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.8e-15 (seen
- *            3e-16), omega_next 2.2e-15 rad/s (seen 1e-15), jacobian 1.2e-15 (seen 3.8e-16);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.4e-15 (seen
+ *            2.6e-16), omega_next 2.2e-15 rad/s (seen 1.2e-15), jacobian 1.2e-15 (seen 3.9e-16);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 304 add, 89 sub, 394 mul, 6 div, 1 sqrt.
- * On Cortex-M0+, -O2: 169897 to 171660 instructions, 12844 B of code, 1424 B of stack.
+ * On Cortex-M0+, -O2: 169251 to 170990 instructions, 11528 B of code, 808 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -203,8 +202,7 @@ void satellite_step_rk4_tangent_f64(const satellite_constants_f64 *constants,
     double attitude_next[4], double omega_next[3], double jacobian[45]);
 
 /* The same, the whole matrix: 54 entries.
- * On Cortex-M0+, -O2: 170268 to 172581 instructions, 12920 B of code, 45 B of tables, 1824 B of
- *            stack.
+ * On Cortex-M0+, -O2: 169035 to 171317 instructions, 11632 B of code, 808 B of stack.
  */
 void satellite_step_rk4_tangent_dense_f64(const satellite_constants_f64 *constants,
     const double attitude[4], const double omega[3], const double moment[3], double time_step,
@@ -226,13 +224,13 @@ void satellite_step_rk4_tangent_dense_f64(const satellite_constants_f64 *constan
  * Error: median 0.37, largest 6.1 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.4e-15 (seen
- *            2.6e-16), omega_next 2.2e-15 rad/s (seen 1.3e-15), jacobian 2.3e-15 (seen 7.8e-16);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.4e-15 (seen
+ *            2.8e-16), omega_next 2.2e-15 rad/s (seen 1.5e-15), jacobian 2.3e-15 (seen 8.7e-16);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 254 add, 170 sub, 479 mul, 2 div, 3 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 201878 to 203714 instructions, 13320 B of code, 1408 B of stack.
+ * On Cortex-M0+, -O2: 201565 to 203385 instructions, 12700 B of code, 992 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -242,8 +240,7 @@ void satellite_step_rk4_sensitivity_f64(const satellite_constants_f64 *constants
     double attitude_next[4], double omega_next[3], double jacobian[21]);
 
 /* The same, the whole matrix: 21 entries.
- * On Cortex-M0+, -O2: 201902 to 204152 instructions, 13392 B of code, 21 B of tables, 1616 B of
- *            stack.
+ * On Cortex-M0+, -O2: 201280 to 203570 instructions, 12732 B of code, 1032 B of stack.
  */
 void satellite_step_rk4_sensitivity_dense_f64(const satellite_constants_f64 *constants,
     const double attitude[4], const double omega[3], const double moment[3], double time_step,
@@ -267,7 +264,7 @@ void satellite_step_rk4_sensitivity_dense_f64(const satellite_constants_f64 *con
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 95 add, 61 sub, 156 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * On Cortex-M0+, -O2: 90088 to 91572 instructions, 6344 B of code, 432 B of stack.
+ * On Cortex-M0+, -O2: 90084 to 91567 instructions, 6336 B of code, 464 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -288,11 +285,11 @@ void satellite_step_lie_f64(const satellite_constants_f64 *constants, const doub
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 5.4 u (of
  *            omega_next, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.6e-14 (seen
- *            2.1e-16), omega_next 4.2e-13 rad/s (seen 1.6e-15); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 3.5e-14 (seen
+ *            1.4e-16), omega_next 4.2e-13 rad/s (seen 1.9e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 531 add, 100 sub, 585 mul, 54 div, 44 neg, 2 less, 24 select.
- * On Cortex-M0+, -O2: 296545 to 299530 instructions, 18440 B of code, 992 B of stack.
+ * On Cortex-M0+, -O2: 296716 to 299309 instructions, 18384 B of code, 1024 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -317,7 +314,7 @@ void satellite_step_split_f64(const satellite_constants_f64 *constants, const do
  *            thin rod).
  * Bound: not proved: 6759 operations are more than the 2000 tried.
  * Cost: 2396 add, 916 sub, 3419 mul, 22 div, 20 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * On Cortex-M0+, -O2: 1527613 to 1540644 instructions, 4252 B of code, 2160 B of stack.
+ * On Cortex-M0+, -O2: 1527613 to 1540645 instructions, 4252 B of code, 2160 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

@@ -204,8 +204,8 @@ void skewed_disc_M_f32(const skewed_disc_constants_f32 *constants, float w, floa
 {
     const float t0 = w * w;
     const float t1 = t0 * constants->k1;
-    *M_x = 0.0F;
     *M_y = t1;
+    *M_x = 0.0F;
     *M_z = 0.0F;
 }
 

@@ -215,8 +215,8 @@ void skewed_disc_M_f64(const skewed_disc_constants_f64 *constants, double w, dou
 {
     const double t0 = w * w;
     const double t1 = t0 * constants->k1;
-    *M_x = 0.0;
     *M_y = t1;
+    *M_x = 0.0;
     *M_z = 0.0;
 }
 

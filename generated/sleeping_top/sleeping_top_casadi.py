@@ -489,10 +489,6 @@ def _step_rk4():
     t121 = t24 + t120
     t78 = t74 * 2.0
     t82 = beta_dot[0] + t78
-    t102 = t82 * t0
-    t117 = t116 + t102
-    t118 = t117 * 0.3333333333333333
-    t126 = beta[0] + t118
     t68 = t56 * t17
     t69 = t16 - t68
     t70 = t53 * t69
@@ -518,12 +514,16 @@ def _step_rk4():
     t94 = t90 - t93
     t103 = t94 * t0
     t122 = t121 + t103
-    t95 = t80 * t0
-    t107 = t106 + t95
-    t108 = t107 * 0.3333333333333333
-    t124 = alpha[0] + t108
     t123 = t122 * 0.3333333333333333
     t127 = beta_dot[0] + t123
+    t95 = t80 * t0
+    t107 = t106 + t95
+    t102 = t82 * t0
+    t117 = t116 + t102
+    t118 = t117 * 0.3333333333333333
+    t126 = beta[0] + t118
+    t108 = t107 * 0.3333333333333333
+    t124 = alpha[0] + t108
     return ca.Function(
         "sleeping_top_step_rk4_hot",
         [constants, alpha, alpha_dot, beta, beta_dot, time_step],

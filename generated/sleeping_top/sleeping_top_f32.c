@@ -261,6 +261,7 @@ void sleeping_top_accelerations_f32(const sleeping_top_constants_f32 *constants,
     const float t8 = t2_both.cosine;
     const float t9 = t8 * constants->k4;
     const float t10 = t7 / t9;
+    *alpha_ddot = t10;
     const float t11 = t0_both.cosine;
     const float t12 = t2 * t11;
     const float t13 = t12 * constants->k5;
@@ -268,7 +269,6 @@ void sleeping_top_accelerations_f32(const sleeping_top_constants_f32 *constants,
     const float t15 = t3 - constants->k6;
     const float t16 = t14 * t15;
     const float t17 = t13 - t16;
-    *alpha_ddot = t10;
     *beta_ddot = t17;
 }
 
@@ -398,10 +398,6 @@ void sleeping_top_step_rk4_f32(const sleeping_top_constants_f32 *constants, floa
     const float t121 = t24 + t120;
     const float t78 = t74 * 2.0F;
     const float t82 = beta_dot + t78;
-    const float t102 = t82 * t0;
-    const float t117 = t116 + t102;
-    const float t118 = t117 * 0.333333343F;
-    const float t126 = beta + t118;
     const float t68 = t56 * t17;
     const float t69 = t16 - t68;
     const float t70 = t53 * t69;
@@ -421,20 +417,24 @@ void sleeping_top_step_rk4_f32(const sleeping_top_constants_f32 *constants, floa
     const float t112 = t111 + t101;
     const float t113 = t112 * 0.333333343F;
     const float t125 = alpha_dot + t113;
+    *alpha_dot_next = t125;
     const float t92 = t85 - constants->k6;
     const float t91 = t80 * t86;
     const float t93 = t91 * t92;
     const float t94 = t90 - t93;
     const float t103 = t94 * t0;
     const float t122 = t121 + t103;
-    const float t95 = t80 * t0;
-    const float t107 = t106 + t95;
-    const float t108 = t107 * 0.333333343F;
-    const float t124 = alpha + t108;
     const float t123 = t122 * 0.333333343F;
     const float t127 = beta_dot + t123;
-    *alpha_next = t124;
-    *alpha_dot_next = t125;
-    *beta_next = t126;
     *beta_dot_next = t127;
+    const float t95 = t80 * t0;
+    const float t107 = t106 + t95;
+    const float t102 = t82 * t0;
+    const float t117 = t116 + t102;
+    const float t118 = t117 * 0.333333343F;
+    const float t126 = beta + t118;
+    *beta_next = t126;
+    const float t108 = t107 * 0.333333343F;
+    const float t124 = alpha + t108;
+    *alpha_next = t124;
 }

@@ -17,11 +17,11 @@
  *     float mass_matrix[4], damping_matrix[4], stiffness_matrix[4];
  *     sleeping_top_linearised_f32(&constants, mass_matrix, damping_matrix, stiffness_matrix);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 6fdff7aec1ad1b6f.
+ * Body of these files: sha256 c54019acd9695b75.
  */
 #ifndef SLEEPING_TOP_F32_H
 #define SLEEPING_TOP_F32_H
@@ -59,7 +59,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
- * On Cortex-M0+, -O2: 52199 to 53568 instructions, 1628 B of code, 536 B of stack.
+ * On Cortex-M0+, -O2: 52200 to 53568 instructions, 1628 B of code, 536 B of stack.
  * On Cortex-M4F, -O2: 1025 instructions, 1316 B of code, 448 B of stack.
  */
 int sleeping_top_setup_f32(float m, float r, float l, float n, float g,
@@ -83,7 +83,7 @@ int sleeping_top_setup_f32(float m, float r, float l, float n, float g,
  *            mass_matrix; 200000 samples of the ranges, 65536 searched from the worst); at 8318
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 1.2e-10 (seen
- *            1.2e-10), damping_matrix 7.5e-09 (seen 7.4e-09), stiffness_matrix 1.5e-08 (seen
+ *            1.2e-10), damping_matrix 7.5e-09 (seen 7.5e-09), stiffness_matrix 1.5e-08 (seen
  *            1.5e-08).
  * Cost: no operations.
  * On Cortex-M0+, -O2: 21 to 22 instructions, 44 B of code, 12 B of stack.
@@ -113,11 +113,11 @@ void sleeping_top_linearised_f32(const sleeping_top_constants_f32 *constants, fl
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_ddot 6.2e-05 rad/s^2
- *            (seen 3.9e-05), beta_ddot 4.3e-05 rad/s^2 (seen 2.8e-05); assumed: sines and cosines
+ *            (seen 4.2e-05), beta_ddot 4.3e-05 rad/s^2 (seen 2.9e-05); assumed: sines and cosines
  *            of our own within 0.79 ulp.
  * Singular: at beta = pi/2 + k pi, alpha_ddot infinite, no number or beyond all measure.
  * Cost: 4 sub, 9 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 8909 to 9072 instructions, 728 B of code, 128 B of stack.
+ * On Cortex-M0+, -O2: 8908 to 9070 instructions, 724 B of code, 128 B of stack.
  * On Cortex-M4F, -O2: 213 instructions, 568 B of code, 60 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
@@ -172,14 +172,14 @@ void sleeping_top_energy_f32(const sleeping_top_constants_f32 *constants, float 
  *            product of what the step adds, by rounding alone (of alpha_dot_next; 200000 samples
  *            of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_next 2.4e-08 rad (seen
- *            1.7e-08), alpha_dot_next 1.5e-06 rad/s (seen 4.4e-07), beta_next 2.4e-08 rad (seen
- *            1.7e-08), beta_dot_next 1.4e-06 rad/s (seen 3.5e-07); assumed: sines and cosines of
+ *            1.7e-08), alpha_dot_next 1.3e-06 rad/s (seen 5.9e-07), beta_next 2.3e-08 rad (seen
+ *            1.7e-08), beta_dot_next 1.2e-06 rad/s (seen 4.6e-07); assumed: sines and cosines of
  *            our own within 0.79 ulp.
  * Singular: at beta = pi/2 + k pi, alpha_next, alpha_dot_next, beta_next, beta_dot_next infinite,
  *            no number or beyond all measure.
  * Cost: 28 add, 16 sub, 64 mul, 4 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 40255 to 40920 instructions, 1644 B of code, 264 B of stack.
- * On Cortex-M4F, -O2: 888 instructions, 1180 B of code, 220 B of stack.
+ * On Cortex-M0+, -O2: 40261 to 40926 instructions, 1656 B of code, 272 B of stack.
+ * On Cortex-M4F, -O2: 889 instructions, 1184 B of code, 212 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

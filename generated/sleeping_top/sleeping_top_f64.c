@@ -260,6 +260,7 @@ void sleeping_top_accelerations_f64(const sleeping_top_constants_f64 *constants,
     const double t8 = t2_both.cosine;
     const double t9 = t8 * constants->k4;
     const double t10 = t7 / t9;
+    *alpha_ddot = t10;
     const double t11 = t0_both.cosine;
     const double t12 = t2 * t11;
     const double t13 = t12 * constants->k5;
@@ -267,7 +268,6 @@ void sleeping_top_accelerations_f64(const sleeping_top_constants_f64 *constants,
     const double t15 = t3 - constants->k6;
     const double t16 = t14 * t15;
     const double t17 = t13 - t16;
-    *alpha_ddot = t10;
     *beta_ddot = t17;
 }
 
@@ -397,10 +397,6 @@ void sleeping_top_step_rk4_f64(const sleeping_top_constants_f64 *constants, doub
     const double t121 = t24 + t120;
     const double t78 = t74 * 2.0;
     const double t82 = beta_dot + t78;
-    const double t102 = t82 * t0;
-    const double t117 = t116 + t102;
-    const double t118 = t117 * 0.3333333333333333;
-    const double t126 = beta + t118;
     const double t68 = t56 * t17;
     const double t69 = t16 - t68;
     const double t70 = t53 * t69;
@@ -420,20 +416,24 @@ void sleeping_top_step_rk4_f64(const sleeping_top_constants_f64 *constants, doub
     const double t112 = t111 + t101;
     const double t113 = t112 * 0.3333333333333333;
     const double t125 = alpha_dot + t113;
+    *alpha_dot_next = t125;
     const double t92 = t85 - constants->k6;
     const double t91 = t80 * t86;
     const double t93 = t91 * t92;
     const double t94 = t90 - t93;
     const double t103 = t94 * t0;
     const double t122 = t121 + t103;
-    const double t95 = t80 * t0;
-    const double t107 = t106 + t95;
-    const double t108 = t107 * 0.3333333333333333;
-    const double t124 = alpha + t108;
     const double t123 = t122 * 0.3333333333333333;
     const double t127 = beta_dot + t123;
-    *alpha_next = t124;
-    *alpha_dot_next = t125;
-    *beta_next = t126;
     *beta_dot_next = t127;
+    const double t95 = t80 * t0;
+    const double t107 = t106 + t95;
+    const double t102 = t82 * t0;
+    const double t117 = t116 + t102;
+    const double t118 = t117 * 0.3333333333333333;
+    const double t126 = beta + t118;
+    *beta_next = t126;
+    const double t108 = t107 * 0.3333333333333333;
+    const double t124 = alpha + t108;
+    *alpha_next = t124;
 }

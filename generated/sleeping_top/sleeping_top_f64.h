@@ -16,11 +16,11 @@
  *     double mass_matrix[4], damping_matrix[4], stiffness_matrix[4];
  *     sleeping_top_linearised_f64(&constants, mass_matrix, damping_matrix, stiffness_matrix);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 e9fba3f479710ec8.
+ * Body of these files: sha256 f5af8d1baa9d9d7a.
  */
 #ifndef SLEEPING_TOP_F64_H
 #define SLEEPING_TOP_F64_H
@@ -110,11 +110,11 @@ void sleeping_top_linearised_f64(const sleeping_top_constants_f64 *constants, do
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_ddot 1.2e-13 rad/s^2
- *            (seen 7.8e-14), beta_ddot 7.9e-14 rad/s^2 (seen 4.8e-14); assumed: sines and cosines
+ *            (seen 8.7e-14), beta_ddot 7.9e-14 rad/s^2 (seen 5.9e-14); assumed: sines and cosines
  *            of our own within 0.79 ulp.
  * Singular: at beta = pi/2 + k pi, alpha_ddot infinite, no number or beyond all measure.
  * Cost: 4 sub, 9 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 23011 to 23468 instructions, 1168 B of code, 216 B of stack.
+ * On Cortex-M0+, -O2: 23003 to 23461 instructions, 1156 B of code, 208 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -141,7 +141,7 @@ void sleeping_top_accelerations_f64(const sleeping_top_constants_f64 *constants,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 3.8e-15 J (seen
- *            3.6e-15); assumed: sines and cosines of our own within 0.79 ulp.
+ *            3.7e-15); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 6 mul, 2 cos.
  * On Cortex-M0+, -O2: 21284 to 21615 instructions, 1076 B of code, 200 B of stack.
  * Rests on: A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
@@ -166,14 +166,14 @@ void sleeping_top_energy_f64(const sleeping_top_constants_f64 *constants, double
  * Error: median 0.4, largest 6.1 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of alpha_dot_next; 200000 samples
  *            of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_next 4.5e-17 rad (seen
- *            3.2e-17), alpha_dot_next 2.8e-15 rad/s (seen 7.6e-16), beta_next 4.3e-17 rad (seen
- *            3.1e-17), beta_dot_next 2.5e-15 rad/s (seen 6.7e-16); assumed: sines and cosines of
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_next 4.4e-17 rad (seen
+ *            3.2e-17), alpha_dot_next 2.4e-15 rad/s (seen 8.6e-16), beta_next 4.3e-17 rad (seen
+ *            3.2e-17), beta_dot_next 2.2e-15 rad/s (seen 7.2e-16); assumed: sines and cosines of
  *            our own within 0.79 ulp.
  * Singular: at beta = pi/2 + k pi, alpha_next, alpha_dot_next, beta_next, beta_dot_next infinite,
  *            no number or beyond all measure.
  * Cost: 28 add, 16 sub, 64 mul, 4 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 103071 to 104133 instructions, 2580 B of code, 480 B of stack.
+ * On Cortex-M0+, -O2: 103069 to 104131 instructions, 2576 B of code, 472 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

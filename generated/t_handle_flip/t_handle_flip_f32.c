@@ -322,12 +322,15 @@ static t_handle_flip_sines_f32 t_handle_flip_sine_cosine_f32(float angle)
 void t_handle_flip_kinetic_energy_f32(const t_handle_flip_constants_f32 *constants,
     const float omega[3], float *kinetic_energy)
 {
-    const float t0 = omega[0] * omega[0];
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
+    const float t0 = omega_x_in * omega_x_in;
     const float t1 = t0 * constants->half_I_xx;
-    const float t2 = omega[1] * omega[1];
+    const float t2 = omega_y_in * omega_y_in;
     const float t3 = t2 * constants->half_I_yy;
     const float t4 = t1 + t3;
-    const float t5 = omega[2] * omega[2];
+    const float t5 = omega_z_in * omega_z_in;
     const float t6 = t5 * constants->half_I_zz;
     const float t7 = t4 + t6;
     *kinetic_energy = t7;
@@ -337,11 +340,14 @@ void t_handle_flip_kinetic_energy_f32(const t_handle_flip_constants_f32 *constan
 void t_handle_flip_angular_momentum_f32(const t_handle_flip_constants_f32 *constants,
     const float omega[3], float angular_momentum[3])
 {
-    const float t0 = omega[0] * constants->I_xx;
-    const float t1 = omega[1] * constants->I_yy;
-    const float t2 = omega[2] * constants->I_zz;
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
+    const float t0 = omega_x_in * constants->I_xx;
     angular_momentum[0] = t0;
+    const float t1 = omega_y_in * constants->I_yy;
     angular_momentum[1] = t1;
+    const float t2 = omega_z_in * constants->I_zz;
     angular_momentum[2] = t2;
 }
 
@@ -350,9 +356,16 @@ void t_handle_flip_flow_exact_f32(const t_handle_flip_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time, float attitude_next[4],
     float omega_next[3])
 {
-    const float t0 = fabsf(omega[0]);
-    const float t1 = fabsf(omega[1]);
-    const float t2 = fabsf(omega[2]);
+    const float attitude_w_in = attitude[0];
+    const float attitude_x_in = attitude[1];
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
+    const float t0 = fabsf(omega_x_in);
+    const float t1 = fabsf(omega_y_in);
+    const float t2 = fabsf(omega_z_in);
     const _Bool t3 = t0 < t1;
     const float t4 = t3 ? t1 : t0;
     const _Bool t5 = t4 < t2;
@@ -361,9 +374,9 @@ void t_handle_flip_flow_exact_f32(const t_handle_flip_constants_f32 *constants,
         t6)));
     const _Bool t8 = 0.0F < t7;
     const float t9 = t8 ? t7 : 1.0F;
-    const float t10 = omega[0] / t9;
-    const float t11 = omega[1] / t9;
-    const float t12 = omega[2] / t9;
+    const float t10 = omega_x_in / t9;
+    const float t11 = omega_y_in / t9;
+    const float t12 = omega_z_in / t9;
     const float t13 = t8 ? t10 : 1.0F;
     const float t14 = time * t7;
     const float t15 = constants->axis_1_x * t13;
@@ -1152,42 +1165,42 @@ void t_handle_flip_flow_exact_f32(const t_handle_flip_constants_f32 *constants,
     const float t823 = t821 + t822;
     const float t824 = constants->axis_3_z * t795;
     const float t825 = t823 + t824;
-    const float t826 = attitude[0] * t779;
-    const float t827 = attitude[1] * t800;
+    const float t826 = attitude_w_in * t779;
+    const float t827 = attitude_x_in * t800;
     const float t828 = t826 - t827;
-    const float t829 = attitude[2] * t805;
-    const float t830 = attitude[3] * t810;
+    const float t829 = attitude_y_in * t805;
+    const float t830 = attitude_z_in * t810;
     const float t831 = t829 + t830;
     const float t832 = t828 - t831;
-    const float t833 = attitude[0] * t800;
-    const float t834 = attitude[1] * t779;
+    attitude_next[0] = t832;
+    const float t833 = attitude_w_in * t800;
+    const float t834 = attitude_x_in * t779;
     const float t835 = t833 + t834;
-    const float t836 = attitude[2] * t810;
-    const float t837 = attitude[3] * t805;
+    const float t836 = attitude_y_in * t810;
+    const float t837 = attitude_z_in * t805;
     const float t838 = t836 - t837;
     const float t839 = t835 + t838;
-    const float t840 = attitude[0] * t805;
-    const float t841 = attitude[2] * t779;
+    attitude_next[1] = t839;
+    const float t840 = attitude_w_in * t805;
+    const float t841 = attitude_y_in * t779;
     const float t842 = t840 + t841;
-    const float t843 = attitude[3] * t800;
-    const float t844 = attitude[1] * t810;
+    const float t843 = attitude_z_in * t800;
+    const float t844 = attitude_x_in * t810;
     const float t845 = t843 - t844;
     const float t846 = t842 + t845;
-    const float t847 = attitude[0] * t810;
-    const float t848 = attitude[3] * t779;
+    attitude_next[2] = t846;
+    const float t847 = attitude_w_in * t810;
+    const float t848 = attitude_z_in * t779;
     const float t849 = t847 + t848;
-    const float t850 = attitude[1] * t805;
-    const float t851 = attitude[2] * t800;
+    const float t850 = attitude_x_in * t805;
+    const float t851 = attitude_y_in * t800;
     const float t852 = t850 - t851;
     const float t853 = t849 + t852;
-    const float t854 = t815 * t7;
-    const float t855 = t820 * t7;
-    const float t856 = t825 * t7;
-    attitude_next[0] = t832;
-    attitude_next[1] = t839;
-    attitude_next[2] = t846;
     attitude_next[3] = t853;
+    const float t854 = t815 * t7;
     omega_next[0] = t854;
+    const float t855 = t820 * t7;
     omega_next[1] = t855;
+    const float t856 = t825 * t7;
     omega_next[2] = t856;
 }

@@ -318,12 +318,15 @@ static t_handle_flip_sines_f64 t_handle_flip_sine_cosine_f64(double angle)
 void t_handle_flip_kinetic_energy_f64(const t_handle_flip_constants_f64 *constants,
     const double omega[3], double *kinetic_energy)
 {
-    const double t0 = omega[0] * omega[0];
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
+    const double t0 = omega_x_in * omega_x_in;
     const double t1 = t0 * constants->half_I_xx;
-    const double t2 = omega[1] * omega[1];
+    const double t2 = omega_y_in * omega_y_in;
     const double t3 = t2 * constants->half_I_yy;
     const double t4 = t1 + t3;
-    const double t5 = omega[2] * omega[2];
+    const double t5 = omega_z_in * omega_z_in;
     const double t6 = t5 * constants->half_I_zz;
     const double t7 = t4 + t6;
     *kinetic_energy = t7;
@@ -333,11 +336,14 @@ void t_handle_flip_kinetic_energy_f64(const t_handle_flip_constants_f64 *constan
 void t_handle_flip_angular_momentum_f64(const t_handle_flip_constants_f64 *constants,
     const double omega[3], double angular_momentum[3])
 {
-    const double t0 = omega[0] * constants->I_xx;
-    const double t1 = omega[1] * constants->I_yy;
-    const double t2 = omega[2] * constants->I_zz;
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
+    const double t0 = omega_x_in * constants->I_xx;
     angular_momentum[0] = t0;
+    const double t1 = omega_y_in * constants->I_yy;
     angular_momentum[1] = t1;
+    const double t2 = omega_z_in * constants->I_zz;
     angular_momentum[2] = t2;
 }
 
@@ -346,9 +352,16 @@ void t_handle_flip_flow_exact_f64(const t_handle_flip_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time, double attitude_next[4],
     double omega_next[3])
 {
-    const double t0 = fabs(omega[0]);
-    const double t1 = fabs(omega[1]);
-    const double t2 = fabs(omega[2]);
+    const double attitude_w_in = attitude[0];
+    const double attitude_x_in = attitude[1];
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
+    const double t0 = fabs(omega_x_in);
+    const double t1 = fabs(omega_y_in);
+    const double t2 = fabs(omega_z_in);
     const _Bool t3 = t0 < t1;
     const double t4 = t3 ? t1 : t0;
     const _Bool t5 = t4 < t2;
@@ -357,9 +370,9 @@ void t_handle_flip_flow_exact_f64(const t_handle_flip_constants_f64 *constants,
         ((4503599627370496.0 * t6) + t6)));
     const _Bool t8 = 0.0 < t7;
     const double t9 = t8 ? t7 : 1.0;
-    const double t10 = omega[0] / t9;
-    const double t11 = omega[1] / t9;
-    const double t12 = omega[2] / t9;
+    const double t10 = omega_x_in / t9;
+    const double t11 = omega_y_in / t9;
+    const double t12 = omega_z_in / t9;
     const double t13 = t8 ? t10 : 1.0;
     const double t14 = time * t7;
     const double t15 = constants->axis_1_x * t13;
@@ -1148,42 +1161,42 @@ void t_handle_flip_flow_exact_f64(const t_handle_flip_constants_f64 *constants,
     const double t823 = t821 + t822;
     const double t824 = constants->axis_3_z * t795;
     const double t825 = t823 + t824;
-    const double t826 = attitude[0] * t779;
-    const double t827 = attitude[1] * t800;
+    const double t826 = attitude_w_in * t779;
+    const double t827 = attitude_x_in * t800;
     const double t828 = t826 - t827;
-    const double t829 = attitude[2] * t805;
-    const double t830 = attitude[3] * t810;
+    const double t829 = attitude_y_in * t805;
+    const double t830 = attitude_z_in * t810;
     const double t831 = t829 + t830;
     const double t832 = t828 - t831;
-    const double t833 = attitude[0] * t800;
-    const double t834 = attitude[1] * t779;
+    attitude_next[0] = t832;
+    const double t833 = attitude_w_in * t800;
+    const double t834 = attitude_x_in * t779;
     const double t835 = t833 + t834;
-    const double t836 = attitude[2] * t810;
-    const double t837 = attitude[3] * t805;
+    const double t836 = attitude_y_in * t810;
+    const double t837 = attitude_z_in * t805;
     const double t838 = t836 - t837;
     const double t839 = t835 + t838;
-    const double t840 = attitude[0] * t805;
-    const double t841 = attitude[2] * t779;
+    attitude_next[1] = t839;
+    const double t840 = attitude_w_in * t805;
+    const double t841 = attitude_y_in * t779;
     const double t842 = t840 + t841;
-    const double t843 = attitude[3] * t800;
-    const double t844 = attitude[1] * t810;
+    const double t843 = attitude_z_in * t800;
+    const double t844 = attitude_x_in * t810;
     const double t845 = t843 - t844;
     const double t846 = t842 + t845;
-    const double t847 = attitude[0] * t810;
-    const double t848 = attitude[3] * t779;
+    attitude_next[2] = t846;
+    const double t847 = attitude_w_in * t810;
+    const double t848 = attitude_z_in * t779;
     const double t849 = t847 + t848;
-    const double t850 = attitude[1] * t805;
-    const double t851 = attitude[2] * t800;
+    const double t850 = attitude_x_in * t805;
+    const double t851 = attitude_y_in * t800;
     const double t852 = t850 - t851;
     const double t853 = t849 + t852;
-    const double t854 = t815 * t7;
-    const double t855 = t820 * t7;
-    const double t856 = t825 * t7;
-    attitude_next[0] = t832;
-    attitude_next[1] = t839;
-    attitude_next[2] = t846;
     attitude_next[3] = t853;
+    const double t854 = t815 * t7;
     omega_next[0] = t854;
+    const double t855 = t820 * t7;
     omega_next[1] = t855;
+    const double t856 = t825 * t7;
     omega_next[2] = t856;
 }

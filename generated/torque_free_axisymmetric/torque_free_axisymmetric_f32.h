@@ -14,8 +14,8 @@
  *     float precession;
  *     torque_free_axisymmetric_precession_f32(&constants, 0.0500000007F, 1.5F, 6.0F, &precession);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
  * Body of these files: sha256 e44576dbe5175376.
@@ -63,7 +63,7 @@ int torque_free_axisymmetric_setup_f32(float A, float C,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: precession 6.4e-06 rad/s (seen
- *            4e-06).
+ *            4.1e-06).
  * Singular: at w_x = w_y = 0, precession infinite, no number or beyond all measure.
  * Cost: 3 add, 7 mul, 1 div, 3 sqrt.
  * On Cortex-M0+, -O2: 2384 to 2452 instructions, 136 B of code, 64 B of stack.
@@ -105,7 +105,7 @@ void torque_free_axisymmetric_body_rate_f32(const torque_free_axisymmetric_const
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_theta 1.1e-07 (seen
- *            5.5e-08).
+ *            6.3e-08).
  * Singular: at w_z = 0, tan_theta infinite, no number or beyond all measure.
  * Cost: 1 add, 5 mul, 1 div, 1 sqrt.
  * On Cortex-M0+, -O2: 1369 to 1426 instructions, 96 B of code, 64 B of stack.
@@ -124,7 +124,8 @@ void torque_free_axisymmetric_tan_theta_f32(const torque_free_axisymmetric_const
  * Error: median 0.48, largest 2.8 u of the largest component, by rounding alone (of tan_beta;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_beta 6.7e-08 (seen 5e-08).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_beta 6.7e-08 (seen
+ *            5.6e-08).
  * Singular: at w_z = 0, tan_beta infinite, no number or beyond all measure.
  * Cost: 1 add, 2 mul, 1 div, 1 sqrt.
  * On Cortex-M0+, -O2: 999 to 1045 instructions, 48 B of code, 64 B of stack.

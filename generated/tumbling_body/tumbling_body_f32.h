@@ -16,11 +16,11 @@
  *     float kinetic_energy;
  *     tumbling_body_kinetic_energy_f32(&constants, omega, &kinetic_energy);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 d7e624b9eb0c8346.
+ * Body of these files: sha256 7882bbd2acc78b70.
  */
 #ifndef TUMBLING_BODY_F32_H
 #define TUMBLING_BODY_F32_H
@@ -133,7 +133,7 @@ int tumbling_body_setup_f32(float I_xx, float I_yy, float I_zz,
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 5.7e-05 J (seen
- *            3.5e-05).
+ *            4.4e-05).
  * Cost: 2 add, 6 mul.
  * On Cortex-M0+, -O2: 834 to 892 instructions, 88 B of code, 56 B of stack.
  * On Cortex-M4F, -O2: 16 instructions, 64 B of code, 0 B of stack.
@@ -156,8 +156,8 @@ void tumbling_body_kinetic_energy_f32(const tumbling_body_constants_f32 *constan
  * Bound: not proved: a divisor may vanish for all that ranges tell, in set-up.
  * Cost: 170 add, 50 sub, 387 mul, 121 div, 1 neg, 29 sqrt, 2 sin, 2 cos, 14 abs, 2 at_most, 1
  *            both, 13 less, 2 power_of_two, 35 select.
- * On Cortex-M0+, -O2: 111872 to 119958 instructions, 8288 B of code, 456 B of stack.
- * On Cortex-M4F, -O2: 1372 to 1388 instructions, 6980 B of code, 372 B of stack.
+ * On Cortex-M0+, -O2: 111867 to 119953 instructions, 8280 B of code, 464 B of stack.
+ * On Cortex-M4F, -O2: 1381 to 1397 instructions, 7044 B of code, 388 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -176,8 +176,8 @@ void tumbling_body_flow_exact_f32(const tumbling_body_constants_f32 *constants,
  *            plan, thin rod).
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 43 add, 21 sub, 101 mul, 6 div, 1 abs, 1 less, 1 select, 1 splitter.
- * On Cortex-M0+, -O2: 19115 to 19610 instructions, 1768 B of code, 136 B of stack.
- * On Cortex-M4F, -O2: 238 instructions, 956 B of code, 8 B of stack.
+ * On Cortex-M0+, -O2: 19086 to 19581 instructions, 1712 B of code, 104 B of stack.
+ * On Cortex-M4F, -O2: 237 instructions, 952 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -198,8 +198,8 @@ void tumbling_body_plan_dmv_f32(const tumbling_body_constants_f32 *constants, co
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: its plan, of another function, has no enclosure here.
  * Cost: 207 add, 69 sub, 372 mul, 22 div, 1 neg, 18 sqrt, 16 abs, 16 at_most.
- * On Cortex-M0+, -O2: 19951 to 23865 instructions, 1828 B of code, 168 B of stack.
- * On Cortex-M4F, -O2: 247 to 285 instructions, 1232 B of code, 144 B of stack.
+ * On Cortex-M0+, -O2: 19917 to 23836 instructions, 1796 B of code, 224 B of stack.
+ * On Cortex-M4F, -O2: 276 to 314 instructions, 1404 B of code, 200 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -217,12 +217,12 @@ void tumbling_body_step_dmv_f32(const float plan[13], const float attitude[4], c
  * Error: median 0.19, largest 2 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.8e-06 (seen
- *            9.5e-08), omega_next 2.7e-05 rad/s (seen 7.8e-07); assumed: quaternions given with
- *            |q|^2 in 0.999 .. 1.001.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.2e-06 (seen
+ *            8e-08), omega_next 2e-05 rad/s (seen 9.4e-07); assumed: quaternions given with |q|^2
+ *            in 0.999 .. 1.001.
  * Cost: 82 add, 15 sub, 100 mul, 9 div, 9 neg, 2 less, 18 select.
- * On Cortex-M0+, -O2: 22897 to 23352 instructions, 2328 B of code, 152 B of stack.
- * On Cortex-M4F, -O2: 298 to 316 instructions, 1376 B of code, 60 B of stack.
+ * On Cortex-M0+, -O2: 22809 to 23332 instructions, 2376 B of code, 168 B of stack.
+ * On Cortex-M4F, -O2: 287 to 316 instructions, 1404 B of code, 68 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -241,12 +241,12 @@ void tumbling_body_step_split2_f32(const tumbling_body_constants_f32 *constants,
  * Error: median 0.19, largest 2 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 3.9e-06 (seen
- *            1.2e-07), omega_next 6.6e-05 rad/s (seen 9.6e-07); assumed: quaternions given with
- *            |q|^2 in 0.999 .. 1.001.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 3.6e-06 (seen
+ *            1e-07), omega_next 9.2e-05 rad/s (seen 1e-06); assumed: quaternions given with |q|^2
+ *            in 0.999 .. 1.001.
  * Cost: 292 add, 45 sub, 306 mul, 29 div, 29 neg, 2 less, 18 select.
- * On Cortex-M0+, -O2: 71861 to 73005 instructions, 6408 B of code, 352 B of stack.
- * On Cortex-M4F, -O2: 787 to 806 instructions, 3360 B of code, 104 B of stack.
+ * On Cortex-M0+, -O2: 71764 to 73028 instructions, 6468 B of code, 360 B of stack.
+ * On Cortex-M4F, -O2: 786 to 815 instructions, 3428 B of code, 120 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -265,12 +265,12 @@ void tumbling_body_step_split_f32(const tumbling_body_constants_f32 *constants,
  * Error: median 0.2, largest 2.7 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.2e-05 (seen
- *            1e-07), omega_next 0.00034 rad/s (seen 1.1e-06); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 9e-06 (seen
+ *            1.1e-07), omega_next 0.00034 rad/s (seen 1.2e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 460 add, 69 sub, 470 mul, 45 div, 45 neg, 2 less, 18 select.
- * On Cortex-M0+, -O2: 110775 to 112678 instructions, 9624 B of code, 512 B of stack.
- * On Cortex-M4F, -O2: 1173 to 1192 instructions, 4920 B of code, 120 B of stack.
+ * On Cortex-M0+, -O2: 110681 to 112584 instructions, 9696 B of code, 520 B of stack.
+ * On Cortex-M4F, -O2: 1171 to 1200 instructions, 4984 B of code, 136 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -292,13 +292,13 @@ void tumbling_body_step_split6_f32(const tumbling_body_constants_f32 *constants,
  * Error: median 0.26, largest 3.9 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.1e-06 (seen
- *            1.6e-07), omega_next 1.1e-06 rad/s (seen 6.4e-07); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 6.7e-07 (seen
+ *            1.6e-07), omega_next 1.1e-06 rad/s (seen 6.5e-07); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 63 add, 18 sub, 111 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 19210 to 19623 instructions, 1788 B of code, 192 B of stack.
- * On Cortex-M4F, -O2: 226 instructions, 928 B of code, 88 B of stack.
+ * On Cortex-M0+, -O2: 19230 to 19639 instructions, 1816 B of code, 176 B of stack.
+ * On Cortex-M4F, -O2: 226 instructions, 920 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -321,14 +321,14 @@ void tumbling_body_step_rk4_f32(const tumbling_body_constants_f32 *constants,
  * Error: median 0.26, largest 6.3 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.6e-06 (seen
- *            1.4e-07), omega_next 1.1e-06 rad/s (seen 6e-07), jacobian 1.1e-05 (seen 3.5e-07);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.3e-06 (seen
+ *            1.5e-07), omega_next 1.1e-06 rad/s (seen 6.5e-07), jacobian 4.5e-06 (seen 3.7e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 265 add, 98 sub, 398 mul, 2 div, 9 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 73646 to 74643 instructions, 7396 B of code, 568 B of stack.
- * On Cortex-M4F, -O2: 1119 instructions, 4612 B of code, 328 B of stack.
+ * On Cortex-M0+, -O2: 73598 to 74616 instructions, 7388 B of code, 400 B of stack.
+ * On Cortex-M4F, -O2: 1046 instructions, 4272 B of code, 248 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -338,8 +338,8 @@ void tumbling_body_step_rk4_jacobian_f32(const tumbling_body_constants_f32 *cons
     float omega_next[3], float jacobian[37]);
 
 /* The same, the whole matrix: 49 entries.
- * On Cortex-M0+, -O2: 74072 to 75141 instructions, 7456 B of code, 37 B of tables, 752 B of stack.
- * On Cortex-M4F, -O2: 1476 instructions, 4676 B of code, 37 B of tables, 504 B of stack.
+ * On Cortex-M0+, -O2: 73690 to 74774 instructions, 7440 B of code, 400 B of stack.
+ * On Cortex-M4F, -O2: 1059 instructions, 4300 B of code, 248 B of stack.
  */
 void tumbling_body_step_rk4_jacobian_dense_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
@@ -362,8 +362,8 @@ void tumbling_body_step_rk4_jacobian_dense_f32(const tumbling_body_constants_f32
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 87 add, 57 sub, 150 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * On Cortex-M0+, -O2: 37108 to 37848 instructions, 4004 B of code, 208 B of stack.
- * On Cortex-M4F, -O2: 580 instructions, 2348 B of code, 108 B of stack.
+ * On Cortex-M0+, -O2: 37106 to 37848 instructions, 4008 B of code, 216 B of stack.
+ * On Cortex-M4F, -O2: 579 instructions, 2344 B of code, 100 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

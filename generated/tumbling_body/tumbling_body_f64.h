@@ -16,11 +16,11 @@
  *     double kinetic_energy;
  *     tumbling_body_kinetic_energy_f64(&constants, omega, &kinetic_energy);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 ab3adb9cb38e9916.
+ * Body of these files: sha256 dbf056a5d7253f14.
  */
 #ifndef TUMBLING_BODY_F64_H
 #define TUMBLING_BODY_F64_H
@@ -133,7 +133,7 @@ int tumbling_body_setup_f64(double I_xx, double I_yy, double I_zz,
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.1e-13 J (seen
- *            6.1e-14).
+ *            8.1e-14).
  * Cost: 2 add, 6 mul.
  * On Cortex-M0+, -O2: 2001 to 2070 instructions, 140 B of code, 104 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
@@ -155,7 +155,7 @@ void tumbling_body_kinetic_energy_f64(const tumbling_body_constants_f64 *constan
  * Bound: not proved: a divisor may vanish for all that ranges tell, in set-up.
  * Cost: 170 add, 50 sub, 387 mul, 121 div, 1 neg, 29 sqrt, 2 sin, 2 cos, 14 abs, 2 at_most, 1
  *            both, 13 less, 2 power_of_two, 35 select.
- * On Cortex-M0+, -O2: 237577 to 263536 instructions, 12824 B of code, 880 B of stack.
+ * On Cortex-M0+, -O2: 237578 to 263537 instructions, 12832 B of code, 904 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -173,7 +173,7 @@ void tumbling_body_flow_exact_f64(const tumbling_body_constants_f64 *constants,
  *            samples of the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 43 add, 21 sub, 101 mul, 6 div, 1 abs, 1 less, 1 select, 1 splitter.
- * On Cortex-M0+, -O2: 42862 to 43490 instructions, 2800 B of code, 264 B of stack.
+ * On Cortex-M0+, -O2: 42870 to 43498 instructions, 2816 B of code, 192 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -194,7 +194,7 @@ void tumbling_body_plan_dmv_f64(const tumbling_body_constants_f64 *constants, co
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: its plan, of another function, has no enclosure here.
  * Cost: 207 add, 69 sub, 372 mul, 22 div, 1 neg, 18 sqrt, 16 abs, 16 at_most.
- * On Cortex-M0+, -O2: 45008 to 69640 instructions, 2784 B of code, 304 B of stack.
+ * On Cortex-M0+, -O2: 45022 to 69653 instructions, 2820 B of code, 432 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -213,11 +213,11 @@ void tumbling_body_step_dmv_f64(const double plan[13], const double attitude[4],
  * Error: median 0.19, largest 2 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 3.4e-15 (seen
- *            1.3e-16), omega_next 4.9e-14 rad/s (seen 1.5e-15); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.1e-15 (seen
+ *            1.5e-16), omega_next 3.8e-14 rad/s (seen 1.6e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 82 add, 15 sub, 100 mul, 9 div, 9 neg, 2 less, 18 select.
- * On Cortex-M0+, -O2: 49828 to 50519 instructions, 3588 B of code, 304 B of stack.
+ * On Cortex-M0+, -O2: 49751 to 50499 instructions, 3596 B of code, 320 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -237,11 +237,11 @@ void tumbling_body_step_split2_f64(const tumbling_body_constants_f64 *constants,
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 2.3 u (of
  *            attitude_next, near sphere).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 7.3e-15 (seen
- *            1.4e-16), omega_next 1.3e-13 rad/s (seen 1.5e-15); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 6.6e-15 (seen
+ *            1.7e-16), omega_next 1.8e-13 rad/s (seen 2e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 292 add, 45 sub, 306 mul, 29 div, 29 neg, 2 less, 18 select.
- * On Cortex-M0+, -O2: 156701 to 158290 instructions, 9924 B of code, 688 B of stack.
+ * On Cortex-M0+, -O2: 156530 to 158350 instructions, 9924 B of code, 712 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -261,11 +261,11 @@ void tumbling_body_step_split_f64(const tumbling_body_constants_f64 *constants,
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 2.9 u (of
  *            attitude_next, thin disc).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.3e-14 (seen
- *            1.8e-16), omega_next 6.4e-13 rad/s (seen 1.8e-15); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.7e-14 (seen
+ *            1.5e-16), omega_next 6.4e-13 rad/s (seen 1.9e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 460 add, 69 sub, 470 mul, 45 div, 45 neg, 2 less, 18 select.
- * On Cortex-M0+, -O2: 240492 to 244233 instructions, 14956 B of code, 1008 B of stack.
+ * On Cortex-M0+, -O2: 240467 to 244063 instructions, 14960 B of code, 1032 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -287,12 +287,12 @@ void tumbling_body_step_split6_f64(const tumbling_body_constants_f64 *constants,
  * Error: median 0.38, largest 4.1 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2e-15 (seen
- *            2.9e-16), omega_next 2e-15 rad/s (seen 1.4e-15); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.3e-15 (seen
+ *            2.7e-16), omega_next 2e-15 rad/s (seen 1.5e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 63 add, 18 sub, 111 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 44285 to 45130 instructions, 2748 B of code, 368 B of stack.
+ * On Cortex-M0+, -O2: 44279 to 45137 instructions, 2764 B of code, 336 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -315,13 +315,13 @@ void tumbling_body_step_rk4_f64(const tumbling_body_constants_f64 *constants,
  * Error: median 0.38, largest 7.6 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.7e-15 (seen
- *            2.5e-16), omega_next 2e-15 rad/s (seen 1.1e-15), jacobian 1.9e-14 (seen 7.7e-16);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 2.4e-15 (seen
+ *            2.9e-16), omega_next 2e-15 rad/s (seen 1.2e-15), jacobian 8.4e-15 (seen 8.3e-16);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 265 add, 98 sub, 398 mul, 2 div, 9 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 168353 to 169922 instructions, 11672 B of code, 1208 B of stack.
+ * On Cortex-M0+, -O2: 168270 to 169703 instructions, 11396 B of code, 792 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -331,8 +331,7 @@ void tumbling_body_step_rk4_jacobian_f64(const tumbling_body_constants_f64 *cons
     double omega_next[3], double jacobian[37]);
 
 /* The same, the whole matrix: 49 entries.
- * On Cortex-M0+, -O2: 169127 to 170513 instructions, 11748 B of code, 37 B of tables, 1544 B of
- *            stack.
+ * On Cortex-M0+, -O2: 168395 to 169820 instructions, 11492 B of code, 792 B of stack.
  */
 void tumbling_body_step_rk4_jacobian_dense_f64(const tumbling_body_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time_step, double attitude_next[4],
@@ -355,7 +354,7 @@ void tumbling_body_step_rk4_jacobian_dense_f64(const tumbling_body_constants_f64
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 87 add, 57 sub, 150 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * On Cortex-M0+, -O2: 86730 to 88359 instructions, 6148 B of code, 408 B of stack.
+ * On Cortex-M0+, -O2: 86719 to 88349 instructions, 6124 B of code, 432 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

@@ -16,11 +16,11 @@
  *     double attitude_next[4], omega_next[3];
  *     tumbling_disc_flow_exact_f64(&constants, attitude, omega, 0.0, attitude_next, omega_next);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 57fdee787b8178f8.
+ * Body of these files: sha256 2e4aa9f5a11aa7ac.
  */
 #ifndef TUMBLING_DISC_F64_H
 #define TUMBLING_DISC_F64_H
@@ -64,7 +64,7 @@ int tumbling_disc_setup_f64(double A, double C, tumbling_disc_constants_f64 *con
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 13 add, 8 sub, 47 mul, 9 div, 1 neg, 1 sqrt, 2 sin, 2 cos, 6 abs, 5 less, 1 power_of_two,
  *            6 select.
- * On Cortex-M0+, -O2: 44130 to 46166 instructions, 2436 B of code, 320 B of stack.
+ * On Cortex-M0+, -O2: 44131 to 46166 instructions, 2436 B of code, 320 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -82,7 +82,7 @@ void tumbling_disc_flow_exact_f64(const tumbling_disc_constants_f64 *constants,
  *            samples of the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: a choice between values may turn out otherwise for rounded ones.
  * Cost: 3 add, 3 sub, 26 mul, 1 div, 1 sqrt, 4 sin, 1 cos, 1 less, 2 select.
- * On Cortex-M0+, -O2: 47802 to 48386 instructions, 1544 B of code, 272 B of stack.
+ * On Cortex-M0+, -O2: 47808 to 48393 instructions, 1556 B of code, 264 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -103,7 +103,7 @@ void tumbling_disc_plan_dmv_f64(const tumbling_disc_constants_f64 *constants, co
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: its plan, of another function, has no enclosure here.
  * Cost: 23 add, 21 sub, 27 mul, 1 div, 2 neg, 1 sqrt, 1 less, 1 select.
- * On Cortex-M0+, -O2: 16112 to 16481 instructions, 1308 B of code, 256 B of stack.
+ * On Cortex-M0+, -O2: 16120 to 16499 instructions, 1324 B of code, 264 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -122,11 +122,11 @@ void tumbling_disc_step_dmv_f64(const double plan[6], const double attitude[4],
  * Error: median 0.18, largest 2.5 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 6.8e-16 (seen
- *            1.3e-16), omega_next 4.6e-15 rad/s (seen 1.8e-15); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 5.5e-16 (seen
+ *            1.9e-16), omega_next 4.6e-15 rad/s (seen 2.4e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 40 add, 9 sub, 55 mul, 5 div, 5 neg.
- * On Cortex-M0+, -O2: 26294 to 26845 instructions, 1584 B of code, 232 B of stack.
+ * On Cortex-M0+, -O2: 26292 to 26843 instructions, 1580 B of code, 224 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -148,12 +148,12 @@ void tumbling_disc_step_split_f64(const tumbling_disc_constants_f64 *constants,
  * Error: median 0.38, largest 3.7 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.9e-15 (seen
- *            2.6e-16), omega_next 2.3e-15 rad/s (seen 1.4e-15); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.3e-15 (seen
+ *            2.9e-16), omega_next 2.3e-15 rad/s (seen 1.4e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 52 add, 22 sub, 88 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 37055 to 37842 instructions, 2400 B of code, 320 B of stack.
+ * On Cortex-M0+, -O2: 37045 to 37842 instructions, 2400 B of code, 256 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

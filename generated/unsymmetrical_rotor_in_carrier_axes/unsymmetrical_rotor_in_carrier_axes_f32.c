@@ -211,6 +211,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f32(const unsymmetrical_rotor_in
     const float t5 = t2 * t4;
     const float t6 = t1 * t5;
     const float t7 = t0 - t6;
+    moment[0] = t7;
     const float t8 = W * gamma_dot;
     const float t9 = t8 * constants->k1;
     const float t10 = t3 * constants->twice_I_yy_minus_I_zz;
@@ -219,13 +220,12 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f32(const unsymmetrical_rotor_in
     const float t13 = t9 + t12;
     const float t14 = W_dot * t5;
     const float t15 = t13 + t14;
+    moment[1] = t15;
     const float t16 = t2 * t11;
     const float t17 = t3 * t4;
     const float t18 = constants->I_yy - t17;
     const float t19 = W_dot * t18;
     const float t20 = t16 + t19;
-    moment[0] = t7;
-    moment[1] = t15;
     moment[2] = t20;
 }
 
@@ -245,6 +245,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f32(
     const float t5 = W * t4;
     const float t6 = t3 * t5;
     const float t7 = t0 - t6;
+    moment[0] = t7;
     const float t8 = W * gamma_dot;
     const float t9 = t8 * constants->k1;
     const float t10 = t2 * t2;
@@ -254,46 +255,45 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f32(
     const float t14 = t3 * t13;
     const float t15 = t12 + t14;
     const float t16 = t9 + t15;
+    moment[1] = t16;
     const float t17 = t3 * constants->twice_I_yy_minus_I_zz;
     const float t18 = t8 * t17;
     const float t19 = t10 * constants->I_yy_minus_I_zz;
     const float t20 = constants->I_yy - t19;
+    jacobian[10] = t20;
     const float t21 = W_dot * t20;
     const float t22 = t18 + t21;
+    moment[2] = t22;
     const float t23 = t1 * t1;
     const float t24 = t5 * t23;
     const float t25 = t10 * t5;
     const float t26 = t24 - t25;
+    jacobian[0] = t26;
     const float t27 = t10 * t13;
     const float t28 = t27 - t18;
     const float t29 = t28 - t18;
     const float t30 = t13 * t23;
     const float t31 = t29 - t30;
+    jacobian[1] = t31;
     const float t32 = t14 + t15;
     const float t33 = t23 * t11;
     const float t34 = t32 - t33;
+    jacobian[2] = t34;
     const float t35 = t19 + t19;
     const float t36 = t35 + constants->k1;
     const float t37 = W * t36;
-    const float t38 = W * t17;
-    const float t39 = -t38;
-    const float t40 = gamma_dot * t36;
-    const float t41 = gamma_dot * t17;
-    const float t42 = t3 * constants->I_yy_minus_I_zz;
-    moment[0] = t7;
-    moment[1] = t16;
-    moment[2] = t22;
-    jacobian[0] = t26;
-    jacobian[1] = t31;
-    jacobian[2] = t34;
     jacobian[3] = t37;
+    const float t38 = W * t17;
     jacobian[4] = t38;
-    jacobian[5] = constants->I_xx;
+    const float t39 = -t38;
     jacobian[6] = t39;
+    const float t40 = gamma_dot * t36;
     jacobian[7] = t40;
+    const float t41 = gamma_dot * t17;
     jacobian[8] = t41;
+    const float t42 = t3 * constants->I_yy_minus_I_zz;
     jacobian[9] = t42;
-    jacobian[10] = t20;
+    jacobian[5] = constants->I_xx;
 }
 
 /* External moment that the motion needs (inverse dynamics), with its Jacobian. Dense. */
@@ -302,19 +302,69 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f32(
     float gamma, float gamma_dot, float gamma_ddot, float W, float W_dot, float moment[3],
     float jacobian[15])
 {
-    static const unsigned char places[11] = {
-        0, 1, 2, 4, 5, 6, 9, 10, 11, 13, 14
-    };
-    float nonzeros[11];
-    int entry;
-    unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f32(constants, gamma, gamma_dot, gamma_ddot, W, W_dot, moment,
-        nonzeros);
-    for (entry = 0; entry < 15; ++entry) {
-        jacobian[entry] = 0.0F;
-    }
-    for (entry = 0; entry < 11; ++entry) {
-        jacobian[places[entry]] = nonzeros[entry];
-    }
+    const float t0 = gamma_ddot * constants->I_xx;
+    const unsymmetrical_rotor_in_carrier_axes_sines_f32 t1_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f32(
+        gamma);
+    const float t1 = t1_both.sine;
+    const float t2 = t1_both.cosine;
+    const float t3 = t1 * t2;
+    const float t4 = W * constants->I_yy_minus_I_zz;
+    const float t5 = W * t4;
+    const float t6 = t3 * t5;
+    const float t7 = t0 - t6;
+    moment[0] = t7;
+    const float t8 = W * gamma_dot;
+    const float t9 = t8 * constants->k1;
+    const float t10 = t2 * t2;
+    const float t11 = t8 * constants->twice_I_yy_minus_I_zz;
+    const float t12 = t10 * t11;
+    const float t13 = W_dot * constants->I_yy_minus_I_zz;
+    const float t14 = t3 * t13;
+    const float t15 = t12 + t14;
+    const float t16 = t9 + t15;
+    moment[1] = t16;
+    const float t17 = t3 * constants->twice_I_yy_minus_I_zz;
+    const float t18 = t8 * t17;
+    const float t19 = t10 * constants->I_yy_minus_I_zz;
+    const float t20 = constants->I_yy - t19;
+    jacobian[14] = t20;
+    const float t21 = W_dot * t20;
+    const float t22 = t18 + t21;
+    moment[2] = t22;
+    const float t23 = t1 * t1;
+    const float t24 = t5 * t23;
+    const float t25 = t10 * t5;
+    const float t26 = t24 - t25;
+    jacobian[0] = t26;
+    const float t27 = t10 * t13;
+    const float t28 = t27 - t18;
+    const float t29 = t28 - t18;
+    const float t30 = t13 * t23;
+    const float t31 = t29 - t30;
+    jacobian[1] = t31;
+    const float t32 = t14 + t15;
+    const float t33 = t23 * t11;
+    const float t34 = t32 - t33;
+    jacobian[2] = t34;
+    const float t35 = t19 + t19;
+    const float t36 = t35 + constants->k1;
+    const float t37 = W * t36;
+    jacobian[4] = t37;
+    const float t38 = W * t17;
+    jacobian[5] = t38;
+    const float t39 = -t38;
+    jacobian[9] = t39;
+    const float t40 = gamma_dot * t36;
+    jacobian[10] = t40;
+    const float t41 = gamma_dot * t17;
+    jacobian[11] = t41;
+    const float t42 = t3 * constants->I_yy_minus_I_zz;
+    jacobian[13] = t42;
+    jacobian[3] = 0.0F;
+    jacobian[6] = constants->I_xx;
+    jacobian[7] = 0.0F;
+    jacobian[8] = 0.0F;
+    jacobian[12] = 0.0F;
 }
 
 /* Angular momentum from the angular velocity. */
@@ -323,6 +373,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f32(
     float gamma, float gamma_dot, float W, float angular_momentum[3])
 {
     const float t0 = gamma_dot * constants->I_xx;
+    angular_momentum[0] = t0;
     const unsymmetrical_rotor_in_carrier_axes_sines_f32 t1_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f32(
         gamma);
     const float t1 = t1_both.sine;
@@ -330,11 +381,10 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f32(
     const float t3 = W * constants->I_yy_minus_I_zz;
     const float t4 = t2 * t3;
     const float t5 = t1 * t4;
+    angular_momentum[1] = t5;
     const float t6 = W * constants->I_yy;
     const float t7 = t2 * t4;
     const float t8 = t6 - t7;
-    angular_momentum[0] = t0;
-    angular_momentum[1] = t5;
     angular_momentum[2] = t8;
 }
 
@@ -345,6 +395,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f32(
     float rate_absolute[3])
 {
     const float t0 = gamma_ddot * constants->I_xx;
+    rate_in_axes[0] = t0;
     const unsymmetrical_rotor_in_carrier_axes_sines_f32 t1_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f32(
         gamma);
     const float t1 = t1_both.cosine;
@@ -359,23 +410,22 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f32(
     const float t10 = t5 + t9;
     const float t11 = t2 * constants->I_yy_minus_I_zz;
     const float t12 = t10 - t11;
+    rate_in_axes[1] = t12;
     const float t13 = W_dot * constants->I_yy;
     const float t14 = t6 * t4;
     const float t15 = t13 + t14;
     const float t16 = t1 * t8;
     const float t17 = t15 - t16;
+    rate_in_axes[2] = t17;
+    rate_absolute[2] = t17;
     const float t18 = W * W;
     const float t19 = t18 * t6;
     const float t20 = t19 * t7;
     const float t21 = t0 - t20;
+    rate_absolute[0] = t21;
     const float t22 = t2 * constants->k1;
     const float t23 = t22 + t10;
-    rate_in_axes[0] = t0;
-    rate_in_axes[1] = t12;
-    rate_in_axes[2] = t17;
-    rate_absolute[0] = t21;
     rate_absolute[1] = t23;
-    rate_absolute[2] = t17;
 }
 
 /* Kinetic energy of turning about the centre of mass. */

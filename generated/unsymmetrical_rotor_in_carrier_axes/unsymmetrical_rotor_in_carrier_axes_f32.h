@@ -16,11 +16,11 @@
  *     float moment[3];
  *     unsymmetrical_rotor_in_carrier_axes_moment_f32(&constants, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, moment);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 4d648d85e1db4e0c.
+ * Body of these files: sha256 cd9867571ab4612e.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
@@ -76,7 +76,7 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float 
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            6e+05 u (of moment, thin rod).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 0.00035 N m (seen
- *            0.00025); assumed: sines and cosines of our own within 0.79 ulp.
+ *            0.00028); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 2 sub, 14 mul, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 5644 to 6405 instructions, 780 B of code, 136 B of stack.
  * On Cortex-M4F, -O2: 126 to 127 instructions, 568 B of code, 52 B of stack.
@@ -101,12 +101,12 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f32(const unsymmetrical_rotor_in
  * Error: median 0.54, largest 18 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            5.3e+05 u (of moment, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 0.00036 N m (seen
- *            0.00024), jacobian 0.00073 (seen 0.00026); assumed: sines and cosines of our own
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 0.00038 N m (seen
+ *            0.00028), jacobian 0.0004 (seen 0.00029); assumed: sines and cosines of our own
  *            within 0.79 ulp.
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 7767 to 8627 instructions, 1028 B of code, 176 B of stack.
- * On Cortex-M4F, -O2: 161 to 162 instructions, 704 B of code, 52 B of stack.
+ * On Cortex-M0+, -O2: 7754 to 8615 instructions, 1004 B of code, 152 B of stack.
+ * On Cortex-M4F, -O2: 166 to 167 instructions, 724 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -117,8 +117,8 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f32(
     float jacobian[11]);
 
 /* The same, the whole matrix: 15 entries.
- * On Cortex-M0+, -O2: 7965 to 8786 instructions, 1092 B of code, 11 B of tables, 256 B of stack.
- * On Cortex-M4F, -O2: 302 to 303 instructions, 764 B of code, 11 B of tables, 108 B of stack.
+ * On Cortex-M0+, -O2: 7779 to 8600 instructions, 1012 B of code, 152 B of stack.
+ * On Cortex-M4F, -O2: 171 to 172 instructions, 732 B of code, 52 B of stack.
  */
 void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f32(
     const unsymmetrical_rotor_in_carrier_axes_constants_f32 *constants,
@@ -142,7 +142,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f32(
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 3.1e-05 kg
  *            m^2/s (seen 3.1e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 sub, 6 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 4358 to 5142 instructions, 660 B of code, 120 B of stack.
+ * On Cortex-M0+, -O2: 4352 to 5136 instructions, 648 B of code, 112 B of stack.
  * On Cortex-M4F, -O2: 110 to 111 instructions, 504 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
@@ -177,11 +177,11 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f32(
  * Error: median 0.57, largest 27 u of the largest product or sum in the equation (of rate_in_axes;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            1.2e+06 u (of rate_in_axes, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 0.00042 N m (seen
- *            0.00021), rate_absolute 0.00035 N m (seen 0.00028); assumed: sines and cosines of our
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 0.00033 N m (seen
+ *            0.0002), rate_absolute 0.00038 N m (seen 0.00028); assumed: sines and cosines of our
  *            own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 5932 to 6728 instructions, 824 B of code, 144 B of stack.
+ * On Cortex-M0+, -O2: 5932 to 6729 instructions, 824 B of code, 144 B of stack.
  * On Cortex-M4F, -O2: 133 to 134 instructions, 596 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rate_seen_from_N, rigid.
@@ -206,7 +206,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f32(
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 0.019 J (seen
  *            0.015); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 add, 1 sub, 7 mul, 1 cos.
- * On Cortex-M0+, -O2: 4523 to 5277 instructions, 648 B of code, 112 B of stack.
+ * On Cortex-M0+, -O2: 4523 to 5276 instructions, 648 B of code, 112 B of stack.
  * On Cortex-M4F, -O2: 109 to 110 instructions, 500 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.

@@ -210,6 +210,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in
     const double t5 = t2 * t4;
     const double t6 = t1 * t5;
     const double t7 = t0 - t6;
+    moment[0] = t7;
     const double t8 = W * gamma_dot;
     const double t9 = t8 * constants->k1;
     const double t10 = t3 * constants->twice_I_yy_minus_I_zz;
@@ -218,13 +219,12 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in
     const double t13 = t9 + t12;
     const double t14 = W_dot * t5;
     const double t15 = t13 + t14;
+    moment[1] = t15;
     const double t16 = t2 * t11;
     const double t17 = t3 * t4;
     const double t18 = constants->I_yy - t17;
     const double t19 = W_dot * t18;
     const double t20 = t16 + t19;
-    moment[0] = t7;
-    moment[1] = t15;
     moment[2] = t20;
 }
 
@@ -244,6 +244,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f64(
     const double t5 = W * t4;
     const double t6 = t3 * t5;
     const double t7 = t0 - t6;
+    moment[0] = t7;
     const double t8 = W * gamma_dot;
     const double t9 = t8 * constants->k1;
     const double t10 = t2 * t2;
@@ -253,46 +254,45 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f64(
     const double t14 = t3 * t13;
     const double t15 = t12 + t14;
     const double t16 = t9 + t15;
+    moment[1] = t16;
     const double t17 = t3 * constants->twice_I_yy_minus_I_zz;
     const double t18 = t8 * t17;
     const double t19 = t10 * constants->I_yy_minus_I_zz;
     const double t20 = constants->I_yy - t19;
+    jacobian[10] = t20;
     const double t21 = W_dot * t20;
     const double t22 = t18 + t21;
+    moment[2] = t22;
     const double t23 = t1 * t1;
     const double t24 = t5 * t23;
     const double t25 = t10 * t5;
     const double t26 = t24 - t25;
+    jacobian[0] = t26;
     const double t27 = t10 * t13;
     const double t28 = t27 - t18;
     const double t29 = t28 - t18;
     const double t30 = t13 * t23;
     const double t31 = t29 - t30;
+    jacobian[1] = t31;
     const double t32 = t14 + t15;
     const double t33 = t23 * t11;
     const double t34 = t32 - t33;
+    jacobian[2] = t34;
     const double t35 = t19 + t19;
     const double t36 = t35 + constants->k1;
     const double t37 = W * t36;
-    const double t38 = W * t17;
-    const double t39 = -t38;
-    const double t40 = gamma_dot * t36;
-    const double t41 = gamma_dot * t17;
-    const double t42 = t3 * constants->I_yy_minus_I_zz;
-    moment[0] = t7;
-    moment[1] = t16;
-    moment[2] = t22;
-    jacobian[0] = t26;
-    jacobian[1] = t31;
-    jacobian[2] = t34;
     jacobian[3] = t37;
+    const double t38 = W * t17;
     jacobian[4] = t38;
-    jacobian[5] = constants->I_xx;
+    const double t39 = -t38;
     jacobian[6] = t39;
+    const double t40 = gamma_dot * t36;
     jacobian[7] = t40;
+    const double t41 = gamma_dot * t17;
     jacobian[8] = t41;
+    const double t42 = t3 * constants->I_yy_minus_I_zz;
     jacobian[9] = t42;
-    jacobian[10] = t20;
+    jacobian[5] = constants->I_xx;
 }
 
 /* External moment that the motion needs (inverse dynamics), with its Jacobian. Dense. */
@@ -301,19 +301,69 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(
     double gamma, double gamma_dot, double gamma_ddot, double W, double W_dot, double moment[3],
     double jacobian[15])
 {
-    static const unsigned char places[11] = {
-        0, 1, 2, 4, 5, 6, 9, 10, 11, 13, 14
-    };
-    double nonzeros[11];
-    int entry;
-    unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f64(constants, gamma, gamma_dot, gamma_ddot, W, W_dot, moment,
-        nonzeros);
-    for (entry = 0; entry < 15; ++entry) {
-        jacobian[entry] = 0.0;
-    }
-    for (entry = 0; entry < 11; ++entry) {
-        jacobian[places[entry]] = nonzeros[entry];
-    }
+    const double t0 = gamma_ddot * constants->I_xx;
+    const unsymmetrical_rotor_in_carrier_axes_sines_f64 t1_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f64(
+        gamma);
+    const double t1 = t1_both.sine;
+    const double t2 = t1_both.cosine;
+    const double t3 = t1 * t2;
+    const double t4 = W * constants->I_yy_minus_I_zz;
+    const double t5 = W * t4;
+    const double t6 = t3 * t5;
+    const double t7 = t0 - t6;
+    moment[0] = t7;
+    const double t8 = W * gamma_dot;
+    const double t9 = t8 * constants->k1;
+    const double t10 = t2 * t2;
+    const double t11 = t8 * constants->twice_I_yy_minus_I_zz;
+    const double t12 = t10 * t11;
+    const double t13 = W_dot * constants->I_yy_minus_I_zz;
+    const double t14 = t3 * t13;
+    const double t15 = t12 + t14;
+    const double t16 = t9 + t15;
+    moment[1] = t16;
+    const double t17 = t3 * constants->twice_I_yy_minus_I_zz;
+    const double t18 = t8 * t17;
+    const double t19 = t10 * constants->I_yy_minus_I_zz;
+    const double t20 = constants->I_yy - t19;
+    jacobian[14] = t20;
+    const double t21 = W_dot * t20;
+    const double t22 = t18 + t21;
+    moment[2] = t22;
+    const double t23 = t1 * t1;
+    const double t24 = t5 * t23;
+    const double t25 = t10 * t5;
+    const double t26 = t24 - t25;
+    jacobian[0] = t26;
+    const double t27 = t10 * t13;
+    const double t28 = t27 - t18;
+    const double t29 = t28 - t18;
+    const double t30 = t13 * t23;
+    const double t31 = t29 - t30;
+    jacobian[1] = t31;
+    const double t32 = t14 + t15;
+    const double t33 = t23 * t11;
+    const double t34 = t32 - t33;
+    jacobian[2] = t34;
+    const double t35 = t19 + t19;
+    const double t36 = t35 + constants->k1;
+    const double t37 = W * t36;
+    jacobian[4] = t37;
+    const double t38 = W * t17;
+    jacobian[5] = t38;
+    const double t39 = -t38;
+    jacobian[9] = t39;
+    const double t40 = gamma_dot * t36;
+    jacobian[10] = t40;
+    const double t41 = gamma_dot * t17;
+    jacobian[11] = t41;
+    const double t42 = t3 * constants->I_yy_minus_I_zz;
+    jacobian[13] = t42;
+    jacobian[3] = 0.0;
+    jacobian[6] = constants->I_xx;
+    jacobian[7] = 0.0;
+    jacobian[8] = 0.0;
+    jacobian[12] = 0.0;
 }
 
 /* Angular momentum from the angular velocity. */
@@ -322,6 +372,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(
     double gamma, double gamma_dot, double W, double angular_momentum[3])
 {
     const double t0 = gamma_dot * constants->I_xx;
+    angular_momentum[0] = t0;
     const unsymmetrical_rotor_in_carrier_axes_sines_f64 t1_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f64(
         gamma);
     const double t1 = t1_both.sine;
@@ -329,11 +380,10 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(
     const double t3 = W * constants->I_yy_minus_I_zz;
     const double t4 = t2 * t3;
     const double t5 = t1 * t4;
+    angular_momentum[1] = t5;
     const double t6 = W * constants->I_yy;
     const double t7 = t2 * t4;
     const double t8 = t6 - t7;
-    angular_momentum[0] = t0;
-    angular_momentum[1] = t5;
     angular_momentum[2] = t8;
 }
 
@@ -344,6 +394,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(
     double rate_in_axes[3], double rate_absolute[3])
 {
     const double t0 = gamma_ddot * constants->I_xx;
+    rate_in_axes[0] = t0;
     const unsymmetrical_rotor_in_carrier_axes_sines_f64 t1_both = unsymmetrical_rotor_in_carrier_axes_sine_cosine_f64(
         gamma);
     const double t1 = t1_both.cosine;
@@ -358,23 +409,22 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(
     const double t10 = t5 + t9;
     const double t11 = t2 * constants->I_yy_minus_I_zz;
     const double t12 = t10 - t11;
+    rate_in_axes[1] = t12;
     const double t13 = W_dot * constants->I_yy;
     const double t14 = t6 * t4;
     const double t15 = t13 + t14;
     const double t16 = t1 * t8;
     const double t17 = t15 - t16;
+    rate_in_axes[2] = t17;
+    rate_absolute[2] = t17;
     const double t18 = W * W;
     const double t19 = t18 * t6;
     const double t20 = t19 * t7;
     const double t21 = t0 - t20;
+    rate_absolute[0] = t21;
     const double t22 = t2 * constants->k1;
     const double t23 = t22 + t10;
-    rate_in_axes[0] = t0;
-    rate_in_axes[1] = t12;
-    rate_in_axes[2] = t17;
-    rate_absolute[0] = t21;
     rate_absolute[1] = t23;
-    rate_absolute[2] = t17;
 }
 
 /* Kinetic energy of turning about the centre of mass. */

@@ -15,11 +15,11 @@
  *     double moment[3];
  *     unsymmetrical_rotor_in_carrier_axes_moment_f64(&constants, 0.0, 0.0, 0.0, 0.0, 0.0, moment);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 a0bb91c113a7c0af.
+ * Body of these files: sha256 812375d9691e0b73.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
@@ -76,7 +76,7 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, doub
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 6.4e-13 N m (seen
  *            4.5e-13); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 2 sub, 14 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 14436 to 16164 instructions, 1260 B of code, 232 B of stack.
+ * On Cortex-M0+, -O2: 14433 to 16160 instructions, 1256 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -98,11 +98,11 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in
  * Error: median 0.54, largest 17 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            5.8e+05 u (of moment, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 6.7e-13 N m (seen
- *            4.7e-13), jacobian 1.4e-12 (seen 5.1e-13); assumed: sines and cosines of our own
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 7e-13 N m (seen
+ *            5.1e-13), jacobian 7.4e-13 (seen 5.3e-13); assumed: sines and cosines of our own
  *            within 0.79 ulp.
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 19553 to 21366 instructions, 1660 B of code, 312 B of stack.
+ * On Cortex-M0+, -O2: 19536 to 21349 instructions, 1628 B of code, 264 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -113,7 +113,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f64(
     double jacobian[11]);
 
 /* The same, the whole matrix: 15 entries.
- * On Cortex-M0+, -O2: 19783 to 21496 instructions, 1752 B of code, 11 B of tables, 464 B of stack.
+ * On Cortex-M0+, -O2: 19538 to 21251 instructions, 1648 B of code, 264 B of stack.
  */
 void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(
     const unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants,
@@ -137,7 +137,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 5.7e-14 kg
  *            m^2/s (seen 5.7e-14); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 sub, 6 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 11498 to 13204 instructions, 1076 B of code, 208 B of stack.
+ * On Cortex-M0+, -O2: 11493 to 13199 instructions, 1068 B of code, 192 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */
@@ -171,11 +171,11 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(
  * Error: median 0.57, largest 23 u of the largest product or sum in the equation (of rate_in_axes;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            1.2e+06 u (of rate_in_axes, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 7.7e-13 N m (seen
- *            3.9e-13), rate_absolute 6.4e-13 N m (seen 4.8e-13); assumed: sines and cosines of our
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 6.1e-13 N m (seen
+ *            3.9e-13), rate_absolute 6.9e-13 N m (seen 5.1e-13); assumed: sines and cosines of our
  *            own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 15210 to 16928 instructions, 1332 B of code, 248 B of stack.
+ * On Cortex-M0+, -O2: 15201 to 16919 instructions, 1316 B of code, 240 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rate_seen_from_N, rigid.
  */
@@ -197,9 +197,9 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8342
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 3.4e-11 J (seen
- *            2.8e-11); assumed: sines and cosines of our own within 0.79 ulp.
+ *            2.9e-11); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 add, 1 sub, 7 mul, 1 cos.
- * On Cortex-M0+, -O2: 11937 to 13594 instructions, 1060 B of code, 184 B of stack.
+ * On Cortex-M0+, -O2: 11936 to 13594 instructions, 1060 B of code, 184 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

@@ -232,12 +232,12 @@ void wheel_pendulum_state_rate_f32(const wheel_pendulum_constants_f32 *constants
     const float t1 = t0 * constants->k1;
     const float t2 = T - t1;
     const float t3 = t2 * constants->J_r_inverse_det;
+    *theta_dot_rate = t3;
     const float t4 = t0 * constants->k2;
     const float t5 = T * constants->k3;
     const float t6 = t4 - t5;
-    *theta_rate = theta_dot;
-    *theta_dot_rate = t3;
     *s_rate = t6;
+    *theta_rate = theta_dot;
 }
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. */
@@ -250,17 +250,17 @@ void wheel_pendulum_state_rate_jacobian_f32(const wheel_pendulum_constants_f32 *
     const float t1 = t0 * constants->k1;
     const float t2 = T - t1;
     const float t3 = t2 * constants->J_r_inverse_det;
+    *theta_dot_rate = t3;
     const float t4 = t0 * constants->k2;
     const float t5 = T * constants->k3;
     const float t6 = t4 - t5;
+    *s_rate = t6;
     const float t7 = t0_both.cosine;
     const float t8 = t7 * constants->k2;
-    const float t9 = -t8;
-    *theta_rate = theta_dot;
-    *theta_dot_rate = t3;
-    *s_rate = t6;
-    jacobian[0] = t9;
     jacobian[1] = t8;
+    const float t9 = -t8;
+    jacobian[0] = t9;
+    *theta_rate = theta_dot;
     jacobian[2] = 1.0F;
     jacobian[3] = constants->J_r_inverse_det;
     jacobian[4] = constants->k4;
@@ -271,19 +271,32 @@ void wheel_pendulum_state_rate_jacobian_dense_f32(const wheel_pendulum_constants
     float theta, float theta_dot, float T, float *theta_rate, float *theta_dot_rate, float *s_rate,
     float jacobian[12])
 {
-    static const unsigned char places[5] = {
-        1, 2, 3, 10, 11
-    };
-    float nonzeros[5];
-    int entry;
-    wheel_pendulum_state_rate_jacobian_f32(constants, theta, theta_dot, T, theta_rate, theta_dot_rate, s_rate,
-        nonzeros);
-    for (entry = 0; entry < 12; ++entry) {
-        jacobian[entry] = 0.0F;
-    }
-    for (entry = 0; entry < 5; ++entry) {
-        jacobian[places[entry]] = nonzeros[entry];
-    }
+    const wheel_pendulum_sines_f32 t0_both = wheel_pendulum_sine_cosine_f32(theta);
+    const float t0 = t0_both.sine;
+    const float t1 = t0 * constants->k1;
+    const float t2 = T - t1;
+    const float t3 = t2 * constants->J_r_inverse_det;
+    *theta_dot_rate = t3;
+    const float t4 = t0 * constants->k2;
+    const float t5 = T * constants->k3;
+    const float t6 = t4 - t5;
+    *s_rate = t6;
+    const float t7 = t0_both.cosine;
+    const float t8 = t7 * constants->k2;
+    jacobian[2] = t8;
+    const float t9 = -t8;
+    jacobian[1] = t9;
+    *theta_rate = theta_dot;
+    jacobian[0] = 0.0F;
+    jacobian[3] = 1.0F;
+    jacobian[4] = 0.0F;
+    jacobian[5] = 0.0F;
+    jacobian[6] = 0.0F;
+    jacobian[7] = 0.0F;
+    jacobian[8] = 0.0F;
+    jacobian[9] = 0.0F;
+    jacobian[10] = constants->J_r_inverse_det;
+    jacobian[11] = constants->k4;
 }
 
 /* Mass, damping and stiffness matrices of small motion. */
@@ -374,6 +387,7 @@ void wheel_pendulum_step_rk4_f32(const wheel_pendulum_constants_f32 *constants, 
     const float t54 = t53 + t40;
     const float t55 = t54 * 0.333333343F;
     const float t58 = s + t55;
+    *s_next = t58;
     const float t24 = t23 * constants->k1;
     const float t25 = T - t24;
     const float t27 = t25 * t5;
@@ -383,6 +397,7 @@ void wheel_pendulum_step_rk4_f32(const wheel_pendulum_constants_f32 *constants, 
     const float t49 = t48 + t38;
     const float t50 = t49 * 0.333333343F;
     const float t57 = theta_dot + t50;
+    *theta_dot_next = t57;
     const float t31 = t27 * 2.0F;
     const float t33 = theta_dot + t31;
     const float t37 = t33 * t0;
@@ -390,6 +405,4 @@ void wheel_pendulum_step_rk4_f32(const wheel_pendulum_constants_f32 *constants, 
     const float t45 = t44 * 0.333333343F;
     const float t56 = theta + t45;
     *theta_next = t56;
-    *theta_dot_next = t57;
-    *s_next = t58;
 }

@@ -21,11 +21,11 @@
  *     float theta_rate, theta_dot_rate, s_rate;
  *     wheel_pendulum_state_rate_f32(&constants, 0.0F, 0.0F, 0.0F, &theta_rate, &theta_dot_rate, &s_rate);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 5a5cde80e7d57fd8.
+ * Body of these files: sha256 e700d0f93b991767.
  */
 #ifndef WHEEL_PENDULUM_F32_H
 #define WHEEL_PENDULUM_F32_H
@@ -88,10 +88,10 @@ int wheel_pendulum_setup_f32(float m_p, float m_r, float l_p, float l_r, float J
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_rate 0 rad/s (seen 0),
- *            theta_dot_rate 3.4e-05 rad/s^2 (seen 2.5e-05), s_rate 0.0009 rad/s^2 (seen 0.00068);
+ *            theta_dot_rate 3.5e-05 rad/s^2 (seen 2.5e-05), s_rate 0.00091 rad/s^2 (seen 0.00068);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 sub, 4 mul, 1 sin.
- * On Cortex-M0+, -O2: 4161 to 4980 instructions, 636 B of code, 112 B of stack.
+ * On Cortex-M0+, -O2: 4160 to 4978 instructions, 632 B of code, 112 B of stack.
  * On Cortex-M4F, -O2: 113 to 114 instructions, 512 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -116,11 +116,11 @@ void wheel_pendulum_state_rate_f32(const wheel_pendulum_constants_f32 *constants
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_rate 0 rad/s (seen 0),
- *            theta_dot_rate 3.5e-05 rad/s^2 (seen 2.2e-05), s_rate 0.0007 rad/s^2 (seen 0.00068),
+ *            theta_dot_rate 3.5e-05 rad/s^2 (seen 2.4e-05), s_rate 0.0007 rad/s^2 (seen 0.00069),
  *            jacobian 0.002 (seen 0.002); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 sub, 5 mul, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 4298 to 5109 instructions, 692 B of code, 120 B of stack.
- * On Cortex-M4F, -O2: 124 to 125 instructions, 544 B of code, 52 B of stack.
+ * On Cortex-M0+, -O2: 4292 to 5103 instructions, 680 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 125 to 126 instructions, 548 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -129,8 +129,8 @@ void wheel_pendulum_state_rate_jacobian_f32(const wheel_pendulum_constants_f32 *
     float jacobian[5]);
 
 /* The same, the whole matrix: 12 entries.
- * On Cortex-M0+, -O2: 4452 to 5248 instructions, 728 B of code, 5 B of tables, 144 B of stack.
- * On Cortex-M4F, -O2: 214 to 215 instructions, 592 B of code, 5 B of tables, 76 B of stack.
+ * On Cortex-M0+, -O2: 4351 to 5147 instructions, 696 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 133 to 134 instructions, 568 B of code, 52 B of stack.
  */
 void wheel_pendulum_state_rate_jacobian_dense_f32(const wheel_pendulum_constants_f32 *constants,
     float theta, float theta_dot, float T, float *theta_rate, float *theta_dot_rate, float *s_rate,
@@ -157,7 +157,7 @@ void wheel_pendulum_state_rate_jacobian_dense_f32(const wheel_pendulum_constants
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 2.4e-10 (seen
  *            2.3e-10), damping_matrix 0 (seen 0), stiffness_matrix 1.5e-08 (seen 1.5e-08).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 19 to 20 instructions, 40 B of code, 12 B of stack.
+ * On Cortex-M0+, -O2: 19 instructions, 40 B of code, 12 B of stack.
  * On Cortex-M4F, -O2: 18 instructions, 52 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -184,8 +184,8 @@ void wheel_pendulum_linearised_f32(const wheel_pendulum_constants_f32 *constants
  * Error: median 0.75, largest 12 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 3.9e-06 J (seen
- *            2.9e-06); assumed: sines and cosines of our own within 0.79 ulp.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 3.9e-06 J (seen 3e-06);
+ *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 5 mul, 1 cos.
  * On Cortex-M0+, -O2: 4346 to 5127 instructions, 636 B of code, 104 B of stack.
  * On Cortex-M4F, -O2: 109 to 110 instructions, 500 B of code, 44 B of stack.
@@ -213,11 +213,11 @@ void wheel_pendulum_energy_f32(const wheel_pendulum_constants_f32 *constants, fl
  *            largest product of what the step adds, by rounding alone (of theta_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_next 2.4e-07 rad (seen
- *            1.7e-07), theta_dot_next 2.5e-06 rad/s (seen 1.3e-06), s_next 8.8e-05 rad/s (seen
- *            5.2e-05); assumed: sines and cosines of our own within 0.79 ulp.
+ *            1.8e-07), theta_dot_next 2.5e-06 rad/s (seen 1.7e-06), s_next 8.8e-05 rad/s (seen
+ *            5.3e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 18 add, 8 sub, 29 mul, 4 sin.
- * On Cortex-M0+, -O2: 19143 to 22152 instructions, 1064 B of code, 192 B of stack.
- * On Cortex-M4F, -O2: 434 to 438 instructions, 756 B of code, 140 B of stack.
+ * On Cortex-M0+, -O2: 19143 to 22153 instructions, 1064 B of code, 192 B of stack.
+ * On Cortex-M4F, -O2: 433 to 437 instructions, 752 B of code, 132 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

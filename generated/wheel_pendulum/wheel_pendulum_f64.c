@@ -231,12 +231,12 @@ void wheel_pendulum_state_rate_f64(const wheel_pendulum_constants_f64 *constants
     const double t1 = t0 * constants->k1;
     const double t2 = T - t1;
     const double t3 = t2 * constants->J_r_inverse_det;
+    *theta_dot_rate = t3;
     const double t4 = t0 * constants->k2;
     const double t5 = T * constants->k3;
     const double t6 = t4 - t5;
-    *theta_rate = theta_dot;
-    *theta_dot_rate = t3;
     *s_rate = t6;
+    *theta_rate = theta_dot;
 }
 
 /* Rate of the state from the state and the inputs (forward dynamics), with its Jacobian. */
@@ -249,17 +249,17 @@ void wheel_pendulum_state_rate_jacobian_f64(const wheel_pendulum_constants_f64 *
     const double t1 = t0 * constants->k1;
     const double t2 = T - t1;
     const double t3 = t2 * constants->J_r_inverse_det;
+    *theta_dot_rate = t3;
     const double t4 = t0 * constants->k2;
     const double t5 = T * constants->k3;
     const double t6 = t4 - t5;
+    *s_rate = t6;
     const double t7 = t0_both.cosine;
     const double t8 = t7 * constants->k2;
-    const double t9 = -t8;
-    *theta_rate = theta_dot;
-    *theta_dot_rate = t3;
-    *s_rate = t6;
-    jacobian[0] = t9;
     jacobian[1] = t8;
+    const double t9 = -t8;
+    jacobian[0] = t9;
+    *theta_rate = theta_dot;
     jacobian[2] = 1.0;
     jacobian[3] = constants->J_r_inverse_det;
     jacobian[4] = constants->k4;
@@ -270,19 +270,32 @@ void wheel_pendulum_state_rate_jacobian_dense_f64(const wheel_pendulum_constants
     double theta, double theta_dot, double T, double *theta_rate, double *theta_dot_rate,
     double *s_rate, double jacobian[12])
 {
-    static const unsigned char places[5] = {
-        1, 2, 3, 10, 11
-    };
-    double nonzeros[5];
-    int entry;
-    wheel_pendulum_state_rate_jacobian_f64(constants, theta, theta_dot, T, theta_rate, theta_dot_rate, s_rate,
-        nonzeros);
-    for (entry = 0; entry < 12; ++entry) {
-        jacobian[entry] = 0.0;
-    }
-    for (entry = 0; entry < 5; ++entry) {
-        jacobian[places[entry]] = nonzeros[entry];
-    }
+    const wheel_pendulum_sines_f64 t0_both = wheel_pendulum_sine_cosine_f64(theta);
+    const double t0 = t0_both.sine;
+    const double t1 = t0 * constants->k1;
+    const double t2 = T - t1;
+    const double t3 = t2 * constants->J_r_inverse_det;
+    *theta_dot_rate = t3;
+    const double t4 = t0 * constants->k2;
+    const double t5 = T * constants->k3;
+    const double t6 = t4 - t5;
+    *s_rate = t6;
+    const double t7 = t0_both.cosine;
+    const double t8 = t7 * constants->k2;
+    jacobian[2] = t8;
+    const double t9 = -t8;
+    jacobian[1] = t9;
+    *theta_rate = theta_dot;
+    jacobian[0] = 0.0;
+    jacobian[3] = 1.0;
+    jacobian[4] = 0.0;
+    jacobian[5] = 0.0;
+    jacobian[6] = 0.0;
+    jacobian[7] = 0.0;
+    jacobian[8] = 0.0;
+    jacobian[9] = 0.0;
+    jacobian[10] = constants->J_r_inverse_det;
+    jacobian[11] = constants->k4;
 }
 
 /* Mass, damping and stiffness matrices of small motion. */
@@ -373,6 +386,7 @@ void wheel_pendulum_step_rk4_f64(const wheel_pendulum_constants_f64 *constants, 
     const double t54 = t53 + t40;
     const double t55 = t54 * 0.3333333333333333;
     const double t58 = s + t55;
+    *s_next = t58;
     const double t24 = t23 * constants->k1;
     const double t25 = T - t24;
     const double t27 = t25 * t5;
@@ -382,6 +396,7 @@ void wheel_pendulum_step_rk4_f64(const wheel_pendulum_constants_f64 *constants, 
     const double t49 = t48 + t38;
     const double t50 = t49 * 0.3333333333333333;
     const double t57 = theta_dot + t50;
+    *theta_dot_next = t57;
     const double t31 = t27 * 2.0;
     const double t33 = theta_dot + t31;
     const double t37 = t33 * t0;
@@ -389,6 +404,4 @@ void wheel_pendulum_step_rk4_f64(const wheel_pendulum_constants_f64 *constants, 
     const double t45 = t44 * 0.3333333333333333;
     const double t56 = theta + t45;
     *theta_next = t56;
-    *theta_dot_next = t57;
-    *s_next = t58;
 }

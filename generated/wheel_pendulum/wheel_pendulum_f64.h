@@ -20,11 +20,11 @@
  *     double theta_rate, theta_dot_rate, s_rate;
  *     wheel_pendulum_state_rate_f64(&constants, 0.0, 0.0, 0.0, &theta_rate, &theta_dot_rate, &s_rate);
  *
- * Outputs may lie over inputs: everything is computed before anything is stored. Angles in rad, SI
- * units, quaternions scalar first (body to inertial), N inertial axes, B those of the body. Errors
+ * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
+ * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 e4e9ba575635f3fa.
+ * Body of these files: sha256 c2dd84678cdffdba.
  */
 #ifndef WHEEL_PENDULUM_F64_H
 #define WHEEL_PENDULUM_F64_H
@@ -86,10 +86,10 @@ int wheel_pendulum_setup_f64(double m_p, double m_r, double l_p, double l_r, dou
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_rate 0 rad/s (seen 0),
- *            theta_dot_rate 6.2e-14 rad/s^2 (seen 4.1e-14), s_rate 1.7e-12 rad/s^2 (seen 1.2e-12);
+ *            theta_dot_rate 6.5e-14 rad/s^2 (seen 4.3e-14), s_rate 1.7e-12 rad/s^2 (seen 1.3e-12);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 sub, 4 mul, 1 sin.
- * On Cortex-M0+, -O2: 11102 to 12749 instructions, 1044 B of code, 176 B of stack.
+ * On Cortex-M0+, -O2: 11090 to 12739 instructions, 1024 B of code, 168 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -113,11 +113,11 @@ void wheel_pendulum_state_rate_f64(const wheel_pendulum_constants_f64 *constants
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_rate 0 rad/s (seen 0),
- *            theta_dot_rate 6.5e-14 rad/s^2 (seen 4.1e-14), s_rate 1.3e-12 rad/s^2 (seen 1.2e-12),
+ *            theta_dot_rate 6.4e-14 rad/s^2 (seen 4.6e-14), s_rate 1.3e-12 rad/s^2 (seen 1.3e-12),
  *            jacobian 3.7e-12 (seen 3.6e-12); assumed: sines and cosines of our own within 0.79
  *            ulp.
  * Cost: 2 sub, 5 mul, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 11374 to 13091 instructions, 1128 B of code, 192 B of stack.
+ * On Cortex-M0+, -O2: 11351 to 13067 instructions, 1080 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -126,7 +126,7 @@ void wheel_pendulum_state_rate_jacobian_f64(const wheel_pendulum_constants_f64 *
     double *s_rate, double jacobian[5]);
 
 /* The same, the whole matrix: 12 entries.
- * On Cortex-M0+, -O2: 11530 to 13305 instructions, 1212 B of code, 5 B of tables, 288 B of stack.
+ * On Cortex-M0+, -O2: 11367 to 13142 instructions, 1112 B of code, 176 B of stack.
  */
 void wheel_pendulum_state_rate_jacobian_dense_f64(const wheel_pendulum_constants_f64 *constants,
     double theta, double theta_dot, double T, double *theta_rate, double *theta_dot_rate,
@@ -180,7 +180,7 @@ void wheel_pendulum_linearised_f64(const wheel_pendulum_constants_f64 *constants
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 7.3e-15 J (seen
- *            5.1e-15); assumed: sines and cosines of our own within 0.79 ulp.
+ *            5.6e-15); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 5 mul, 1 cos.
  * On Cortex-M0+, -O2: 11426 to 13138 instructions, 1040 B of code, 176 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
@@ -207,10 +207,10 @@ void wheel_pendulum_energy_f64(const wheel_pendulum_constants_f64 *constants, do
  *            largest product of what the step adds, by rounding alone (of theta_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_next 4.5e-16 rad (seen
- *            3e-16), theta_dot_next 4.6e-15 rad/s (seen 2.4e-15), s_next 1.7e-13 rad/s (seen
- *            9.5e-14); assumed: sines and cosines of our own within 0.79 ulp.
+ *            3.3e-16), theta_dot_next 4.6e-15 rad/s (seen 3e-15), s_next 1.7e-13 rad/s (seen
+ *            9.6e-14); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 18 add, 8 sub, 29 mul, 4 sin.
- * On Cortex-M0+, -O2: 49582 to 56059 instructions, 1648 B of code, 328 B of stack.
+ * On Cortex-M0+, -O2: 49582 to 56060 instructions, 1648 B of code, 320 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
