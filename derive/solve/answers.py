@@ -94,7 +94,7 @@ def _lasting(found: Instrument, values: Mapping[str, float]) -> dict[str, Lastin
             if (own := _steady_motions(found, name, values)) is not None}  # fmt: skip
 
 
-def around(found: Instrument, values: Mapping[str, float]) -> list[Mapping[str, float]]:
+def motions_around(found: Instrument, values: Mapping[str, float]) -> list[Mapping[str, float]]:
     """Return the values of all motions that small ones are around: as given, or each steady one."""
     missing = _missing(found, "linearised", values)
     if not missing or "linearised" not in found.library.scene.wanted:
@@ -110,7 +110,7 @@ def small_motion_of(found: Instrument, values: Mapping[str, float]) -> SmallMoti
 
     Raises SceneError where there are several, or none.
     """
-    each = around(found, values)
+    each = motions_around(found, values)
     if len(each) != 1:
         says = f"small motion is around one steady motion; with these values there are {len(each)}"
         raise SceneError(f"scene '{found.name}': {says}: `solve` tells of all")

@@ -119,10 +119,10 @@ def first_met(left: Any, columns: NDArray[np.float64], moved: Any, step: float) 
     return None
 
 
-Way = tuple[Any, Any]
+InTime = tuple[Any, Any]
 
 
-def _along(left: Any, moved: Any) -> Way:
+def _along(left: Any, moved: Any) -> InTime:
     """Return a residual and its slope in time, of the state before a step and the time since."""
     x, h = casadi.SX.sym("x", moved.size1_in(0)), casadi.SX.sym("h")
     value = left(moved(x, h))
@@ -133,7 +133,7 @@ def _along(left: Any, moved: Any) -> Way:
 
 
 def _brackets(
-    values: NDArray[np.float64], columns: NDArray[np.float64], way: Way, step: float
+    values: NDArray[np.float64], columns: NDArray[np.float64], way: InTime, step: float
 ) -> Iterator[tuple[int, float]]:
     """Yield the steps, counted from one, and the times in them by which a residual has crossed."""
     slopes = [
@@ -150,7 +150,7 @@ def _brackets(
                 yield k, turn
 
 
-def _turn(start: NDArray[np.float64], way: Way, step: float) -> float:
+def _turn(start: NDArray[np.float64], way: InTime, step: float) -> float:
     """Return the time within a step at which a residual turns back."""
     first, low, high = float(way[1](start, 0.0)), 0.0, step
     for _ in range(HALVINGS):

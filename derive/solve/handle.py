@@ -16,7 +16,7 @@ from derive.report import SceneReport, report, report_files
 from derive.scene import Scene, SceneError, contents, document_text, parse_scene
 from derive.scene.table import one_of
 from derive.scene.unit import behind
-from derive.solve.answers import Answered, around, every_answer, small_motion_of
+from derive.solve.answers import Answered, every_answer, motions_around, small_motion_of
 from derive.solve.arguments import one_number
 from derive.solve.bound import Accuracy, By, bound, evaluation, kernel_of, program_of
 from derive.solve.function import Kernel, SceneFunction
@@ -149,7 +149,7 @@ class Handle:
         if name not in q.components:
             says = f"the limit of one component is found, of {', '.join(q.components)}"
             raise SceneError(f"scene '{self.name}': {says}, not of {name}")
-        by = partial(around, self._instrument)
+        by = partial(motions_around, self._instrument)
         return limits(self._instrument, self._settings(values), name, by)
 
     def doubts(self, values: NamedValues) -> tuple[str, ...]:

@@ -151,7 +151,7 @@ def test_eva_finds_nothing_in_a_scene(name: str) -> None:
 @pytest.mark.parametrize(("old", "new", "says"), [
     ("omega_dot[2] = t11;", "omega_dot[3] = t11;", "omega_dot"),
     ("= t2 * constants->one_over_I_xx;", "= t2 / omega[0];", "is_finite"),
-    ("= omega[1] * omega[2];", "= omega[1] * 1e38F;", "non-finite"),
+    ("= omega_y_in * omega_z_in;", "= omega_y_in * 1e38F;", "non-finite"),
     ("const float t3 = t2", "float t99;\n    const float t3 = t99 + t2", "initialized"),
 ])  # fmt: skip
 def test_eva_finds_what_is_put_into_the_c(old: str, new: str, says: str) -> None:

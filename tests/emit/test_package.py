@@ -58,8 +58,8 @@ def test_the_test_of_a_package_passes_and_its_example_runs(name: str, tmp_path: 
 
 
 @pytest.mark.parametrize(("old", "new"), [
-    ("moment[0] + t1", "moment[0] - t1"),
-    ("omega_dot[0] = t3;\n    omega_dot[1] = t7;", "omega_dot[0] = t7;\n    omega_dot[1] = t3;"),
+    ("moment_x_in + t1", "moment_x_in - t1"),
+    ("omega_dot[0] = t3;", "omega_dot[0] = t2;"),
     ("= s6.high;", "= s6.low;"),
     ("return 0;", "return 1;"),
 ])  # fmt: skip

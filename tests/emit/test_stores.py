@@ -80,3 +80,21 @@ def test_a_jacobian_is_stored_where_it_is_computed(name: str, function: str, kin
         for n, value in stores:
             between = lines[made[value] + 1 : n]
             assert all(STORE.fullmatch(x) for x in between), lines[n]
+
+
+@pytest.mark.parametrize("name", catalogue())
+def test_a_dense_function_has_the_lines_of_the_sparse_one_and_zeros(name: str) -> None:
+    for program in (p for p in library_of(name).printed() if p.sparsity and not p.has_arrays):
+        pattern, whole = program.sparsity[MATRIX], dense(program)
+        height = len(pattern.rows)
+        moved = {f"{MATRIX}[{k}]": f"{MATRIX}[{column * height + row}]"
+                 for k, (row, column) in enumerate(pattern.places())}  # fmt: skip
+        own, other = (map(STORE.fullmatch, lines_of(p)) for p in (program, whole))
+        stores = {moved.get(x[1], x[1]): x[2] for x in own if x}
+        found = {x[1]: x[2] for x in other if x}
+        zeros = found.keys() - stores.keys()
+        assert {found[slot] for slot in zeros} <= {"0.0"}
+        assert {slot: found[slot] for slot in stores} == stores
+        assert len(zeros) == height * len(pattern.columns) - len(pattern.row)
+        rest, again = ([x for x in lines_of(p) if not STORE.fullmatch(x)] for p in (program, whole))
+        assert rest == again

@@ -8,19 +8,14 @@ from fractions import Fraction
 from derive import __version__
 from derive.emit.c.columns import within_columns
 from derive.emit.c.comment import comment, dense_comment, wrapped
+from derive.emit.c.definitions import definitions
 from derive.emit.c.example import example
 from derive.emit.c.fixed import fixed_definition, fixed_symbol
 from derive.emit.c.relations import UNSAID, Relations
 from derive.emit.c.scope import declared_in_c, require_free, require_no_symbol
 from derive.emit.c.signature import CNames, dense, dense_size, prototype
 from derive.emit.c.sines import own_sines, takes_sines
-from derive.emit.c.text import (
-    constant_array,
-    function_body,
-    is_long,
-    pair_body,
-    pair_functions,
-)
+from derive.emit.c.text import pair_body, pair_functions
 from derive.emit.on_target import UNKNOWN, OnTarget
 from derive.emit.operators import literal
 from derive.emit.templates import TEMPLATES
@@ -31,7 +26,7 @@ from derive.program.arithmetic import pair_of, rounded
 from derive.program.pair_sine import PI, coefficients, quarter_turn
 from derive.program.pairs import splitter
 from derive.program.precision import MATH, PRECISIONS, Precision
-from derive.program.program import MATRIX, Measurement, Program
+from derive.program.program import Measurement, Program
 from derive.scene import argument
 from derive.scene.said import potential_said
 from derive.verify.search import SAMPLING
@@ -174,38 +169,8 @@ def _source(
         setup={"definition": made} if made else None,
         fixed=fixed_definition(library, precision),
         sines=own_sines(names.scene, precision) if any(map(takes_sines, programs)) else "",
-        functions=_definitions(library, names, precision),
+        functions=definitions(library, names, precision),
     )
-
-
-def _definitions(library: Library, names: CNames, precision: Precision) -> list[dict[str, str]]:
-    found = []
-    for program in library.printed():
-        found.append(_definition(program, names, precision))
-        if program.sparsity:
-            whole = _scattered if program.has_arrays else _dense_definition
-            found.append({**whole(program, names, precision), "says": f"{program.says} Dense."})
-    return found
-
-
-def _definition(program: Program, names: CNames, precision: Precision) -> dict[str, str]:
-    return _defined(program, names, precision, function_body(program, names.scene, precision))
-
-
-def _dense_definition(program: Program, names: CNames, precision: Precision) -> dict[str, str]:
-    return _definition(dense(program), names, precision)
-
-
-def _defined(
-    program: Program, names: CNames, precision: Precision, written: Sequence[str]
-) -> dict[str, str]:
-    """Return what a function is for, with its lines between head and brace."""
-    arguments = [q.name for q in (*program.inputs, *program.outputs)]
-    require_free(names.scene, program.name, arguments, declared_in_c(written))
-    lines = "\n".join(f"    {line}" for line in written)
-    text = f"{prototype(program, names, precision)}\n{{\n{lines}\n}}"
-    in_order = "yes" if is_long(program) else ""
-    return {"says": program.says, "definition": text, "in_order": in_order}
 
 
 def apart(operations: Sequence[str], setup: str) -> list[str]:
@@ -279,23 +244,3 @@ def _setup_definition(program: Program, names: CNames, precision: Precision) -> 
     require_free(names.scene, "setup", [q.name for q in program.inputs], declared_in_c(lines))
     text = "\n".join(f"    {line}" for part in lines for line in part.splitlines())
     return f"{prototype(program, names, precision)}\n{{\n{text}\n}}"
-
-
-def _scattered(program: Program, names: CNames, precision: Precision) -> dict[str, str]:
-    """Return the dense function of one whose loops fill the nonzeros: it calls that one."""
-    pattern = next(iter((program.sparsity or {}).values()))
-    spots = [c * len(pattern.rows) + r for r, c in pattern.places()]
-    passed = [q.name for q in (*program.inputs, *program.outputs[:-1])] + ["nonzeros"]
-    lines = [
-        *constant_array("places", spots),
-        f"{precision.scalar} nonzeros[{len(spots)}];",
-        "int entry;",
-        f"{names.symbol(program.name, precision)}({', '.join(passed)});",
-        f"for (entry = 0; entry < {dense_size(program)}; ++entry) {{",
-        f"    {MATRIX}[entry] = {literal(Fraction(0), precision)};",
-        "}",
-        f"for (entry = 0; entry < {len(spots)}; ++entry) {{",
-        f"    {MATRIX}[places[entry]] = nonzeros[entry];",
-        "}",
-    ]
-    return _defined(dense(program), names, precision, lines)
