@@ -149,8 +149,7 @@ class Handle:
         if name not in q.components:
             says = f"the limit of one component is found, of {', '.join(q.components)}"
             raise SceneError(f"scene '{self.name}': {says}, not of {name}")
-        by = partial(motions_around, self._instrument)
-        return limits(self._instrument, self._settings(values), name, by)
+        return limits(self._instrument, self._settings(values), name, motions_around)
 
     def doubts(self, values: NamedValues) -> tuple[str, ...]:
         """Return warnings about values: inertias that no masses have, motions off equilibrium."""

@@ -144,12 +144,15 @@ def growth(found: Instrument, given: Mapping[str, float]) -> float:
     return small_motion(found, given).growth
 
 
-Carried = Callable[[Mapping[str, float]], Sequence[Mapping[str, float]]]
+Carried = Callable[[Instrument, Mapping[str, float]], Sequence[Mapping[str, float]]]
 """From values to those of each motion that is small around: themselves, or each steady one."""
 
 
 def limits(
-    found: Instrument, given: Mapping[str, float], name: str, carried: Carried = lambda v: (v,)
+    found: Instrument,
+    given: Mapping[str, float],
+    name: str,
+    carried: Carried = lambda _, values: (values,),
 ) -> list[float]:
     """Return the values of one quantity, in its declared range, at which stability changes.
 
@@ -157,7 +160,7 @@ def limits(
     """
 
     def stable(value: float) -> tuple[bool, ...]:
-        each = carried(dict(given) | {name: value})
+        each = carried(found, dict(given) | {name: value})
         return tuple(growth(found, values) == 0 for values in each)
 
     grid = list(map(float, np.linspace(*_bounds(found, name), STARTS)))

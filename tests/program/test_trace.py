@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from derive.emit.c.text import body
+from derive.emit.c.text import float_body
 from derive.emit.casadi_text import plain_lines
 from derive.program.arithmetic import working
 from derive.program.indexed import Assign, Index, Loop
@@ -146,7 +146,7 @@ def test_the_same_loop_is_recorded_once_and_another_is_not() -> None:
 def test_a_loop_is_printed_as_a_loop() -> None:
     _, tape = tapes()
     made = root_by_newton(tape, 60)
-    text = "\n".join(body(made, "f", F64))
+    text = "\n".join(float_body(made, "f", F64))
     assert "for (int pass_t" in text
     assert "< 60;" in text
     assert "break;" in text

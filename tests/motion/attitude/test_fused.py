@@ -14,7 +14,7 @@ import pytest
 
 from derive.check.compiler import find_compiler
 from derive.emit.c.sines import own_sines
-from derive.emit.c.text import body
+from derive.emit.c.text import float_body
 from derive.motion.attitude.functions import FUNCTIONS
 from derive.program.precision import F32, F64, Precision
 from derive.program.program import Op, Program, Quantity
@@ -38,7 +38,7 @@ def text(one: Program, precision: Precision) -> str:
     inputs = [f"const {kind} {q.name}[{len(q.components)}]" for q in one.inputs]
     outputs = [f"{kind} {q.name}[{len(q.components)}]" for q in one.outputs]
     head = f"void {one.name}_{precision.name}({', '.join(inputs + outputs)})"
-    return "\n".join([head, "{", *body(one, "f", precision), "}"])
+    return "\n".join([head, "{", *float_body(one, "f", precision), "}"])
 
 
 @pytest.fixture(scope="module")
