@@ -12,7 +12,7 @@ import pytest
 from derive.check.compiler import CompilerError, compiled, find_compiler
 from derive.emit.c.signature import CNames, prototype
 from derive.emit.c.sines import own_sines, takes_sines
-from derive.emit.c.text import body
+from derive.emit.c.text import float_body
 from derive.emit.templates import TEMPLATES
 from derive.motion.runge_kutta import step
 from derive.motion.runge_kutta.compact import compact
@@ -122,7 +122,7 @@ def c_source(program: Program, precision: Precision) -> str:
     """Return a file with one function: the struct of constants, and the step in loops."""
     kind, head = precision.scalar, prototype(program, CNames("body"), precision)
     fields = [c for q in program.inputs if q.role == "constants" for c in q.components]
-    lines = "\n".join(f"    {line}" for line in body(program, "f", precision))
+    lines = "\n".join(f"    {line}" for line in float_body(program, "f", precision))
     struct = " ".join(f"{kind} {field};" for field in fields)
     typedef = f"typedef struct {{ {struct} }} body_constants_{precision.name};"
     contraction_off = TEMPLATES.get_template("contraction_off.c.jinja").render()

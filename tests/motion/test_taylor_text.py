@@ -12,7 +12,7 @@ import pytest
 from derive.check.compiler import CompilerError, compiled, find_compiler
 from derive.emit.c.signature import CNames, prototype
 from derive.emit.c.sines import own_sines, takes_sines
-from derive.emit.c.text import body
+from derive.emit.c.text import float_body
 from derive.emit.casadi_text import plain_lines
 from derive.emit.templates import TEMPLATES
 from derive.motion.taylor.series import TaylorStep, in_loops
@@ -27,7 +27,7 @@ from tests.motion.solution import (
 
 def c_source(step: TaylorStep, precision: Precision) -> str:
     head = prototype(in_loops(step), CNames("body"), precision)
-    lines = "\n".join(f"    {line}" for line in body(in_loops(step), "f", precision))
+    lines = "\n".join(f"    {line}" for line in float_body(in_loops(step), "f", precision))
     contraction_off = TEMPLATES.get_template("contraction_off.c.jinja").render()
     sines = own_sines("f", precision) if takes_sines(in_loops(step)) else ""
     return f"{contraction_off}#include <math.h>\n{sines}\n{head};\n{head}\n{{\n{lines}\n}}\n"
