@@ -124,7 +124,10 @@ def _code(file: Path) -> list[str]:
     text = file.read_text(encoding="utf-8")
     _, _, after = text.partition(f"void {SCENE}_{FUNCTION}_f64(")
     body = after[after.index("\n{\n") + 3 : after.index("\n}\n")]
-    return [f"{SCENE}_{FUNCTION}_f64(…)", *(line.strip() for line in body.splitlines())]
+    lines = [line.strip() for line in body.splitlines()]
+    read = [line for line in lines if line.startswith("const") and "_in = " in line]
+    first = "…, each input read" if read else ""
+    return [f"{SCENE}_{FUNCTION}_f64(…)", first, *(line for line in lines if line not in read)]
 
 
 def _curves(points: Sequence[Mapping[str, Any]], palette: Palette) -> list[Curve]:
