@@ -96,8 +96,9 @@ def _lasting(found: Instrument, values: Mapping[str, float]) -> dict[str, Lastin
 
 def motions_around(found: Instrument, values: Mapping[str, float]) -> list[Mapping[str, float]]:
     """Return the values of all motions that small ones are around: as given, or each steady one."""
-    missing = _missing(found, "linearised", values)
-    if not missing or "linearised" not in found.library.scene.wanted:
+    asked = "linearised" in found.library.scene.wanted
+    missing = _missing(found, "linearised", values) if asked else ()
+    if not missing:
         return [values]
     lasting = _lasting(found, values).values()
     motions = {said: own for each in lasting for said, own in each.items()}
