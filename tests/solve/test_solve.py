@@ -49,9 +49,9 @@ def test_what_can_be_answered_is_shown_before_what_cannot(
 REFUSED = {
     "step must be a positive number of seconds, not 0.0": ["--until=1", "--step=0"],
     "step must be a positive number of seconds, not -0.1": ["--until=1", "--step=-0.1"],
-    "step must be a positive number of seconds, not nan": ["--until=1", "--step=nan"],
+    "--step: must be a number of seconds, as 0.5, not 'nan'": ["--until=1", "--step=nan"],
     "--until: must be a number of seconds, as 0.5, not 'nan'": ["--until=nan"],
-    "until must be a number of seconds from 0 up, not inf": ["--until=inf"],
+    "--until: must be a number of seconds, as 0.5, not 'inf'": ["--until=inf"],
     "until must be a number of seconds from 0 up, not -1.0": ["--until=-1"],
     "until must be at most 10,000,000 steps": ["--until=1e9"],
     "must stay finite, but": ["--until=1", "--step=1", "--set", "alpha_dot=1e200"],
