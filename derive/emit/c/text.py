@@ -1,7 +1,7 @@
 """A program as C99 text: one line an operation, results stored where they are computed.
 
-Inputs are read first, for outputs may lie over them; long functions read where they need, and
-store nothing early but entries of a Jacobian, which may not.
+Inputs are read before anything is stored, for outputs may lie over them; long functions read where
+they need, and store nothing early but entries of a Jacobian, which may not.
 """
 
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
@@ -17,7 +17,16 @@ from derive.emit.sines import TOGETHER, together
 from derive.program.arithmetic import TRUTHS, pair_of
 from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, Row
 from derive.program.precision import Precision
-from derive.program.program import MATRIX, Op, Operand, Program, Quantity, every_op, read_by
+from derive.program.program import (
+    MATRIX,
+    Op,
+    Operand,
+    Program,
+    Quantity,
+    every_op,
+    operands_of,
+    read_by,
+)
 
 UNSIGNED_CHAR = 255
 LONG = 400  # operations: with so many, inputs that are read first are values too many at once
@@ -60,14 +69,17 @@ def float_body(program: Program, scene: str, precision: Precision) -> list[str]:
     own = patterns(OWN | makes, partial(literal, precision=precision), precision.bits)
     of = _language(text, own, precision.functions.__getitem__, precision.scalar, precision)
     of = replace(of, line=partial(_line, sines_type(scene, precision), of.line))
-    early = _early(program)
-    lines = loads
+    early, lines = _early(program), list[str]()
     for one in together(program.ops):
+        made = one.result if isinstance(one, Op) else ""
+        stores = [f"{slot} = {made};" for slot in early.get(made, ())]
+        lines += [loads.pop(name) for name in tuple(loads) if name in operands_of([one])]
         lines += written(of, [one])
-        if isinstance(one, Op):
-            lines += [f"{slot} = {one.result};" for slot in early.get(one.result, ())]
+        if stores:
+            lines += [*loads.values(), *stores]
+            loads.clear()
     done = {slot for slots in early.values() for slot in slots}
-    return [*lines, *_stores(program, text, done)]
+    return [*lines, *loads.values(), *_stores(program, text, done)]
 
 
 def is_long(program: Program) -> bool:
@@ -78,8 +90,8 @@ def is_long(program: Program) -> bool:
 
 def _loads(
     program: Program, place: Mapping[str, str], precision: Precision
-) -> tuple[list[str], dict[str, str]]:
-    """Return lines that read what is given in arrays, with names of what they read.
+) -> tuple[dict[str, str], dict[str, str]]:
+    """Return lines that read what is given in arrays, and names of what they read.
 
     That is all that is needed, or, where operations read arrays themselves, results alone.
     """
@@ -87,7 +99,7 @@ def _loads(
     late = program.has_arrays or is_long(program)
     read = arrays & ({*program.results} if late else read_by(program))
     loaded = {name: f"{name}_in" for name in place if name in read}
-    lines = [f"const {precision.scalar} {own} = {place[name]};" for name, own in loaded.items()]
+    lines = {n: f"const {precision.scalar} {own} = {place[n]};" for n, own in loaded.items()}
     return lines, loaded
 
 
