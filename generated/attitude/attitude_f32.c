@@ -85,17 +85,17 @@ static attitude_sines_f32 attitude_sine_cosine_f32(float angle)
 void attitude_quaternion_product_f32(const float left[4], const float right[4], float attitude[4])
 {
     const float left_w_in = left[0];
-    const float left_x_in = left[1];
-    const float left_y_in = left[2];
-    const float left_z_in = left[3];
     const float right_w_in = right[0];
-    const float right_x_in = right[1];
-    const float right_y_in = right[2];
-    const float right_z_in = right[3];
     const float t0 = left_w_in * right_w_in;
+    const float left_x_in = left[1];
+    const float right_x_in = right[1];
     const float t1 = left_x_in * right_x_in;
     const float t2 = t0 - t1;
+    const float left_y_in = left[2];
+    const float right_y_in = right[2];
     const float t3 = left_y_in * right_y_in;
+    const float left_z_in = left[3];
+    const float right_z_in = right[3];
     const float t4 = left_z_in * right_z_in;
     const float t5 = t3 + t4;
     const float t6 = t2 - t5;
@@ -130,12 +130,12 @@ void attitude_quaternion_product_f32(const float left[4], const float right[4], 
 void attitude_quaternion_normalise_f32(const float quaternion[4], float attitude[4])
 {
     const float quaternion_w_in = quaternion[0];
-    const float quaternion_x_in = quaternion[1];
-    const float quaternion_y_in = quaternion[2];
-    const float quaternion_z_in = quaternion[3];
     const float t0 = fabsf(quaternion_w_in);
+    const float quaternion_x_in = quaternion[1];
     const float t1 = fabsf(quaternion_x_in);
+    const float quaternion_y_in = quaternion[2];
     const float t2 = fabsf(quaternion_y_in);
+    const float quaternion_z_in = quaternion[3];
     const float t3 = fabsf(quaternion_z_in);
     const _Bool t4 = t0 < t1;
     const float t5 = t4 ? t1 : t0;
@@ -177,10 +177,10 @@ void attitude_quaternion_normalise_f32(const float quaternion[4], float attitude
 void attitude_quaternion_exp_f32(const float rotation_vector[3], float attitude[4])
 {
     const float rotation_vector_x_in = rotation_vector[0];
-    const float rotation_vector_y_in = rotation_vector[1];
-    const float rotation_vector_z_in = rotation_vector[2];
     const float t0 = fabsf(rotation_vector_x_in);
+    const float rotation_vector_y_in = rotation_vector[1];
     const float t1 = fabsf(rotation_vector_y_in);
+    const float rotation_vector_z_in = rotation_vector[2];
     const float t2 = fabsf(rotation_vector_z_in);
     const _Bool t3 = t0 < t1;
     const float t4 = t3 ? t1 : t0;
@@ -281,12 +281,12 @@ void attitude_quaternion_exp_f32(const float rotation_vector[3], float attitude[
 void attitude_quaternion_log_f32(const float quaternion[4], float rotation_vector[3])
 {
     const float quaternion_w_in = quaternion[0];
-    const float quaternion_x_in = quaternion[1];
-    const float quaternion_y_in = quaternion[2];
-    const float quaternion_z_in = quaternion[3];
     const float t0 = fabsf(quaternion_w_in);
+    const float quaternion_x_in = quaternion[1];
     const float t1 = fabsf(quaternion_x_in);
+    const float quaternion_y_in = quaternion[2];
     const float t2 = fabsf(quaternion_y_in);
+    const float quaternion_z_in = quaternion[3];
     const float t3 = fabsf(quaternion_z_in);
     const _Bool t4 = t0 < t1;
     const float t5 = t4 ? t1 : t0;
@@ -346,16 +346,15 @@ void attitude_quaternion_log_f32(const float quaternion[4], float rotation_vecto
 void attitude_quaternion_rotate_f32(const float attitude[4], const float vector_B[3],
     float vector_N[3])
 {
-    const float attitude_w_in = attitude[0];
     const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
     const float vector_B_x_in = vector_B[0];
-    const float vector_B_y_in = vector_B[1];
-    const float vector_B_z_in = vector_B[2];
     const float t0 = attitude_x_in * vector_B_x_in;
+    const float attitude_y_in = attitude[2];
+    const float vector_B_y_in = vector_B[1];
     const float t1 = attitude_y_in * vector_B_y_in;
     const float t2 = t0 + t1;
+    const float attitude_z_in = attitude[3];
+    const float vector_B_z_in = vector_B[2];
     const float t3 = attitude_z_in * vector_B_z_in;
     const float t4 = t2 + t3;
     const float t5 = attitude_y_in * vector_B_z_in;
@@ -367,6 +366,7 @@ void attitude_quaternion_rotate_f32(const float attitude[4], const float vector_
     const float t11 = attitude_x_in * vector_B_y_in;
     const float t12 = attitude_y_in * vector_B_x_in;
     const float t13 = t11 - t12;
+    const float attitude_w_in = attitude[0];
     const float t14 = attitude_w_in * vector_B_x_in;
     const float t15 = t14 + t7;
     const float t16 = attitude_w_in * vector_B_y_in;
@@ -403,16 +403,15 @@ void attitude_quaternion_rotate_f32(const float attitude[4], const float vector_
 void attitude_quaternion_rotate_back_f32(const float attitude[4], const float vector_N[3],
     float vector_B[3])
 {
-    const float attitude_w_in = attitude[0];
     const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
     const float vector_N_x_in = vector_N[0];
-    const float vector_N_y_in = vector_N[1];
-    const float vector_N_z_in = vector_N[2];
     const float t0 = attitude_x_in * vector_N_x_in;
+    const float attitude_y_in = attitude[2];
+    const float vector_N_y_in = vector_N[1];
     const float t1 = attitude_y_in * vector_N_y_in;
     const float t2 = t0 + t1;
+    const float attitude_z_in = attitude[3];
+    const float vector_N_z_in = vector_N[2];
     const float t3 = attitude_z_in * vector_N_z_in;
     const float t4 = t2 + t3;
     const float t5 = vector_N_y_in * attitude_z_in;
@@ -424,6 +423,7 @@ void attitude_quaternion_rotate_back_f32(const float attitude[4], const float ve
     const float t11 = vector_N_x_in * attitude_y_in;
     const float t12 = vector_N_y_in * attitude_x_in;
     const float t13 = t11 - t12;
+    const float attitude_w_in = attitude[0];
     const float t14 = attitude_w_in * vector_N_x_in;
     const float t15 = t14 + t7;
     const float t16 = attitude_w_in * vector_N_y_in;
@@ -459,16 +459,16 @@ void attitude_quaternion_rotate_back_f32(const float attitude[4], const float ve
 /* rotation matrix of an attitude quaternion */
 void attitude_quaternion_to_matrix_f32(const float attitude[4], float matrix[9])
 {
-    const float attitude_w_in = attitude[0];
     const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
     const float t0 = attitude_x_in + attitude_x_in;
+    const float attitude_y_in = attitude[2];
     const float t1 = attitude_y_in + attitude_y_in;
+    const float attitude_z_in = attitude[3];
     const float t2 = attitude_z_in + attitude_z_in;
     const float t3 = attitude_x_in * t1;
     const float t4 = attitude_x_in * t2;
     const float t5 = attitude_y_in * t2;
+    const float attitude_w_in = attitude[0];
     const float t6 = attitude_w_in * t0;
     const float t7 = attitude_w_in * t1;
     const float t8 = attitude_w_in * t2;
@@ -503,23 +503,23 @@ void attitude_quaternion_to_matrix_f32(const float attitude[4], float matrix[9])
 /* attitude quaternion of a rotation matrix, scalar part not negative */
 void attitude_quaternion_from_matrix_f32(const float matrix[9], float attitude[4])
 {
-    const float matrix_xx_in = matrix[0];
-    const float matrix_yx_in = matrix[1];
-    const float matrix_zx_in = matrix[2];
-    const float matrix_xy_in = matrix[3];
-    const float matrix_yy_in = matrix[4];
     const float matrix_zy_in = matrix[5];
-    const float matrix_xz_in = matrix[6];
     const float matrix_yz_in = matrix[7];
-    const float matrix_zz_in = matrix[8];
     const float t0 = matrix_zy_in - matrix_yz_in;
+    const float matrix_zx_in = matrix[2];
+    const float matrix_xz_in = matrix[6];
     const float t1 = matrix_xz_in - matrix_zx_in;
+    const float matrix_yx_in = matrix[1];
+    const float matrix_xy_in = matrix[3];
     const float t2 = matrix_yx_in - matrix_xy_in;
     const float t3 = matrix_yx_in + matrix_xy_in;
     const float t4 = matrix_xz_in + matrix_zx_in;
     const float t5 = matrix_zy_in + matrix_yz_in;
+    const float matrix_yy_in = matrix[4];
+    const float matrix_zz_in = matrix[8];
     const float t6 = matrix_yy_in + matrix_zz_in;
     const _Bool t7 = t6 < 0.0F;
+    const float matrix_xx_in = matrix[0];
     const float t8 = matrix_xx_in - matrix_yy_in;
     const float t9 = 1.0F + t8;
     const float t10 = t9 - matrix_zz_in;
@@ -571,15 +571,15 @@ void attitude_quaternion_from_matrix_f32(const float matrix[9], float attitude[4
 void attitude_quaternion_to_mrp_f32(const float attitude[4], float mrp[3])
 {
     const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
     const float t0 = fabsf(attitude_w_in);
     const float t1 = 1.0F + t0;
     const _Bool t2 = attitude_w_in < 0.0F;
     const float t3 = -t1;
     const float t4 = t2 ? t3 : t1;
+    const float attitude_x_in = attitude[1];
     const float t5 = attitude_x_in / t4;
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
     mrp[0] = t5;
     const float t6 = attitude_y_in / t4;
     mrp[1] = t6;
@@ -591,10 +591,10 @@ void attitude_quaternion_to_mrp_f32(const float attitude[4], float mrp[3])
 void attitude_quaternion_from_mrp_f32(const float mrp[3], float attitude[4])
 {
     const float mrp_x_in = mrp[0];
-    const float mrp_y_in = mrp[1];
-    const float mrp_z_in = mrp[2];
     const float t0 = fabsf(mrp_x_in);
+    const float mrp_y_in = mrp[1];
     const float t1 = fabsf(mrp_y_in);
+    const float mrp_z_in = mrp[2];
     const float t2 = fabsf(mrp_z_in);
     const _Bool t3 = t0 < t1;
     const float t4 = t3 ? t1 : t0;
@@ -635,10 +635,10 @@ void attitude_quaternion_from_mrp_f32(const float mrp[3], float attitude[4])
 void attitude_quaternion_to_euler_zyx_f32(const float attitude[4], float angles[3])
 {
     const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
     const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
     const float t0 = attitude_w_in + attitude_y_in;
+    const float attitude_x_in = attitude[1];
+    const float attitude_z_in = attitude[3];
     const float t1 = attitude_z_in + attitude_x_in;
     const float t2 = attitude_w_in - attitude_y_in;
     const float t3 = attitude_z_in - attitude_x_in;
@@ -686,16 +686,16 @@ void attitude_quaternion_to_euler_zyx_f32(const float attitude[4], float angles[
 void attitude_quaternion_from_euler_zyx_f32(const float angles[3], float attitude[4])
 {
     const float angle_first_in = angles[0];
-    const float angle_second_in = angles[1];
-    const float angle_third_in = angles[2];
     const float t0 = angle_first_in * 0.5F;
     const attitude_sines_f32 t1_both = attitude_sine_cosine_f32(t0);
     const float t1 = t1_both.cosine;
     const float t2 = t1_both.sine;
+    const float angle_second_in = angles[1];
     const float t3 = angle_second_in * 0.5F;
     const attitude_sines_f32 t4_both = attitude_sine_cosine_f32(t3);
     const float t4 = t4_both.cosine;
     const float t5 = t4_both.sine;
+    const float angle_third_in = angles[2];
     const float t6 = angle_third_in * 0.5F;
     const attitude_sines_f32 t7_both = attitude_sine_cosine_f32(t6);
     const float t7 = t7_both.cosine;
@@ -728,12 +728,12 @@ void attitude_quaternion_from_euler_zyx_f32(const float angles[3], float attitud
 void attitude_quaternion_to_euler_zxz_f32(const float attitude[4], float angles[3])
 {
     const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
     const float t0 = attitude_w_in * 1.1529215e+18F;
+    const float attitude_z_in = attitude[3];
     const float t1 = attitude_z_in * 1.1529215e+18F;
+    const float attitude_x_in = attitude[1];
     const float t2 = fabsf(attitude_x_in);
+    const float attitude_y_in = attitude[2];
     const float t3 = fabsf(attitude_y_in);
     const _Bool t4 = t2 < t3;
     const float t5 = t4 ? t3 : t2;
@@ -786,16 +786,16 @@ void attitude_quaternion_to_euler_zxz_f32(const float attitude[4], float angles[
 void attitude_quaternion_from_euler_zxz_f32(const float angles[3], float attitude[4])
 {
     const float angle_first_in = angles[0];
-    const float angle_second_in = angles[1];
-    const float angle_third_in = angles[2];
     const float t0 = angle_first_in * 0.5F;
     const attitude_sines_f32 t1_both = attitude_sine_cosine_f32(t0);
     const float t1 = t1_both.cosine;
     const float t2 = t1_both.sine;
+    const float angle_second_in = angles[1];
     const float t3 = angle_second_in * 0.5F;
     const attitude_sines_f32 t4_both = attitude_sine_cosine_f32(t3);
     const float t4 = t4_both.cosine;
     const float t5 = t4_both.sine;
+    const float angle_third_in = angles[2];
     const float t6 = angle_third_in * 0.5F;
     const attitude_sines_f32 t7_both = attitude_sine_cosine_f32(t6);
     const float t7 = t7_both.cosine;

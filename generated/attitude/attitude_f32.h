@@ -14,7 +14,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 96ea39b4c38afef0.
+ * Body of these files: sha256 d2dcf6eba6b37b9c.
  */
 #ifndef ATTITUDE_F32_H
 #define ATTITUDE_F32_H
@@ -72,7 +72,7 @@ void attitude_quaternion_exp_f32(const float rotation_vector[3], float attitude[
  *            8246 hard samples no more.
  * Bound: not proved: a choice between values may turn out otherwise for rounded ones.
  * Cost: 2 add, 14 mul, 4 div, 1 neg, 1 sqrt, 8 abs, 1 atan2, 9 less, 1 power_of_two, 11 select.
- * On Cortex-M0+, -O2: 7800 to 8271 instructions, 560 B of code, 136 B of stack.
+ * On Cortex-M0+, -O2: 7799 to 8270 instructions, 556 B of code, 136 B of stack.
  * On Cortex-M4F, -O2: 207 to 210 instructions, 432 B of code, 80 B of stack.
  */
 void attitude_quaternion_log_f32(const float quaternion[4], float rotation_vector[3]);
@@ -87,7 +87,7 @@ void attitude_quaternion_log_f32(const float quaternion[4], float rotation_vecto
  * Bound: proved, absolute, by rounding alone, on the whole ranges: vector_N 7.6e-07 (seen
  *            8.7e-07); assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 11 add, 6 sub, 24 mul.
- * On Cortex-M0+, -O2: 4076 to 4367 instructions, 436 B of code, 88 B of stack.
+ * On Cortex-M0+, -O2: 4079 to 4370 instructions, 440 B of code, 88 B of stack.
  * On Cortex-M4F, -O2: 52 instructions, 208 B of code, 0 B of stack.
  */
 void attitude_quaternion_rotate_f32(const float attitude[4], const float vector_B[3],
@@ -103,7 +103,7 @@ void attitude_quaternion_rotate_f32(const float attitude[4], const float vector_
  * Bound: proved, absolute, by rounding alone, on the whole ranges: vector_B 7.6e-07 (seen
  *            9.4e-07); assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 11 add, 6 sub, 24 mul.
- * On Cortex-M0+, -O2: 4126 to 4368 instructions, 440 B of code, 88 B of stack.
+ * On Cortex-M0+, -O2: 4129 to 4371 instructions, 444 B of code, 88 B of stack.
  * On Cortex-M4F, -O2: 52 instructions, 208 B of code, 0 B of stack.
  */
 void attitude_quaternion_rotate_back_f32(const float attitude[4], const float vector_N[3],
@@ -117,7 +117,7 @@ void attitude_quaternion_rotate_back_f32(const float attitude[4], const float ve
  * Bound: proved, absolute, by rounding alone, on the whole ranges: matrix 2e-07 (seen 2.4e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 9 add, 7 sub, 10 mul.
- * On Cortex-M0+, -O2: 2288 to 2483 instructions, 316 B of code, 88 B of stack.
+ * On Cortex-M0+, -O2: 2293 to 2488 instructions, 324 B of code, 88 B of stack.
  * On Cortex-M4F, -O2: 40 instructions, 160 B of code, 0 B of stack.
  */
 void attitude_quaternion_to_matrix_f32(const float attitude[4], float matrix[9]);
@@ -130,7 +130,7 @@ void attitude_quaternion_to_matrix_f32(const float attitude[4], float matrix[9])
  *            more.
  * Bound: not proved: a choice between values may turn out otherwise for rounded ones.
  * Cost: 13 add, 9 sub, 4 mul, 4 div, 1 neg, 1 sqrt, 4 less, 13 select.
- * On Cortex-M0+, -O2: 3559 to 3788 instructions, 436 B of code, 104 B of stack.
+ * On Cortex-M0+, -O2: 3556 to 3786 instructions, 432 B of code, 104 B of stack.
  * On Cortex-M4F, -O2: 65 to 73 instructions, 332 B of code, 32 B of stack.
  */
 void attitude_quaternion_from_matrix_f32(const float matrix[9], float attitude[4]);
@@ -143,7 +143,7 @@ void attitude_quaternion_from_matrix_f32(const float matrix[9], float attitude[4
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mrp 1.2e-07 (seen 8.9e-08);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 1 add, 3 div, 1 neg, 1 abs, 1 less, 1 select.
- * On Cortex-M0+, -O2: 1240 to 1317 instructions, 96 B of code, 64 B of stack.
+ * On Cortex-M0+, -O2: 1231 to 1308 instructions, 80 B of code, 56 B of stack.
  * On Cortex-M4F, -O2: 18 instructions, 68 B of code, 0 B of stack.
  */
 void attitude_quaternion_to_mrp_f32(const float attitude[4], float mrp[3]);
@@ -169,7 +169,7 @@ void attitude_quaternion_from_mrp_f32(const float mrp[3], float attitude[4]);
  *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
  * Bound: not proved: a choice between values may turn out otherwise for rounded ones.
  * Cost: 9 add, 5 sub, 11 mul, 1 sqrt, 4 abs, 2 at_most, 3 atan2, 4 select.
- * On Cortex-M0+, -O2: 11497 to 14081 instructions, 364 B of code, 136 B of stack.
+ * On Cortex-M0+, -O2: 11498 to 14082 instructions, 368 B of code, 136 B of stack.
  * On Cortex-M4F, -O2: 328 to 408 instructions, 252 B of code, 64 B of stack.
  */
 void attitude_quaternion_to_euler_zyx_f32(const float attitude[4], float angles[3]);
@@ -184,8 +184,8 @@ void attitude_quaternion_to_euler_zyx_f32(const float attitude[4], float angles[
  * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude 3.6e-07 (seen
  *            1.7e-07); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 1 sub, 15 mul, 2 neg, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 12821 to 14896 instructions, 820 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 302 to 305 instructions, 580 B of code, 68 B of stack.
+ * On Cortex-M0+, -O2: 12820 to 14895 instructions, 816 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 303 to 306 instructions, 580 B of code, 68 B of stack.
  */
 void attitude_quaternion_from_euler_zyx_f32(const float angles[3], float attitude[4]);
 
@@ -197,7 +197,7 @@ void attitude_quaternion_from_euler_zyx_f32(const float angles[3], float attitud
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 6 add, 2 sub, 13 mul, 2 div, 2 sqrt, 6 abs, 2 at_most, 3 atan2, 2 less, 1 power_of_two, 6
  *            select.
- * On Cortex-M0+, -O2: 13431 to 15568 instructions, 448 B of code, 144 B of stack.
+ * On Cortex-M0+, -O2: 13430 to 15567 instructions, 448 B of code, 144 B of stack.
  * On Cortex-M4F, -O2: 370 to 428 instructions, 368 B of code, 80 B of stack.
  */
 void attitude_quaternion_to_euler_zxz_f32(const float attitude[4], float angles[3]);
@@ -212,8 +212,8 @@ void attitude_quaternion_to_euler_zxz_f32(const float attitude[4], float angles[
  * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude 3.6e-07 (seen
  *            1.7e-07); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 1 sub, 15 mul, 1 neg, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 12790 to 14931 instructions, 812 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 302 to 304 instructions, 580 B of code, 68 B of stack.
+ * On Cortex-M0+, -O2: 12789 to 14930 instructions, 808 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 303 to 305 instructions, 580 B of code, 68 B of stack.
  */
 void attitude_quaternion_from_euler_zxz_f32(const float angles[3], float attitude[4]);
 

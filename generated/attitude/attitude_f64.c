@@ -85,17 +85,17 @@ void attitude_quaternion_product_f64(const double left[4], const double right[4]
     double attitude[4])
 {
     const double left_w_in = left[0];
-    const double left_x_in = left[1];
-    const double left_y_in = left[2];
-    const double left_z_in = left[3];
     const double right_w_in = right[0];
-    const double right_x_in = right[1];
-    const double right_y_in = right[2];
-    const double right_z_in = right[3];
     const double t0 = left_w_in * right_w_in;
+    const double left_x_in = left[1];
+    const double right_x_in = right[1];
     const double t1 = left_x_in * right_x_in;
     const double t2 = t0 - t1;
+    const double left_y_in = left[2];
+    const double right_y_in = right[2];
     const double t3 = left_y_in * right_y_in;
+    const double left_z_in = left[3];
+    const double right_z_in = right[3];
     const double t4 = left_z_in * right_z_in;
     const double t5 = t3 + t4;
     const double t6 = t2 - t5;
@@ -130,12 +130,12 @@ void attitude_quaternion_product_f64(const double left[4], const double right[4]
 void attitude_quaternion_normalise_f64(const double quaternion[4], double attitude[4])
 {
     const double quaternion_w_in = quaternion[0];
-    const double quaternion_x_in = quaternion[1];
-    const double quaternion_y_in = quaternion[2];
-    const double quaternion_z_in = quaternion[3];
     const double t0 = fabs(quaternion_w_in);
+    const double quaternion_x_in = quaternion[1];
     const double t1 = fabs(quaternion_x_in);
+    const double quaternion_y_in = quaternion[2];
     const double t2 = fabs(quaternion_y_in);
+    const double quaternion_z_in = quaternion[3];
     const double t3 = fabs(quaternion_z_in);
     const _Bool t4 = t0 < t1;
     const double t5 = t4 ? t1 : t0;
@@ -177,10 +177,10 @@ void attitude_quaternion_normalise_f64(const double quaternion[4], double attitu
 void attitude_quaternion_exp_f64(const double rotation_vector[3], double attitude[4])
 {
     const double rotation_vector_x_in = rotation_vector[0];
-    const double rotation_vector_y_in = rotation_vector[1];
-    const double rotation_vector_z_in = rotation_vector[2];
     const double t0 = fabs(rotation_vector_x_in);
+    const double rotation_vector_y_in = rotation_vector[1];
     const double t1 = fabs(rotation_vector_y_in);
+    const double rotation_vector_z_in = rotation_vector[2];
     const double t2 = fabs(rotation_vector_z_in);
     const _Bool t3 = t0 < t1;
     const double t4 = t3 ? t1 : t0;
@@ -281,12 +281,12 @@ void attitude_quaternion_exp_f64(const double rotation_vector[3], double attitud
 void attitude_quaternion_log_f64(const double quaternion[4], double rotation_vector[3])
 {
     const double quaternion_w_in = quaternion[0];
-    const double quaternion_x_in = quaternion[1];
-    const double quaternion_y_in = quaternion[2];
-    const double quaternion_z_in = quaternion[3];
     const double t0 = fabs(quaternion_w_in);
+    const double quaternion_x_in = quaternion[1];
     const double t1 = fabs(quaternion_x_in);
+    const double quaternion_y_in = quaternion[2];
     const double t2 = fabs(quaternion_y_in);
+    const double quaternion_z_in = quaternion[3];
     const double t3 = fabs(quaternion_z_in);
     const _Bool t4 = t0 < t1;
     const double t5 = t4 ? t1 : t0;
@@ -346,16 +346,15 @@ void attitude_quaternion_log_f64(const double quaternion[4], double rotation_vec
 void attitude_quaternion_rotate_f64(const double attitude[4], const double vector_B[3],
     double vector_N[3])
 {
-    const double attitude_w_in = attitude[0];
     const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
     const double vector_B_x_in = vector_B[0];
-    const double vector_B_y_in = vector_B[1];
-    const double vector_B_z_in = vector_B[2];
     const double t0 = attitude_x_in * vector_B_x_in;
+    const double attitude_y_in = attitude[2];
+    const double vector_B_y_in = vector_B[1];
     const double t1 = attitude_y_in * vector_B_y_in;
     const double t2 = t0 + t1;
+    const double attitude_z_in = attitude[3];
+    const double vector_B_z_in = vector_B[2];
     const double t3 = attitude_z_in * vector_B_z_in;
     const double t4 = t2 + t3;
     const double t5 = attitude_y_in * vector_B_z_in;
@@ -367,6 +366,7 @@ void attitude_quaternion_rotate_f64(const double attitude[4], const double vecto
     const double t11 = attitude_x_in * vector_B_y_in;
     const double t12 = attitude_y_in * vector_B_x_in;
     const double t13 = t11 - t12;
+    const double attitude_w_in = attitude[0];
     const double t14 = attitude_w_in * vector_B_x_in;
     const double t15 = t14 + t7;
     const double t16 = attitude_w_in * vector_B_y_in;
@@ -403,16 +403,15 @@ void attitude_quaternion_rotate_f64(const double attitude[4], const double vecto
 void attitude_quaternion_rotate_back_f64(const double attitude[4], const double vector_N[3],
     double vector_B[3])
 {
-    const double attitude_w_in = attitude[0];
     const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
     const double vector_N_x_in = vector_N[0];
-    const double vector_N_y_in = vector_N[1];
-    const double vector_N_z_in = vector_N[2];
     const double t0 = attitude_x_in * vector_N_x_in;
+    const double attitude_y_in = attitude[2];
+    const double vector_N_y_in = vector_N[1];
     const double t1 = attitude_y_in * vector_N_y_in;
     const double t2 = t0 + t1;
+    const double attitude_z_in = attitude[3];
+    const double vector_N_z_in = vector_N[2];
     const double t3 = attitude_z_in * vector_N_z_in;
     const double t4 = t2 + t3;
     const double t5 = vector_N_y_in * attitude_z_in;
@@ -424,6 +423,7 @@ void attitude_quaternion_rotate_back_f64(const double attitude[4], const double 
     const double t11 = vector_N_x_in * attitude_y_in;
     const double t12 = vector_N_y_in * attitude_x_in;
     const double t13 = t11 - t12;
+    const double attitude_w_in = attitude[0];
     const double t14 = attitude_w_in * vector_N_x_in;
     const double t15 = t14 + t7;
     const double t16 = attitude_w_in * vector_N_y_in;
@@ -459,16 +459,16 @@ void attitude_quaternion_rotate_back_f64(const double attitude[4], const double 
 /* rotation matrix of an attitude quaternion */
 void attitude_quaternion_to_matrix_f64(const double attitude[4], double matrix[9])
 {
-    const double attitude_w_in = attitude[0];
     const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
     const double t0 = attitude_x_in + attitude_x_in;
+    const double attitude_y_in = attitude[2];
     const double t1 = attitude_y_in + attitude_y_in;
+    const double attitude_z_in = attitude[3];
     const double t2 = attitude_z_in + attitude_z_in;
     const double t3 = attitude_x_in * t1;
     const double t4 = attitude_x_in * t2;
     const double t5 = attitude_y_in * t2;
+    const double attitude_w_in = attitude[0];
     const double t6 = attitude_w_in * t0;
     const double t7 = attitude_w_in * t1;
     const double t8 = attitude_w_in * t2;
@@ -503,23 +503,23 @@ void attitude_quaternion_to_matrix_f64(const double attitude[4], double matrix[9
 /* attitude quaternion of a rotation matrix, scalar part not negative */
 void attitude_quaternion_from_matrix_f64(const double matrix[9], double attitude[4])
 {
-    const double matrix_xx_in = matrix[0];
-    const double matrix_yx_in = matrix[1];
-    const double matrix_zx_in = matrix[2];
-    const double matrix_xy_in = matrix[3];
-    const double matrix_yy_in = matrix[4];
     const double matrix_zy_in = matrix[5];
-    const double matrix_xz_in = matrix[6];
     const double matrix_yz_in = matrix[7];
-    const double matrix_zz_in = matrix[8];
     const double t0 = matrix_zy_in - matrix_yz_in;
+    const double matrix_zx_in = matrix[2];
+    const double matrix_xz_in = matrix[6];
     const double t1 = matrix_xz_in - matrix_zx_in;
+    const double matrix_yx_in = matrix[1];
+    const double matrix_xy_in = matrix[3];
     const double t2 = matrix_yx_in - matrix_xy_in;
     const double t3 = matrix_yx_in + matrix_xy_in;
     const double t4 = matrix_xz_in + matrix_zx_in;
     const double t5 = matrix_zy_in + matrix_yz_in;
+    const double matrix_yy_in = matrix[4];
+    const double matrix_zz_in = matrix[8];
     const double t6 = matrix_yy_in + matrix_zz_in;
     const _Bool t7 = t6 < 0.0;
+    const double matrix_xx_in = matrix[0];
     const double t8 = matrix_xx_in - matrix_yy_in;
     const double t9 = 1.0 + t8;
     const double t10 = t9 - matrix_zz_in;
@@ -571,15 +571,15 @@ void attitude_quaternion_from_matrix_f64(const double matrix[9], double attitude
 void attitude_quaternion_to_mrp_f64(const double attitude[4], double mrp[3])
 {
     const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
     const double t0 = fabs(attitude_w_in);
     const double t1 = 1.0 + t0;
     const _Bool t2 = attitude_w_in < 0.0;
     const double t3 = -t1;
     const double t4 = t2 ? t3 : t1;
+    const double attitude_x_in = attitude[1];
     const double t5 = attitude_x_in / t4;
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
     mrp[0] = t5;
     const double t6 = attitude_y_in / t4;
     mrp[1] = t6;
@@ -591,10 +591,10 @@ void attitude_quaternion_to_mrp_f64(const double attitude[4], double mrp[3])
 void attitude_quaternion_from_mrp_f64(const double mrp[3], double attitude[4])
 {
     const double mrp_x_in = mrp[0];
-    const double mrp_y_in = mrp[1];
-    const double mrp_z_in = mrp[2];
     const double t0 = fabs(mrp_x_in);
+    const double mrp_y_in = mrp[1];
     const double t1 = fabs(mrp_y_in);
+    const double mrp_z_in = mrp[2];
     const double t2 = fabs(mrp_z_in);
     const _Bool t3 = t0 < t1;
     const double t4 = t3 ? t1 : t0;
@@ -635,10 +635,10 @@ void attitude_quaternion_from_mrp_f64(const double mrp[3], double attitude[4])
 void attitude_quaternion_to_euler_zyx_f64(const double attitude[4], double angles[3])
 {
     const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
     const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
     const double t0 = attitude_w_in + attitude_y_in;
+    const double attitude_x_in = attitude[1];
+    const double attitude_z_in = attitude[3];
     const double t1 = attitude_z_in + attitude_x_in;
     const double t2 = attitude_w_in - attitude_y_in;
     const double t3 = attitude_z_in - attitude_x_in;
@@ -686,16 +686,16 @@ void attitude_quaternion_to_euler_zyx_f64(const double attitude[4], double angle
 void attitude_quaternion_from_euler_zyx_f64(const double angles[3], double attitude[4])
 {
     const double angle_first_in = angles[0];
-    const double angle_second_in = angles[1];
-    const double angle_third_in = angles[2];
     const double t0 = angle_first_in * 0.5;
     const attitude_sines_f64 t1_both = attitude_sine_cosine_f64(t0);
     const double t1 = t1_both.cosine;
     const double t2 = t1_both.sine;
+    const double angle_second_in = angles[1];
     const double t3 = angle_second_in * 0.5;
     const attitude_sines_f64 t4_both = attitude_sine_cosine_f64(t3);
     const double t4 = t4_both.cosine;
     const double t5 = t4_both.sine;
+    const double angle_third_in = angles[2];
     const double t6 = angle_third_in * 0.5;
     const attitude_sines_f64 t7_both = attitude_sine_cosine_f64(t6);
     const double t7 = t7_both.cosine;
@@ -728,12 +728,12 @@ void attitude_quaternion_from_euler_zyx_f64(const double angles[3], double attit
 void attitude_quaternion_to_euler_zxz_f64(const double attitude[4], double angles[3])
 {
     const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
     const double t0 = attitude_w_in * 1.152921504606847e+18;
+    const double attitude_z_in = attitude[3];
     const double t1 = attitude_z_in * 1.152921504606847e+18;
+    const double attitude_x_in = attitude[1];
     const double t2 = fabs(attitude_x_in);
+    const double attitude_y_in = attitude[2];
     const double t3 = fabs(attitude_y_in);
     const _Bool t4 = t2 < t3;
     const double t5 = t4 ? t3 : t2;
@@ -786,16 +786,16 @@ void attitude_quaternion_to_euler_zxz_f64(const double attitude[4], double angle
 void attitude_quaternion_from_euler_zxz_f64(const double angles[3], double attitude[4])
 {
     const double angle_first_in = angles[0];
-    const double angle_second_in = angles[1];
-    const double angle_third_in = angles[2];
     const double t0 = angle_first_in * 0.5;
     const attitude_sines_f64 t1_both = attitude_sine_cosine_f64(t0);
     const double t1 = t1_both.cosine;
     const double t2 = t1_both.sine;
+    const double angle_second_in = angles[1];
     const double t3 = angle_second_in * 0.5;
     const attitude_sines_f64 t4_both = attitude_sine_cosine_f64(t3);
     const double t4 = t4_both.cosine;
     const double t5 = t4_both.sine;
+    const double angle_third_in = angles[2];
     const double t6 = angle_third_in * 0.5;
     const attitude_sines_f64 t7_both = attitude_sine_cosine_f64(t6);
     const double t7 = t7_both.cosine;

@@ -14,7 +14,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 a4af47caf26936a6.
+ * Body of these files: sha256 d6bbb1752383dc0e.
  */
 #ifndef ATTITUDE_F64_H
 #define ATTITUDE_F64_H
@@ -84,7 +84,7 @@ void attitude_quaternion_log_f64(const double quaternion[4], double rotation_vec
  * Bound: proved, absolute, by rounding alone, on the whole ranges: vector_N 1.5e-15 (seen
  *            1.3e-15); assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 11 add, 6 sub, 24 mul.
- * On Cortex-M0+, -O2: 9555 to 9868 instructions, 676 B of code, 160 B of stack.
+ * On Cortex-M0+, -O2: 9560 to 9873 instructions, 688 B of code, 168 B of stack.
  */
 void attitude_quaternion_rotate_f64(const double attitude[4], const double vector_B[3],
     double vector_N[3]);
@@ -99,7 +99,7 @@ void attitude_quaternion_rotate_f64(const double attitude[4], const double vecto
  * Bound: proved, absolute, by rounding alone, on the whole ranges: vector_B 1.5e-15 (seen
  *            1.6e-15); assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 11 add, 6 sub, 24 mul.
- * On Cortex-M0+, -O2: 9569 to 9847 instructions, 688 B of code, 160 B of stack.
+ * On Cortex-M0+, -O2: 9571 to 9849 instructions, 692 B of code, 168 B of stack.
  */
 void attitude_quaternion_rotate_back_f64(const double attitude[4], const double vector_N[3],
     double vector_B[3]);
@@ -112,7 +112,7 @@ void attitude_quaternion_rotate_back_f64(const double attitude[4], const double 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: matrix 3.7e-16 (seen 4.4e-16);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 9 add, 7 sub, 10 mul.
- * On Cortex-M0+, -O2: 5198 to 5421 instructions, 508 B of code, 168 B of stack.
+ * On Cortex-M0+, -O2: 5192 to 5415 instructions, 496 B of code, 168 B of stack.
  */
 void attitude_quaternion_to_matrix_f64(const double attitude[4], double matrix[9]);
 
@@ -124,7 +124,7 @@ void attitude_quaternion_to_matrix_f64(const double attitude[4], double matrix[9
  *            more.
  * Bound: not proved: a choice between values may turn out otherwise for rounded ones.
  * Cost: 13 add, 9 sub, 4 mul, 4 div, 1 neg, 1 sqrt, 4 less, 13 select.
- * On Cortex-M0+, -O2: 7030 to 7513 instructions, 680 B of code, 176 B of stack.
+ * On Cortex-M0+, -O2: 7027 to 7512 instructions, 684 B of code, 176 B of stack.
  */
 void attitude_quaternion_from_matrix_f64(const double matrix[9], double attitude[4]);
 
@@ -136,7 +136,7 @@ void attitude_quaternion_from_matrix_f64(const double matrix[9], double attitude
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mrp 2.3e-16 (seen 1.7e-16);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 1 add, 3 div, 1 neg, 1 abs, 1 less, 1 select.
- * On Cortex-M0+, -O2: 2048 to 2247 instructions, 156 B of code, 112 B of stack.
+ * On Cortex-M0+, -O2: 2041 to 2240 instructions, 144 B of code, 104 B of stack.
  */
 void attitude_quaternion_to_mrp_f64(const double attitude[4], double mrp[3]);
 
@@ -160,7 +160,7 @@ void attitude_quaternion_from_mrp_f64(const double mrp[3], double attitude[4]);
  *            samples of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
  * Bound: not proved: a choice between values may turn out otherwise for rounded ones.
  * Cost: 9 add, 5 sub, 11 mul, 1 sqrt, 4 abs, 2 at_most, 3 atan2, 4 select.
- * On Cortex-M0+, -O2: 25719 to 30657 instructions, 588 B of code, 224 B of stack.
+ * On Cortex-M0+, -O2: 25717 to 30655 instructions, 584 B of code, 224 B of stack.
  */
 void attitude_quaternion_to_euler_zyx_f64(const double attitude[4], double angles[3]);
 
@@ -173,7 +173,7 @@ void attitude_quaternion_to_euler_zyx_f64(const double attitude[4], double angle
  * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude 6.5e-16 (seen 3e-16);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 1 sub, 15 mul, 2 neg, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 33764 to 38667 instructions, 1320 B of code, 256 B of stack.
+ * On Cortex-M0+, -O2: 33760 to 38663 instructions, 1312 B of code, 256 B of stack.
  */
 void attitude_quaternion_from_euler_zyx_f64(const double angles[3], double attitude[4]);
 
@@ -185,7 +185,7 @@ void attitude_quaternion_from_euler_zyx_f64(const double angles[3], double attit
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 6 add, 2 sub, 13 mul, 2 div, 2 sqrt, 6 abs, 2 at_most, 3 atan2, 2 less, 1 power_of_two, 6
  *            select.
- * On Cortex-M0+, -O2: 29930 to 33556 instructions, 680 B of code, 240 B of stack.
+ * On Cortex-M0+, -O2: 29936 to 33561 instructions, 688 B of code, 240 B of stack.
  */
 void attitude_quaternion_to_euler_zxz_f64(const double attitude[4], double angles[3]);
 
@@ -199,7 +199,7 @@ void attitude_quaternion_to_euler_zxz_f64(const double attitude[4], double angle
  * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude 6.5e-16 (seen
  *            3.8e-16); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 1 sub, 15 mul, 1 neg, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 33789 to 38694 instructions, 1316 B of code, 248 B of stack.
+ * On Cortex-M0+, -O2: 33785 to 38690 instructions, 1308 B of code, 248 B of stack.
  */
 void attitude_quaternion_from_euler_zxz_f64(const double angles[3], double attitude[4]);
 

@@ -339,17 +339,15 @@ void free_body_acceleration_f32(const free_body_constants_f32 *constants, const 
     const float moment[3], float omega_dot[3])
 {
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
-    const float moment_x_in = moment[0];
-    const float moment_y_in = moment[1];
-    const float moment_z_in = moment[2];
     const float t0 = omega_x_in * constants->I_xz;
+    const float omega_y_in = omega[1];
     const float t1 = omega_y_in * constants->I_yz;
     const float t2 = t0 + t1;
+    const float omega_z_in = omega[2];
     const float t3 = omega_z_in * constants->I_yy_minus_I_zz;
     const float t4 = t2 + t3;
     const float t5 = omega_y_in * t4;
+    const float moment_x_in = moment[0];
     const float t6 = moment_x_in + t5;
     const float t7 = omega_x_in * constants->I_xy;
     const float t8 = omega_z_in * constants->I_yz;
@@ -363,12 +361,14 @@ void free_body_acceleration_f32(const free_body_constants_f32 *constants, const 
     const float t16 = omega_x_in * constants->I_xx_minus_I_yy;
     const float t17 = t15 - t16;
     const float t18 = omega_z_in * t17;
+    const float moment_y_in = moment[1];
     const float t19 = moment_y_in + t18;
     const float t20 = omega_x_in * t4;
     const float t21 = t19 - t20;
     const float t22 = t21 * constants->J_xy;
     const float t23 = t12 + t22;
     const float t24 = t9 * omega_x_in;
+    const float moment_z_in = moment[2];
     const float t25 = moment_z_in + t24;
     const float t26 = omega_y_in * t17;
     const float t27 = t25 - t26;
@@ -393,19 +393,19 @@ void free_body_acceleration_f32(const free_body_constants_f32 *constants, const 
 void free_body_acceleration_jacobian_f32(const free_body_constants_f32 *constants,
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[18])
 {
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float moment_x_in = moment[0];
-    const float moment_y_in = moment[1];
-    const float moment_z_in = moment[2];
     const float t0 = moment_x_in * constants->J_xx;
+    const float moment_y_in = moment[1];
     const float t1 = moment_y_in * constants->J_xy;
     const float t2 = t0 + t1;
+    const float moment_z_in = moment[2];
     const float t3 = moment_z_in * constants->J_xz;
     const float t4 = t2 + t3;
+    const float omega_x_in = omega[0];
     const float t5 = omega_x_in * 0.5F;
+    const float omega_y_in = omega[1];
     const float t6 = omega_y_in * constants->k1;
+    const float omega_z_in = omega[2];
     const float t7 = omega_z_in * constants->k2;
     const float t8 = t6 - t7;
     const float t9 = omega_x_in * constants->k3;
@@ -507,19 +507,19 @@ void free_body_acceleration_jacobian_f32(const free_body_constants_f32 *constant
 void free_body_acceleration_jacobian_dense_f32(const free_body_constants_f32 *constants,
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[18])
 {
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float moment_x_in = moment[0];
-    const float moment_y_in = moment[1];
-    const float moment_z_in = moment[2];
     const float t0 = moment_x_in * constants->J_xx;
+    const float moment_y_in = moment[1];
     const float t1 = moment_y_in * constants->J_xy;
     const float t2 = t0 + t1;
+    const float moment_z_in = moment[2];
     const float t3 = moment_z_in * constants->J_xz;
     const float t4 = t2 + t3;
+    const float omega_x_in = omega[0];
     const float t5 = omega_x_in * 0.5F;
+    const float omega_y_in = omega[1];
     const float t6 = omega_y_in * constants->k1;
+    const float omega_z_in = omega[2];
     const float t7 = omega_z_in * constants->k2;
     const float t8 = t6 - t7;
     const float t9 = omega_x_in * constants->k3;
@@ -622,26 +622,26 @@ void free_body_moment_f32(const free_body_constants_f32 *constants, const float 
     const float omega_dot[3], float moment[3])
 {
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
-    const float omega_dot_x_in = omega_dot[0];
-    const float omega_dot_y_in = omega_dot[1];
-    const float omega_dot_z_in = omega_dot[2];
     const float t0 = omega_x_in * constants->I_xy;
+    const float omega_z_in = omega[2];
     const float t1 = omega_z_in * constants->I_yz;
     const float t2 = t0 + t1;
     const float t3 = omega_z_in * t2;
+    const float omega_dot_x_in = omega_dot[0];
     const float t4 = omega_dot_x_in * constants->I_xx;
     const float t5 = t3 + t4;
     const float t6 = omega_x_in * constants->I_xz;
+    const float omega_y_in = omega[1];
     const float t7 = omega_y_in * constants->I_yz;
     const float t8 = t6 + t7;
     const float t9 = omega_z_in * constants->I_yy_minus_I_zz;
     const float t10 = t8 + t9;
     const float t11 = omega_y_in * t10;
     const float t12 = t5 - t11;
+    const float omega_dot_y_in = omega_dot[1];
     const float t13 = omega_dot_y_in * constants->I_xy;
     const float t14 = t12 - t13;
+    const float omega_dot_z_in = omega_dot[2];
     const float t15 = omega_dot_z_in * constants->I_xz;
     const float t16 = t14 - t15;
     moment[0] = t16;
@@ -677,11 +677,11 @@ void free_body_angular_momentum_f32(const free_body_constants_f32 *constants, co
     float angular_momentum[3])
 {
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float t0 = omega_x_in * constants->I_xx;
+    const float omega_y_in = omega[1];
     const float t1 = omega_y_in * constants->I_xy;
     const float t2 = t0 - t1;
+    const float omega_z_in = omega[2];
     const float t3 = omega_z_in * constants->I_xz;
     const float t4 = t2 - t3;
     angular_momentum[0] = t4;
@@ -703,17 +703,17 @@ void free_body_angular_momentum_f32(const free_body_constants_f32 *constants, co
 void free_body_angular_momentum_rate_f32(const free_body_constants_f32 *constants,
     const float omega[3], const float omega_dot[3], float rate_in_axes[3], float rate_absolute[3])
 {
+    const float omega_dot_x_in = omega_dot[0];
+    const float t0 = omega_dot_x_in * constants->I_xx;
+    const float omega_dot_y_in = omega_dot[1];
+    const float t1 = omega_dot_y_in * constants->I_xy;
+    const float t2 = t0 - t1;
+    const float omega_dot_z_in = omega_dot[2];
+    const float t3 = omega_dot_z_in * constants->I_xz;
+    const float t4 = t2 - t3;
     const float omega_x_in = omega[0];
     const float omega_y_in = omega[1];
     const float omega_z_in = omega[2];
-    const float omega_dot_x_in = omega_dot[0];
-    const float omega_dot_y_in = omega_dot[1];
-    const float omega_dot_z_in = omega_dot[2];
-    const float t0 = omega_dot_x_in * constants->I_xx;
-    const float t1 = omega_dot_y_in * constants->I_xy;
-    const float t2 = t0 - t1;
-    const float t3 = omega_dot_z_in * constants->I_xz;
-    const float t4 = t2 - t3;
     rate_in_axes[0] = t4;
     const float t5 = omega_dot_y_in * constants->I_yy;
     const float t6 = omega_dot_x_in * constants->I_xy;
@@ -761,12 +761,12 @@ void free_body_angular_momentum_rate_f32(const free_body_constants_f32 *constant
 void free_body_kinetic_energy_f32(const free_body_constants_f32 *constants, const float omega[3],
     float *kinetic_energy)
 {
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
     const float omega_z_in = omega[2];
     const float t0 = omega_z_in * omega_z_in;
     const float t1 = t0 * constants->half_I_zz;
+    const float omega_x_in = omega[0];
     const float t2 = omega_x_in * constants->half_I_xx;
+    const float omega_y_in = omega[1];
     const float t3 = omega_y_in * constants->I_xy;
     const float t4 = t2 - t3;
     const float t5 = omega_z_in * constants->I_xz;

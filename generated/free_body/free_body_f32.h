@@ -18,7 +18,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 42d78f8b39695ac0.
+ * Body of these files: sha256 eab95909485396ce.
  */
 #ifndef FREE_BODY_F32_H
 #define FREE_BODY_F32_H

@@ -333,17 +333,15 @@ void free_body_acceleration_f64(const free_body_constants_f64 *constants, const 
     const double moment[3], double omega_dot[3])
 {
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
-    const double moment_x_in = moment[0];
-    const double moment_y_in = moment[1];
-    const double moment_z_in = moment[2];
     const double t0 = omega_x_in * constants->I_xz;
+    const double omega_y_in = omega[1];
     const double t1 = omega_y_in * constants->I_yz;
     const double t2 = t0 + t1;
+    const double omega_z_in = omega[2];
     const double t3 = omega_z_in * constants->I_yy_minus_I_zz;
     const double t4 = t2 + t3;
     const double t5 = omega_y_in * t4;
+    const double moment_x_in = moment[0];
     const double t6 = moment_x_in + t5;
     const double t7 = omega_x_in * constants->I_xy;
     const double t8 = omega_z_in * constants->I_yz;
@@ -357,12 +355,14 @@ void free_body_acceleration_f64(const free_body_constants_f64 *constants, const 
     const double t16 = omega_x_in * constants->I_xx_minus_I_yy;
     const double t17 = t15 - t16;
     const double t18 = omega_z_in * t17;
+    const double moment_y_in = moment[1];
     const double t19 = moment_y_in + t18;
     const double t20 = omega_x_in * t4;
     const double t21 = t19 - t20;
     const double t22 = t21 * constants->J_xy;
     const double t23 = t12 + t22;
     const double t24 = t9 * omega_x_in;
+    const double moment_z_in = moment[2];
     const double t25 = moment_z_in + t24;
     const double t26 = omega_y_in * t17;
     const double t27 = t25 - t26;
@@ -387,19 +387,19 @@ void free_body_acceleration_f64(const free_body_constants_f64 *constants, const 
 void free_body_acceleration_jacobian_f64(const free_body_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18])
 {
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double moment_x_in = moment[0];
-    const double moment_y_in = moment[1];
-    const double moment_z_in = moment[2];
     const double t0 = moment_x_in * constants->J_xx;
+    const double moment_y_in = moment[1];
     const double t1 = moment_y_in * constants->J_xy;
     const double t2 = t0 + t1;
+    const double moment_z_in = moment[2];
     const double t3 = moment_z_in * constants->J_xz;
     const double t4 = t2 + t3;
+    const double omega_x_in = omega[0];
     const double t5 = omega_x_in * 0.5;
+    const double omega_y_in = omega[1];
     const double t6 = omega_y_in * constants->k1;
+    const double omega_z_in = omega[2];
     const double t7 = omega_z_in * constants->k2;
     const double t8 = t6 - t7;
     const double t9 = omega_x_in * constants->k3;
@@ -501,19 +501,19 @@ void free_body_acceleration_jacobian_f64(const free_body_constants_f64 *constant
 void free_body_acceleration_jacobian_dense_f64(const free_body_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18])
 {
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double moment_x_in = moment[0];
-    const double moment_y_in = moment[1];
-    const double moment_z_in = moment[2];
     const double t0 = moment_x_in * constants->J_xx;
+    const double moment_y_in = moment[1];
     const double t1 = moment_y_in * constants->J_xy;
     const double t2 = t0 + t1;
+    const double moment_z_in = moment[2];
     const double t3 = moment_z_in * constants->J_xz;
     const double t4 = t2 + t3;
+    const double omega_x_in = omega[0];
     const double t5 = omega_x_in * 0.5;
+    const double omega_y_in = omega[1];
     const double t6 = omega_y_in * constants->k1;
+    const double omega_z_in = omega[2];
     const double t7 = omega_z_in * constants->k2;
     const double t8 = t6 - t7;
     const double t9 = omega_x_in * constants->k3;
@@ -616,26 +616,26 @@ void free_body_moment_f64(const free_body_constants_f64 *constants, const double
     const double omega_dot[3], double moment[3])
 {
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
-    const double omega_dot_x_in = omega_dot[0];
-    const double omega_dot_y_in = omega_dot[1];
-    const double omega_dot_z_in = omega_dot[2];
     const double t0 = omega_x_in * constants->I_xy;
+    const double omega_z_in = omega[2];
     const double t1 = omega_z_in * constants->I_yz;
     const double t2 = t0 + t1;
     const double t3 = omega_z_in * t2;
+    const double omega_dot_x_in = omega_dot[0];
     const double t4 = omega_dot_x_in * constants->I_xx;
     const double t5 = t3 + t4;
     const double t6 = omega_x_in * constants->I_xz;
+    const double omega_y_in = omega[1];
     const double t7 = omega_y_in * constants->I_yz;
     const double t8 = t6 + t7;
     const double t9 = omega_z_in * constants->I_yy_minus_I_zz;
     const double t10 = t8 + t9;
     const double t11 = omega_y_in * t10;
     const double t12 = t5 - t11;
+    const double omega_dot_y_in = omega_dot[1];
     const double t13 = omega_dot_y_in * constants->I_xy;
     const double t14 = t12 - t13;
+    const double omega_dot_z_in = omega_dot[2];
     const double t15 = omega_dot_z_in * constants->I_xz;
     const double t16 = t14 - t15;
     moment[0] = t16;
@@ -671,11 +671,11 @@ void free_body_angular_momentum_f64(const free_body_constants_f64 *constants, co
     double angular_momentum[3])
 {
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double t0 = omega_x_in * constants->I_xx;
+    const double omega_y_in = omega[1];
     const double t1 = omega_y_in * constants->I_xy;
     const double t2 = t0 - t1;
+    const double omega_z_in = omega[2];
     const double t3 = omega_z_in * constants->I_xz;
     const double t4 = t2 - t3;
     angular_momentum[0] = t4;
@@ -698,17 +698,17 @@ void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constant
     const double omega[3], const double omega_dot[3], double rate_in_axes[3],
     double rate_absolute[3])
 {
+    const double omega_dot_x_in = omega_dot[0];
+    const double t0 = omega_dot_x_in * constants->I_xx;
+    const double omega_dot_y_in = omega_dot[1];
+    const double t1 = omega_dot_y_in * constants->I_xy;
+    const double t2 = t0 - t1;
+    const double omega_dot_z_in = omega_dot[2];
+    const double t3 = omega_dot_z_in * constants->I_xz;
+    const double t4 = t2 - t3;
     const double omega_x_in = omega[0];
     const double omega_y_in = omega[1];
     const double omega_z_in = omega[2];
-    const double omega_dot_x_in = omega_dot[0];
-    const double omega_dot_y_in = omega_dot[1];
-    const double omega_dot_z_in = omega_dot[2];
-    const double t0 = omega_dot_x_in * constants->I_xx;
-    const double t1 = omega_dot_y_in * constants->I_xy;
-    const double t2 = t0 - t1;
-    const double t3 = omega_dot_z_in * constants->I_xz;
-    const double t4 = t2 - t3;
     rate_in_axes[0] = t4;
     const double t5 = omega_dot_y_in * constants->I_yy;
     const double t6 = omega_dot_x_in * constants->I_xy;
@@ -756,12 +756,12 @@ void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constant
 void free_body_kinetic_energy_f64(const free_body_constants_f64 *constants, const double omega[3],
     double *kinetic_energy)
 {
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
     const double omega_z_in = omega[2];
     const double t0 = omega_z_in * omega_z_in;
     const double t1 = t0 * constants->half_I_zz;
+    const double omega_x_in = omega[0];
     const double t2 = omega_x_in * constants->half_I_xx;
+    const double omega_y_in = omega[1];
     const double t3 = omega_y_in * constants->I_xy;
     const double t4 = t2 - t3;
     const double t5 = omega_z_in * constants->I_xz;

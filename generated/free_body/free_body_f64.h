@@ -18,7 +18,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 140ffa7bf8009107.
+ * Body of these files: sha256 936e0f64474757d4.
  */
 #ifndef FREE_BODY_F64_H
 #define FREE_BODY_F64_H
@@ -129,7 +129,7 @@ void free_body_acceleration_f64(const free_body_constants_f64 *constants, const 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 8.1e-14 rad/s^2 (seen
  *            4.5e-14), jacobian 4.1e-15 (seen 3.4e-15).
  * Cost: 21 add, 12 sub, 48 mul.
- * On Cortex-M0+, -O2: 19052 to 19555 instructions, 1552 B of code, 216 B of stack.
+ * On Cortex-M0+, -O2: 19049 to 19552 instructions, 1548 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -137,7 +137,7 @@ void free_body_acceleration_jacobian_f64(const free_body_constants_f64 *constant
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18]);
 
 /* The same, the whole matrix: 18 entries.
- * On Cortex-M0+, -O2: 19033 to 19613 instructions, 1568 B of code, 232 B of stack.
+ * On Cortex-M0+, -O2: 19031 to 19610 instructions, 1564 B of code, 232 B of stack.
  */
 void free_body_acceleration_jacobian_dense_f64(const free_body_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18]);
@@ -163,7 +163,7 @@ void free_body_acceleration_jacobian_dense_f64(const free_body_constants_f64 *co
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 1.3e-13 N m (seen
  *            9e-14).
  * Cost: 7 add, 10 sub, 23 mul.
- * On Cortex-M0+, -O2: 9227 to 9535 instructions, 712 B of code, 176 B of stack.
+ * On Cortex-M0+, -O2: 9233 to 9541 instructions, 724 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -217,7 +217,7 @@ void free_body_angular_momentum_f64(const free_body_constants_f64 *constants, co
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 2.4e-14 N m (seen
  *            2.3e-14), rate_absolute 1.2e-13 N m (seen 7.3e-14).
  * Cost: 7 add, 10 sub, 23 mul.
- * On Cortex-M0+, -O2: 9229 to 9635 instructions, 712 B of code, 152 B of stack.
+ * On Cortex-M0+, -O2: 9232 to 9638 instructions, 720 B of code, 160 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
  */
 void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constants,
@@ -237,7 +237,7 @@ void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constant
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.5e-13 J (seen
  *            1e-13).
  * Cost: 2 add, 3 sub, 9 mul.
- * On Cortex-M0+, -O2: 3348 to 3498 instructions, 268 B of code, 120 B of stack.
+ * On Cortex-M0+, -O2: 3343 to 3493 instructions, 260 B of code, 112 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_kinetic_energy_f64(const free_body_constants_f64 *constants, const double omega[3],

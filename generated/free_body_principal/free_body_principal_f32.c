@@ -188,16 +188,16 @@ int free_body_principal_setup_f32(float I_xx, float I_yy, float I_zz,
 void free_body_principal_acceleration_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], const float moment[3], float omega_dot[3])
 {
-    const float omega_x_in = omega[0];
     const float omega_y_in = omega[1];
     const float omega_z_in = omega[2];
-    const float moment_x_in = moment[0];
-    const float moment_y_in = moment[1];
-    const float moment_z_in = moment[2];
     const float t0 = omega_y_in * omega_z_in;
     const float t1 = t0 * constants->I_yy_minus_I_zz;
+    const float moment_x_in = moment[0];
     const float t2 = moment_x_in + t1;
     const float t3 = t2 * constants->one_over_I_xx;
+    const float omega_x_in = omega[0];
+    const float moment_y_in = moment[1];
+    const float moment_z_in = moment[2];
     omega_dot[0] = t3;
     const float t4 = omega_z_in * omega_x_in;
     const float t5 = t4 * constants->I_xx_minus_I_zz;
@@ -215,14 +215,14 @@ void free_body_principal_acceleration_f32(const free_body_principal_constants_f3
 void free_body_principal_acceleration_jacobian_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[9])
 {
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float moment_x_in = moment[0];
+    const float t0 = moment_x_in * constants->one_over_I_xx;
+    const float omega_y_in = omega[1];
+    const float t1 = omega_y_in * constants->k1;
+    const float omega_x_in = omega[0];
+    const float omega_z_in = omega[2];
     const float moment_y_in = moment[1];
     const float moment_z_in = moment[2];
-    const float t0 = moment_x_in * constants->one_over_I_xx;
-    const float t1 = omega_y_in * constants->k1;
     jacobian[4] = t1;
     const float t2 = omega_z_in * t1;
     const float t3 = t0 + t2;
@@ -254,14 +254,14 @@ void free_body_principal_acceleration_jacobian_f32(const free_body_principal_con
 void free_body_principal_acceleration_jacobian_dense_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[18])
 {
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float moment_x_in = moment[0];
+    const float t0 = moment_x_in * constants->one_over_I_xx;
+    const float omega_y_in = omega[1];
+    const float t1 = omega_y_in * constants->k1;
+    const float omega_x_in = omega[0];
+    const float omega_z_in = omega[2];
     const float moment_y_in = moment[1];
     const float moment_z_in = moment[2];
-    const float t0 = moment_x_in * constants->one_over_I_xx;
-    const float t1 = omega_y_in * constants->k1;
     jacobian[6] = t1;
     const float t2 = omega_z_in * t1;
     const float t3 = t0 + t2;
@@ -302,16 +302,16 @@ void free_body_principal_acceleration_jacobian_dense_f32(const free_body_princip
 void free_body_principal_moment_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], const float omega_dot[3], float moment[3])
 {
-    const float omega_x_in = omega[0];
+    const float omega_dot_x_in = omega_dot[0];
+    const float t0 = omega_dot_x_in * constants->I_xx;
     const float omega_y_in = omega[1];
     const float omega_z_in = omega[2];
-    const float omega_dot_x_in = omega_dot[0];
-    const float omega_dot_y_in = omega_dot[1];
-    const float omega_dot_z_in = omega_dot[2];
-    const float t0 = omega_dot_x_in * constants->I_xx;
     const float t1 = omega_y_in * omega_z_in;
     const float t2 = t1 * constants->I_yy_minus_I_zz;
     const float t3 = t0 - t2;
+    const float omega_x_in = omega[0];
+    const float omega_dot_y_in = omega_dot[1];
+    const float omega_dot_z_in = omega_dot[2];
     moment[0] = t3;
     const float t4 = omega_z_in * omega_x_in;
     const float t5 = t4 * constants->I_xx_minus_I_zz;
@@ -330,9 +330,9 @@ void free_body_principal_angular_momentum_f32(const free_body_principal_constant
     const float omega[3], float angular_momentum[3])
 {
     const float omega_x_in = omega[0];
+    const float t0 = omega_x_in * constants->I_xx;
     const float omega_y_in = omega[1];
     const float omega_z_in = omega[2];
-    const float t0 = omega_x_in * constants->I_xx;
     angular_momentum[0] = t0;
     const float t1 = omega_y_in * constants->I_yy;
     angular_momentum[1] = t1;
@@ -345,13 +345,13 @@ void free_body_principal_kinetic_energy_f32(const free_body_principal_constants_
     const float omega[3], float *kinetic_energy)
 {
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float t0 = omega_x_in * omega_x_in;
     const float t1 = t0 * constants->half_I_xx;
+    const float omega_y_in = omega[1];
     const float t2 = omega_y_in * omega_y_in;
     const float t3 = t2 * constants->half_I_yy;
     const float t4 = t1 + t3;
+    const float omega_z_in = omega[2];
     const float t5 = omega_z_in * omega_z_in;
     const float t6 = t5 * constants->half_I_zz;
     const float t7 = t4 + t6;

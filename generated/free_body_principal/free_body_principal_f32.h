@@ -19,7 +19,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 ba7480356d1ad7cc.
+ * Body of these files: sha256 122e31705f1d3ed0.
  */
 #ifndef FREE_BODY_PRINCIPAL_F32_H
 #define FREE_BODY_PRINCIPAL_F32_H
@@ -78,7 +78,7 @@ int free_body_principal_setup_f32(float I_xx, float I_yy, float I_zz,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 1.7e-05 rad/s^2 (seen
  *            1.2e-05).
  * Cost: 2 add, 1 sub, 9 mul.
- * On Cortex-M0+, -O2: 1264 to 1404 instructions, 124 B of code, 64 B of stack.
+ * On Cortex-M0+, -O2: 1265 to 1405 instructions, 128 B of code, 64 B of stack.
  * On Cortex-M4F, -O2: 28 instructions, 112 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -99,7 +99,7 @@ void free_body_principal_acceleration_f32(const free_body_principal_constants_f3
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 1.2e-05 rad/s^2 (seen
  *            9.7e-06), jacobian 5.4e-07 (seen 5.4e-07).
  * Cost: 3 add, 12 mul.
- * On Cortex-M0+, -O2: 1674 to 1771 instructions, 208 B of code, 80 B of stack.
+ * On Cortex-M0+, -O2: 1676 to 1773 instructions, 212 B of code, 80 B of stack.
  * On Cortex-M4F, -O2: 49 instructions, 180 B of code, 4 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
@@ -108,7 +108,7 @@ void free_body_principal_acceleration_jacobian_f32(const free_body_principal_con
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[9]);
 
 /* The same, the whole matrix: 18 entries.
- * On Cortex-M0+, -O2: 1687 to 1796 instructions, 228 B of code, 80 B of stack.
+ * On Cortex-M0+, -O2: 1689 to 1798 instructions, 232 B of code, 80 B of stack.
  * On Cortex-M4F, -O2: 59 instructions, 200 B of code, 4 B of stack.
  */
 void free_body_principal_acceleration_jacobian_dense_f32(const free_body_principal_constants_f32 *constants,

@@ -188,16 +188,16 @@ int free_body_principal_setup_f64(double I_xx, double I_yy, double I_zz,
 void free_body_principal_acceleration_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3])
 {
-    const double omega_x_in = omega[0];
     const double omega_y_in = omega[1];
     const double omega_z_in = omega[2];
-    const double moment_x_in = moment[0];
-    const double moment_y_in = moment[1];
-    const double moment_z_in = moment[2];
     const double t0 = omega_y_in * omega_z_in;
     const double t1 = t0 * constants->I_yy_minus_I_zz;
+    const double moment_x_in = moment[0];
     const double t2 = moment_x_in + t1;
     const double t3 = t2 * constants->one_over_I_xx;
+    const double omega_x_in = omega[0];
+    const double moment_y_in = moment[1];
+    const double moment_z_in = moment[2];
     omega_dot[0] = t3;
     const double t4 = omega_z_in * omega_x_in;
     const double t5 = t4 * constants->I_xx_minus_I_zz;
@@ -215,14 +215,14 @@ void free_body_principal_acceleration_f64(const free_body_principal_constants_f6
 void free_body_principal_acceleration_jacobian_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[9])
 {
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double moment_x_in = moment[0];
+    const double t0 = moment_x_in * constants->one_over_I_xx;
+    const double omega_y_in = omega[1];
+    const double t1 = omega_y_in * constants->k1;
+    const double omega_x_in = omega[0];
+    const double omega_z_in = omega[2];
     const double moment_y_in = moment[1];
     const double moment_z_in = moment[2];
-    const double t0 = moment_x_in * constants->one_over_I_xx;
-    const double t1 = omega_y_in * constants->k1;
     jacobian[4] = t1;
     const double t2 = omega_z_in * t1;
     const double t3 = t0 + t2;
@@ -254,14 +254,14 @@ void free_body_principal_acceleration_jacobian_f64(const free_body_principal_con
 void free_body_principal_acceleration_jacobian_dense_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18])
 {
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double moment_x_in = moment[0];
+    const double t0 = moment_x_in * constants->one_over_I_xx;
+    const double omega_y_in = omega[1];
+    const double t1 = omega_y_in * constants->k1;
+    const double omega_x_in = omega[0];
+    const double omega_z_in = omega[2];
     const double moment_y_in = moment[1];
     const double moment_z_in = moment[2];
-    const double t0 = moment_x_in * constants->one_over_I_xx;
-    const double t1 = omega_y_in * constants->k1;
     jacobian[6] = t1;
     const double t2 = omega_z_in * t1;
     const double t3 = t0 + t2;
@@ -302,16 +302,16 @@ void free_body_principal_acceleration_jacobian_dense_f64(const free_body_princip
 void free_body_principal_moment_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], const double omega_dot[3], double moment[3])
 {
-    const double omega_x_in = omega[0];
+    const double omega_dot_x_in = omega_dot[0];
+    const double t0 = omega_dot_x_in * constants->I_xx;
     const double omega_y_in = omega[1];
     const double omega_z_in = omega[2];
-    const double omega_dot_x_in = omega_dot[0];
-    const double omega_dot_y_in = omega_dot[1];
-    const double omega_dot_z_in = omega_dot[2];
-    const double t0 = omega_dot_x_in * constants->I_xx;
     const double t1 = omega_y_in * omega_z_in;
     const double t2 = t1 * constants->I_yy_minus_I_zz;
     const double t3 = t0 - t2;
+    const double omega_x_in = omega[0];
+    const double omega_dot_y_in = omega_dot[1];
+    const double omega_dot_z_in = omega_dot[2];
     moment[0] = t3;
     const double t4 = omega_z_in * omega_x_in;
     const double t5 = t4 * constants->I_xx_minus_I_zz;
@@ -330,9 +330,9 @@ void free_body_principal_angular_momentum_f64(const free_body_principal_constant
     const double omega[3], double angular_momentum[3])
 {
     const double omega_x_in = omega[0];
+    const double t0 = omega_x_in * constants->I_xx;
     const double omega_y_in = omega[1];
     const double omega_z_in = omega[2];
-    const double t0 = omega_x_in * constants->I_xx;
     angular_momentum[0] = t0;
     const double t1 = omega_y_in * constants->I_yy;
     angular_momentum[1] = t1;
@@ -345,13 +345,13 @@ void free_body_principal_kinetic_energy_f64(const free_body_principal_constants_
     const double omega[3], double *kinetic_energy)
 {
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double t0 = omega_x_in * omega_x_in;
     const double t1 = t0 * constants->half_I_xx;
+    const double omega_y_in = omega[1];
     const double t2 = omega_y_in * omega_y_in;
     const double t3 = t2 * constants->half_I_yy;
     const double t4 = t1 + t3;
+    const double omega_z_in = omega[2];
     const double t5 = omega_z_in * omega_z_in;
     const double t6 = t5 * constants->half_I_zz;
     const double t7 = t4 + t6;

@@ -381,9 +381,18 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
     const float wheel_torques[3], float coordinate_rates[3], float omega_dot[3],
     float wheel_accelerations[3])
 {
-    const float omega_x_in = omega[0];
+    const gyrostat_sines_f32 t0_both = gyrostat_sine_cosine_f32(phi);
+    const float t0 = t0_both.sine;
     const float omega_y_in = omega[1];
+    const float t1 = omega_y_in * t0;
+    const float t2 = t0_both.cosine;
     const float omega_z_in = omega[2];
+    const float t3 = omega_z_in * t2;
+    const float t4 = t1 + t3;
+    const gyrostat_sines_f32 t5_both = gyrostat_sine_cosine_f32(theta);
+    const float t5 = t5_both.cosine;
+    const float t6 = t4 / t5;
+    const float omega_x_in = omega[0];
     const float s_1_in = wheel_speeds[0];
     const float s_2_in = wheel_speeds[1];
     const float s_3_in = wheel_speeds[2];
@@ -393,15 +402,6 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
     const float u_1_in = wheel_torques[0];
     const float u_2_in = wheel_torques[1];
     const float u_3_in = wheel_torques[2];
-    const gyrostat_sines_f32 t0_both = gyrostat_sine_cosine_f32(phi);
-    const float t0 = t0_both.sine;
-    const float t1 = omega_y_in * t0;
-    const float t2 = t0_both.cosine;
-    const float t3 = omega_z_in * t2;
-    const float t4 = t1 + t3;
-    const gyrostat_sines_f32 t5_both = gyrostat_sine_cosine_f32(theta);
-    const float t5 = t5_both.cosine;
-    const float t6 = t4 / t5;
     coordinate_rates[0] = t6;
     const float t7 = omega_y_in * t2;
     const float t8 = t0 * omega_z_in;
@@ -480,8 +480,15 @@ void gyrostat_state_rate_jacobian_f32(const gyrostat_constants_f32 *constants, f
     const float wheel_torques[3], float coordinate_rates[3], float omega_dot[3],
     float wheel_accelerations[3], float jacobian[84])
 {
-    const float omega_x_in = omega[0];
+    const gyrostat_sines_f32 t0_both = gyrostat_sine_cosine_f32(theta);
+    const float t0 = t0_both.cosine;
+    const float t1 = 1.0F / t0;
+    const gyrostat_sines_f32 t2_both = gyrostat_sine_cosine_f32(phi);
+    const float t2 = t2_both.sine;
     const float omega_y_in = omega[1];
+    const float t3 = omega_y_in * t2;
+    const float t4 = t2_both.cosine;
+    const float omega_x_in = omega[0];
     const float omega_z_in = omega[2];
     const float s_1_in = wheel_speeds[0];
     const float s_2_in = wheel_speeds[1];
@@ -492,13 +499,6 @@ void gyrostat_state_rate_jacobian_f32(const gyrostat_constants_f32 *constants, f
     const float u_1_in = wheel_torques[0];
     const float u_2_in = wheel_torques[1];
     const float u_3_in = wheel_torques[2];
-    const gyrostat_sines_f32 t0_both = gyrostat_sine_cosine_f32(theta);
-    const float t0 = t0_both.cosine;
-    const float t1 = 1.0F / t0;
-    const gyrostat_sines_f32 t2_both = gyrostat_sine_cosine_f32(phi);
-    const float t2 = t2_both.sine;
-    const float t3 = omega_y_in * t2;
-    const float t4 = t2_both.cosine;
     jacobian[13] = t4;
     const float t5 = omega_z_in * t4;
     const float t6 = t3 + t5;
@@ -786,8 +786,15 @@ void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *consta
     const float wheel_torques[3], float coordinate_rates[3], float omega_dot[3],
     float wheel_accelerations[3], float jacobian[135])
 {
-    const float omega_x_in = omega[0];
+    const gyrostat_sines_f32 t0_both = gyrostat_sine_cosine_f32(theta);
+    const float t0 = t0_both.cosine;
+    const float t1 = 1.0F / t0;
+    const gyrostat_sines_f32 t2_both = gyrostat_sine_cosine_f32(phi);
+    const float t2 = t2_both.sine;
     const float omega_y_in = omega[1];
+    const float t3 = omega_y_in * t2;
+    const float t4 = t2_both.cosine;
+    const float omega_x_in = omega[0];
     const float omega_z_in = omega[2];
     const float s_1_in = wheel_speeds[0];
     const float s_2_in = wheel_speeds[1];
@@ -798,13 +805,6 @@ void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *consta
     const float u_1_in = wheel_torques[0];
     const float u_2_in = wheel_torques[1];
     const float u_3_in = wheel_torques[2];
-    const gyrostat_sines_f32 t0_both = gyrostat_sine_cosine_f32(theta);
-    const float t0 = t0_both.cosine;
-    const float t1 = 1.0F / t0;
-    const gyrostat_sines_f32 t2_both = gyrostat_sine_cosine_f32(phi);
-    const float t2 = t2_both.sine;
-    const float t3 = omega_y_in * t2;
-    const float t4 = t2_both.cosine;
     jacobian[37] = t4;
     const float t5 = omega_z_in * t4;
     const float t6 = t3 + t5;
@@ -1142,28 +1142,28 @@ void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const 
     const float wheel_speeds[3], float *kinetic_energy)
 {
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float s_1_in = wheel_speeds[0];
-    const float s_2_in = wheel_speeds[1];
-    const float s_3_in = wheel_speeds[2];
     const float t0 = omega_x_in + s_1_in;
     const float t1 = t0 * t0;
     const float t2 = t1 * constants->half_C_1;
     const float t3 = omega_x_in * omega_x_in;
     const float t4 = t3 * constants->half_I_xx_minus_C_1;
     const float t5 = t2 + t4;
+    const float s_2_in = wheel_speeds[1];
     const float t6 = s_2_in * s_2_in;
     const float t7 = t6 * constants->half_C_2;
     const float t8 = t5 + t7;
+    const float s_3_in = wheel_speeds[2];
     const float t9 = s_3_in * s_3_in;
     const float t10 = t9 * constants->half_C_3;
     const float t11 = t8 + t10;
     const float t12 = omega_x_in * constants->I_xy;
+    const float omega_z_in = omega[2];
     const float t13 = omega_z_in * constants->I_yz;
     const float t14 = t12 + t13;
     const float t15 = s_2_in * constants->C_2;
     const float t16 = t14 - t15;
+    const float omega_y_in = omega[1];
     const float t17 = omega_y_in * constants->half_I_yy;
     const float t18 = t16 - t17;
     const float t19 = omega_y_in * t18;
@@ -1182,19 +1182,19 @@ void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const 
 void gyrostat_angular_momentum_f32(const gyrostat_constants_f32 *constants, const float omega[3],
     const float wheel_speeds[3], float angular_momentum[3])
 {
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float s_1_in = wheel_speeds[0];
-    const float s_2_in = wheel_speeds[1];
-    const float s_3_in = wheel_speeds[2];
     const float t0 = s_1_in * constants->C_1;
+    const float omega_x_in = omega[0];
     const float t1 = omega_x_in * constants->I_xx;
     const float t2 = t0 + t1;
+    const float omega_y_in = omega[1];
     const float t3 = omega_y_in * constants->I_xy;
     const float t4 = t2 - t3;
+    const float omega_z_in = omega[2];
     const float t5 = omega_z_in * constants->I_xz;
     const float t6 = t4 - t5;
+    const float s_2_in = wheel_speeds[1];
+    const float s_3_in = wheel_speeds[2];
     angular_momentum[0] = t6;
     const float t7 = s_2_in * constants->C_2;
     const float t8 = omega_y_in * constants->I_yy;

@@ -380,9 +380,18 @@ void gyrostat_state_rate_f64(const gyrostat_constants_f64 *constants, double the
     const double wheel_torques[3], double coordinate_rates[3], double omega_dot[3],
     double wheel_accelerations[3])
 {
-    const double omega_x_in = omega[0];
+    const gyrostat_sines_f64 t0_both = gyrostat_sine_cosine_f64(phi);
+    const double t0 = t0_both.sine;
     const double omega_y_in = omega[1];
+    const double t1 = omega_y_in * t0;
+    const double t2 = t0_both.cosine;
     const double omega_z_in = omega[2];
+    const double t3 = omega_z_in * t2;
+    const double t4 = t1 + t3;
+    const gyrostat_sines_f64 t5_both = gyrostat_sine_cosine_f64(theta);
+    const double t5 = t5_both.cosine;
+    const double t6 = t4 / t5;
+    const double omega_x_in = omega[0];
     const double s_1_in = wheel_speeds[0];
     const double s_2_in = wheel_speeds[1];
     const double s_3_in = wheel_speeds[2];
@@ -392,15 +401,6 @@ void gyrostat_state_rate_f64(const gyrostat_constants_f64 *constants, double the
     const double u_1_in = wheel_torques[0];
     const double u_2_in = wheel_torques[1];
     const double u_3_in = wheel_torques[2];
-    const gyrostat_sines_f64 t0_both = gyrostat_sine_cosine_f64(phi);
-    const double t0 = t0_both.sine;
-    const double t1 = omega_y_in * t0;
-    const double t2 = t0_both.cosine;
-    const double t3 = omega_z_in * t2;
-    const double t4 = t1 + t3;
-    const gyrostat_sines_f64 t5_both = gyrostat_sine_cosine_f64(theta);
-    const double t5 = t5_both.cosine;
-    const double t6 = t4 / t5;
     coordinate_rates[0] = t6;
     const double t7 = omega_y_in * t2;
     const double t8 = t0 * omega_z_in;
@@ -479,8 +479,15 @@ void gyrostat_state_rate_jacobian_f64(const gyrostat_constants_f64 *constants, d
     const double wheel_torques[3], double coordinate_rates[3], double omega_dot[3],
     double wheel_accelerations[3], double jacobian[84])
 {
-    const double omega_x_in = omega[0];
+    const gyrostat_sines_f64 t0_both = gyrostat_sine_cosine_f64(theta);
+    const double t0 = t0_both.cosine;
+    const double t1 = 1.0 / t0;
+    const gyrostat_sines_f64 t2_both = gyrostat_sine_cosine_f64(phi);
+    const double t2 = t2_both.sine;
     const double omega_y_in = omega[1];
+    const double t3 = omega_y_in * t2;
+    const double t4 = t2_both.cosine;
+    const double omega_x_in = omega[0];
     const double omega_z_in = omega[2];
     const double s_1_in = wheel_speeds[0];
     const double s_2_in = wheel_speeds[1];
@@ -491,13 +498,6 @@ void gyrostat_state_rate_jacobian_f64(const gyrostat_constants_f64 *constants, d
     const double u_1_in = wheel_torques[0];
     const double u_2_in = wheel_torques[1];
     const double u_3_in = wheel_torques[2];
-    const gyrostat_sines_f64 t0_both = gyrostat_sine_cosine_f64(theta);
-    const double t0 = t0_both.cosine;
-    const double t1 = 1.0 / t0;
-    const gyrostat_sines_f64 t2_both = gyrostat_sine_cosine_f64(phi);
-    const double t2 = t2_both.sine;
-    const double t3 = omega_y_in * t2;
-    const double t4 = t2_both.cosine;
     jacobian[13] = t4;
     const double t5 = omega_z_in * t4;
     const double t6 = t3 + t5;
@@ -785,8 +785,15 @@ void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *consta
     const double wheel_torques[3], double coordinate_rates[3], double omega_dot[3],
     double wheel_accelerations[3], double jacobian[135])
 {
-    const double omega_x_in = omega[0];
+    const gyrostat_sines_f64 t0_both = gyrostat_sine_cosine_f64(theta);
+    const double t0 = t0_both.cosine;
+    const double t1 = 1.0 / t0;
+    const gyrostat_sines_f64 t2_both = gyrostat_sine_cosine_f64(phi);
+    const double t2 = t2_both.sine;
     const double omega_y_in = omega[1];
+    const double t3 = omega_y_in * t2;
+    const double t4 = t2_both.cosine;
+    const double omega_x_in = omega[0];
     const double omega_z_in = omega[2];
     const double s_1_in = wheel_speeds[0];
     const double s_2_in = wheel_speeds[1];
@@ -797,13 +804,6 @@ void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *consta
     const double u_1_in = wheel_torques[0];
     const double u_2_in = wheel_torques[1];
     const double u_3_in = wheel_torques[2];
-    const gyrostat_sines_f64 t0_both = gyrostat_sine_cosine_f64(theta);
-    const double t0 = t0_both.cosine;
-    const double t1 = 1.0 / t0;
-    const gyrostat_sines_f64 t2_both = gyrostat_sine_cosine_f64(phi);
-    const double t2 = t2_both.sine;
-    const double t3 = omega_y_in * t2;
-    const double t4 = t2_both.cosine;
     jacobian[37] = t4;
     const double t5 = omega_z_in * t4;
     const double t6 = t3 + t5;
@@ -1141,28 +1141,28 @@ void gyrostat_kinetic_energy_f64(const gyrostat_constants_f64 *constants, const 
     const double wheel_speeds[3], double *kinetic_energy)
 {
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double s_1_in = wheel_speeds[0];
-    const double s_2_in = wheel_speeds[1];
-    const double s_3_in = wheel_speeds[2];
     const double t0 = omega_x_in + s_1_in;
     const double t1 = t0 * t0;
     const double t2 = t1 * constants->half_C_1;
     const double t3 = omega_x_in * omega_x_in;
     const double t4 = t3 * constants->half_I_xx_minus_C_1;
     const double t5 = t2 + t4;
+    const double s_2_in = wheel_speeds[1];
     const double t6 = s_2_in * s_2_in;
     const double t7 = t6 * constants->half_C_2;
     const double t8 = t5 + t7;
+    const double s_3_in = wheel_speeds[2];
     const double t9 = s_3_in * s_3_in;
     const double t10 = t9 * constants->half_C_3;
     const double t11 = t8 + t10;
     const double t12 = omega_x_in * constants->I_xy;
+    const double omega_z_in = omega[2];
     const double t13 = omega_z_in * constants->I_yz;
     const double t14 = t12 + t13;
     const double t15 = s_2_in * constants->C_2;
     const double t16 = t14 - t15;
+    const double omega_y_in = omega[1];
     const double t17 = omega_y_in * constants->half_I_yy;
     const double t18 = t16 - t17;
     const double t19 = omega_y_in * t18;
@@ -1181,19 +1181,19 @@ void gyrostat_kinetic_energy_f64(const gyrostat_constants_f64 *constants, const 
 void gyrostat_angular_momentum_f64(const gyrostat_constants_f64 *constants, const double omega[3],
     const double wheel_speeds[3], double angular_momentum[3])
 {
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double s_1_in = wheel_speeds[0];
-    const double s_2_in = wheel_speeds[1];
-    const double s_3_in = wheel_speeds[2];
     const double t0 = s_1_in * constants->C_1;
+    const double omega_x_in = omega[0];
     const double t1 = omega_x_in * constants->I_xx;
     const double t2 = t0 + t1;
+    const double omega_y_in = omega[1];
     const double t3 = omega_y_in * constants->I_xy;
     const double t4 = t2 - t3;
+    const double omega_z_in = omega[2];
     const double t5 = omega_z_in * constants->I_xz;
     const double t6 = t4 - t5;
+    const double s_2_in = wheel_speeds[1];
+    const double s_3_in = wheel_speeds[2];
     angular_momentum[0] = t6;
     const double t7 = s_2_in * constants->C_2;
     const double t8 = omega_y_in * constants->I_yy;

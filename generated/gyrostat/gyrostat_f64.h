@@ -28,7 +28,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 b7e56be773c2fce5.
+ * Body of these files: sha256 4a5911d33713f8cc.
  */
 #ifndef GYROSTAT_F64_H
 #define GYROSTAT_F64_H
@@ -138,7 +138,7 @@ int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doubl
  *            rad/s^2 (seen 1.5e-14); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot infinite, no number or beyond all measure.
  * Cost: 15 add, 14 sub, 34 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 34294 to 37666 instructions, 2104 B of code, 320 B of stack.
+ * On Cortex-M0+, -O2: 34297 to 37668 instructions, 2108 B of code, 328 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -173,7 +173,7 @@ void gyrostat_state_rate_f64(const gyrostat_constants_f64 *constants, double the
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 33 add, 37 sub, 96 mul, 1 div, 20 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 59541 to 63118 instructions, 5176 B of code, 448 B of stack.
+ * On Cortex-M0+, -O2: 59528 to 63104 instructions, 5148 B of code, 448 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -184,7 +184,7 @@ void gyrostat_state_rate_jacobian_f64(const gyrostat_constants_f64 *constants, d
     double wheel_accelerations[3], double jacobian[84]);
 
 /* The same, the whole matrix: 135 entries.
- * On Cortex-M0+, -O2: 59931 to 63539 instructions, 6096 B of code, 584 B of stack.
+ * On Cortex-M0+, -O2: 59889 to 63497 instructions, 6008 B of code, 584 B of stack.
  */
 void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *constants, double theta,
     double phi, const double omega[3], const double wheel_speeds[3], const double moment[3],
@@ -210,7 +210,7 @@ void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *consta
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.7e-12 J (seen
  *            1.3e-12).
  * Cost: 5 add, 6 sub, 17 mul.
- * On Cortex-M0+, -O2: 6618 to 6814 instructions, 496 B of code, 152 B of stack.
+ * On Cortex-M0+, -O2: 6613 to 6809 instructions, 488 B of code, 144 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

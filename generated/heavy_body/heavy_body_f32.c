@@ -229,13 +229,13 @@ void heavy_body_kinetic_energy_f32(const heavy_body_constants_f32 *constants, co
     float *kinetic_energy)
 {
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float t0 = omega_x_in * omega_x_in;
     const float t1 = t0 * constants->half_I_xx;
+    const float omega_y_in = omega[1];
     const float t2 = omega_y_in * omega_y_in;
     const float t3 = t2 * constants->half_I_yy;
     const float t4 = t1 + t3;
+    const float omega_z_in = omega[2];
     const float t5 = omega_z_in * omega_z_in;
     const float t6 = t5 * constants->half_I_zz;
     const float t7 = t4 + t6;
@@ -246,16 +246,12 @@ void heavy_body_kinetic_energy_f32(const heavy_body_constants_f32 *constants, co
 void heavy_body_step_split2_f32(const heavy_body_constants_f32 *constants, const float attitude[4],
     const float omega[3], float time_step, float attitude_next[4], float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const _Bool t0 = 0.0F < constants->from_x;
     const _Bool t1 = 0.0F < constants->from_y;
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
     const float t2 = t1 ? omega_y_in : omega_z_in;
+    const float omega_x_in = omega[0];
     const float t3 = t0 ? omega_x_in : t2;
     const float t4 = t1 ? omega_z_in : omega_x_in;
     const float t5 = t0 ? omega_y_in : t4;
@@ -267,7 +263,11 @@ void heavy_body_step_split2_f32(const heavy_body_constants_f32 *constants, const
     const float t11 = t10 * constants->spin_a;
     const float t12 = t10 * constants->spin_c;
     const float t13 = time_step * constants->compliance;
+    const float attitude_w_in = attitude[0];
+    const float attitude_x_in = attitude[1];
     const float t14 = attitude_w_in * attitude_x_in;
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
     const float t15 = attitude_y_in * attitude_z_in;
     const float t16 = t14 + t15;
     const float t17 = t16 * constants->twice_w;
@@ -546,16 +546,12 @@ void heavy_body_step_split2_f32(const heavy_body_constants_f32 *constants, const
 void heavy_body_step_split_f32(const heavy_body_constants_f32 *constants, const float attitude[4],
     const float omega[3], float time_step, float attitude_next[4], float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const _Bool t0 = 0.0F < constants->from_x;
     const _Bool t1 = 0.0F < constants->from_y;
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
     const float t2 = t1 ? omega_y_in : omega_z_in;
+    const float omega_x_in = omega[0];
     const float t3 = t0 ? omega_x_in : t2;
     const float t4 = t1 ? omega_z_in : omega_x_in;
     const float t5 = t0 ? omega_y_in : t4;
@@ -567,7 +563,11 @@ void heavy_body_step_split_f32(const heavy_body_constants_f32 *constants, const 
     const float t11 = t10 * constants->spin_a;
     const float t12 = t10 * constants->spin_c;
     const float t13 = time_step * constants->compliance;
+    const float attitude_w_in = attitude[0];
+    const float attitude_x_in = attitude[1];
     const float t14 = attitude_w_in * attitude_x_in;
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
     const float t15 = attitude_y_in * attitude_z_in;
     const float t16 = t14 + t15;
     const float t17 = t16 * constants->twice_w;
@@ -2202,20 +2202,19 @@ void heavy_body_step_split_f32(const heavy_body_constants_f32 *constants, const 
 void heavy_body_step_rk4_f32(const heavy_body_constants_f32 *constants, const float attitude[4],
     const float omega[3], float time_step, float attitude_next[4], float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float t0 = time_step * 0.5F;
     const float t10 = t0 * 0.5F;
+    const float omega_x_in = omega[0];
     const float t11 = omega_x_in * t10;
+    const float attitude_x_in = attitude[1];
     const float t12 = attitude_x_in * t11;
+    const float attitude_w_in = attitude[0];
     const float t19 = t11 * attitude_w_in;
+    const float attitude_z_in = attitude[3];
     const float t25 = t11 * attitude_z_in;
+    const float attitude_y_in = attitude[2];
     const float t32 = t11 * attitude_y_in;
+    const float omega_y_in = omega[1];
     const float t13 = omega_y_in * t10;
     const float t14 = attitude_y_in * t13;
     const float t15 = t12 + t14;
@@ -2223,6 +2222,7 @@ void heavy_body_step_rk4_f32(const heavy_body_constants_f32 *constants, const fl
     const float t24 = t13 * attitude_w_in;
     const float t26 = t24 + t25;
     const float t30 = attitude_x_in * t13;
+    const float omega_z_in = omega[2];
     const float t16 = omega_z_in * t10;
     const float t17 = attitude_z_in * t16;
     const float t18 = t15 + t17;

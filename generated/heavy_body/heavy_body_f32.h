@@ -21,7 +21,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 81b0b151a81bded1.
+ * Body of these files: sha256 5060b61e5f17b0da.
  */
 #ifndef HEAVY_BODY_F32_H
 #define HEAVY_BODY_F32_H
@@ -103,7 +103,7 @@ void heavy_body_kinetic_energy_f32(const heavy_body_constants_f32 *constants, co
  *            8.5e-08), omega_next 3.2e-05 rad/s (seen 1.1e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 93 add, 17 sub, 120 mul, 9 div, 9 neg, 2 less, 30 select.
- * On Cortex-M0+, -O2: 26305 to 27033 instructions, 2964 B of code, 184 B of stack.
+ * On Cortex-M0+, -O2: 26307 to 27036 instructions, 2968 B of code, 184 B of stack.
  * On Cortex-M4F, -O2: 380 to 413 instructions, 1824 B of code, 88 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -127,8 +127,8 @@ void heavy_body_step_split2_f32(const heavy_body_constants_f32 *constants, const
  *            9.5e-08), omega_next 0.00013 rad/s (seen 1.5e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 588 add, 137 sub, 716 mul, 54 div, 49 neg, 2 less, 90 select.
- * On Cortex-M0+, -O2: 159536 to 162775 instructions, 16120 B of code, 272 B of stack.
- * On Cortex-M4F, -O2: 1940 to 2049 instructions, 8984 B of code, 168 B of stack.
+ * On Cortex-M0+, -O2: 159537 to 162776 instructions, 16124 B of code, 272 B of stack.
+ * On Cortex-M4F, -O2: 1939 to 2049 instructions, 8980 B of code, 168 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -154,7 +154,7 @@ void heavy_body_step_split_f32(const heavy_body_constants_f32 *constants, const 
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 76 add, 24 sub, 144 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 23925 to 24605 instructions, 2292 B of code, 216 B of stack.
+ * On Cortex-M0+, -O2: 23929 to 24610 instructions, 2300 B of code, 216 B of stack.
  * On Cortex-M4F, -O2: 295 instructions, 1188 B of code, 104 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -178,7 +178,7 @@ void heavy_body_step_rk4_f32(const heavy_body_constants_f32 *constants, const fl
  *            omega_next, at rest).
  * Bound: not proved: 8474 operations are more than the 2000 tried.
  * Cost: 3062 add, 1125 sub, 4296 mul, 22 div, 21 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * On Cortex-M0+, -O2: 693168 to 855943 instructions, 2964 B of code, 1128 B of stack.
+ * On Cortex-M0+, -O2: 693169 to 855942 instructions, 2964 B of code, 1128 B of stack.
  * On Cortex-M4F, -O2: 15758 instructions, 2248 B of code, 1088 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,

@@ -228,13 +228,13 @@ void heavy_body_kinetic_energy_f64(const heavy_body_constants_f64 *constants, co
     double *kinetic_energy)
 {
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double t0 = omega_x_in * omega_x_in;
     const double t1 = t0 * constants->half_I_xx;
+    const double omega_y_in = omega[1];
     const double t2 = omega_y_in * omega_y_in;
     const double t3 = t2 * constants->half_I_yy;
     const double t4 = t1 + t3;
+    const double omega_z_in = omega[2];
     const double t5 = omega_z_in * omega_z_in;
     const double t6 = t5 * constants->half_I_zz;
     const double t7 = t4 + t6;
@@ -245,16 +245,12 @@ void heavy_body_kinetic_energy_f64(const heavy_body_constants_f64 *constants, co
 void heavy_body_step_split2_f64(const heavy_body_constants_f64 *constants, const double attitude[4],
     const double omega[3], double time_step, double attitude_next[4], double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const _Bool t0 = 0.0 < constants->from_x;
     const _Bool t1 = 0.0 < constants->from_y;
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
     const double t2 = t1 ? omega_y_in : omega_z_in;
+    const double omega_x_in = omega[0];
     const double t3 = t0 ? omega_x_in : t2;
     const double t4 = t1 ? omega_z_in : omega_x_in;
     const double t5 = t0 ? omega_y_in : t4;
@@ -266,7 +262,11 @@ void heavy_body_step_split2_f64(const heavy_body_constants_f64 *constants, const
     const double t11 = t10 * constants->spin_a;
     const double t12 = t10 * constants->spin_c;
     const double t13 = time_step * constants->compliance;
+    const double attitude_w_in = attitude[0];
+    const double attitude_x_in = attitude[1];
     const double t14 = attitude_w_in * attitude_x_in;
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
     const double t15 = attitude_y_in * attitude_z_in;
     const double t16 = t14 + t15;
     const double t17 = t16 * constants->twice_w;
@@ -545,16 +545,12 @@ void heavy_body_step_split2_f64(const heavy_body_constants_f64 *constants, const
 void heavy_body_step_split_f64(const heavy_body_constants_f64 *constants, const double attitude[4],
     const double omega[3], double time_step, double attitude_next[4], double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const _Bool t0 = 0.0 < constants->from_x;
     const _Bool t1 = 0.0 < constants->from_y;
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
     const double t2 = t1 ? omega_y_in : omega_z_in;
+    const double omega_x_in = omega[0];
     const double t3 = t0 ? omega_x_in : t2;
     const double t4 = t1 ? omega_z_in : omega_x_in;
     const double t5 = t0 ? omega_y_in : t4;
@@ -566,7 +562,11 @@ void heavy_body_step_split_f64(const heavy_body_constants_f64 *constants, const 
     const double t11 = t10 * constants->spin_a;
     const double t12 = t10 * constants->spin_c;
     const double t13 = time_step * constants->compliance;
+    const double attitude_w_in = attitude[0];
+    const double attitude_x_in = attitude[1];
     const double t14 = attitude_w_in * attitude_x_in;
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
     const double t15 = attitude_y_in * attitude_z_in;
     const double t16 = t14 + t15;
     const double t17 = t16 * constants->twice_w;
@@ -2201,20 +2201,19 @@ void heavy_body_step_split_f64(const heavy_body_constants_f64 *constants, const 
 void heavy_body_step_rk4_f64(const heavy_body_constants_f64 *constants, const double attitude[4],
     const double omega[3], double time_step, double attitude_next[4], double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double t0 = time_step * 0.5;
     const double t10 = t0 * 0.5;
+    const double omega_x_in = omega[0];
     const double t11 = omega_x_in * t10;
+    const double attitude_x_in = attitude[1];
     const double t12 = attitude_x_in * t11;
+    const double attitude_w_in = attitude[0];
     const double t19 = t11 * attitude_w_in;
+    const double attitude_z_in = attitude[3];
     const double t25 = t11 * attitude_z_in;
+    const double attitude_y_in = attitude[2];
     const double t32 = t11 * attitude_y_in;
+    const double omega_y_in = omega[1];
     const double t13 = omega_y_in * t10;
     const double t14 = attitude_y_in * t13;
     const double t15 = t12 + t14;
@@ -2222,6 +2221,7 @@ void heavy_body_step_rk4_f64(const heavy_body_constants_f64 *constants, const do
     const double t24 = t13 * attitude_w_in;
     const double t26 = t24 + t25;
     const double t30 = attitude_x_in * t13;
+    const double omega_z_in = omega[2];
     const double t16 = omega_z_in * t10;
     const double t17 = attitude_z_in * t16;
     const double t18 = t15 + t17;

@@ -21,7 +21,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 4afaf282592afd30.
+ * Body of these files: sha256 72f069be7726cb4a.
  */
 #ifndef HEAVY_BODY_F64_H
 #define HEAVY_BODY_F64_H
@@ -101,7 +101,7 @@ void heavy_body_kinetic_energy_f64(const heavy_body_constants_f64 *constants, co
  *            1.5e-16), omega_next 6e-14 rad/s (seen 1.8e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 93 add, 17 sub, 120 mul, 9 div, 9 neg, 2 less, 30 select.
- * On Cortex-M0+, -O2: 57497 to 58626 instructions, 4464 B of code, 344 B of stack.
+ * On Cortex-M0+, -O2: 57500 to 58629 instructions, 4516 B of code, 352 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -124,7 +124,7 @@ void heavy_body_step_split2_f64(const heavy_body_constants_f64 *constants, const
  *            1.5e-16), omega_next 2.3e-13 rad/s (seen 2.5e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 588 add, 137 sub, 716 mul, 54 div, 49 neg, 2 less, 90 select.
- * On Cortex-M0+, -O2: 350760 to 354877 instructions, 24320 B of code, 520 B of stack.
+ * On Cortex-M0+, -O2: 350743 to 354860 instructions, 24280 B of code, 528 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -150,7 +150,7 @@ void heavy_body_step_split_f64(const heavy_body_constants_f64 *constants, const 
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 76 add, 24 sub, 144 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 55292 to 56498 instructions, 3516 B of code, 408 B of stack.
+ * On Cortex-M0+, -O2: 55292 to 56498 instructions, 3516 B of code, 416 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

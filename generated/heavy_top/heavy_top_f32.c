@@ -189,12 +189,12 @@ static heavy_top_sines_f32 heavy_top_sine_cosine_f32(float angle)
 void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3])
 {
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const heavy_top_sines_f32 t0_both = heavy_top_sine_cosine_f32(theta);
     const float t0 = t0_both.sine;
+    const float omega_y_in = omega[1];
     const float t1 = omega_y_in / t0;
+    const float omega_x_in = omega[0];
+    const float omega_z_in = omega[2];
     coordinate_rates[0] = t1;
     const float t2 = t0_both.cosine;
     const float t3 = t1 * t2;
@@ -216,12 +216,12 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
 void heavy_top_state_rate_jacobian_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[13])
 {
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const heavy_top_sines_f32 t0_both = heavy_top_sine_cosine_f32(theta);
     const float t0 = t0_both.sine;
     const float t1 = 1.0F / t0;
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
     jacobian[6] = t1;
     const float t2 = omega_y_in * t1;
     coordinate_rates[0] = t2;
@@ -273,12 +273,12 @@ void heavy_top_state_rate_jacobian_f32(const heavy_top_constants_f32 *constants,
 void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[36])
 {
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const heavy_top_sines_f32 t0_both = heavy_top_sine_cosine_f32(theta);
     const float t0 = t0_both.sine;
     const float t1 = 1.0F / t0;
+    const float omega_x_in = omega[0];
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
     jacobian[24] = t1;
     const float t2 = omega_y_in * t1;
     coordinate_rates[0] = t2;
@@ -353,12 +353,12 @@ void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *cons
 void heavy_top_kinetic_energy_f32(const heavy_top_constants_f32 *constants, const float omega[3],
     float *kinetic_energy)
 {
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
     const float omega_z_in = omega[2];
     const float t0 = omega_z_in * omega_z_in;
     const float t1 = t0 * constants->half_C;
+    const float omega_y_in = omega[1];
     const float t2 = omega_y_in * omega_y_in;
+    const float omega_x_in = omega[0];
     const float t3 = omega_x_in * omega_x_in;
     const float t4 = t2 + t3;
     const float t5 = t4 * constants->half_A;
@@ -371,9 +371,9 @@ void heavy_top_angular_momentum_f32(const heavy_top_constants_f32 *constants, co
     float angular_momentum[3])
 {
     const float omega_x_in = omega[0];
+    const float t0 = omega_x_in * constants->A;
     const float omega_y_in = omega[1];
     const float omega_z_in = omega[2];
-    const float t0 = omega_x_in * constants->A;
     angular_momentum[0] = t0;
     const float t1 = omega_y_in * constants->A;
     angular_momentum[1] = t1;

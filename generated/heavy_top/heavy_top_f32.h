@@ -21,7 +21,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 4469e4708d127ab0.
+ * Body of these files: sha256 2dea6456c6e4d74f.
  */
 #ifndef HEAVY_TOP_F32_H
 #define HEAVY_TOP_F32_H
@@ -81,8 +81,8 @@ int heavy_top_setup_f32(float A, float C, float m, float g, float l,
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y infinite, no number or
  *            beyond all measure.
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 4762 to 5608 instructions, 696 B of code, 128 B of stack.
- * On Cortex-M4F, -O2: 118 to 119 instructions, 532 B of code, 52 B of stack.
+ * On Cortex-M0+, -O2: 4763 to 5609 instructions, 696 B of code, 128 B of stack.
+ * On Cortex-M4F, -O2: 117 to 118 instructions, 524 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -108,8 +108,8 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y, jacobian infinite, no
  *            number or beyond all measure.
  * Cost: 1 add, 5 sub, 15 mul, 1 div, 4 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 6216 to 7077 instructions, 892 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 150 to 151 instructions, 656 B of code, 52 B of stack.
+ * On Cortex-M0+, -O2: 6218 to 7079 instructions, 896 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 149 to 150 instructions, 656 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -118,8 +118,8 @@ void heavy_top_state_rate_jacobian_f32(const heavy_top_constants_f32 *constants,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[13]);
 
 /* The same, the whole matrix: 36 entries.
- * On Cortex-M0+, -O2: 6232 to 7105 instructions, 944 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 173 to 174 instructions, 752 B of code, 52 B of stack.
+ * On Cortex-M0+, -O2: 6234 to 7106 instructions, 948 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 172 to 173 instructions, 704 B of code, 44 B of stack.
  */
 void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[36]);

@@ -188,12 +188,12 @@ static heavy_top_sines_f64 heavy_top_sine_cosine_f64(double angle)
 void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double theta,
     const double omega[3], double coordinate_rates[3], double omega_dot[3])
 {
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const heavy_top_sines_f64 t0_both = heavy_top_sine_cosine_f64(theta);
     const double t0 = t0_both.sine;
+    const double omega_y_in = omega[1];
     const double t1 = omega_y_in / t0;
+    const double omega_x_in = omega[0];
+    const double omega_z_in = omega[2];
     coordinate_rates[0] = t1;
     const double t2 = t0_both.cosine;
     const double t3 = t1 * t2;
@@ -215,12 +215,12 @@ void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double t
 void heavy_top_state_rate_jacobian_f64(const heavy_top_constants_f64 *constants, double theta,
     const double omega[3], double coordinate_rates[3], double omega_dot[3], double jacobian[13])
 {
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const heavy_top_sines_f64 t0_both = heavy_top_sine_cosine_f64(theta);
     const double t0 = t0_both.sine;
     const double t1 = 1.0 / t0;
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
     jacobian[6] = t1;
     const double t2 = omega_y_in * t1;
     coordinate_rates[0] = t2;
@@ -272,12 +272,12 @@ void heavy_top_state_rate_jacobian_f64(const heavy_top_constants_f64 *constants,
 void heavy_top_state_rate_jacobian_dense_f64(const heavy_top_constants_f64 *constants, double theta,
     const double omega[3], double coordinate_rates[3], double omega_dot[3], double jacobian[36])
 {
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const heavy_top_sines_f64 t0_both = heavy_top_sine_cosine_f64(theta);
     const double t0 = t0_both.sine;
     const double t1 = 1.0 / t0;
+    const double omega_x_in = omega[0];
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
     jacobian[24] = t1;
     const double t2 = omega_y_in * t1;
     coordinate_rates[0] = t2;
@@ -352,12 +352,12 @@ void heavy_top_state_rate_jacobian_dense_f64(const heavy_top_constants_f64 *cons
 void heavy_top_kinetic_energy_f64(const heavy_top_constants_f64 *constants, const double omega[3],
     double *kinetic_energy)
 {
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
     const double omega_z_in = omega[2];
     const double t0 = omega_z_in * omega_z_in;
     const double t1 = t0 * constants->half_C;
+    const double omega_y_in = omega[1];
     const double t2 = omega_y_in * omega_y_in;
+    const double omega_x_in = omega[0];
     const double t3 = omega_x_in * omega_x_in;
     const double t4 = t2 + t3;
     const double t5 = t4 * constants->half_A;
@@ -370,9 +370,9 @@ void heavy_top_angular_momentum_f64(const heavy_top_constants_f64 *constants, co
     double angular_momentum[3])
 {
     const double omega_x_in = omega[0];
+    const double t0 = omega_x_in * constants->A;
     const double omega_y_in = omega[1];
     const double omega_z_in = omega[2];
-    const double t0 = omega_x_in * constants->A;
     angular_momentum[0] = t0;
     const double t1 = omega_y_in * constants->A;
     angular_momentum[1] = t1;

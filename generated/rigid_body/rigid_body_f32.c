@@ -355,31 +355,31 @@ void rigid_body_state_rate_f32(const rigid_body_constants_f32 *constants, const 
     const float velocity[3], const float omega[3], const float force[3], const float moment[3],
     float position_rate[3], float attitude_rate[4], float velocity_rate[3], float omega_dot[3])
 {
-    const float attitude_w_in = attitude[0];
+    const float omega_x_in = omega[0];
+    const float t0 = omega_x_in * 0.5F;
     const float attitude_x_in = attitude[1];
+    const float t1 = attitude_x_in * t0;
+    const float omega_y_in = omega[1];
+    const float t2 = omega_y_in * 0.5F;
     const float attitude_y_in = attitude[2];
+    const float t3 = attitude_y_in * t2;
+    const float t4 = t1 + t3;
+    const float omega_z_in = omega[2];
+    const float t5 = omega_z_in * 0.5F;
     const float attitude_z_in = attitude[3];
+    const float t6 = attitude_z_in * t5;
+    const float t7 = t4 + t6;
+    const float t8 = -t7;
+    const float attitude_w_in = attitude[0];
     const float velocity_x_in = velocity[0];
     const float velocity_y_in = velocity[1];
     const float velocity_z_in = velocity[2];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float force_x_in = force[0];
     const float force_y_in = force[1];
     const float force_z_in = force[2];
     const float moment_x_in = moment[0];
     const float moment_y_in = moment[1];
     const float moment_z_in = moment[2];
-    const float t0 = omega_x_in * 0.5F;
-    const float t1 = attitude_x_in * t0;
-    const float t2 = omega_y_in * 0.5F;
-    const float t3 = attitude_y_in * t2;
-    const float t4 = t1 + t3;
-    const float t5 = omega_z_in * 0.5F;
-    const float t6 = attitude_z_in * t5;
-    const float t7 = t4 + t6;
-    const float t8 = -t7;
     attitude_rate[0] = t8;
     const float t9 = t0 * attitude_w_in;
     const float t10 = attitude_y_in * t5;
@@ -489,6 +489,8 @@ void rigid_body_state_rate_jacobian_f32(const rigid_body_constants_f32 *constant
     const float moment[3], float position_rate[3], float attitude_rate[4], float velocity_rate[3],
     float omega_dot[3], float jacobian[66])
 {
+    const float omega_x_in = omega[0];
+    const float t0 = omega_x_in * 0.5F;
     const float attitude_w_in = attitude[0];
     const float attitude_x_in = attitude[1];
     const float attitude_y_in = attitude[2];
@@ -496,7 +498,6 @@ void rigid_body_state_rate_jacobian_f32(const rigid_body_constants_f32 *constant
     const float velocity_x_in = velocity[0];
     const float velocity_y_in = velocity[1];
     const float velocity_z_in = velocity[2];
-    const float omega_x_in = omega[0];
     const float omega_y_in = omega[1];
     const float omega_z_in = omega[2];
     const float force_x_in = force[0];
@@ -505,7 +506,6 @@ void rigid_body_state_rate_jacobian_f32(const rigid_body_constants_f32 *constant
     const float moment_x_in = moment[0];
     const float moment_y_in = moment[1];
     const float moment_z_in = moment[2];
-    const float t0 = omega_x_in * 0.5F;
     jacobian[0] = t0;
     jacobian[20] = t0;
     const float t1 = attitude_x_in * t0;
@@ -774,6 +774,8 @@ void rigid_body_state_rate_jacobian_dense_f32(const rigid_body_constants_f32 *co
     const float moment[3], float position_rate[3], float attitude_rate[4], float velocity_rate[3],
     float omega_dot[3], float jacobian[247])
 {
+    const float omega_x_in = omega[0];
+    const float t0 = omega_x_in * 0.5F;
     const float attitude_w_in = attitude[0];
     const float attitude_x_in = attitude[1];
     const float attitude_y_in = attitude[2];
@@ -781,7 +783,6 @@ void rigid_body_state_rate_jacobian_dense_f32(const rigid_body_constants_f32 *co
     const float velocity_x_in = velocity[0];
     const float velocity_y_in = velocity[1];
     const float velocity_z_in = velocity[2];
-    const float omega_x_in = omega[0];
     const float omega_y_in = omega[1];
     const float omega_z_in = omega[2];
     const float force_x_in = force[0];
@@ -790,7 +791,6 @@ void rigid_body_state_rate_jacobian_dense_f32(const rigid_body_constants_f32 *co
     const float moment_x_in = moment[0];
     const float moment_y_in = moment[1];
     const float moment_z_in = moment[2];
-    const float t0 = omega_x_in * 0.5F;
     jacobian[43] = t0;
     jacobian[83] = t0;
     const float t1 = attitude_x_in * t0;
@@ -1239,21 +1239,21 @@ void rigid_body_kinetic_energy_f32(const rigid_body_constants_f32 *constants,
     const float velocity[3], const float omega[3], float *kinetic_energy)
 {
     const float velocity_x_in = velocity[0];
-    const float velocity_y_in = velocity[1];
-    const float velocity_z_in = velocity[2];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float t0 = velocity_x_in * velocity_x_in;
+    const float velocity_y_in = velocity[1];
     const float t1 = velocity_y_in * velocity_y_in;
     const float t2 = t0 + t1;
+    const float velocity_z_in = velocity[2];
     const float t3 = velocity_z_in * velocity_z_in;
     const float t4 = t2 + t3;
     const float t5 = t4 * constants->half_m;
+    const float omega_z_in = omega[2];
     const float t6 = omega_z_in * omega_z_in;
     const float t7 = t6 * constants->half_I_zz;
     const float t8 = t5 + t7;
+    const float omega_x_in = omega[0];
     const float t9 = omega_x_in * constants->half_I_xx;
+    const float omega_y_in = omega[1];
     const float t10 = omega_y_in * constants->I_xy;
     const float t11 = t9 - t10;
     const float t12 = omega_z_in * constants->I_xz;
@@ -1273,26 +1273,26 @@ void rigid_body_moment_f32(const rigid_body_constants_f32 *constants, const floa
     const float omega_dot[3], float moment[3])
 {
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
-    const float omega_dot_x_in = omega_dot[0];
-    const float omega_dot_y_in = omega_dot[1];
-    const float omega_dot_z_in = omega_dot[2];
     const float t0 = omega_x_in * constants->I_xy;
+    const float omega_z_in = omega[2];
     const float t1 = omega_z_in * constants->I_yz;
     const float t2 = t0 + t1;
     const float t3 = omega_z_in * t2;
+    const float omega_dot_x_in = omega_dot[0];
     const float t4 = omega_dot_x_in * constants->I_xx;
     const float t5 = t3 + t4;
     const float t6 = omega_x_in * constants->I_xz;
+    const float omega_y_in = omega[1];
     const float t7 = omega_y_in * constants->I_yz;
     const float t8 = t6 + t7;
     const float t9 = omega_z_in * constants->I_yy_minus_I_zz;
     const float t10 = t8 + t9;
     const float t11 = omega_y_in * t10;
     const float t12 = t5 - t11;
+    const float omega_dot_y_in = omega_dot[1];
     const float t13 = omega_dot_y_in * constants->I_xy;
     const float t14 = t12 - t13;
+    const float omega_dot_z_in = omega_dot[2];
     const float t15 = omega_dot_z_in * constants->I_xz;
     const float t16 = t14 - t15;
     moment[0] = t16;

@@ -23,7 +23,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 c4d4af23283abade.
+ * Body of these files: sha256 434735452570a654.
  */
 #ifndef RIGID_BODY_F32_H
 #define RIGID_BODY_F32_H
@@ -132,7 +132,7 @@ int rigid_body_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xy
  *            omega_dot 0.00014 rad/s^2 (seen 2.4e-05); assumed: quaternions given with |q|^2 in
  *            0.999 .. 1.001.
  * Cost: 21 add, 16 sub, 59 mul, 1 neg.
- * On Cortex-M0+, -O2: 9643 to 10069 instructions, 1048 B of code, 128 B of stack.
+ * On Cortex-M0+, -O2: 9658 to 10084 instructions, 1076 B of code, 136 B of stack.
  * On Cortex-M4F, -O2: 155 instructions, 596 B of code, 28 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -166,7 +166,7 @@ void rigid_body_state_rate_f32(const rigid_body_constants_f32 *constants, const 
  *            omega_dot 8.1e-05 rad/s^2 (seen 2e-05), jacobian 2.9e-05 (seen 1.6e-05); assumed:
  *            quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 43 add, 30 sub, 98 mul, 11 neg.
- * On Cortex-M0+, -O2: 17374 to 18033 instructions, 2104 B of code, 176 B of stack.
+ * On Cortex-M0+, -O2: 17396 to 18054 instructions, 2148 B of code, 176 B of stack.
  * On Cortex-M4F, -O2: 338 instructions, 1316 B of code, 64 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -178,7 +178,7 @@ void rigid_body_state_rate_jacobian_f32(const rigid_body_constants_f32 *constant
     float omega_dot[3], float jacobian[66]);
 
 /* The same, the whole matrix: 247 entries.
- * On Cortex-M0+, -O2: 18078 to 18688 instructions, 3736 B of code, 520 B of stack.
+ * On Cortex-M0+, -O2: 18105 to 18715 instructions, 3788 B of code, 520 B of stack.
  * On Cortex-M4F, -O2: 520 instructions, 1984 B of code, 64 B of stack.
  */
 void rigid_body_state_rate_jacobian_dense_f32(const rigid_body_constants_f32 *constants,
@@ -229,7 +229,7 @@ void rigid_body_kinetic_energy_f32(const rigid_body_constants_f32 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 6.6e-05 N m (seen
  *            4.2e-05).
  * Cost: 7 add, 10 sub, 23 mul.
- * On Cortex-M0+, -O2: 3977 to 4205 instructions, 464 B of code, 96 B of stack.
+ * On Cortex-M0+, -O2: 3979 to 4207 instructions, 468 B of code, 96 B of stack.
  * On Cortex-M4F, -O2: 63 instructions, 252 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.

@@ -353,31 +353,31 @@ void rigid_body_state_rate_f64(const rigid_body_constants_f64 *constants, const 
     const double velocity[3], const double omega[3], const double force[3], const double moment[3],
     double position_rate[3], double attitude_rate[4], double velocity_rate[3], double omega_dot[3])
 {
-    const double attitude_w_in = attitude[0];
+    const double omega_x_in = omega[0];
+    const double t0 = omega_x_in * 0.5;
     const double attitude_x_in = attitude[1];
+    const double t1 = attitude_x_in * t0;
+    const double omega_y_in = omega[1];
+    const double t2 = omega_y_in * 0.5;
     const double attitude_y_in = attitude[2];
+    const double t3 = attitude_y_in * t2;
+    const double t4 = t1 + t3;
+    const double omega_z_in = omega[2];
+    const double t5 = omega_z_in * 0.5;
     const double attitude_z_in = attitude[3];
+    const double t6 = attitude_z_in * t5;
+    const double t7 = t4 + t6;
+    const double t8 = -t7;
+    const double attitude_w_in = attitude[0];
     const double velocity_x_in = velocity[0];
     const double velocity_y_in = velocity[1];
     const double velocity_z_in = velocity[2];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double force_x_in = force[0];
     const double force_y_in = force[1];
     const double force_z_in = force[2];
     const double moment_x_in = moment[0];
     const double moment_y_in = moment[1];
     const double moment_z_in = moment[2];
-    const double t0 = omega_x_in * 0.5;
-    const double t1 = attitude_x_in * t0;
-    const double t2 = omega_y_in * 0.5;
-    const double t3 = attitude_y_in * t2;
-    const double t4 = t1 + t3;
-    const double t5 = omega_z_in * 0.5;
-    const double t6 = attitude_z_in * t5;
-    const double t7 = t4 + t6;
-    const double t8 = -t7;
     attitude_rate[0] = t8;
     const double t9 = t0 * attitude_w_in;
     const double t10 = attitude_y_in * t5;
@@ -487,6 +487,8 @@ void rigid_body_state_rate_jacobian_f64(const rigid_body_constants_f64 *constant
     const double force[3], const double moment[3], double position_rate[3], double attitude_rate[4],
     double velocity_rate[3], double omega_dot[3], double jacobian[66])
 {
+    const double omega_x_in = omega[0];
+    const double t0 = omega_x_in * 0.5;
     const double attitude_w_in = attitude[0];
     const double attitude_x_in = attitude[1];
     const double attitude_y_in = attitude[2];
@@ -494,7 +496,6 @@ void rigid_body_state_rate_jacobian_f64(const rigid_body_constants_f64 *constant
     const double velocity_x_in = velocity[0];
     const double velocity_y_in = velocity[1];
     const double velocity_z_in = velocity[2];
-    const double omega_x_in = omega[0];
     const double omega_y_in = omega[1];
     const double omega_z_in = omega[2];
     const double force_x_in = force[0];
@@ -503,7 +504,6 @@ void rigid_body_state_rate_jacobian_f64(const rigid_body_constants_f64 *constant
     const double moment_x_in = moment[0];
     const double moment_y_in = moment[1];
     const double moment_z_in = moment[2];
-    const double t0 = omega_x_in * 0.5;
     jacobian[0] = t0;
     jacobian[20] = t0;
     const double t1 = attitude_x_in * t0;
@@ -772,6 +772,8 @@ void rigid_body_state_rate_jacobian_dense_f64(const rigid_body_constants_f64 *co
     const double force[3], const double moment[3], double position_rate[3], double attitude_rate[4],
     double velocity_rate[3], double omega_dot[3], double jacobian[247])
 {
+    const double omega_x_in = omega[0];
+    const double t0 = omega_x_in * 0.5;
     const double attitude_w_in = attitude[0];
     const double attitude_x_in = attitude[1];
     const double attitude_y_in = attitude[2];
@@ -779,7 +781,6 @@ void rigid_body_state_rate_jacobian_dense_f64(const rigid_body_constants_f64 *co
     const double velocity_x_in = velocity[0];
     const double velocity_y_in = velocity[1];
     const double velocity_z_in = velocity[2];
-    const double omega_x_in = omega[0];
     const double omega_y_in = omega[1];
     const double omega_z_in = omega[2];
     const double force_x_in = force[0];
@@ -788,7 +789,6 @@ void rigid_body_state_rate_jacobian_dense_f64(const rigid_body_constants_f64 *co
     const double moment_x_in = moment[0];
     const double moment_y_in = moment[1];
     const double moment_z_in = moment[2];
-    const double t0 = omega_x_in * 0.5;
     jacobian[43] = t0;
     jacobian[83] = t0;
     const double t1 = attitude_x_in * t0;
@@ -1237,21 +1237,21 @@ void rigid_body_kinetic_energy_f64(const rigid_body_constants_f64 *constants,
     const double velocity[3], const double omega[3], double *kinetic_energy)
 {
     const double velocity_x_in = velocity[0];
-    const double velocity_y_in = velocity[1];
-    const double velocity_z_in = velocity[2];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double t0 = velocity_x_in * velocity_x_in;
+    const double velocity_y_in = velocity[1];
     const double t1 = velocity_y_in * velocity_y_in;
     const double t2 = t0 + t1;
+    const double velocity_z_in = velocity[2];
     const double t3 = velocity_z_in * velocity_z_in;
     const double t4 = t2 + t3;
     const double t5 = t4 * constants->half_m;
+    const double omega_z_in = omega[2];
     const double t6 = omega_z_in * omega_z_in;
     const double t7 = t6 * constants->half_I_zz;
     const double t8 = t5 + t7;
+    const double omega_x_in = omega[0];
     const double t9 = omega_x_in * constants->half_I_xx;
+    const double omega_y_in = omega[1];
     const double t10 = omega_y_in * constants->I_xy;
     const double t11 = t9 - t10;
     const double t12 = omega_z_in * constants->I_xz;
@@ -1271,26 +1271,26 @@ void rigid_body_moment_f64(const rigid_body_constants_f64 *constants, const doub
     const double omega_dot[3], double moment[3])
 {
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
-    const double omega_dot_x_in = omega_dot[0];
-    const double omega_dot_y_in = omega_dot[1];
-    const double omega_dot_z_in = omega_dot[2];
     const double t0 = omega_x_in * constants->I_xy;
+    const double omega_z_in = omega[2];
     const double t1 = omega_z_in * constants->I_yz;
     const double t2 = t0 + t1;
     const double t3 = omega_z_in * t2;
+    const double omega_dot_x_in = omega_dot[0];
     const double t4 = omega_dot_x_in * constants->I_xx;
     const double t5 = t3 + t4;
     const double t6 = omega_x_in * constants->I_xz;
+    const double omega_y_in = omega[1];
     const double t7 = omega_y_in * constants->I_yz;
     const double t8 = t6 + t7;
     const double t9 = omega_z_in * constants->I_yy_minus_I_zz;
     const double t10 = t8 + t9;
     const double t11 = omega_y_in * t10;
     const double t12 = t5 - t11;
+    const double omega_dot_y_in = omega_dot[1];
     const double t13 = omega_dot_y_in * constants->I_xy;
     const double t14 = t12 - t13;
+    const double omega_dot_z_in = omega_dot[2];
     const double t15 = omega_dot_z_in * constants->I_xz;
     const double t16 = t14 - t15;
     moment[0] = t16;

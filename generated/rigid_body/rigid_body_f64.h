@@ -22,7 +22,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 9445bf59814e6bf3.
+ * Body of these files: sha256 786373ecf4d11f59.
  */
 #ifndef RIGID_BODY_F64_H
 #define RIGID_BODY_F64_H
@@ -130,7 +130,7 @@ int rigid_body_setup_f64(double m, double I_xx, double I_yy, double I_zz, double
  *            omega_dot 2.6e-13 rad/s^2 (seen 5.4e-14); assumed: quaternions given with |q|^2 in
  *            0.999 .. 1.001.
  * Cost: 21 add, 16 sub, 59 mul, 1 neg.
- * On Cortex-M0+, -O2: 22397 to 22955 instructions, 1668 B of code, 256 B of stack.
+ * On Cortex-M0+, -O2: 22398 to 22956 instructions, 1672 B of code, 256 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -163,7 +163,7 @@ void rigid_body_state_rate_f64(const rigid_body_constants_f64 *constants, const 
  *            omega_dot 1.5e-13 rad/s^2 (seen 3.3e-14), jacobian 5.3e-14 (seen 3.4e-14); assumed:
  *            quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 43 add, 30 sub, 98 mul, 11 neg.
- * On Cortex-M0+, -O2: 40177 to 40901 instructions, 3748 B of code, 368 B of stack.
+ * On Cortex-M0+, -O2: 40188 to 40913 instructions, 3768 B of code, 376 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -174,7 +174,7 @@ void rigid_body_state_rate_jacobian_f64(const rigid_body_constants_f64 *constant
     double velocity_rate[3], double omega_dot[3], double jacobian[66]);
 
 /* The same, the whole matrix: 247 entries.
- * On Cortex-M0+, -O2: 41909 to 42523 instructions, 7164 B of code, 952 B of stack.
+ * On Cortex-M0+, -O2: 41932 to 42545 instructions, 7208 B of code, 952 B of stack.
  */
 void rigid_body_state_rate_jacobian_dense_f64(const rigid_body_constants_f64 *constants,
     const double attitude[4], const double velocity[3], const double omega[3],
@@ -223,7 +223,7 @@ void rigid_body_kinetic_energy_f64(const rigid_body_constants_f64 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 1.3e-13 N m (seen
  *            8.7e-14).
  * Cost: 7 add, 10 sub, 23 mul.
- * On Cortex-M0+, -O2: 9241 to 9546 instructions, 720 B of code, 176 B of stack.
+ * On Cortex-M0+, -O2: 9247 to 9552 instructions, 732 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -269,25 +269,25 @@ static satellite_sines_f32 satellite_sine_cosine_f32(float angle)
 void satellite_state_rate_f32(const satellite_constants_f32 *constants, const float attitude[4],
     const float omega[3], const float moment[3], float attitude_rate[4], float omega_dot[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
-    const float moment_x_in = moment[0];
-    const float moment_y_in = moment[1];
-    const float moment_z_in = moment[2];
     const float t0 = omega_x_in * 0.5F;
+    const float attitude_x_in = attitude[1];
     const float t1 = attitude_x_in * t0;
+    const float omega_y_in = omega[1];
     const float t2 = omega_y_in * 0.5F;
+    const float attitude_y_in = attitude[2];
     const float t3 = attitude_y_in * t2;
     const float t4 = t1 + t3;
+    const float omega_z_in = omega[2];
     const float t5 = omega_z_in * 0.5F;
+    const float attitude_z_in = attitude[3];
     const float t6 = attitude_z_in * t5;
     const float t7 = t4 + t6;
     const float t8 = -t7;
+    const float attitude_w_in = attitude[0];
+    const float moment_x_in = moment[0];
+    const float moment_y_in = moment[1];
+    const float moment_z_in = moment[2];
     attitude_rate[0] = t8;
     const float t9 = t0 * attitude_w_in;
     const float t10 = attitude_y_in * t5;
@@ -329,28 +329,24 @@ void satellite_step_rk4_f32(const satellite_constants_f32 *constants, const floa
     const float omega[3], const float moment[3], float time_step, float attitude_next[4],
     float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
-    const float moment_x_in = moment[0];
-    const float moment_y_in = moment[1];
-    const float moment_z_in = moment[2];
     const float t0 = time_step * 0.5F;
     const float t4 = t0 * 0.5F;
+    const float omega_x_in = omega[0];
     const float t5 = omega_x_in * t4;
+    const float omega_y_in = omega[1];
     const float t6 = omega_y_in * t4;
+    const float omega_z_in = omega[2];
     const float t7 = omega_z_in * t4;
     const float t8 = constants->one_over_I_xx * t0;
+    const float moment_x_in = moment[0];
     const float t9 = moment_x_in * t8;
     const float t10 = constants->k1 * t0;
     const float t13 = constants->one_over_I_yy * t0;
+    const float moment_y_in = moment[1];
     const float t14 = moment_y_in * t13;
     const float t15 = constants->k2 * t0;
     const float t18 = constants->one_over_I_zz * t0;
+    const float moment_z_in = moment[2];
     const float t19 = moment_z_in * t18;
     const float t20 = constants->k3 * t0;
     const float t1 = omega_y_in * omega_z_in;
@@ -411,6 +407,10 @@ void satellite_step_rk4_f32(const satellite_constants_f32 *constants, const floa
     const float t162 = t161 + t70;
     const float t163 = t162 * 0.333333343F;
     const float t198 = omega_z_in + t163;
+    const float attitude_w_in = attitude[0];
+    const float attitude_x_in = attitude[1];
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
     omega_next[2] = t198;
     const float t55 = t52 * 2.0F;
     const float t58 = omega_z_in + t55;
@@ -6194,29 +6194,25 @@ void satellite_step_lie_f32(const satellite_constants_f32 *constants, const floa
     const float omega[3], const float moment[3], float time_step, float attitude_next[4],
     float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
-    const float moment_x_in = moment[0];
-    const float moment_y_in = moment[1];
-    const float moment_z_in = moment[2];
     const float t0 = time_step * 0.5F;
     const float t4 = constants->one_over_I_xx * t0;
+    const float moment_x_in = moment[0];
     const float t5 = moment_x_in * t4;
     const float t6 = constants->k1 * t0;
     const float t9 = constants->one_over_I_yy * t0;
+    const float moment_y_in = moment[1];
     const float t10 = moment_y_in * t9;
     const float t11 = constants->k2 * t0;
     const float t14 = constants->one_over_I_zz * t0;
+    const float moment_z_in = moment[2];
     const float t15 = moment_z_in * t14;
     const float t16 = constants->k3 * t0;
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
     const float t1 = omega_y_in * omega_z_in;
     const float t7 = t1 * t6;
     const float t8 = t5 + t7;
+    const float omega_x_in = omega[0];
     const float t19 = omega_x_in + t8;
     const float t63 = t19 * time_step;
     const float t2 = omega_x_in * omega_z_in;
@@ -6273,6 +6269,10 @@ void satellite_step_lie_f32(const satellite_constants_f32 *constants, const floa
     const float t113 = t110 * 0.666666687F;
     const float t116 = t107 + t113;
     const float t364 = omega_z_in + t116;
+    const float attitude_w_in = attitude[0];
+    const float attitude_x_in = attitude[1];
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
     omega_next[2] = t364;
     const float t47 = t44 * 2.0F;
     const float t50 = omega_z_in + t47;
@@ -6587,19 +6587,12 @@ void satellite_step_split_f32(const satellite_constants_f32 *constants, const fl
     const float omega[3], const float moment[3], float time_step, float attitude_next[4],
     float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
-    const float moment_x_in = moment[0];
-    const float moment_y_in = moment[1];
-    const float moment_z_in = moment[2];
     const _Bool t0 = 0.0F < constants->from_x;
     const _Bool t1 = 0.0F < constants->from_y;
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
     const float t2 = t1 ? omega_y_in : omega_z_in;
+    const float omega_x_in = omega[0];
     const float t3 = t0 ? omega_x_in : t2;
     const float t4 = t1 ? omega_z_in : omega_x_in;
     const float t5 = t0 ? omega_y_in : t4;
@@ -6611,7 +6604,10 @@ void satellite_step_split_f32(const satellite_constants_f32 *constants, const fl
     const float t11 = t10 * constants->spin_a;
     const float t12 = t10 * constants->spin_c;
     const float t13 = time_step * constants->compliance;
+    const float moment_y_in = moment[1];
+    const float moment_z_in = moment[2];
     const float t14 = t1 ? moment_y_in : moment_z_in;
+    const float moment_x_in = moment[0];
     const float t15 = t0 ? moment_x_in : t14;
     const float t16 = t1 ? moment_z_in : moment_x_in;
     const float t17 = t0 ? moment_y_in : t16;
@@ -7890,11 +7886,15 @@ void satellite_step_split_f32(const satellite_constants_f32 *constants, const fl
     const float t1486 = t0 ? t1463 : t1485;
     const float t1487 = t1 ? t1463 : t1457;
     const float t1488 = t0 ? t1465 : t1487;
+    const float attitude_w_in = attitude[0];
     const float t1489 = t1459 * attitude_w_in;
+    const float attitude_x_in = attitude[1];
     const float t1490 = attitude_x_in * t1484;
     const float t1491 = t1489 + t1490;
+    const float attitude_y_in = attitude[2];
     const float t1492 = attitude_y_in * t1486;
     const float t1493 = t1491 + t1492;
+    const float attitude_z_in = attitude[3];
     const float t1494 = attitude_z_in * t1488;
     const float t1495 = t1493 + t1494;
     const float t1496 = -t1495;

@@ -20,7 +20,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 68ba202eb3ecd6b9.
+ * Body of these files: sha256 2c667f232c4f5a8f.
  */
 #ifndef SATELLITE_F32_H
 #define SATELLITE_F32_H
@@ -65,7 +65,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 24 operations on pairs.
- * On Cortex-M0+, -O2: 122369 to 124614 instructions, 2780 B of code, 656 B of stack.
+ * On Cortex-M0+, -O2: 122369 to 124615 instructions, 2780 B of code, 656 B of stack.
  * On Cortex-M4F, -O2: 2662 to 2666 instructions, 1944 B of code, 444 B of stack.
  */
 int satellite_setup_f32(float I_xx, float I_yy, float I_zz, satellite_constants_f32 *constants);
@@ -98,7 +98,7 @@ int satellite_setup_f32(float I_xx, float I_yy, float I_zz, satellite_constants_
  *            1.1e-06), omega_dot 1.2e-05 rad/s^2 (seen 9e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 7 add, 4 sub, 24 mul, 1 neg.
- * On Cortex-M0+, -O2: 3699 to 3882 instructions, 440 B of code, 104 B of stack.
+ * On Cortex-M0+, -O2: 3701 to 3884 instructions, 444 B of code, 104 B of stack.
  * On Cortex-M4F, -O2: 63 instructions, 248 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -126,8 +126,8 @@ void satellite_state_rate_f32(const satellite_constants_f32 *constants, const fl
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 71 add, 22 sub, 117 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 20852 to 21434 instructions, 1956 B of code, 192 B of stack.
- * On Cortex-M4F, -O2: 256 instructions, 1028 B of code, 88 B of stack.
+ * On Cortex-M0+, -O2: 20849 to 21431 instructions, 1948 B of code, 184 B of stack.
+ * On Cortex-M4F, -O2: 254 instructions, 1020 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -208,7 +208,7 @@ void satellite_step_rk4_tangent_f32(const satellite_constants_f32 *constants,
     float attitude_next[4], float omega_next[3], float jacobian[45]);
 
 /* The same, the whole matrix: 54 entries.
- * On Cortex-M0+, -O2: 73874 to 76053 instructions, 7528 B of code, 416 B of stack.
+ * On Cortex-M0+, -O2: 73874 to 76052 instructions, 7528 B of code, 416 B of stack.
  * On Cortex-M4F, -O2: 1124 instructions, 4544 B of code, 304 B of stack.
  */
 void satellite_step_rk4_tangent_dense_f32(const satellite_constants_f32 *constants,
@@ -248,7 +248,7 @@ void satellite_step_rk4_sensitivity_f32(const satellite_constants_f32 *constants
     float attitude_next[4], float omega_next[3], float jacobian[21]);
 
 /* The same, the whole matrix: 21 entries.
- * On Cortex-M0+, -O2: 87188 to 89091 instructions, 8324 B of code, 536 B of stack.
+ * On Cortex-M0+, -O2: 87187 to 89091 instructions, 8324 B of code, 536 B of stack.
  * On Cortex-M4F, -O2: 1321 instructions, 5368 B of code, 360 B of stack.
  */
 void satellite_step_rk4_sensitivity_dense_f32(const satellite_constants_f32 *constants,
@@ -273,8 +273,8 @@ void satellite_step_rk4_sensitivity_dense_f32(const satellite_constants_f32 *con
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 95 add, 61 sub, 156 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * On Cortex-M0+, -O2: 38592 to 39492 instructions, 4120 B of code, 224 B of stack.
- * On Cortex-M4F, -O2: 600 instructions, 2440 B of code, 108 B of stack.
+ * On Cortex-M0+, -O2: 38617 to 39517 instructions, 4160 B of code, 224 B of stack.
+ * On Cortex-M4F, -O2: 601 instructions, 2440 B of code, 108 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -299,8 +299,8 @@ void satellite_step_lie_f32(const satellite_constants_f32 *constants, const floa
  *            1e-07), omega_next 0.00023 rad/s (seen 1.6e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 531 add, 100 sub, 585 mul, 54 div, 44 neg, 2 less, 24 select.
- * On Cortex-M0+, -O2: 135481 to 138179 instructions, 12004 B of code, 512 B of stack.
- * On Cortex-M4F, -O2: 1602 to 1635 instructions, 6860 B of code, 280 B of stack.
+ * On Cortex-M0+, -O2: 135516 to 138213 instructions, 11956 B of code, 496 B of stack.
+ * On Cortex-M4F, -O2: 1603 to 1629 instructions, 6772 B of code, 264 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

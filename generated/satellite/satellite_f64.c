@@ -268,25 +268,25 @@ static satellite_sines_f64 satellite_sine_cosine_f64(double angle)
 void satellite_state_rate_f64(const satellite_constants_f64 *constants, const double attitude[4],
     const double omega[3], const double moment[3], double attitude_rate[4], double omega_dot[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
-    const double moment_x_in = moment[0];
-    const double moment_y_in = moment[1];
-    const double moment_z_in = moment[2];
     const double t0 = omega_x_in * 0.5;
+    const double attitude_x_in = attitude[1];
     const double t1 = attitude_x_in * t0;
+    const double omega_y_in = omega[1];
     const double t2 = omega_y_in * 0.5;
+    const double attitude_y_in = attitude[2];
     const double t3 = attitude_y_in * t2;
     const double t4 = t1 + t3;
+    const double omega_z_in = omega[2];
     const double t5 = omega_z_in * 0.5;
+    const double attitude_z_in = attitude[3];
     const double t6 = attitude_z_in * t5;
     const double t7 = t4 + t6;
     const double t8 = -t7;
+    const double attitude_w_in = attitude[0];
+    const double moment_x_in = moment[0];
+    const double moment_y_in = moment[1];
+    const double moment_z_in = moment[2];
     attitude_rate[0] = t8;
     const double t9 = t0 * attitude_w_in;
     const double t10 = attitude_y_in * t5;
@@ -328,28 +328,24 @@ void satellite_step_rk4_f64(const satellite_constants_f64 *constants, const doub
     const double omega[3], const double moment[3], double time_step, double attitude_next[4],
     double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
-    const double moment_x_in = moment[0];
-    const double moment_y_in = moment[1];
-    const double moment_z_in = moment[2];
     const double t0 = time_step * 0.5;
     const double t4 = t0 * 0.5;
+    const double omega_x_in = omega[0];
     const double t5 = omega_x_in * t4;
+    const double omega_y_in = omega[1];
     const double t6 = omega_y_in * t4;
+    const double omega_z_in = omega[2];
     const double t7 = omega_z_in * t4;
     const double t8 = constants->one_over_I_xx * t0;
+    const double moment_x_in = moment[0];
     const double t9 = moment_x_in * t8;
     const double t10 = constants->k1 * t0;
     const double t13 = constants->one_over_I_yy * t0;
+    const double moment_y_in = moment[1];
     const double t14 = moment_y_in * t13;
     const double t15 = constants->k2 * t0;
     const double t18 = constants->one_over_I_zz * t0;
+    const double moment_z_in = moment[2];
     const double t19 = moment_z_in * t18;
     const double t20 = constants->k3 * t0;
     const double t1 = omega_y_in * omega_z_in;
@@ -410,6 +406,10 @@ void satellite_step_rk4_f64(const satellite_constants_f64 *constants, const doub
     const double t162 = t161 + t70;
     const double t163 = t162 * 0.3333333333333333;
     const double t198 = omega_z_in + t163;
+    const double attitude_w_in = attitude[0];
+    const double attitude_x_in = attitude[1];
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
     omega_next[2] = t198;
     const double t55 = t52 * 2.0;
     const double t58 = omega_z_in + t55;
@@ -6193,29 +6193,25 @@ void satellite_step_lie_f64(const satellite_constants_f64 *constants, const doub
     const double omega[3], const double moment[3], double time_step, double attitude_next[4],
     double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
-    const double moment_x_in = moment[0];
-    const double moment_y_in = moment[1];
-    const double moment_z_in = moment[2];
     const double t0 = time_step * 0.5;
     const double t4 = constants->one_over_I_xx * t0;
+    const double moment_x_in = moment[0];
     const double t5 = moment_x_in * t4;
     const double t6 = constants->k1 * t0;
     const double t9 = constants->one_over_I_yy * t0;
+    const double moment_y_in = moment[1];
     const double t10 = moment_y_in * t9;
     const double t11 = constants->k2 * t0;
     const double t14 = constants->one_over_I_zz * t0;
+    const double moment_z_in = moment[2];
     const double t15 = moment_z_in * t14;
     const double t16 = constants->k3 * t0;
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
     const double t1 = omega_y_in * omega_z_in;
     const double t7 = t1 * t6;
     const double t8 = t5 + t7;
+    const double omega_x_in = omega[0];
     const double t19 = omega_x_in + t8;
     const double t63 = t19 * time_step;
     const double t2 = omega_x_in * omega_z_in;
@@ -6272,6 +6268,10 @@ void satellite_step_lie_f64(const satellite_constants_f64 *constants, const doub
     const double t113 = t110 * 0.6666666666666666;
     const double t116 = t107 + t113;
     const double t364 = omega_z_in + t116;
+    const double attitude_w_in = attitude[0];
+    const double attitude_x_in = attitude[1];
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
     omega_next[2] = t364;
     const double t47 = t44 * 2.0;
     const double t50 = omega_z_in + t47;
@@ -6586,19 +6586,12 @@ void satellite_step_split_f64(const satellite_constants_f64 *constants, const do
     const double omega[3], const double moment[3], double time_step, double attitude_next[4],
     double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
-    const double moment_x_in = moment[0];
-    const double moment_y_in = moment[1];
-    const double moment_z_in = moment[2];
     const _Bool t0 = 0.0 < constants->from_x;
     const _Bool t1 = 0.0 < constants->from_y;
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
     const double t2 = t1 ? omega_y_in : omega_z_in;
+    const double omega_x_in = omega[0];
     const double t3 = t0 ? omega_x_in : t2;
     const double t4 = t1 ? omega_z_in : omega_x_in;
     const double t5 = t0 ? omega_y_in : t4;
@@ -6610,7 +6603,10 @@ void satellite_step_split_f64(const satellite_constants_f64 *constants, const do
     const double t11 = t10 * constants->spin_a;
     const double t12 = t10 * constants->spin_c;
     const double t13 = time_step * constants->compliance;
+    const double moment_y_in = moment[1];
+    const double moment_z_in = moment[2];
     const double t14 = t1 ? moment_y_in : moment_z_in;
+    const double moment_x_in = moment[0];
     const double t15 = t0 ? moment_x_in : t14;
     const double t16 = t1 ? moment_z_in : moment_x_in;
     const double t17 = t0 ? moment_y_in : t16;
@@ -7889,11 +7885,15 @@ void satellite_step_split_f64(const satellite_constants_f64 *constants, const do
     const double t1486 = t0 ? t1463 : t1485;
     const double t1487 = t1 ? t1463 : t1457;
     const double t1488 = t0 ? t1465 : t1487;
+    const double attitude_w_in = attitude[0];
     const double t1489 = t1459 * attitude_w_in;
+    const double attitude_x_in = attitude[1];
     const double t1490 = attitude_x_in * t1484;
     const double t1491 = t1489 + t1490;
+    const double attitude_y_in = attitude[2];
     const double t1492 = attitude_y_in * t1486;
     const double t1493 = t1491 + t1492;
+    const double attitude_z_in = attitude[3];
     const double t1494 = attitude_z_in * t1488;
     const double t1495 = t1493 + t1494;
     const double t1496 = -t1495;

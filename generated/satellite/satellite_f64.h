@@ -19,7 +19,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 7c37ab7747e5a255.
+ * Body of these files: sha256 b46dd4ea9f4fe576.
  */
 #ifndef SATELLITE_F64_H
 #define SATELLITE_F64_H
@@ -96,7 +96,7 @@ int satellite_setup_f64(double I_xx, double I_yy, double I_zz, satellite_constan
  *            2.1e-15), omega_dot 2.2e-14 rad/s^2 (seen 1.7e-14); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 7 add, 4 sub, 24 mul, 1 neg.
- * On Cortex-M0+, -O2: 8678 to 8936 instructions, 672 B of code, 200 B of stack.
+ * On Cortex-M0+, -O2: 8671 to 8929 instructions, 660 B of code, 200 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -123,7 +123,7 @@ void satellite_state_rate_f64(const satellite_constants_f64 *constants, const do
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 71 add, 22 sub, 117 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 47834 to 48810 instructions, 2984 B of code, 376 B of stack.
+ * On Cortex-M0+, -O2: 47823 to 48798 instructions, 2956 B of code, 352 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -153,7 +153,7 @@ void satellite_step_rk4_f64(const satellite_constants_f64 *constants, const doub
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 328 add, 110 sub, 458 mul, 2 div, 12 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 195575 to 198049 instructions, 13328 B of code, 792 B of stack.
+ * On Cortex-M0+, -O2: 195575 to 198050 instructions, 13328 B of code, 792 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -192,7 +192,7 @@ void satellite_step_rk4_jacobian_dense_f64(const satellite_constants_f64 *consta
  *            1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 304 add, 89 sub, 394 mul, 6 div, 1 sqrt.
- * On Cortex-M0+, -O2: 169251 to 170990 instructions, 11528 B of code, 808 B of stack.
+ * On Cortex-M0+, -O2: 169251 to 170989 instructions, 11528 B of code, 808 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -230,7 +230,7 @@ void satellite_step_rk4_tangent_dense_f64(const satellite_constants_f64 *constan
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 254 add, 170 sub, 479 mul, 2 div, 3 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 201565 to 203385 instructions, 12700 B of code, 992 B of stack.
+ * On Cortex-M0+, -O2: 201565 to 203384 instructions, 12700 B of code, 992 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -264,7 +264,7 @@ void satellite_step_rk4_sensitivity_dense_f64(const satellite_constants_f64 *con
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 95 add, 61 sub, 156 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * On Cortex-M0+, -O2: 90084 to 91567 instructions, 6336 B of code, 464 B of stack.
+ * On Cortex-M0+, -O2: 90070 to 91554 instructions, 6312 B of code, 432 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -289,7 +289,7 @@ void satellite_step_lie_f64(const satellite_constants_f64 *constants, const doub
  *            1.4e-16), omega_next 4.2e-13 rad/s (seen 1.9e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 531 add, 100 sub, 585 mul, 54 div, 44 neg, 2 less, 24 select.
- * On Cortex-M0+, -O2: 296716 to 299309 instructions, 18384 B of code, 1024 B of stack.
+ * On Cortex-M0+, -O2: 296772 to 299379 instructions, 18344 B of code, 992 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -314,7 +314,7 @@ void satellite_step_split_f64(const satellite_constants_f64 *constants, const do
  *            thin rod).
  * Bound: not proved: 6759 operations are more than the 2000 tried.
  * Cost: 2396 add, 916 sub, 3419 mul, 22 div, 20 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * On Cortex-M0+, -O2: 1527613 to 1540645 instructions, 4252 B of code, 2160 B of stack.
+ * On Cortex-M0+, -O2: 1527612 to 1540645 instructions, 4252 B of code, 2160 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

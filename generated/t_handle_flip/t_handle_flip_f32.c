@@ -323,13 +323,13 @@ void t_handle_flip_kinetic_energy_f32(const t_handle_flip_constants_f32 *constan
     const float omega[3], float *kinetic_energy)
 {
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float t0 = omega_x_in * omega_x_in;
     const float t1 = t0 * constants->half_I_xx;
+    const float omega_y_in = omega[1];
     const float t2 = omega_y_in * omega_y_in;
     const float t3 = t2 * constants->half_I_yy;
     const float t4 = t1 + t3;
+    const float omega_z_in = omega[2];
     const float t5 = omega_z_in * omega_z_in;
     const float t6 = t5 * constants->half_I_zz;
     const float t7 = t4 + t6;
@@ -341,9 +341,9 @@ void t_handle_flip_angular_momentum_f32(const t_handle_flip_constants_f32 *const
     const float omega[3], float angular_momentum[3])
 {
     const float omega_x_in = omega[0];
+    const float t0 = omega_x_in * constants->I_xx;
     const float omega_y_in = omega[1];
     const float omega_z_in = omega[2];
-    const float t0 = omega_x_in * constants->I_xx;
     angular_momentum[0] = t0;
     const float t1 = omega_y_in * constants->I_yy;
     angular_momentum[1] = t1;
@@ -356,15 +356,11 @@ void t_handle_flip_flow_exact_f32(const t_handle_flip_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time, float attitude_next[4],
     float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float t0 = fabsf(omega_x_in);
+    const float omega_y_in = omega[1];
     const float t1 = fabsf(omega_y_in);
+    const float omega_z_in = omega[2];
     const float t2 = fabsf(omega_z_in);
     const _Bool t3 = t0 < t1;
     const float t4 = t3 ? t1 : t0;
@@ -1165,10 +1161,14 @@ void t_handle_flip_flow_exact_f32(const t_handle_flip_constants_f32 *constants,
     const float t823 = t821 + t822;
     const float t824 = constants->axis_3_z * t795;
     const float t825 = t823 + t824;
+    const float attitude_w_in = attitude[0];
     const float t826 = attitude_w_in * t779;
+    const float attitude_x_in = attitude[1];
     const float t827 = attitude_x_in * t800;
     const float t828 = t826 - t827;
+    const float attitude_y_in = attitude[2];
     const float t829 = attitude_y_in * t805;
+    const float attitude_z_in = attitude[3];
     const float t830 = attitude_z_in * t810;
     const float t831 = t829 + t830;
     const float t832 = t828 - t831;

@@ -20,7 +20,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 30a1bc95fd4f90b5.
+ * Body of these files: sha256 6e2271c0619ebf6a.
  */
 #ifndef T_HANDLE_FLIP_F32_H
 #define T_HANDLE_FLIP_F32_H
@@ -130,8 +130,8 @@ void t_handle_flip_angular_momentum_f32(const t_handle_flip_constants_f32 *const
  * Bound: not proved: a divisor may vanish for all that ranges tell, in set-up.
  * Cost: 170 add, 50 sub, 387 mul, 121 div, 1 neg, 29 sqrt, 2 sin, 2 cos, 14 abs, 2 at_most, 1
  *            both, 13 less, 2 power_of_two, 35 select.
- * On Cortex-M0+, -O2: 112405 to 121467 instructions, 8280 B of code, 464 B of stack.
- * On Cortex-M4F, -O2: 1381 to 1397 instructions, 7044 B of code, 388 B of stack.
+ * On Cortex-M0+, -O2: 112408 to 121471 instructions, 8288 B of code, 456 B of stack.
+ * On Cortex-M4F, -O2: 1372 to 1388 instructions, 6980 B of code, 372 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

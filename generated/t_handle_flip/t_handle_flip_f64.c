@@ -319,13 +319,13 @@ void t_handle_flip_kinetic_energy_f64(const t_handle_flip_constants_f64 *constan
     const double omega[3], double *kinetic_energy)
 {
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double t0 = omega_x_in * omega_x_in;
     const double t1 = t0 * constants->half_I_xx;
+    const double omega_y_in = omega[1];
     const double t2 = omega_y_in * omega_y_in;
     const double t3 = t2 * constants->half_I_yy;
     const double t4 = t1 + t3;
+    const double omega_z_in = omega[2];
     const double t5 = omega_z_in * omega_z_in;
     const double t6 = t5 * constants->half_I_zz;
     const double t7 = t4 + t6;
@@ -337,9 +337,9 @@ void t_handle_flip_angular_momentum_f64(const t_handle_flip_constants_f64 *const
     const double omega[3], double angular_momentum[3])
 {
     const double omega_x_in = omega[0];
+    const double t0 = omega_x_in * constants->I_xx;
     const double omega_y_in = omega[1];
     const double omega_z_in = omega[2];
-    const double t0 = omega_x_in * constants->I_xx;
     angular_momentum[0] = t0;
     const double t1 = omega_y_in * constants->I_yy;
     angular_momentum[1] = t1;
@@ -352,15 +352,11 @@ void t_handle_flip_flow_exact_f64(const t_handle_flip_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time, double attitude_next[4],
     double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double t0 = fabs(omega_x_in);
+    const double omega_y_in = omega[1];
     const double t1 = fabs(omega_y_in);
+    const double omega_z_in = omega[2];
     const double t2 = fabs(omega_z_in);
     const _Bool t3 = t0 < t1;
     const double t4 = t3 ? t1 : t0;
@@ -1161,10 +1157,14 @@ void t_handle_flip_flow_exact_f64(const t_handle_flip_constants_f64 *constants,
     const double t823 = t821 + t822;
     const double t824 = constants->axis_3_z * t795;
     const double t825 = t823 + t824;
+    const double attitude_w_in = attitude[0];
     const double t826 = attitude_w_in * t779;
+    const double attitude_x_in = attitude[1];
     const double t827 = attitude_x_in * t800;
     const double t828 = t826 - t827;
+    const double attitude_y_in = attitude[2];
     const double t829 = attitude_y_in * t805;
+    const double attitude_z_in = attitude[3];
     const double t830 = attitude_z_in * t810;
     const double t831 = t829 + t830;
     const double t832 = t828 - t831;

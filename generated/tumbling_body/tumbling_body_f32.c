@@ -822,13 +822,13 @@ void tumbling_body_kinetic_energy_f32(const tumbling_body_constants_f32 *constan
     const float omega[3], float *kinetic_energy)
 {
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float t0 = omega_x_in * omega_x_in;
     const float t1 = t0 * constants->half_I_xx;
+    const float omega_y_in = omega[1];
     const float t2 = omega_y_in * omega_y_in;
     const float t3 = t2 * constants->half_I_yy;
     const float t4 = t1 + t3;
+    const float omega_z_in = omega[2];
     const float t5 = omega_z_in * omega_z_in;
     const float t6 = t5 * constants->half_I_zz;
     const float t7 = t4 + t6;
@@ -840,15 +840,11 @@ void tumbling_body_flow_exact_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time, float attitude_next[4],
     float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float t0 = fabsf(omega_x_in);
+    const float omega_y_in = omega[1];
     const float t1 = fabsf(omega_y_in);
+    const float omega_z_in = omega[2];
     const float t2 = fabsf(omega_z_in);
     const _Bool t3 = t0 < t1;
     const float t4 = t3 ? t1 : t0;
@@ -1649,10 +1645,14 @@ void tumbling_body_flow_exact_f32(const tumbling_body_constants_f32 *constants,
     const float t823 = t821 + t822;
     const float t824 = constants->axis_3_z * t795;
     const float t825 = t823 + t824;
+    const float attitude_w_in = attitude[0];
     const float t826 = attitude_w_in * t779;
+    const float attitude_x_in = attitude[1];
     const float t827 = attitude_x_in * t800;
     const float t828 = t826 - t827;
+    const float attitude_y_in = attitude[2];
     const float t829 = attitude_y_in * t805;
+    const float attitude_z_in = attitude[3];
     const float t830 = attitude_z_in * t810;
     const float t831 = t829 + t830;
     const float t832 = t828 - t831;
@@ -1694,10 +1694,10 @@ void tumbling_body_plan_dmv_f32(const tumbling_body_constants_f32 *constants, co
     float time_step, float plan[13])
 {
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float t0 = time_step * omega_x_in;
+    const float omega_y_in = omega[1];
     const float t1 = time_step * omega_y_in;
+    const float omega_z_in = omega[2];
     const float t2 = time_step * omega_z_in;
     const float t3 = t0 * t0;
     const float t4 = constants->energy_x * t3;
@@ -1891,42 +1891,24 @@ void tumbling_body_step_dmv_f32(const float plan[13], const float attitude[4], c
     const float remainder[7], float attitude_next[4], float omega_next[3], float remainder_next[7])
 {
     const float plan_half_x_in = plan[0];
-    const float plan_gain_x_in = plan[1];
-    const float plan_couple_x_in = plan[2];
-    const float plan_couple_low_x_in = plan[3];
-    const float plan_half_y_in = plan[4];
-    const float plan_gain_y_in = plan[5];
-    const float plan_couple_y_in = plan[6];
-    const float plan_couple_low_y_in = plan[7];
-    const float plan_half_z_in = plan[8];
-    const float plan_gain_z_in = plan[9];
-    const float plan_couple_z_in = plan[10];
-    const float plan_couple_low_z_in = plan[11];
-    const float plan_couple_in = plan[12];
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
-    const float remainder_attitude_w_in = remainder[0];
-    const float remainder_attitude_x_in = remainder[1];
-    const float remainder_attitude_y_in = remainder[2];
-    const float remainder_attitude_z_in = remainder[3];
-    const float remainder_omega_x_in = remainder[4];
-    const float remainder_omega_y_in = remainder[5];
-    const float remainder_omega_z_in = remainder[6];
     const float t0 = plan_half_x_in * omega_x_in;
+    const float plan_half_y_in = plan[4];
+    const float omega_y_in = omega[1];
     const float t1 = plan_half_y_in * omega_y_in;
+    const float plan_half_z_in = plan[8];
+    const float omega_z_in = omega[2];
     const float t2 = plan_half_z_in * omega_z_in;
+    const float plan_couple_x_in = plan[2];
     const float t3 = plan_couple_x_in * t1;
+    const float plan_couple_y_in = plan[6];
     const float t4 = plan_couple_y_in * t0;
     const float t5 = t2 + t2;
     const float t6 = t5 * t2;
     const float t7 = t3 * t1;
     const float t8 = t4 * t0;
     const float t9 = t7 + t8;
+    const float plan_couple_z_in = plan[10];
     const float t10 = plan_couple_z_in * t9;
     const float t11 = t6 + t10;
     const float t12 = 1.0F - t11;
@@ -1947,6 +1929,7 @@ void tumbling_body_step_dmv_f32(const float plan[13], const float attitude[4], c
     const float t27 = plan_couple_z_in * t26;
     const float t28 = t21 + t27;
     const float t29 = t2 + t28;
+    const float plan_couple_in = plan[12];
     float t30 = t0;
     float t31 = t1;
     float t32 = t29;
@@ -1994,8 +1977,11 @@ void tumbling_body_step_dmv_f32(const float plan[13], const float attitude[4], c
             break;
         }
     }
+    const float remainder_omega_x_in = remainder[4];
     const float t69 = plan_half_x_in * remainder_omega_x_in;
+    const float remainder_omega_y_in = remainder[5];
     const float t70 = plan_half_y_in * remainder_omega_y_in;
+    const float remainder_omega_z_in = remainder[6];
     const float t71 = plan_half_z_in * remainder_omega_z_in;
     const float t72 = t30 * t30;
     const float t73 = t31 * t31;
@@ -2014,18 +2000,21 @@ void tumbling_body_step_dmv_f32(const float plan[13], const float attitude[4], c
     const float t86 = t78 + t85;
     const float t87 = t83 * t86;
     const float t88 = plan_couple_y_in * t87;
+    const float plan_couple_low_y_in = plan[7];
     const float t89 = plan_couple_low_y_in * t87;
     const float t90 = t70 + t89;
     const float t91 = t88 + t90;
     const float t92 = t79 + t91;
     const float t93 = t92 * t83;
     const float t94 = plan_couple_x_in * t93;
+    const float plan_couple_low_x_in = plan[3];
     const float t95 = plan_couple_low_x_in * t93;
     const float t96 = t69 + t95;
     const float t97 = t94 + t96;
     const float t98 = t78 + t97;
     const float t99 = t98 * t92;
     const float t100 = plan_couple_z_in * t99;
+    const float plan_couple_low_z_in = plan[11];
     const float t101 = plan_couple_low_z_in * t99;
     const float t102 = t71 + t101;
     const float t103 = t100 + t102;
@@ -2044,11 +2033,15 @@ void tumbling_body_step_dmv_f32(const float plan[13], const float attitude[4], c
     const float t116 = t98 * t112;
     const float t117 = t92 * t112;
     const float t118 = t104 * t112;
+    const float attitude_w_in = attitude[0];
     const float t119 = t115 * attitude_w_in;
+    const float attitude_x_in = attitude[1];
     const float t120 = attitude_x_in * t116;
     const float t121 = t119 + t120;
+    const float attitude_y_in = attitude[2];
     const float t122 = attitude_y_in * t117;
     const float t123 = t121 + t122;
+    const float attitude_z_in = attitude[3];
     const float t124 = attitude_z_in * t118;
     const float t125 = t123 + t124;
     const float t126 = -t125;
@@ -2078,11 +2071,18 @@ void tumbling_body_step_dmv_f32(const float plan[13], const float attitude[4], c
     const float t150 = t104 * t98;
     const float t151 = t150 / t77;
     const float t152 = t99 / t77;
+    const float plan_gain_x_in = plan[1];
     const float t153 = plan_gain_x_in * t149;
+    const float plan_gain_y_in = plan[5];
     const float t154 = plan_gain_y_in * t151;
+    const float plan_gain_z_in = plan[9];
     const float t155 = plan_gain_z_in * t152;
+    const float remainder_attitude_w_in = remainder[0];
     const float t156 = t126 + remainder_attitude_w_in;
     const float t157 = attitude_w_in + t156;
+    const float remainder_attitude_x_in = remainder[1];
+    const float remainder_attitude_y_in = remainder[2];
+    const float remainder_attitude_z_in = remainder[3];
     attitude_next[0] = t157;
     const float t158 = t157 - attitude_w_in;
     const float t159 = t156 - t158;
@@ -2130,16 +2130,12 @@ void tumbling_body_step_split2_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
     float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const _Bool t0 = 0.0F < constants->from_x;
     const _Bool t1 = 0.0F < constants->from_y;
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
     const float t2 = t1 ? omega_y_in : omega_z_in;
+    const float omega_x_in = omega[0];
     const float t3 = t0 ? omega_x_in : t2;
     const float t4 = t1 ? omega_z_in : omega_x_in;
     const float t5 = t0 ? omega_y_in : t4;
@@ -2328,11 +2324,15 @@ void tumbling_body_step_split2_f32(const tumbling_body_constants_f32 *constants,
     const float t189 = t0 ? t166 : t188;
     const float t190 = t1 ? t166 : t160;
     const float t191 = t0 ? t168 : t190;
+    const float attitude_w_in = attitude[0];
     const float t192 = t162 * attitude_w_in;
+    const float attitude_x_in = attitude[1];
     const float t193 = attitude_x_in * t187;
     const float t194 = t192 + t193;
+    const float attitude_y_in = attitude[2];
     const float t195 = attitude_y_in * t189;
     const float t196 = t194 + t195;
+    const float attitude_z_in = attitude[3];
     const float t197 = attitude_z_in * t191;
     const float t198 = t196 + t197;
     const float t199 = -t198;
@@ -2386,16 +2386,12 @@ void tumbling_body_step_split_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
     float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const _Bool t0 = 0.0F < constants->from_x;
     const _Bool t1 = 0.0F < constants->from_y;
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
     const float t2 = t1 ? omega_y_in : omega_z_in;
+    const float omega_x_in = omega[0];
     const float t3 = t0 ? omega_x_in : t2;
     const float t4 = t1 ? omega_z_in : omega_x_in;
     const float t5 = t0 ? omega_y_in : t4;
@@ -3070,11 +3066,15 @@ void tumbling_body_step_split_f32(const tumbling_body_constants_f32 *constants,
     const float t675 = t0 ? t652 : t674;
     const float t676 = t1 ? t652 : t646;
     const float t677 = t0 ? t654 : t676;
+    const float attitude_w_in = attitude[0];
     const float t678 = t648 * attitude_w_in;
+    const float attitude_x_in = attitude[1];
     const float t679 = attitude_x_in * t673;
     const float t680 = t678 + t679;
+    const float attitude_y_in = attitude[2];
     const float t681 = attitude_y_in * t675;
     const float t682 = t680 + t681;
+    const float attitude_z_in = attitude[3];
     const float t683 = attitude_z_in * t677;
     const float t684 = t682 + t683;
     const float t685 = -t684;
@@ -3128,16 +3128,12 @@ void tumbling_body_step_split6_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
     float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const _Bool t0 = 0.0F < constants->from_x;
     const _Bool t1 = 0.0F < constants->from_y;
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
     const float t2 = t1 ? omega_y_in : omega_z_in;
+    const float omega_x_in = omega[0];
     const float t3 = t0 ? omega_x_in : t2;
     const float t4 = t1 ? omega_z_in : omega_x_in;
     const float t5 = t0 ? omega_y_in : t4;
@@ -4200,11 +4196,15 @@ void tumbling_body_step_split6_f32(const tumbling_body_constants_f32 *constants,
     const float t1063 = t0 ? t1040 : t1062;
     const float t1064 = t1 ? t1040 : t1034;
     const float t1065 = t0 ? t1042 : t1064;
+    const float attitude_w_in = attitude[0];
     const float t1066 = t1036 * attitude_w_in;
+    const float attitude_x_in = attitude[1];
     const float t1067 = attitude_x_in * t1061;
     const float t1068 = t1066 + t1067;
+    const float attitude_y_in = attitude[2];
     const float t1069 = attitude_y_in * t1063;
     const float t1070 = t1068 + t1069;
+    const float attitude_z_in = attitude[3];
     const float t1071 = attitude_z_in * t1065;
     const float t1072 = t1070 + t1071;
     const float t1073 = -t1072;
@@ -4258,17 +4258,13 @@ void tumbling_body_step_rk4_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
     float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float t0 = time_step * 0.5F;
     const float t4 = t0 * 0.5F;
+    const float omega_x_in = omega[0];
     const float t5 = omega_x_in * t4;
+    const float omega_y_in = omega[1];
     const float t6 = omega_y_in * t4;
+    const float omega_z_in = omega[2];
     const float t7 = omega_z_in * t4;
     const float t8 = constants->k1 * t0;
     const float t10 = constants->k2 * t0;
@@ -4321,6 +4317,10 @@ void tumbling_body_step_rk4_f32(const tumbling_body_constants_f32 *constants,
     const float t144 = t143 + t52;
     const float t145 = t144 * 0.333333343F;
     const float t180 = omega_z_in + t145;
+    const float attitude_w_in = attitude[0];
+    const float attitude_x_in = attitude[1];
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
     omega_next[2] = t180;
     const float t40 = t37 * 2.0F;
     const float t43 = omega_z_in + t40;
@@ -6149,19 +6149,15 @@ void tumbling_body_step_lie_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
     float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float t0 = time_step * 0.5F;
     const float t4 = constants->k1 * t0;
     const float t6 = constants->k2 * t0;
     const float t8 = constants->k3 * t0;
+    const float omega_y_in = omega[1];
+    const float omega_z_in = omega[2];
     const float t1 = omega_y_in * omega_z_in;
     const float t5 = t1 * t4;
+    const float omega_x_in = omega[0];
     const float t10 = omega_x_in + t5;
     const float t45 = t10 * time_step;
     const float t2 = omega_x_in * omega_z_in;
@@ -6209,6 +6205,10 @@ void tumbling_body_step_lie_f32(const tumbling_body_constants_f32 *constants,
     const float t95 = t92 * 0.666666687F;
     const float t98 = t89 + t95;
     const float t346 = omega_z_in + t98;
+    const float attitude_w_in = attitude[0];
+    const float attitude_x_in = attitude[1];
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
     omega_next[2] = t346;
     const float t32 = t29 * 2.0F;
     const float t35 = omega_z_in + t32;

@@ -20,7 +20,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 7882bbd2acc78b70.
+ * Body of these files: sha256 59be9489df6bac38.
  */
 #ifndef TUMBLING_BODY_F32_H
 #define TUMBLING_BODY_F32_H
@@ -156,8 +156,8 @@ void tumbling_body_kinetic_energy_f32(const tumbling_body_constants_f32 *constan
  * Bound: not proved: a divisor may vanish for all that ranges tell, in set-up.
  * Cost: 170 add, 50 sub, 387 mul, 121 div, 1 neg, 29 sqrt, 2 sin, 2 cos, 14 abs, 2 at_most, 1
  *            both, 13 less, 2 power_of_two, 35 select.
- * On Cortex-M0+, -O2: 111867 to 119953 instructions, 8280 B of code, 464 B of stack.
- * On Cortex-M4F, -O2: 1381 to 1397 instructions, 7044 B of code, 388 B of stack.
+ * On Cortex-M0+, -O2: 111871 to 119957 instructions, 8288 B of code, 456 B of stack.
+ * On Cortex-M4F, -O2: 1372 to 1388 instructions, 6980 B of code, 372 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -198,8 +198,8 @@ void tumbling_body_plan_dmv_f32(const tumbling_body_constants_f32 *constants, co
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: its plan, of another function, has no enclosure here.
  * Cost: 207 add, 69 sub, 372 mul, 22 div, 1 neg, 18 sqrt, 16 abs, 16 at_most.
- * On Cortex-M0+, -O2: 19917 to 23836 instructions, 1796 B of code, 224 B of stack.
- * On Cortex-M4F, -O2: 276 to 314 instructions, 1404 B of code, 200 B of stack.
+ * On Cortex-M0+, -O2: 19967 to 23883 instructions, 1808 B of code, 168 B of stack.
+ * On Cortex-M4F, -O2: 247 to 285 instructions, 1232 B of code, 144 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -221,8 +221,8 @@ void tumbling_body_step_dmv_f32(const float plan[13], const float attitude[4], c
  *            8e-08), omega_next 2e-05 rad/s (seen 9.4e-07); assumed: quaternions given with |q|^2
  *            in 0.999 .. 1.001.
  * Cost: 82 add, 15 sub, 100 mul, 9 div, 9 neg, 2 less, 18 select.
- * On Cortex-M0+, -O2: 22809 to 23332 instructions, 2376 B of code, 168 B of stack.
- * On Cortex-M4F, -O2: 287 to 316 instructions, 1404 B of code, 68 B of stack.
+ * On Cortex-M0+, -O2: 22805 to 23327 instructions, 2368 B of code, 152 B of stack.
+ * On Cortex-M4F, -O2: 287 to 316 instructions, 1404 B of code, 60 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -245,8 +245,8 @@ void tumbling_body_step_split2_f32(const tumbling_body_constants_f32 *constants,
  *            1e-07), omega_next 9.2e-05 rad/s (seen 1e-06); assumed: quaternions given with |q|^2
  *            in 0.999 .. 1.001.
  * Cost: 292 add, 45 sub, 306 mul, 29 div, 29 neg, 2 less, 18 select.
- * On Cortex-M0+, -O2: 71764 to 73028 instructions, 6468 B of code, 360 B of stack.
- * On Cortex-M4F, -O2: 786 to 815 instructions, 3428 B of code, 120 B of stack.
+ * On Cortex-M0+, -O2: 71759 to 73022 instructions, 6456 B of code, 352 B of stack.
+ * On Cortex-M4F, -O2: 778 to 807 instructions, 3396 B of code, 104 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -269,8 +269,8 @@ void tumbling_body_step_split_f32(const tumbling_body_constants_f32 *constants,
  *            1.1e-07), omega_next 0.00034 rad/s (seen 1.2e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 460 add, 69 sub, 470 mul, 45 div, 45 neg, 2 less, 18 select.
- * On Cortex-M0+, -O2: 110681 to 112584 instructions, 9696 B of code, 520 B of stack.
- * On Cortex-M4F, -O2: 1171 to 1200 instructions, 4984 B of code, 136 B of stack.
+ * On Cortex-M0+, -O2: 110675 to 112578 instructions, 9684 B of code, 512 B of stack.
+ * On Cortex-M4F, -O2: 1162 to 1191 instructions, 4948 B of code, 120 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -297,7 +297,7 @@ void tumbling_body_step_split6_f32(const tumbling_body_constants_f32 *constants,
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 63 add, 18 sub, 111 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 19230 to 19639 instructions, 1816 B of code, 176 B of stack.
+ * On Cortex-M0+, -O2: 19231 to 19640 instructions, 1816 B of code, 168 B of stack.
  * On Cortex-M4F, -O2: 226 instructions, 920 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -362,7 +362,7 @@ void tumbling_body_step_rk4_jacobian_dense_f32(const tumbling_body_constants_f32
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 87 add, 57 sub, 150 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * On Cortex-M0+, -O2: 37106 to 37848 instructions, 4008 B of code, 216 B of stack.
+ * On Cortex-M0+, -O2: 37115 to 37858 instructions, 4016 B of code, 216 B of stack.
  * On Cortex-M4F, -O2: 579 instructions, 2344 B of code, 100 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -386,7 +386,7 @@ void tumbling_body_step_lie_f32(const tumbling_body_constants_f32 *constants,
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: 6724 operations are more than the 2000 tried.
  * Cost: 2394 add, 915 sub, 3416 mul, 22 div, 1 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * On Cortex-M0+, -O2: 592501 to 682145 instructions, 2528 B of code, 1104 B of stack.
+ * On Cortex-M0+, -O2: 592501 to 682146 instructions, 2528 B of code, 1104 B of stack.
  * On Cortex-M4F, -O2: 13867 instructions, 2128 B of code, 1072 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,

@@ -813,13 +813,13 @@ void tumbling_body_kinetic_energy_f64(const tumbling_body_constants_f64 *constan
     const double omega[3], double *kinetic_energy)
 {
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double t0 = omega_x_in * omega_x_in;
     const double t1 = t0 * constants->half_I_xx;
+    const double omega_y_in = omega[1];
     const double t2 = omega_y_in * omega_y_in;
     const double t3 = t2 * constants->half_I_yy;
     const double t4 = t1 + t3;
+    const double omega_z_in = omega[2];
     const double t5 = omega_z_in * omega_z_in;
     const double t6 = t5 * constants->half_I_zz;
     const double t7 = t4 + t6;
@@ -831,15 +831,11 @@ void tumbling_body_flow_exact_f64(const tumbling_body_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time, double attitude_next[4],
     double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double t0 = fabs(omega_x_in);
+    const double omega_y_in = omega[1];
     const double t1 = fabs(omega_y_in);
+    const double omega_z_in = omega[2];
     const double t2 = fabs(omega_z_in);
     const _Bool t3 = t0 < t1;
     const double t4 = t3 ? t1 : t0;
@@ -1640,10 +1636,14 @@ void tumbling_body_flow_exact_f64(const tumbling_body_constants_f64 *constants,
     const double t823 = t821 + t822;
     const double t824 = constants->axis_3_z * t795;
     const double t825 = t823 + t824;
+    const double attitude_w_in = attitude[0];
     const double t826 = attitude_w_in * t779;
+    const double attitude_x_in = attitude[1];
     const double t827 = attitude_x_in * t800;
     const double t828 = t826 - t827;
+    const double attitude_y_in = attitude[2];
     const double t829 = attitude_y_in * t805;
+    const double attitude_z_in = attitude[3];
     const double t830 = attitude_z_in * t810;
     const double t831 = t829 + t830;
     const double t832 = t828 - t831;
@@ -1685,10 +1685,10 @@ void tumbling_body_plan_dmv_f64(const tumbling_body_constants_f64 *constants, co
     double time_step, double plan[13])
 {
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double t0 = time_step * omega_x_in;
+    const double omega_y_in = omega[1];
     const double t1 = time_step * omega_y_in;
+    const double omega_z_in = omega[2];
     const double t2 = time_step * omega_z_in;
     const double t3 = t0 * t0;
     const double t4 = constants->energy_x * t3;
@@ -1883,42 +1883,24 @@ void tumbling_body_step_dmv_f64(const double plan[13], const double attitude[4],
     double remainder_next[7])
 {
     const double plan_half_x_in = plan[0];
-    const double plan_gain_x_in = plan[1];
-    const double plan_couple_x_in = plan[2];
-    const double plan_couple_low_x_in = plan[3];
-    const double plan_half_y_in = plan[4];
-    const double plan_gain_y_in = plan[5];
-    const double plan_couple_y_in = plan[6];
-    const double plan_couple_low_y_in = plan[7];
-    const double plan_half_z_in = plan[8];
-    const double plan_gain_z_in = plan[9];
-    const double plan_couple_z_in = plan[10];
-    const double plan_couple_low_z_in = plan[11];
-    const double plan_couple_in = plan[12];
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
-    const double remainder_attitude_w_in = remainder[0];
-    const double remainder_attitude_x_in = remainder[1];
-    const double remainder_attitude_y_in = remainder[2];
-    const double remainder_attitude_z_in = remainder[3];
-    const double remainder_omega_x_in = remainder[4];
-    const double remainder_omega_y_in = remainder[5];
-    const double remainder_omega_z_in = remainder[6];
     const double t0 = plan_half_x_in * omega_x_in;
+    const double plan_half_y_in = plan[4];
+    const double omega_y_in = omega[1];
     const double t1 = plan_half_y_in * omega_y_in;
+    const double plan_half_z_in = plan[8];
+    const double omega_z_in = omega[2];
     const double t2 = plan_half_z_in * omega_z_in;
+    const double plan_couple_x_in = plan[2];
     const double t3 = plan_couple_x_in * t1;
+    const double plan_couple_y_in = plan[6];
     const double t4 = plan_couple_y_in * t0;
     const double t5 = t2 + t2;
     const double t6 = t5 * t2;
     const double t7 = t3 * t1;
     const double t8 = t4 * t0;
     const double t9 = t7 + t8;
+    const double plan_couple_z_in = plan[10];
     const double t10 = plan_couple_z_in * t9;
     const double t11 = t6 + t10;
     const double t12 = 1.0 - t11;
@@ -1939,6 +1921,7 @@ void tumbling_body_step_dmv_f64(const double plan[13], const double attitude[4],
     const double t27 = plan_couple_z_in * t26;
     const double t28 = t21 + t27;
     const double t29 = t2 + t28;
+    const double plan_couple_in = plan[12];
     double t30 = t0;
     double t31 = t1;
     double t32 = t29;
@@ -1986,8 +1969,11 @@ void tumbling_body_step_dmv_f64(const double plan[13], const double attitude[4],
             break;
         }
     }
+    const double remainder_omega_x_in = remainder[4];
     const double t69 = plan_half_x_in * remainder_omega_x_in;
+    const double remainder_omega_y_in = remainder[5];
     const double t70 = plan_half_y_in * remainder_omega_y_in;
+    const double remainder_omega_z_in = remainder[6];
     const double t71 = plan_half_z_in * remainder_omega_z_in;
     const double t72 = t30 * t30;
     const double t73 = t31 * t31;
@@ -2006,18 +1992,21 @@ void tumbling_body_step_dmv_f64(const double plan[13], const double attitude[4],
     const double t86 = t78 + t85;
     const double t87 = t83 * t86;
     const double t88 = plan_couple_y_in * t87;
+    const double plan_couple_low_y_in = plan[7];
     const double t89 = plan_couple_low_y_in * t87;
     const double t90 = t70 + t89;
     const double t91 = t88 + t90;
     const double t92 = t79 + t91;
     const double t93 = t92 * t83;
     const double t94 = plan_couple_x_in * t93;
+    const double plan_couple_low_x_in = plan[3];
     const double t95 = plan_couple_low_x_in * t93;
     const double t96 = t69 + t95;
     const double t97 = t94 + t96;
     const double t98 = t78 + t97;
     const double t99 = t98 * t92;
     const double t100 = plan_couple_z_in * t99;
+    const double plan_couple_low_z_in = plan[11];
     const double t101 = plan_couple_low_z_in * t99;
     const double t102 = t71 + t101;
     const double t103 = t100 + t102;
@@ -2036,11 +2025,15 @@ void tumbling_body_step_dmv_f64(const double plan[13], const double attitude[4],
     const double t116 = t98 * t112;
     const double t117 = t92 * t112;
     const double t118 = t104 * t112;
+    const double attitude_w_in = attitude[0];
     const double t119 = t115 * attitude_w_in;
+    const double attitude_x_in = attitude[1];
     const double t120 = attitude_x_in * t116;
     const double t121 = t119 + t120;
+    const double attitude_y_in = attitude[2];
     const double t122 = attitude_y_in * t117;
     const double t123 = t121 + t122;
+    const double attitude_z_in = attitude[3];
     const double t124 = attitude_z_in * t118;
     const double t125 = t123 + t124;
     const double t126 = -t125;
@@ -2070,11 +2063,18 @@ void tumbling_body_step_dmv_f64(const double plan[13], const double attitude[4],
     const double t150 = t104 * t98;
     const double t151 = t150 / t77;
     const double t152 = t99 / t77;
+    const double plan_gain_x_in = plan[1];
     const double t153 = plan_gain_x_in * t149;
+    const double plan_gain_y_in = plan[5];
     const double t154 = plan_gain_y_in * t151;
+    const double plan_gain_z_in = plan[9];
     const double t155 = plan_gain_z_in * t152;
+    const double remainder_attitude_w_in = remainder[0];
     const double t156 = t126 + remainder_attitude_w_in;
     const double t157 = attitude_w_in + t156;
+    const double remainder_attitude_x_in = remainder[1];
+    const double remainder_attitude_y_in = remainder[2];
+    const double remainder_attitude_z_in = remainder[3];
     attitude_next[0] = t157;
     const double t158 = t157 - attitude_w_in;
     const double t159 = t156 - t158;
@@ -2122,16 +2122,12 @@ void tumbling_body_step_split2_f64(const tumbling_body_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time_step, double attitude_next[4],
     double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const _Bool t0 = 0.0 < constants->from_x;
     const _Bool t1 = 0.0 < constants->from_y;
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
     const double t2 = t1 ? omega_y_in : omega_z_in;
+    const double omega_x_in = omega[0];
     const double t3 = t0 ? omega_x_in : t2;
     const double t4 = t1 ? omega_z_in : omega_x_in;
     const double t5 = t0 ? omega_y_in : t4;
@@ -2320,11 +2316,15 @@ void tumbling_body_step_split2_f64(const tumbling_body_constants_f64 *constants,
     const double t189 = t0 ? t166 : t188;
     const double t190 = t1 ? t166 : t160;
     const double t191 = t0 ? t168 : t190;
+    const double attitude_w_in = attitude[0];
     const double t192 = t162 * attitude_w_in;
+    const double attitude_x_in = attitude[1];
     const double t193 = attitude_x_in * t187;
     const double t194 = t192 + t193;
+    const double attitude_y_in = attitude[2];
     const double t195 = attitude_y_in * t189;
     const double t196 = t194 + t195;
+    const double attitude_z_in = attitude[3];
     const double t197 = attitude_z_in * t191;
     const double t198 = t196 + t197;
     const double t199 = -t198;
@@ -2378,16 +2378,12 @@ void tumbling_body_step_split_f64(const tumbling_body_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time_step, double attitude_next[4],
     double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const _Bool t0 = 0.0 < constants->from_x;
     const _Bool t1 = 0.0 < constants->from_y;
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
     const double t2 = t1 ? omega_y_in : omega_z_in;
+    const double omega_x_in = omega[0];
     const double t3 = t0 ? omega_x_in : t2;
     const double t4 = t1 ? omega_z_in : omega_x_in;
     const double t5 = t0 ? omega_y_in : t4;
@@ -3062,11 +3058,15 @@ void tumbling_body_step_split_f64(const tumbling_body_constants_f64 *constants,
     const double t675 = t0 ? t652 : t674;
     const double t676 = t1 ? t652 : t646;
     const double t677 = t0 ? t654 : t676;
+    const double attitude_w_in = attitude[0];
     const double t678 = t648 * attitude_w_in;
+    const double attitude_x_in = attitude[1];
     const double t679 = attitude_x_in * t673;
     const double t680 = t678 + t679;
+    const double attitude_y_in = attitude[2];
     const double t681 = attitude_y_in * t675;
     const double t682 = t680 + t681;
+    const double attitude_z_in = attitude[3];
     const double t683 = attitude_z_in * t677;
     const double t684 = t682 + t683;
     const double t685 = -t684;
@@ -3120,16 +3120,12 @@ void tumbling_body_step_split6_f64(const tumbling_body_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time_step, double attitude_next[4],
     double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const _Bool t0 = 0.0 < constants->from_x;
     const _Bool t1 = 0.0 < constants->from_y;
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
     const double t2 = t1 ? omega_y_in : omega_z_in;
+    const double omega_x_in = omega[0];
     const double t3 = t0 ? omega_x_in : t2;
     const double t4 = t1 ? omega_z_in : omega_x_in;
     const double t5 = t0 ? omega_y_in : t4;
@@ -4192,11 +4188,15 @@ void tumbling_body_step_split6_f64(const tumbling_body_constants_f64 *constants,
     const double t1063 = t0 ? t1040 : t1062;
     const double t1064 = t1 ? t1040 : t1034;
     const double t1065 = t0 ? t1042 : t1064;
+    const double attitude_w_in = attitude[0];
     const double t1066 = t1036 * attitude_w_in;
+    const double attitude_x_in = attitude[1];
     const double t1067 = attitude_x_in * t1061;
     const double t1068 = t1066 + t1067;
+    const double attitude_y_in = attitude[2];
     const double t1069 = attitude_y_in * t1063;
     const double t1070 = t1068 + t1069;
+    const double attitude_z_in = attitude[3];
     const double t1071 = attitude_z_in * t1065;
     const double t1072 = t1070 + t1071;
     const double t1073 = -t1072;
@@ -4250,17 +4250,13 @@ void tumbling_body_step_rk4_f64(const tumbling_body_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time_step, double attitude_next[4],
     double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double t0 = time_step * 0.5;
     const double t4 = t0 * 0.5;
+    const double omega_x_in = omega[0];
     const double t5 = omega_x_in * t4;
+    const double omega_y_in = omega[1];
     const double t6 = omega_y_in * t4;
+    const double omega_z_in = omega[2];
     const double t7 = omega_z_in * t4;
     const double t8 = constants->k1 * t0;
     const double t10 = constants->k2 * t0;
@@ -4313,6 +4309,10 @@ void tumbling_body_step_rk4_f64(const tumbling_body_constants_f64 *constants,
     const double t144 = t143 + t52;
     const double t145 = t144 * 0.3333333333333333;
     const double t180 = omega_z_in + t145;
+    const double attitude_w_in = attitude[0];
+    const double attitude_x_in = attitude[1];
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
     omega_next[2] = t180;
     const double t40 = t37 * 2.0;
     const double t43 = omega_z_in + t40;
@@ -6141,19 +6141,15 @@ void tumbling_body_step_lie_f64(const tumbling_body_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time_step, double attitude_next[4],
     double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double t0 = time_step * 0.5;
     const double t4 = constants->k1 * t0;
     const double t6 = constants->k2 * t0;
     const double t8 = constants->k3 * t0;
+    const double omega_y_in = omega[1];
+    const double omega_z_in = omega[2];
     const double t1 = omega_y_in * omega_z_in;
     const double t5 = t1 * t4;
+    const double omega_x_in = omega[0];
     const double t10 = omega_x_in + t5;
     const double t45 = t10 * time_step;
     const double t2 = omega_x_in * omega_z_in;
@@ -6201,6 +6197,10 @@ void tumbling_body_step_lie_f64(const tumbling_body_constants_f64 *constants,
     const double t95 = t92 * 0.6666666666666666;
     const double t98 = t89 + t95;
     const double t346 = omega_z_in + t98;
+    const double attitude_w_in = attitude[0];
+    const double attitude_x_in = attitude[1];
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
     omega_next[2] = t346;
     const double t32 = t29 * 2.0;
     const double t35 = omega_z_in + t32;

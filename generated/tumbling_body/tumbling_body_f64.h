@@ -20,7 +20,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 dbf056a5d7253f14.
+ * Body of these files: sha256 240618b6496877d5.
  */
 #ifndef TUMBLING_BODY_F64_H
 #define TUMBLING_BODY_F64_H
@@ -155,7 +155,7 @@ void tumbling_body_kinetic_energy_f64(const tumbling_body_constants_f64 *constan
  * Bound: not proved: a divisor may vanish for all that ranges tell, in set-up.
  * Cost: 170 add, 50 sub, 387 mul, 121 div, 1 neg, 29 sqrt, 2 sin, 2 cos, 14 abs, 2 at_most, 1
  *            both, 13 less, 2 power_of_two, 35 select.
- * On Cortex-M0+, -O2: 237578 to 263537 instructions, 12832 B of code, 904 B of stack.
+ * On Cortex-M0+, -O2: 237575 to 263534 instructions, 12820 B of code, 880 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -194,7 +194,7 @@ void tumbling_body_plan_dmv_f64(const tumbling_body_constants_f64 *constants, co
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: its plan, of another function, has no enclosure here.
  * Cost: 207 add, 69 sub, 372 mul, 22 div, 1 neg, 18 sqrt, 16 abs, 16 at_most.
- * On Cortex-M0+, -O2: 45022 to 69653 instructions, 2820 B of code, 432 B of stack.
+ * On Cortex-M0+, -O2: 45015 to 69663 instructions, 2756 B of code, 304 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -217,7 +217,7 @@ void tumbling_body_step_dmv_f64(const double plan[13], const double attitude[4],
  *            1.5e-16), omega_next 3.8e-14 rad/s (seen 1.6e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 82 add, 15 sub, 100 mul, 9 div, 9 neg, 2 less, 18 select.
- * On Cortex-M0+, -O2: 49751 to 50499 instructions, 3596 B of code, 320 B of stack.
+ * On Cortex-M0+, -O2: 49751 to 50501 instructions, 3608 B of code, 296 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -241,7 +241,7 @@ void tumbling_body_step_split2_f64(const tumbling_body_constants_f64 *constants,
  *            1.7e-16), omega_next 1.8e-13 rad/s (seen 2e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 292 add, 45 sub, 306 mul, 29 div, 29 neg, 2 less, 18 select.
- * On Cortex-M0+, -O2: 156530 to 158350 instructions, 9924 B of code, 712 B of stack.
+ * On Cortex-M0+, -O2: 156530 to 158352 instructions, 9936 B of code, 688 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -265,7 +265,7 @@ void tumbling_body_step_split_f64(const tumbling_body_constants_f64 *constants,
  *            1.5e-16), omega_next 6.4e-13 rad/s (seen 1.9e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 460 add, 69 sub, 470 mul, 45 div, 45 neg, 2 less, 18 select.
- * On Cortex-M0+, -O2: 240467 to 244063 instructions, 14960 B of code, 1032 B of stack.
+ * On Cortex-M0+, -O2: 240470 to 244063 instructions, 14972 B of code, 1008 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -292,7 +292,7 @@ void tumbling_body_step_split6_f64(const tumbling_body_constants_f64 *constants,
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 63 add, 18 sub, 111 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 44279 to 45137 instructions, 2764 B of code, 336 B of stack.
+ * On Cortex-M0+, -O2: 44274 to 45132 instructions, 2752 B of code, 328 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -331,7 +331,7 @@ void tumbling_body_step_rk4_jacobian_f64(const tumbling_body_constants_f64 *cons
     double omega_next[3], double jacobian[37]);
 
 /* The same, the whole matrix: 49 entries.
- * On Cortex-M0+, -O2: 168395 to 169820 instructions, 11492 B of code, 792 B of stack.
+ * On Cortex-M0+, -O2: 168396 to 169819 instructions, 11492 B of code, 792 B of stack.
  */
 void tumbling_body_step_rk4_jacobian_dense_f64(const tumbling_body_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time_step, double attitude_next[4],
@@ -354,7 +354,7 @@ void tumbling_body_step_rk4_jacobian_dense_f64(const tumbling_body_constants_f64
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 87 add, 57 sub, 150 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * On Cortex-M0+, -O2: 86719 to 88349 instructions, 6124 B of code, 432 B of stack.
+ * On Cortex-M0+, -O2: 86712 to 88351 instructions, 6108 B of code, 424 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

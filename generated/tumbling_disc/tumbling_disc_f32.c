@@ -191,15 +191,11 @@ void tumbling_disc_flow_exact_f32(const tumbling_disc_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time, float attitude_next[4],
     float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float t0 = fabsf(omega_x_in);
+    const float omega_y_in = omega[1];
     const float t1 = fabsf(omega_y_in);
+    const float omega_z_in = omega[2];
     const float t2 = fabsf(omega_z_in);
     const _Bool t3 = t0 < t1;
     const float t4 = t3 ? t1 : t0;
@@ -271,10 +267,14 @@ void tumbling_disc_flow_exact_f32(const tumbling_disc_constants_f32 *constants,
     const float t67 = t61 * t11;
     const float t68 = t63 * t13;
     const float t69 = t67 - t68;
+    const float attitude_w_in = attitude[0];
     const float t70 = attitude_w_in * t48;
+    const float attitude_x_in = attitude[1];
     const float t71 = attitude_x_in * t51;
     const float t72 = t70 - t71;
+    const float attitude_y_in = attitude[2];
     const float t73 = attitude_y_in * t55;
+    const float attitude_z_in = attitude[3];
     const float t74 = attitude_z_in * t58;
     const float t75 = t73 + t74;
     const float t76 = t72 - t75;
@@ -315,11 +315,11 @@ void tumbling_disc_flow_exact_f32(const tumbling_disc_constants_f32 *constants,
 void tumbling_disc_plan_dmv_f32(const tumbling_disc_constants_f32 *constants, const float omega[3],
     float time_step, float plan[6])
 {
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
     const float omega_z_in = omega[2];
     const float t0 = constants->moment_ratio * omega_z_in;
+    const float omega_x_in = omega[0];
     const float t1 = omega_x_in * omega_x_in;
+    const float omega_y_in = omega[1];
     const float t2 = omega_y_in * omega_y_in;
     const float t3 = t1 + t2;
     const float t4 = t0 * t0;
@@ -377,32 +377,18 @@ void tumbling_disc_step_dmv_f32(const float plan[6], const float attitude[4], co
     const float remainder[7], float attitude_next[4], float omega_next[3], float remainder_next[7])
 {
     const float plan_keep_in = plan[0];
-    const float plan_turn_in = plan[1];
-    const float plan_spin_in = plan[2];
-    const float plan_forward_in = plan[3];
-    const float plan_sine_in = plan[4];
-    const float plan_versed_in = plan[5];
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
     const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
-    const float remainder_attitude_w_in = remainder[0];
-    const float remainder_attitude_x_in = remainder[1];
-    const float remainder_attitude_y_in = remainder[2];
-    const float remainder_attitude_z_in = remainder[3];
-    const float remainder_omega_x_in = remainder[4];
-    const float remainder_omega_y_in = remainder[5];
-    const float remainder_omega_z_in = remainder[6];
     const float t0 = plan_keep_in * omega_x_in;
+    const float plan_turn_in = plan[1];
+    const float omega_y_in = omega[1];
     const float t1 = plan_turn_in * omega_y_in;
     const float t2 = t0 + t1;
     const float t3 = plan_keep_in * omega_y_in;
     const float t4 = plan_turn_in * omega_x_in;
     const float t5 = t3 - t4;
+    const float plan_sine_in = plan[4];
     const float t6 = plan_sine_in * omega_y_in;
+    const float plan_versed_in = plan[5];
     const float t7 = plan_versed_in * omega_x_in;
     const float t8 = t6 - t7;
     const float t9 = plan_sine_in * omega_x_in;
@@ -412,19 +398,25 @@ void tumbling_disc_step_dmv_f32(const float plan[6], const float attitude[4], co
     const float t13 = t2 * t2;
     const float t14 = t5 * t5;
     const float t15 = t13 + t14;
+    const float plan_spin_in = plan[2];
     const float t16 = plan_spin_in * plan_spin_in;
     const float t17 = t15 + t16;
     const float t18 = 1.0F - t17;
     const float t19 = sqrtf(t18);
     const float t20 = 1.0F + t19;
+    const float plan_forward_in = plan[3];
     const _Bool t21 = 0.0F < plan_forward_in;
     const float t22 = t17 / t20;
     const float t23 = t21 ? t22 : t20;
+    const float attitude_w_in = attitude[0];
     const float t24 = t23 * attitude_w_in;
+    const float attitude_x_in = attitude[1];
     const float t25 = attitude_x_in * t2;
     const float t26 = t24 + t25;
+    const float attitude_y_in = attitude[2];
     const float t27 = attitude_y_in * t5;
     const float t28 = t26 + t27;
+    const float attitude_z_in = attitude[3];
     const float t29 = attitude_z_in * plan_spin_in;
     const float t30 = t28 + t29;
     const float t31 = -t30;
@@ -449,8 +441,16 @@ void tumbling_disc_step_dmv_f32(const float plan[6], const float attitude[4], co
     const float t50 = t48 - t49;
     const float t51 = t23 * attitude_z_in;
     const float t52 = t50 - t51;
+    const float remainder_attitude_w_in = remainder[0];
     const float t53 = t31 + remainder_attitude_w_in;
     const float t54 = attitude_w_in + t53;
+    const float omega_z_in = omega[2];
+    const float remainder_attitude_x_in = remainder[1];
+    const float remainder_attitude_y_in = remainder[2];
+    const float remainder_attitude_z_in = remainder[3];
+    const float remainder_omega_x_in = remainder[4];
+    const float remainder_omega_y_in = remainder[5];
+    const float remainder_omega_z_in = remainder[6];
     attitude_next[0] = t54;
     const float t55 = t54 - attitude_w_in;
     const float t56 = t53 - t55;
@@ -494,18 +494,14 @@ void tumbling_disc_step_split_f32(const tumbling_disc_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
     float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
     const float omega_z_in = omega[2];
     const float t0 = constants->moment_ratio * omega_z_in;
     const float t1 = time_step * 0.25F;
     const float t2 = t1 * constants->spin_c;
     const float t3 = t1 * t1;
+    const float omega_x_in = omega[0];
     const float t4 = omega_x_in * omega_x_in;
+    const float omega_y_in = omega[1];
     const float t5 = omega_y_in * omega_y_in;
     const float t6 = t4 + t5;
     const float t7 = t0 * t0;
@@ -580,11 +576,15 @@ void tumbling_disc_step_split_f32(const tumbling_disc_constants_f32 *constants,
     const float t76 = t68 + t74;
     const float t77 = t47 * t75;
     const float t79 = t72 + t77;
+    const float attitude_w_in = attitude[0];
     const float t80 = t58 * attitude_w_in;
+    const float attitude_x_in = attitude[1];
     const float t81 = attitude_x_in * t62;
     const float t82 = t80 + t81;
+    const float attitude_y_in = attitude[2];
     const float t83 = attitude_y_in * t64;
     const float t84 = t82 + t83;
+    const float attitude_z_in = attitude[3];
     const float t85 = attitude_z_in * t56;
     const float t86 = t84 + t85;
     const float t87 = -t86;
@@ -629,18 +629,14 @@ void tumbling_disc_step_rk4_f32(const tumbling_disc_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
     float omega_next[3])
 {
-    const float attitude_w_in = attitude[0];
-    const float attitude_x_in = attitude[1];
-    const float attitude_y_in = attitude[2];
-    const float attitude_z_in = attitude[3];
-    const float omega_x_in = omega[0];
-    const float omega_y_in = omega[1];
-    const float omega_z_in = omega[2];
     const float t0 = time_step * 0.5F;
     const float t1 = t0 * 0.5F;
     const float t5 = constants->k1 * t0;
+    const float omega_z_in = omega[2];
     const float t6 = omega_z_in * t5;
+    const float omega_y_in = omega[1];
     const float t7 = omega_y_in * t6;
+    const float omega_x_in = omega[0];
     const float t9 = omega_x_in + t7;
     const float t11 = t9 * t1;
     const float t14 = t9 * t6;
@@ -668,6 +664,10 @@ void tumbling_disc_step_rk4_f32(const tumbling_disc_constants_f32 *constants,
     const float t115 = t114 + t28;
     const float t116 = t115 * 0.333333343F;
     const float t150 = omega_y_in - t116;
+    const float attitude_w_in = attitude[0];
+    const float attitude_x_in = attitude[1];
+    const float attitude_y_in = attitude[2];
+    const float attitude_z_in = attitude[3];
     omega_next[1] = t150;
     const float t22 = t20 * 2.0F;
     const float t24 = omega_y_in - t22;

@@ -20,7 +20,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 806a1e7ec11cd454.
+ * Body of these files: sha256 e1e675faa5fe8153.
  */
 #ifndef TUMBLING_DISC_F32_H
 #define TUMBLING_DISC_F32_H
@@ -65,8 +65,8 @@ int tumbling_disc_setup_f32(float A, float C, tumbling_disc_constants_f32 *const
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 13 add, 8 sub, 47 mul, 9 div, 1 neg, 1 sqrt, 2 sin, 2 cos, 6 abs, 5 less, 1 power_of_two,
  *            6 select.
- * On Cortex-M0+, -O2: 18701 to 19763 instructions, 1532 B of code, 168 B of stack.
- * On Cortex-M4F, -O2: 317 to 319 instructions, 1008 B of code, 100 B of stack.
+ * On Cortex-M0+, -O2: 18708 to 19770 instructions, 1544 B of code, 168 B of stack.
+ * On Cortex-M4F, -O2: 318 to 320 instructions, 1012 B of code, 84 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -106,8 +106,8 @@ void tumbling_disc_plan_dmv_f32(const tumbling_disc_constants_f32 *constants, co
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: its plan, of another function, has no enclosure here.
  * Cost: 23 add, 21 sub, 27 mul, 1 div, 2 neg, 1 sqrt, 1 less, 1 select.
- * On Cortex-M0+, -O2: 7216 to 7546 instructions, 820 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 123 instructions, 564 B of code, 104 B of stack.
+ * On Cortex-M0+, -O2: 7215 to 7543 instructions, 812 B of code, 136 B of stack.
+ * On Cortex-M4F, -O2: 123 instructions, 516 B of code, 64 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -130,8 +130,8 @@ void tumbling_disc_step_dmv_f32(const float plan[6], const float attitude[4], co
  *            8.6e-08), omega_next 2.5e-06 rad/s (seen 1.2e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 40 add, 9 sub, 55 mul, 5 div, 5 neg.
- * On Cortex-M0+, -O2: 12010 to 12377 instructions, 1040 B of code, 112 B of stack.
- * On Cortex-M4F, -O2: 137 instructions, 564 B of code, 8 B of stack.
+ * On Cortex-M0+, -O2: 12014 to 12381 instructions, 1044 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 135 instructions, 556 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -158,8 +158,8 @@ void tumbling_disc_step_split_f32(const tumbling_disc_constants_f32 *constants,
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 52 add, 22 sub, 88 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 16067 to 16629 instructions, 1556 B of code, 136 B of stack.
- * On Cortex-M4F, -O2: 194 instructions, 784 B of code, 48 B of stack.
+ * On Cortex-M0+, -O2: 16076 to 16636 instructions, 1556 B of code, 136 B of stack.
+ * On Cortex-M4F, -O2: 194 instructions, 800 B of code, 56 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

@@ -190,15 +190,11 @@ void tumbling_disc_flow_exact_f64(const tumbling_disc_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time, double attitude_next[4],
     double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double t0 = fabs(omega_x_in);
+    const double omega_y_in = omega[1];
     const double t1 = fabs(omega_y_in);
+    const double omega_z_in = omega[2];
     const double t2 = fabs(omega_z_in);
     const _Bool t3 = t0 < t1;
     const double t4 = t3 ? t1 : t0;
@@ -270,10 +266,14 @@ void tumbling_disc_flow_exact_f64(const tumbling_disc_constants_f64 *constants,
     const double t67 = t61 * t11;
     const double t68 = t63 * t13;
     const double t69 = t67 - t68;
+    const double attitude_w_in = attitude[0];
     const double t70 = attitude_w_in * t48;
+    const double attitude_x_in = attitude[1];
     const double t71 = attitude_x_in * t51;
     const double t72 = t70 - t71;
+    const double attitude_y_in = attitude[2];
     const double t73 = attitude_y_in * t55;
+    const double attitude_z_in = attitude[3];
     const double t74 = attitude_z_in * t58;
     const double t75 = t73 + t74;
     const double t76 = t72 - t75;
@@ -314,11 +314,11 @@ void tumbling_disc_flow_exact_f64(const tumbling_disc_constants_f64 *constants,
 void tumbling_disc_plan_dmv_f64(const tumbling_disc_constants_f64 *constants, const double omega[3],
     double time_step, double plan[6])
 {
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
     const double omega_z_in = omega[2];
     const double t0 = constants->moment_ratio * omega_z_in;
+    const double omega_x_in = omega[0];
     const double t1 = omega_x_in * omega_x_in;
+    const double omega_y_in = omega[1];
     const double t2 = omega_y_in * omega_y_in;
     const double t3 = t1 + t2;
     const double t4 = t0 * t0;
@@ -377,32 +377,18 @@ void tumbling_disc_step_dmv_f64(const double plan[6], const double attitude[4],
     double remainder_next[7])
 {
     const double plan_keep_in = plan[0];
-    const double plan_turn_in = plan[1];
-    const double plan_spin_in = plan[2];
-    const double plan_forward_in = plan[3];
-    const double plan_sine_in = plan[4];
-    const double plan_versed_in = plan[5];
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
     const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
-    const double remainder_attitude_w_in = remainder[0];
-    const double remainder_attitude_x_in = remainder[1];
-    const double remainder_attitude_y_in = remainder[2];
-    const double remainder_attitude_z_in = remainder[3];
-    const double remainder_omega_x_in = remainder[4];
-    const double remainder_omega_y_in = remainder[5];
-    const double remainder_omega_z_in = remainder[6];
     const double t0 = plan_keep_in * omega_x_in;
+    const double plan_turn_in = plan[1];
+    const double omega_y_in = omega[1];
     const double t1 = plan_turn_in * omega_y_in;
     const double t2 = t0 + t1;
     const double t3 = plan_keep_in * omega_y_in;
     const double t4 = plan_turn_in * omega_x_in;
     const double t5 = t3 - t4;
+    const double plan_sine_in = plan[4];
     const double t6 = plan_sine_in * omega_y_in;
+    const double plan_versed_in = plan[5];
     const double t7 = plan_versed_in * omega_x_in;
     const double t8 = t6 - t7;
     const double t9 = plan_sine_in * omega_x_in;
@@ -412,19 +398,25 @@ void tumbling_disc_step_dmv_f64(const double plan[6], const double attitude[4],
     const double t13 = t2 * t2;
     const double t14 = t5 * t5;
     const double t15 = t13 + t14;
+    const double plan_spin_in = plan[2];
     const double t16 = plan_spin_in * plan_spin_in;
     const double t17 = t15 + t16;
     const double t18 = 1.0 - t17;
     const double t19 = sqrt(t18);
     const double t20 = 1.0 + t19;
+    const double plan_forward_in = plan[3];
     const _Bool t21 = 0.0 < plan_forward_in;
     const double t22 = t17 / t20;
     const double t23 = t21 ? t22 : t20;
+    const double attitude_w_in = attitude[0];
     const double t24 = t23 * attitude_w_in;
+    const double attitude_x_in = attitude[1];
     const double t25 = attitude_x_in * t2;
     const double t26 = t24 + t25;
+    const double attitude_y_in = attitude[2];
     const double t27 = attitude_y_in * t5;
     const double t28 = t26 + t27;
+    const double attitude_z_in = attitude[3];
     const double t29 = attitude_z_in * plan_spin_in;
     const double t30 = t28 + t29;
     const double t31 = -t30;
@@ -449,8 +441,16 @@ void tumbling_disc_step_dmv_f64(const double plan[6], const double attitude[4],
     const double t50 = t48 - t49;
     const double t51 = t23 * attitude_z_in;
     const double t52 = t50 - t51;
+    const double remainder_attitude_w_in = remainder[0];
     const double t53 = t31 + remainder_attitude_w_in;
     const double t54 = attitude_w_in + t53;
+    const double omega_z_in = omega[2];
+    const double remainder_attitude_x_in = remainder[1];
+    const double remainder_attitude_y_in = remainder[2];
+    const double remainder_attitude_z_in = remainder[3];
+    const double remainder_omega_x_in = remainder[4];
+    const double remainder_omega_y_in = remainder[5];
+    const double remainder_omega_z_in = remainder[6];
     attitude_next[0] = t54;
     const double t55 = t54 - attitude_w_in;
     const double t56 = t53 - t55;
@@ -494,18 +494,14 @@ void tumbling_disc_step_split_f64(const tumbling_disc_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time_step, double attitude_next[4],
     double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
     const double omega_z_in = omega[2];
     const double t0 = constants->moment_ratio * omega_z_in;
     const double t1 = time_step * 0.25;
     const double t2 = t1 * constants->spin_c;
     const double t3 = t1 * t1;
+    const double omega_x_in = omega[0];
     const double t4 = omega_x_in * omega_x_in;
+    const double omega_y_in = omega[1];
     const double t5 = omega_y_in * omega_y_in;
     const double t6 = t4 + t5;
     const double t7 = t0 * t0;
@@ -580,11 +576,15 @@ void tumbling_disc_step_split_f64(const tumbling_disc_constants_f64 *constants,
     const double t76 = t68 + t74;
     const double t77 = t47 * t75;
     const double t79 = t72 + t77;
+    const double attitude_w_in = attitude[0];
     const double t80 = t58 * attitude_w_in;
+    const double attitude_x_in = attitude[1];
     const double t81 = attitude_x_in * t62;
     const double t82 = t80 + t81;
+    const double attitude_y_in = attitude[2];
     const double t83 = attitude_y_in * t64;
     const double t84 = t82 + t83;
+    const double attitude_z_in = attitude[3];
     const double t85 = attitude_z_in * t56;
     const double t86 = t84 + t85;
     const double t87 = -t86;
@@ -629,18 +629,14 @@ void tumbling_disc_step_rk4_f64(const tumbling_disc_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time_step, double attitude_next[4],
     double omega_next[3])
 {
-    const double attitude_w_in = attitude[0];
-    const double attitude_x_in = attitude[1];
-    const double attitude_y_in = attitude[2];
-    const double attitude_z_in = attitude[3];
-    const double omega_x_in = omega[0];
-    const double omega_y_in = omega[1];
-    const double omega_z_in = omega[2];
     const double t0 = time_step * 0.5;
     const double t1 = t0 * 0.5;
     const double t5 = constants->k1 * t0;
+    const double omega_z_in = omega[2];
     const double t6 = omega_z_in * t5;
+    const double omega_y_in = omega[1];
     const double t7 = omega_y_in * t6;
+    const double omega_x_in = omega[0];
     const double t9 = omega_x_in + t7;
     const double t11 = t9 * t1;
     const double t14 = t9 * t6;
@@ -668,6 +664,10 @@ void tumbling_disc_step_rk4_f64(const tumbling_disc_constants_f64 *constants,
     const double t115 = t114 + t28;
     const double t116 = t115 * 0.3333333333333333;
     const double t150 = omega_y_in - t116;
+    const double attitude_w_in = attitude[0];
+    const double attitude_x_in = attitude[1];
+    const double attitude_y_in = attitude[2];
+    const double attitude_z_in = attitude[3];
     omega_next[1] = t150;
     const double t22 = t20 * 2.0;
     const double t24 = omega_y_in - t22;
