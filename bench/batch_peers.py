@@ -13,7 +13,6 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from bench.batch import alone
 from derive.check.compiler import callable_library, find_compiler
@@ -107,6 +106,8 @@ def by_numpy(h: float) -> tuple[Any, float]:
 
 def followed(x: Any, tolerance: float) -> Any:
     """Return the state that SciPy moves one member to."""
+    from scipy.integrate import solve_ivp
+
     found = solve_ivp(lambda _, y: rate(y), (0, UNTIL), x, "DOP853", rtol=tolerance, atol=tolerance)
     return found.y[:, -1]
 
