@@ -99,7 +99,7 @@ def pace(
     single, over, byte, *limits = map(float, said)
     summed, divided, rooted = (ns / REPEATED for ns in limits)
     count = program.count
-    plain = sum(count.get(kind, 0) for kind in ("add", "sub", "mul"))
+    plain = count.get("add", 0) + count.get("sub", 0) + count.get("mul", 0)
     arithmetic = plain / 2 * summed + count.get("div", 0) * divided
     arithmetic += count.get("sqrt", 0) * rooted + _sines(program, precision) / 2 * summed
     memory = byte * _numbers(program) * np.dtype(precision.dtype).itemsize
@@ -126,7 +126,7 @@ def _members(program: Program) -> list[Any]:
 
 def _numbers(program: Program) -> int:
     """Return how many numbers of a member are read and written."""
-    return sum(len(q.components) for q in (*_members(program), *program.outputs))
+    return len([c for q in (*_members(program), *program.outputs) for c in q.components])
 
 
 def _driver(made: Library, program: Program, precision: Precision) -> str:
