@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from sympy import Expr, Integer, Symbol
 
 from derive.mechanics.absolute_angles import absolute_angles, relative
+from derive.mechanics.articulated import articulated
 from derive.mechanics.articulated_plane import articulated_plane
 from derive.mechanics.links import Links, links
 from derive.mechanics.mechanism import Mechanism
@@ -17,6 +18,9 @@ from derive.mechanics.problem import Problem, answered
 from derive.mechanics.recursion import driven, recursion
 from derive.mechanics.words import Words
 
+ARTICULATED = "articulated bodies"
+MOST_PAIRS = 45
+"""Links that carry others, a chain of ten: beyond, a mass matrix is dearer, and takes long."""
 OnTheWay = Mapping[Symbol, Expr]
 
 
@@ -37,6 +41,8 @@ def by_links(mechanism: Mechanism, base: str) -> Iterator[tuple[str, OnTheWay]]:
         way = {s: e.xreplace(known) for s, e in {**needed, **own}.items()}
         if _same_answers(mechanism.words, problem, way):
             yield how, way
+            if how == ARTICULATED and _pairs(machine) > MOST_PAIRS:
+                return
 
 
 def _solved(machine: Links, unknowns: Sequence[Symbol]) -> Iterator[tuple[str, OnTheWay]]:
@@ -46,9 +52,8 @@ def _solved(machine: Links, unknowns: Sequence[Symbol]) -> Iterator[tuple[str, O
     if machine.drives or any(link.unknown is None for link in machine.links):
         return
     turning = {link.unknown for link in machine.links}
-    articulated = articulated_plane(machine, [u for u in unknowns if u not in turning])
-    if articulated is not None:
-        yield "articulated bodies", articulated
+    others = [u for u in unknowns if u not in turning]
+    yield ARTICULATED, articulated_plane(machine, others) or articulated(machine, others)
     systems = absolute_angles(machine), recursion(machine)
     for order in _orders(machine, unknowns):
         for absolute, system in zip((True, False), systems, strict=True):
@@ -57,6 +62,11 @@ def _solved(machine: Links, unknowns: Sequence[Symbol]) -> Iterator[tuple[str, O
                 values = relative(machine, found) if absolute else found
                 how = "absolute angles" if absolute else "recursion"
                 yield how, {**own.definitions, **values}
+
+
+def _pairs(machine: Links) -> int:
+    """Return how many links carry others, each counted for each."""
+    return sum(len(machine.path(k)) - 1 for k in range(len(machine.links)))
 
 
 def _orders(machine: Links, unknowns: Sequence[Symbol]) -> list[tuple[Symbol, ...]]:

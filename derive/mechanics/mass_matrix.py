@@ -44,9 +44,14 @@ class MassMatrix:
 
     def translate(self, m: Expr, drift: Drift, gravity: Matrix) -> None:
         """Add a mass that is carried through space without being turned."""
+        for unknown, d in drift.slopes.items():
+            self.act(unknown, -m * d.dot(drift.rest - gravity))
+        self.carry(m, drift)
+
+    def carry(self, m: Expr, drift: Drift) -> None:
+        """Add such a mass to the matrix alone."""
         each = list(drift.slopes.items())
         for n, (unknown, d) in enumerate(each):
-            self.act(unknown, -m * d.dot(drift.rest - gravity))
             for other, d_other in each[n:]:
                 self.add(unknown, other, m * d.dot(d_other))
 

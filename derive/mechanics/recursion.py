@@ -18,12 +18,12 @@ from derive.mechanics.mass_matrix import MassMatrix
 
 def recursion(machine: Links) -> MassMatrix:
     """Return the mass matrix of links and its right side."""
-    return _Recursion(machine, MassMatrix()).assembled()
+    return Recursion(machine, MassMatrix()).assembled()
 
 
 def driven(machine: Links) -> dict[Symbol, Expr]:
     """Return the moments that drive links as they are known to move, with what is on the way."""
-    own = _Recursion(machine, MassMatrix())
+    own = Recursion(machine, MassMatrix())
     own.follow()
     moments = own.moments()
     found = {
@@ -34,24 +34,37 @@ def driven(machine: Links) -> dict[Symbol, Expr]:
 
 
 @dataclass
-class _Recursion:
+class Recursion:
+    """The passes of a machine, outward and inward."""
+
     machine: Links
     system: MassMatrix
     omega: list[Matrix] = field(default_factory=list)
     K: list[Matrix] = field(default_factory=list)
     a: list[Matrix] = field(default_factory=list)
 
-    def assembled(self) -> MassMatrix:
-        links, system = self.machine.links, self.system
+    def acted(self) -> MassMatrix:
+        """Return all but the mass matrix of links: its right side, and masses that do not turn."""
+        machine, system = self.machine, self.system
         self.follow()
-        for link, moment in zip(links, self.moments(), strict=True):
+        for link, moment in zip(machine.links, self.moments(), strict=True):
             system.act(link.unknown, -moment)
-        self._masses()
-        for m, drift in self.machine.carried:
-            system.translate(m, drift, self.machine.gravity)
-        for k, moment in self.machine.motors.items():
-            system.act(links[k].unknown, moment)
+        for k, link in enumerate(machine.links):
+            if link.drift is not None:
+                rest = self.bodies[k].mass * (link.drift.rest - machine.gravity)
+                for u, d in link.drift.slopes.items():
+                    system.act(u, -d.dot(rest))
+        for m, drift in machine.carried:
+            system.translate(m, drift, machine.gravity)
+        for k, moment in machine.motors.items():
+            system.act(machine.links[k].unknown, moment)
         return system
+
+    def assembled(self) -> MassMatrix:
+        """Return the mass matrix and its right side."""
+        self.acted()
+        self._masses()
+        return self.system
 
     def follow(self) -> None:
         """Follow the links outward."""
@@ -127,7 +140,7 @@ class _Recursion:
             force = e.cross(first)
             self._inboard(k, force, moment)
             if link.drift is not None:
-                system.translate(whole[k].mass, link.drift, self.machine.gravity)
+                system.carry(whole[k].mass, link.drift)
                 continue
             arm = self._out(link, first)
             spread = self._turned(link, second)
