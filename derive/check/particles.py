@@ -1,6 +1,7 @@
 """The answers of a scene beside a cloud of particles that knows positions only."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from flint import arb, ctx
@@ -15,7 +16,8 @@ from derive.scene.machine import Result
 from derive.scene.results import MATRICES, written_out
 from derive.scene.steady import steady_parts
 from derive.verify.cloud import CloudAnswers, answers
-from derive.verify.cloud.series import DIGITS
+from derive.verify.cloud.held import fulfilled
+from derive.verify.cloud.series import DIGITS, ball_of
 from derive.verify.cloud.small import is_at_rest, slopes_about_rest
 from derive.verify.convergence import unit_attitude
 from derive.verify.equations import Equations, equations_of, stated
@@ -62,6 +64,7 @@ def _where_it_lasts(library: Library, each: Sequence[Sample]) -> Iterator[dict[s
     """
     with ctx.workprec(BITS):
         balls = [unit_attitude(library, {c: arb(x) for c, x in s.values.items()}) for s in each]
+    balls = [own for values in balls if (own := on_constraints(library.scene, values))]
     balanced = {name: own.unknown for name, own in library.scene.steady.items()
                 if not own.vanishes and name in library.problems}  # fmt: skip
     if not balanced:
@@ -73,6 +76,26 @@ def _where_it_lasts(library: Library, each: Sequence[Sample]) -> Iterator[dict[s
             root = _root(equations, values, name, unknown[0])
             if root is not None:
                 yield values | {unknown[0]: root}
+
+
+def on_constraints(scene: Scene, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values of a state nearby that fulfils the constraints, nothing if none was found."""
+    if not scene.constraints:
+        return dict(values)
+    with mp.workdps(DIGITS):
+        found = fulfilled(scene, {name: digits(x) for name, x in values.items()})
+    with ctx.workprec(BITS):
+        return {name: ball_of(x) for name, x in found.items()} if found else {}
+
+
+def fulfilling(scene: Scene, each: Sequence[Sample]) -> Sequence[Sample]:
+    """Return samples brought to states nearby that fulfil the constraints."""
+    if not scene.constraints:
+        return each
+    with ctx.workprec(BITS):
+        balls = [{name: arb(x) for name, x in s.values.items()} for s in each]
+    pairs = [(s, on_constraints(scene, own)) for s, own in zip(each, balls, strict=True)]
+    return [replace(s, values=own) for s, own in pairs if own]
 
 
 def _rates(library: Library) -> list[str]:

@@ -26,6 +26,7 @@ from derive.mechanics.matter import without_factors
 from derive.mechanics.probe import PROBES, independent
 from derive.mechanics.problem import Problem, substituted
 from derive.mechanics.regular import Regular
+from derive.mechanics.told_by import steps_of
 from derive.program.program import Quantity
 from derive.scene import Input, Scene, SceneError
 from derive.scene.formula import Formula, symbols
@@ -46,6 +47,7 @@ class Answers:
         asked = self.machine.asked
         names = asked.get(base) or asked.get(base + JACOBIAN) or (base,)
         if names[0] in self.machine.steady:
+            self._require_free(base)
             return self._steady(base, names[0])
         parts = {q: e for name in names for q, e in self._answer(name).items()}
         quantities = tuple(parts)
@@ -55,6 +57,12 @@ class Answers:
         steps = [s for name in names for s in self._steps(name)]
         found = self._asked(base, quantities, answers, steps)
         return replace(found, says=SAYS[base]) if (base,) == names and base in SAYS else found
+
+    def _require_free(self, answer: str) -> None:
+        """Refuse what is only known of coordinates that no constraint holds together."""
+        if self.machine.constraints:
+            rule = "needs coordinates that are free of each other, and a constraint holds"
+            raise SceneError(f"'{answer}' {rule}: '{self.machine.constraints[0].name}'")
 
     @cached_property
     def _regular(self) -> Regular:
@@ -94,7 +102,9 @@ class Answers:
 
     def _balanced(self, rows: Iterable[ValuedBalance]) -> tuple[str, ...]:
         """Return the lecture steps that balances are written by."""
-        return tuple(dict.fromkeys(s for row in rows for s in self.balances.steps(row)))
+        return tuple(
+            dict.fromkeys(s for row in rows for s in steps_of(self.balances.sides, row.balance))
+        )
 
     def _steps(self, name: str) -> tuple[str, ...]:
         """Return the lecture steps that an answer follows by, beside balances."""
@@ -196,6 +206,7 @@ class Answers:
 
     @cached_property
     def _small(self) -> Linearised:
+        self._require_free("linearised")
         return linearised(self.machine, self.balances)
 
     def energy(self, name: str) -> Expr:

@@ -18,7 +18,7 @@ class Balance:
     """One equation: bodies cut free, force or moment about a point, along an axis of a frame."""
 
     bodies: tuple[str, ...]
-    kind: Literal["force", "moment"]
+    kind: Literal["force", "moment", "constraint", "virtual power"]
     point: Located | None
     spot: str
     frame: str
@@ -30,6 +30,10 @@ class Balance:
 
     def told(self, spoken: Mapping[str, str]) -> str:
         """Return the balance in words; ``spoken`` has those for what the user gave no names."""
+        if self.kind == "constraint":
+            return f"second rate of constraint {self.spot}"
+        if self.kind == "virtual power":
+            return f"virtual power of all bodies by the rate of {self.spot}"
         about = f" about {spoken.get(self.spot, self.spot)}" if self.kind == "moment" else ""
         frame = spoken.get(self.frame, f"of {frame_called(self.frame)}")
         along = f"{self.axis} {frame}".rstrip()

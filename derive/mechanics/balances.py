@@ -16,17 +16,18 @@ from sympy import Expr, Integer, Matrix, Symbol
 
 from derive.lecture.stated import by_law
 from derive.mechanics.balance import Balance, ValuedBalance
-from derive.mechanics.bodies import carries, form_about, moment_about
+from derive.mechanics.bodies import carries, moment_about
+from derive.mechanics.constraints import Tie
+from derive.mechanics.enforced import enforced, row_valued
 from derive.mechanics.frames import ZERO, Frames, Located
 from derive.mechanics.loads import Wrench
 from derive.mechanics.own_axes import frame_called
 from derive.mechanics.probe import DIGITS, NOTHING
 from derive.mechanics.sheet import AXES
+from derive.mechanics.told_by import hang_together
 from derive.mechanics.valued import Sides, Valued, sides, trial_probes
-from derive.scene.machine import Force, Spring
 
 MOST_TOGETHER = 6
-FEW = 2  # bodies that are cut free together though no load joins them
 
 
 @dataclass
@@ -54,6 +55,8 @@ class Balances:
     @cached_property
     def rows(self) -> tuple[ValuedBalance, ...]:
         """Return every balance that holds anything, plainest first."""
+        if self.held:
+            return self.telling
         most = min(len(self.sides.efforts), MOST_TOGETHER)
         return (*self.alone, *self._every(range(2, most + 1)))
 
@@ -76,6 +79,27 @@ class Balances:
                 else:
                     found += self._on((name,), self._valued)
         return tuple(row for row in found if not row.empty)
+
+    @property
+    def held(self) -> tuple[Tie, ...]:
+        """Return what the constraints of the machine ask for."""
+        return self.sides.held.kept
+
+    @cached_property
+    def enforced(self) -> tuple[ValuedBalance, ...]:
+        """Return the second rates of constraints, and what has no virtual power; of some alone."""
+        if not self.held:
+            return ()
+        found = enforced(self.sides, self.held, trial_probes(self.frames))
+        self.expressions |= dict(found)
+        return tuple(row for row, _ in found)
+
+    @cached_property
+    def telling(self) -> tuple[ValuedBalance, ...]:
+        """Return rows that all others are sums of; generalized forces act on no body."""
+        if any(c.generalized and c.factor is not None for c in self.held):
+            return self.enforced
+        return (*self.enforced, *self.spanning)
 
     def about(
         self, bodies: tuple[str, ...], place: Located, *frames: str
@@ -101,24 +125,14 @@ class Balances:
             return tuple(
                 row
                 for size in sizes
-                for bodies in filter(self._joined, combinations(own, size))
+                for bodies in filter(self._together, combinations(own, size))
                 if all(self.frames.linked(own[bodies[0]], own[b]) for b in bodies)
                 for row in self._on(bodies, self._valued)
                 if not row.empty
             )
 
-    def _joined(self, bodies: tuple[str, ...]) -> bool:
-        """Tell whether bodies hang together by loads between them, or are few or all."""
-        if len(bodies) <= FEW or len(bodies) == len(self.sides.efforts):
-            return True
-        pairs = [load for load in self.frames.machine.loads if isinstance(load, Force | Spring)]
-        reached = {bodies[0]}
-        for _ in bodies:
-            for load in pairs:
-                ends = {load.on, load.against}
-                if ends & reached and ends <= set(bodies):
-                    reached |= ends
-        return reached == set(bodies)
+    def _together(self, bodies: tuple[str, ...]) -> bool:
+        return hang_together(self.frames.machine, bodies)
 
     def _on(self, bodies: tuple[str, ...], valued: Sequence[Valued]) -> Iterator[ValuedBalance]:
         axes = self._axes(bodies, valued[0])
@@ -233,26 +247,10 @@ class Balances:
         kept = {u: c for u, c in slopes.items() if self.unknowns.index(u) in row.holds}
         return sheet.linear("balance", rest + sum((c * u for u, c in kept.items()), Integer(0)))
 
-    def steps(self, row: ValuedBalance) -> tuple[str, ...]:
-        """Return the lecture steps by which a balance is written."""
-        point, frames = row.balance.point, self.frames
-        if point is None:
-            return ("mass_centre_motion",)
-        found = dict[str, None]()
-        for body in row.balance.bodies:
-            own = self.sides.efforts[body]
-            if carries(frames, body, point):
-                found[form_about(frames, body, point[1])] = None
-                continue
-            central = row.balance.central or all(part == ZERO for part in own.force.values())
-            if central or own.moment != ZERO:
-                found["general_form"] = None
-            if not central:
-                found["any_point_form"] = None
-        return tuple(found)
-
     def body_by_body(self) -> "Balances":
         """Return the balances of single bodies, about their mass centres only."""
+        if self.held:
+            return self
         fewer = Balances(self.frames, self.expressions, single=True)
         fewer.alone = self.alone
         fewer.rows = tuple(r for r in self.alone if r.balance.kind == "force" or r.balance.central)
@@ -261,6 +259,9 @@ class Balances:
     def at(self, row: ValuedBalance, valued: Valued) -> NDArray[Any]:
         """Return the coefficients of a balance at another place: the rest, then the unknowns."""
         b = row.balance
+        if b.kind in ("constraint", "virtual power"):
+            there: NDArray[Any] = row_valued(self.sides, self.expressions[row], valued.probe)
+            return there
         vector = valued.force(b.bodies) if b.point is None else valued.moment(b.bodies, b.point)
         found: NDArray[Any] = valued.direction(b.frame, b.axis) @ vector
         return found

@@ -26,6 +26,8 @@ OnTheWay = Mapping[Symbol, Expr]
 
 def by_links(mechanism: Mechanism, base: str) -> Iterator[tuple[str, OnTheWay]]:
     """Yield ways to the unknowns of a function: how, values in order, what they stand on before."""
+    if mechanism.scene.constraints:
+        return
     found, sheet = mechanism.lean(base), mechanism.answers.frames.sheet
     problem = found.problem
     held = frozenset(s for e in problem.answers.values() for s in e.free_symbols)

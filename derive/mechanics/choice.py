@@ -43,7 +43,9 @@ def chosen(balances: Balances, wanted: frozenset[int], hard: Sequence[Probe] = (
     if _cannot_be_told(balances, wanted):
         raise SceneError(undetermined(balances, wanted))
     found = None
-    if len(balances.frames.machine.bodies) > FEW_BODIES and not balances.single:
+    if balances.held:
+        found = _first(balances, *_of_constraints(balances, wanted), hard)
+    elif len(balances.frames.machine.bodies) > FEW_BODIES and not balances.single:
         of = outboard(balances)
         rows = _plainest_first(balances, of)
         free = [m.unknown for m in balances.frames.machine.moving if m.free]
@@ -51,12 +53,21 @@ def chosen(balances: Balances, wanted: frozenset[int], hard: Sequence[Probe] = (
         moving = frozenset(k for k, name in names if name in free)
         found = _first(balances, rows, (wanted, wanted | moving), hard)
         write_out(balances, found[0] if found else (), of)
-    if found is None:
+    if found is None and not balances.held:
         rows = _plainest_first(balances, balances.rows)
         found = _first(balances, rows, _sets(rows, wanted), hard)
     if found is None:
         raise SceneError(undetermined(balances, wanted))
     return found
+
+
+def _of_constraints(
+    balances: Balances, wanted: frozenset[int]
+) -> tuple[Sequence[ValuedBalance], Sequence[frozenset[int]]]:
+    """Return the rows of a machine with constraints, and sets of unknowns: few, then all."""
+    few = frozenset(k for row in balances.enforced for k in row.holds)
+    every = frozenset(k for row in balances.telling for k in row.holds)
+    return balances.telling, [own for own in (few, every) if wanted <= own]
 
 
 def _plainest_first(balances: Balances, rows: Iterable[ValuedBalance]) -> list[ValuedBalance]:
@@ -171,7 +182,8 @@ def _cannot_be_told(balances: Balances, wanted: frozenset[int]) -> bool:
     Those that span all others tell, so the thousands of several bodies need not be valued.
     """
     count = len(balances.unknowns)
-    matrix = [_coefficients(row) for row in balances.spanning if row.holds]
+    rows = balances.telling if balances.held else balances.spanning
+    matrix = [_coefficients(row) for row in rows if row.holds]
     others = [{k: v for k, v in row.items() if k not in wanted} for row in matrix]
     return len(independent(matrix, count)) - len(independent(others, count)) < len(wanted)
 
@@ -231,7 +243,7 @@ def closed_loop(machine: Scene, unknowns: set[str]) -> str:
             return (
                 f"bodies form a closed loop ({', '.join(ring)}), joined by the loads "
                 f"{', '.join(loads)}: a machine must be a tree, whose coordinates are free of each "
-                "other; open the loop, or prescribe what follows from the rest"
+                "other; open the loop and close it by a constraint, or prescribe what follows"
             )
     return ""
 

@@ -16,11 +16,19 @@ NONE = "0, or nothing beside what else the balances hold"
 
 def require_held(balances: Balances, unknowns: Iterable[Symbol]) -> None:
     """Refuse an unknown that no balance holds; of an acceleration it is said why."""
-    held = {balances.unknowns[k] for row in balances.spanning for k in row.holds}
+    held = {balances.unknowns[k] for row in balances.telling for k in row.holds}
     for name in sorted(balances.frames.sheet.label(u) for u in unknowns if u not in held):
         motion = _motion(balances.frames.machine, name)
         why = f": the inertia of all that moves with '{motion}' is {NONE}" if motion else ""
         raise SceneError(f"no balance holds '{name}', so it cannot be found{why}")
+
+
+def require_told(balances: Balances, unknowns: Iterable[Symbol]) -> None:
+    """Refuse an unknown that enforces what other constraints enforce, too."""
+    told, label = balances.sides.held.told, balances.frames.sheet.label
+    for name, condition in sorted((label(u), told[u]) for u in unknowns if u in told):
+        rule = "says nothing that the others do not, so any value will do"
+        raise SceneError(f"'{name}' cannot be told: constraint '{condition}' {rule}")
 
 
 def _motion(machine: Scene, name: str) -> str:

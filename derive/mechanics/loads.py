@@ -1,9 +1,9 @@
 """What acts on the bodies of a machine: every load as a force and a couple at a point."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 
-from sympy import Expr, Integer, Matrix, Rational, sqrt
+from sympy import Expr, Integer, Matrix, Rational, Symbol, sqrt
 
 from derive.lecture.stated import by_law
 from derive.mechanics.bodies import centre, inertia_tensor, mass
@@ -23,6 +23,13 @@ class Wrench:
     along: str
     force: Matrix
     couple: Matrix
+
+    def without(self, gone: Iterable[Symbol]) -> "Wrench":
+        """Return it with some unknowns zero."""
+        none = dict.fromkeys(gone, Integer(0))
+        if not none:
+            return self
+        return replace(self, force=self.force.xreplace(none), couple=self.couple.xreplace(none))
 
 
 def wrenches(frames: Frames) -> tuple[Wrench, ...]:

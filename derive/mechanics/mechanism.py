@@ -11,6 +11,7 @@ from sympy import Expr, Integer, Pow
 from derive.mechanics.answers import Answers
 from derive.mechanics.balances import Balances
 from derive.mechanics.frames import Frames
+from derive.mechanics.held import bindings
 from derive.mechanics.inertia import vanishing
 from derive.mechanics.linearised import unsteady
 from derive.mechanics.loads import idle_springs
@@ -105,7 +106,12 @@ class Mechanism:
     def doubts(self) -> tuple[str, ...]:
         """Return the warnings of a scene, and those that take its equations to be found."""
         idle = idle_springs(self.answers.frames)
-        return (*self.scene.warnings, *idle, *self.doubts_at({}))
+        return (*self.scene.warnings, *idle, *self.redundant, *self.doubts_at({}))
+
+    @property
+    def redundant(self) -> tuple[str, ...]:
+        """Return a sentence for each part of a constraint that the others hold anyway."""
+        return bindings(self.answers.frames).doubts
 
     def doubts_at(self, given: Mapping[str, float]) -> tuple[str, ...]:
         """Return warnings that take a scene's equations to be found, where these values are set."""

@@ -11,7 +11,7 @@ from derive.mechanics.balances import Balances
 from derive.mechanics.choice import chosen, clearly_told, require_no_ring
 from derive.mechanics.contradiction import contradiction
 from derive.mechanics.frames import Frames
-from derive.mechanics.inertia import require_held, vanishing
+from derive.mechanics.inertia import require_held, require_told, vanishing
 from derive.mechanics.probe import Probe
 from derive.mechanics.sweep import (
     LEAST,
@@ -93,6 +93,7 @@ class Regular:
         self, wanted: set[Symbol], hard: Sequence[Probe]
     ) -> tuple[tuple[ValuedBalance, ...], tuple[Symbol, ...]]:
         every = self.balances.unknowns
+        require_told(self.balances, wanted)
         require_held(self.balances, wanted)
         if not wanted:
             return (), ()

@@ -4,7 +4,7 @@ A quotient is right at a trial point and wrong where its divisor vanishes. So ev
 valued at many points at once, beside the size of its terms, and followed to where it is smallest.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from random import Random
 from typing import Any
@@ -28,6 +28,7 @@ STARTS, ROUNDS = 3, 40  # a round halves the steps at least every second time
 LOW = 0.1  # what is nowhere smaller than this at the points is not searched for
 LEAST = 1e-4  # of the size of its terms: a divisor that loses more digits than that is a pole
 LEAST_OF_MASSES = 1e-6  # of a mass matrix beside its entries; 20 equal rods in line have 1.4e-5
+BEYOND = 1e-9  # of a range: what bringing a point back may leave
 SEED = "derive: sweep"
 
 
@@ -42,6 +43,27 @@ class Box:
     turns: tuple[bool, ...]
     fixed: frozenset[Symbol]
     quaternions: tuple[slice, ...]
+    onto: Any = None
+
+    def brought(self, points: NDArray[Any]) -> NDArray[Any]:
+        """Return points that fulfil the constraints; those that cannot are not among them."""
+        if self.onto is None:
+            return points
+        found, fits = self.onto.brought(points)
+        inside = np.array([self.within(p, self.onto.places) for p in found], bool)
+        return np.asarray(found[fits & inside])
+
+    def within(self, point: NDArray[Any], places: Iterable[int]) -> bool:
+        """Tell whether places of a point are within their ranges."""
+        return not self.outside(point, places)
+
+    def outside(self, point: NDArray[Any], places: Iterable[int]) -> str:
+        """Return words for the first place beyond its range, "" if there is none."""
+        for k in places:
+            spare = BEYOND * (self.high[k] - self.low[k])
+            if not self.low[k] - spare <= point[k] <= self.high[k] + spare:
+                return f"{self.names[k]} = {point[k]:.4g}"
+        return ""
 
     def trials(self) -> NDArray[Any]:
         """Return points of the ranges, (points, components)."""
@@ -80,6 +102,7 @@ def ranges(words: Words) -> Box:
         frozenset((*(s for s, _, q in each if q in book.parameters), *words.hidden)),
         tuple(slice(k, k + 4) for k, (_, c, q) in enumerate(each)
               if q.is_quaternion and c == q.components[0]),
+        words.held[0].onto if words.held else None,
     )  # fmt: skip
 
 
@@ -201,7 +224,9 @@ def weakest(
         sizes: NDArray[Any] = np.nan_to_num(found, nan=0.0)
         return sizes
 
-    points = of.trials()
+    points = of.brought(of.trials())
+    if not len(points):
+        return Weakest(1.0, {}, bound)
     sizes = at(points)
     order = np.argsort(sizes, kind="stable")[:STARTS]
     best = (float(sizes[order[0]]), points[order[0]])
@@ -218,8 +243,8 @@ def _followed(
     step, width = 0.25, of.high - of.low
     sides = np.vstack([np.diag(width), -np.diag(width)])
     for turn in range(ROUNDS):
-        around = np.clip(here + step * sides, of.low, of.high)
-        sizes = at(around)
+        around = of.brought(np.clip(here + step * sides, of.low, of.high))
+        sizes = at(around) if len(around) else np.array([size])
         n = int(np.argmin(sizes))
         nearer = sizes[n] < size
         if nearer:

@@ -1,7 +1,7 @@
 """Vectors of a machine at a trial point: what motion needs and what acts, in common axes."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 from sympy import Matrix, Symbol
 
 from derive.mechanics.bodies import Effort, effort
+from derive.mechanics.constraints import symbols_held
 from derive.mechanics.frames import ZERO, ByFrame, Frames, Located
+from derive.mechanics.held import Bindings, bindings
 from derive.mechanics.loads import Wrench, wrenches
 from derive.mechanics.probe import NOTHING, PROBES, Probe, at_rest, random_probe
 from derive.scene.machine import INERTIAL
@@ -21,22 +23,27 @@ class Sides:
     """Both sides of every balance: the efforts of the bodies, by name, and the loads on them.
 
     unknowns : what is in them and to be found, in order of their names' places
+    held     : what the constraints ask for besides
     """
 
     frames: Frames
     efforts: Mapping[str, Effort]
     wrenches: tuple[Wrench, ...]
     unknowns: tuple[Symbol, ...]
+    held: Bindings = field(default_factory=Bindings)
 
 
 def sides(frames: Frames) -> Sides:
     """Return both sides of every balance of a machine; what they name is on its sheet then."""
     efforts = {b.name: effort(frames, b.name) for b in frames.machine.bodies}
-    acting = wrenches(frames)
+    own = bindings(frames)
+    acting = tuple(w.without(own.told) for w in wrenches(frames))
     used = {s for e in efforts.values() for s in e.moment.free_symbols}
     used |= {s for e in efforts.values() for part in e.force.values() for s in part.free_symbols}
     used |= {s for w in acting for s in w.force.free_symbols | w.couple.free_symbols}
-    return Sides(frames, efforts, acting, tuple(sorted(used & frames.sheet.unknowns, key=str)))
+    used |= symbols_held(own.kept)
+    unknowns = tuple(sorted(used & frames.sheet.unknowns, key=str))
+    return Sides(frames, efforts, acting, unknowns, own)
 
 
 def trial_probes(frames: Frames) -> tuple[Probe, ...]:

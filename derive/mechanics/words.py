@@ -21,6 +21,7 @@ class Words:
 
     spoken : the vocabulary in which an input may be an answer of another function as well
     trials : values that were drawn already, by the number of their trial point
+    held   : the conditions of its constraints, once they were looked at
     """
 
     vocabulary: Vocabulary
@@ -28,6 +29,7 @@ class Words:
     sheet: Sheet
     hidden: Mapping[Symbol, str]
     trials: dict[int, Mapping[Symbol, Any]] = field(default_factory=dict)
+    held: list[Any] = field(default_factory=list)
 
     def expression(self, formula: Formula) -> Expr:
         """Return a formula in the symbols of the scene, sines and cosines of sums written out.

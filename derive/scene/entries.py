@@ -174,6 +174,21 @@ FORMULA = (
     MEANING,
     Entry("unit", "any", "coherent SI, which the formula must have; its own if left out"),
 )
+CONSTRAINT = (
+    Entry("zero", "any", "a formula that stays 0: of places, or of rates and speeds; or points:"),
+    Entry("on", "body", "whose point meets another"),
+    OF,
+    AT,
+    AGAINST,
+    Entry("to_frame", "frame", "of the other point; that of `against`, or inertial, if left out"),
+    Entry("to", "three formulas", "the other point, from the origin of `to_frame`", "m", "places",
+          ORIGIN),
+    ALONG,
+    Entry("axes", "any", "of `along`, on which the points meet; all three if left out"),
+    Entry("equal", "word", "of the points, or of the bodies' particles there: rolling",
+          default="places", words=("places", "velocities")),
+    Entry("load", "text", "that enforces it; one by the constraint's name if left out"),
+)  # fmt: skip
 RESULT = (
     Entry("formula", "any", "of answers, parameters and the motion", default=REQUIRED),
     MEANING,

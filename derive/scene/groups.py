@@ -85,7 +85,9 @@ def _acting(scene: Scene, u: Unknown) -> Group:
 
     An unknown that is no component, but stands in some, is told by the whole load.
     """
-    load = next(f for f in scene.loads if isinstance(f, Force) and f.name == u.load)
+    load = next((f for f in scene.loads if isinstance(f, Force) and f.name == u.load), None)
+    if load is None:
+        return _answer(u.name, (u.name,), u.unit, f"generalized force of constraint {u.load}")
     kind, three = ("force", load.force) if u.unit == "N" else ("couple", load.couple)
     axes = [axis for axis, f in zip(AXES, three, strict=True) if u.name in symbols(f)]
     alone = [axis for axis, f in zip(AXES, three, strict=True) if str(f) == u.name]

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Literal
 
+from derive.scene.constraint import Constraint
 from derive.scene.declaration import Axis, Given, Moving, Parameter, Triple, Turning
 from derive.scene.formula import ZERO, Formula
 from derive.scene.shape import Portion
@@ -279,6 +280,7 @@ class Scene:
     told: tuple[str, ...] = ()
     spoken: Mapping[str, str] = field(default_factory=dict)
     marks: Mapping[str, str] = field(default_factory=dict)
+    constraints: tuple[Constraint, ...] = ()
 
     def posed(self, function: str) -> "Scene":
         """Return the scene as a function poses it: its motion sought, or given."""

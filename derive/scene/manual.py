@@ -44,6 +44,7 @@ TABLES: Mapping[str, tuple[Entry, ...]] = {
     "`[loads.NAME]`, spring and damper": entries.SPRING,
     "`[loads.NAME]`, gravity gradient": entries.GRADIENT,
     "`gravity_gradient`, a formula or": entries.CENTRE_OF_FIELD,
+    "`[constraints.NAME]`": entries.CONSTRAINT,
     "`[results]` NAME, a formula or": entries.RESULT,
     "`[angular_momentum]`": entries.MOMENTUM,
     "`[steady]`, or `[steady.NAME]` each": entries.STEADY,

@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from typing import Any
 
 from derive.scene.bodies import read_member
+from derive.scene.constraints import read_constraints
 from derive.scene.declaration import Input, SceneError
 from derive.scene.demands import of_bodies
 from derive.scene.doubtful import doubts, require_sizes
@@ -50,7 +51,17 @@ class Form:
 
 SCALARS = ("parameters", "coordinates", "speeds", "inputs", "formulas", "motion")
 MACHINE = Form(
-    ("bodies", "frames", "loads", "results", "angular_momentum", "linearised", "steady", *SCALARS),
+    (
+        "bodies",
+        "frames",
+        "loads",
+        "constraints",
+        "results",
+        "angular_momentum",
+        "linearised",
+        "steady",
+        *SCALARS,
+    ),
     ("body", "axes", "wheels", "point", "known", "position"),
     "is for a single body; with bodies and frames, use bodies, frames and loads",
     (TIME_STEP, COLUMN),
@@ -88,6 +99,8 @@ def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
     frames = read_frames(part["frames"], scalars, tuple(part["bodies"].entries))
     bodies = _bodies(part["bodies"], frames, scalars)
     loads, unknowns = read_loads(part["loads"], scalars, frames, bodies)
+    held = read_constraints(part["constraints"], scalars, frames, bodies, (loads, unknowns))
+    constraints, loads, unknowns = held
     results = read_results(part["results"], scalars, unknowns)
     distinct(_declared(scalars, unknowns, results))
     lasting = steady_names(part["steady"])
@@ -105,6 +118,7 @@ def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
         momentum=_momentum(part["angular_momentum"], frames, bodies, scalars),
         about=_about(part["linearised"], scalars),
         steady=steady, asked=asked, wanted=tuple(asked), demands=of_bodies(bodies),
+        constraints=constraints,
         warnings=(*_unused(scalars, source), *_doubts(bodies, scalars),
                   *_misnamed(scalars, results)),
     )  # fmt: skip

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
+from derive.scene.constraint import Constraint
 from derive.scene.declaration import Turning
 from derive.scene.formula import ZERO, Formula, substitute, symbols
 from derive.scene.machine import (
@@ -22,6 +23,7 @@ def said(machine: Scene) -> tuple[str, ...]:
     found = [_frame(f) for f in machine.frames if f.name != INERTIAL]
     found += [_body(b) for b in machine.bodies]
     found += [_load(load) for load in machine.loads if not is_hidden(load.name)]
+    found += [_constraint(one) for one in machine.constraints]
     welds = [f for f in machine.loads if isinstance(f, Force) and is_hidden(f.name)]
     found += [f"Body {f.on} is fixed to {f.against}, both in {f.frame}." for f in welds]
     return (*found, *([f"Source: {machine.source}."] if machine.source else []))
@@ -128,6 +130,20 @@ def _load(load: Load) -> str:
         return f"Load {load.name}: the gravity gradient {load.strength} {towards}, on {on}."
     where = f"along {load.along}, on {', '.join(load.on)}"
     return f"Load {load.name}: gravity {_column(load.gravity)} {where}."
+
+
+def _constraint(one: Constraint) -> str:
+    """Return what a constraint asks for, and what enforces it."""
+    by = f"the generalized force {one.factor}" if one.factor else f"the load {one.load}"
+    if one.meeting is None:
+        return f"Constraint {one.name}: {one.zero} stays 0, enforced by {by}."
+    own = one.meeting
+    what = "stays at" if own.equal == "places" else f"of {own.on} has the velocity of"
+    there = f"{_column(own.to)} of {own.to_frame}"
+    there += f" on {own.against}" if own.against else ""
+    axes = ", ".join(own.axes)
+    here = f"the point {_column(own.at)} of {own.frame}"
+    return f"Constraint {one.name}: {here} {what} {there}, on {axes} of {own.along}, by {by}."
 
 
 def _spring(load: Spring) -> str:

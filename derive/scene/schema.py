@@ -86,6 +86,8 @@ OF_ANY: Mapping[str, Schema] = {
         ]
     },
     "unit": _NAME,
+    "zero": FORMULA,
+    "axes": {**_NAMES, "items": {"enum": ["x", "y", "z"]}},
     "unknown": {"anyOf": [_NAME, _NAMES]},
     "vanishes": {"anyOf": [FORMULA, {"type": "array", "items": FORMULA, "minItems": 1}]},
     "name": {"type": "string", "pattern": "^[A-Za-z0-9]{1,20}$"},
@@ -128,6 +130,7 @@ def _tables() -> dict[str, Any]:
         "frames": _named(rolling, "moving axes, each carried by another"),
         "bodies": _named(_member(), "rigid bodies, each carried by a frame"),
         "loads": _named(_load(), "forces, couples, weights, springs, gravity gradients"),
+        "constraints": _named(_table(entries.CONSTRAINT), "what must hold of a motion"),
         "results": _named(result, "formulas of answers"),
         "linearised": _named(FORMULA, "values about which motion is small; 0 if not given"),
         "angular_momentum": _table(entries.MOMENTUM),

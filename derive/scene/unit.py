@@ -119,6 +119,11 @@ def raised(base: Dimension, power: Fraction) -> Dimension:
     return base[0] * power, base[1] * power, base[2] * power
 
 
+def unit_ratio(left: Dimension, right: Dimension) -> Dimension:
+    """Return the dimension of a unit_ratio."""
+    return multiplied(left, raised(right, Fraction(-1)))
+
+
 def spelled(found: Dimension) -> str:
     """Return a dimension as a unit text, named where a name is usual.
 

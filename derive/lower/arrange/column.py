@@ -64,7 +64,9 @@ def in_definitions(problem: Problem, rule: ColumnRule, columns: NamedColumns) ->
     symbols = list(problem.definitions)
     while symbols:
         own = symbols[:3]
-        made = _rewritten(Matrix([problem.definitions[s] for s in own]), rule, columns)
+        values = Matrix([problem.definitions[s] for s in own])
+        apart = values.free_symbols.isdisjoint(own)
+        made = _rewritten(values, rule, columns) if apart else None
         new = [problem.definitions[own[0]]] if made is None else [*made]
         done |= columns.taken() | dict(zip(own, new, strict=False))
         symbols = symbols[len(new) :]

@@ -71,7 +71,7 @@ class Series:
 def motion_series(*parts: Any) -> Series:
     """Return the series with these coefficients, zeros behind them."""
     with ctx.workprec(BITS):
-        return Series(arb_series([_ball(x) for x in parts], prec=ORDER))
+        return Series(arb_series([ball_of(x) for x in parts], prec=ORDER))
 
 
 def series(value: Series | Any) -> Series:
@@ -84,7 +84,8 @@ def _by(operation: Callable[..., Any], *given: Series | Any) -> Series:
         return Series(operation(*(series(x).terms for x in given)))
 
 
-def _ball(x: Any) -> arb:
+def ball_of(x: Any) -> arb:
+    """Return a number of mpmath as a ball."""
     if not mp.isfinite(x):
         return arb("nan")
     sign, mantissa, exponent, _ = mpf(x)._mpf_

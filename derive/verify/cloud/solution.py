@@ -12,6 +12,7 @@ from derive.scene import Scene
 from derive.scene.formula import Formula
 from derive.scene.results import written_out
 from derive.verify.cloud.balance import at_instant, left_over, potential_energy
+from derive.verify.cloud.held import Allowed, generalized, second_rates
 from derive.verify.cloud.history import History
 from derive.verify.cloud.series import DIGITS, crossed, each, series
 
@@ -43,10 +44,21 @@ class CloudAnswers:
     @cached_property
     def _matrix(self) -> tuple[list[list[Any]], list[Any]]:
         """Return the six equations a body, which are linear in the unknowns."""
-        rest = left_over(self.history({}))
-        columns = [left_over(self.history({n: mpf(1)})) for n in self.names]
+        rest = self._left_over(self.history({}))
+        columns = [self._left_over(self.history({n: mpf(1)})) for n in self.names]
         rows = [[column[r] - rest[r] for column in columns] for r in range(len(rest))]
         return rows, [-x for x in rest]
+
+    def _left_over(self, history: History) -> list[Any]:
+        """Return what of all equations is left: of bodies, or of powers, and of constraints."""
+        if not self.machine.constraints:
+            return left_over(history)
+        rows = self._allowed.left_over(history) if generalized(self.machine) else left_over(history)
+        return [*rows, *second_rates(history)]
+
+    @cached_property
+    def _allowed(self) -> Allowed:
+        return Allowed(self.machine, self.given, self.history)
 
     @cached_property
     def _reduced(self) -> tuple[dict[int, list[Any]], Any]:

@@ -1,0 +1,101 @@
+"""Which conditions of a machine say something of their own, at states that fulfil all of them.
+
+A condition that the others hold anyway is redundant: it is left out, and what enforces it, of which
+nothing could tell how it shares its part, is taken as zero. What cannot be fulfilled is refused.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from random import Random
+
+import numpy as np
+from sympy import Symbol
+
+from derive.mechanics.constraints import Tie, ties
+from derive.mechanics.frames import Frames
+from derive.mechanics.onto import TELLING, Onto, onto
+from derive.mechanics.sweep import Box, ranges
+from derive.scene import SceneError
+
+STATES, TRIES = 3, 60
+SEED = "derive: states on constraints"
+
+
+@dataclass(frozen=True)
+class Bindings:
+    """The conditions that are kept, those that are redundant, and what fulfils all.
+
+    told : for each unknown that is taken as zero, the condition that it would enforce
+    """
+
+    kept: tuple[Tie, ...] = ()
+    dropped: tuple[Tie, ...] = ()
+    onto: Onto | None = None
+    told: Mapping[Symbol, str] = field(default_factory=dict)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Return a sentence for each condition that is left out."""
+        sheet = self.onto.frames.sheet if self.onto else None
+        found = []
+        for c in self.dropped:
+            force = "" if c.factor is None or sheet is None else f": '{sheet.label(c.factor)}' is 0"
+            says = "says nothing that the others do not, and is left out"
+            found.append(f"constraint '{c.name}' {says}{force}")
+        return tuple(found)
+
+
+def bindings(frames: Frames) -> Bindings:
+    """Return the conditions of a machine, found once.
+
+    Raises SceneError if no state of the ranges fulfils them.
+    """
+    if not frames.machine.constraints:
+        return Bindings()
+    if not frames.words.held:
+        frames.words.held.append(_bindings(frames))
+    found: Bindings = frames.words.held[0]
+    return found
+
+
+def _bindings(frames: Frames) -> Bindings:
+    every = ties(frames)
+    brings = onto(frames, every)
+    states = _states(frames, brings, ranges(frames.words))
+    slopes = [brings.slopes(state) for state in states]
+    kept = _independent(slopes)
+    dropped = [c for k, c in enumerate(every) if k not in kept]
+    told = {c.factor: c.name for c in dropped if c.factor is not None}
+    return Bindings(tuple(every[k] for k in kept), tuple(dropped), brings, told)
+
+
+def _states(frames: Frames, brings: Onto, box: Box) -> list[np.ndarray]:
+    """Return states of the ranges that fulfil all conditions."""
+    dice, found = Random(SEED), []  # noqa: S311 - trial states, no secret
+    best = ""
+    for _ in range(TRIES):
+        parts = np.array([dice.random() for _ in box.symbols])
+        point, fits = brings.brought((box.low + (box.high - box.low) * parts)[None, :])
+        if fits[0] and box.within(point[0], brings.places):
+            found.append(point[0])
+            if len(found) == STATES:
+                return found
+        elif fits[0]:
+            best = box.outside(point[0], brings.places)
+    if found:
+        return found
+    names = ", ".join(f"'{c.name}'" for c in frames.machine.constraints)
+    rule = f"no state of the declared ranges was found that fulfils constraint {names}"
+    more = f"; the nearest has {best}" if best else ", nor any near them: do they contradict"
+    raise SceneError(f"{rule}{more}{'' if best else ' each other?'}")
+
+
+def _independent(each: list[np.ndarray]) -> list[int]:
+    """Return the places of the first rows that are independent at every state."""
+    kept: list[int] = []
+    for k in range(len(each[0])):
+        tried = [*kept, k]
+        if all(np.linalg.svd(s[tried], compute_uv=False)[-1] > TELLING for s in each
+               if len(tried) <= s.shape[1]) and len(tried) <= each[0].shape[1]:  # fmt: skip
+            kept.append(k)
+    return kept

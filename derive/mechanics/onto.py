@@ -1,0 +1,144 @@
+"""States brought onto the constraints of a machine: places by Newton's method, rates by one step.
+
+Of all states that fulfil the constraints the one nearby is taken, distances counted in parts of the
+declared ranges; so no coordinate need be chosen to follow the others, and none can fail to.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from sympy import Expr, Symbol, lambdify
+
+from derive.mechanics.constraints import Partials, Tie
+from derive.mechanics.frames import Frames
+from derive.scene import Input
+
+ROUNDS = 60
+CLOSE = 1e-11  # of a condition beside the size of its slopes: what floats leave of it
+TELLING = 1e-7  # a singular value below this part of the largest is none
+
+Doubles = NDArray[Any]
+
+
+@dataclass(frozen=True)
+class Onto:
+    """The conditions of a machine over the components of all that is given, and what may move.
+
+    places : components that places are made of, each with the size of its range
+    rates  : components that velocities are made of, each with the size of its range
+    """
+
+    frames: Frames
+    conditions: tuple[Tie, ...]
+    symbols: tuple[Symbol, ...]
+    places: Mapping[int, float]
+    rates: Mapping[int, float]
+
+    def brought(self, points: Doubles) -> tuple[Doubles, Doubles]:
+        """Return points (count, components) that fulfil the conditions, and which of them do."""
+        found = np.array(points, float)
+        fits = np.ones(len(found), bool)
+        for n in range(len(found)):
+            found[n], fits[n] = self._one(found[n])
+        return found, fits
+
+    def _one(self, point: Doubles) -> tuple[Doubles, bool]:
+        here, columns, size = point, [*self.places], np.array([*self.places.values()])
+        if self._of_places:
+            for _ in range(ROUNDS):
+                value, slopes = self._placed(here)
+                scaled = slopes * size
+                weight = np.linalg.norm(scaled, axis=1)
+                weight = np.where(weight > 0, weight, 1.0)
+                gap, own = value / weight, scaled / weight[:, None]
+                if not np.all(np.isfinite(gap)):
+                    return here, False
+                if np.max(np.abs(gap)) < CLOSE * 1e-3:
+                    break
+                # damped by the square of what is left, which redundant conditions need
+                damped = own.T @ own + min(1.0, float(gap @ gap)) * np.eye(len(columns))
+                step = np.linalg.lstsq(damped, own.T @ gap, rcond=1e-15)[0]
+                longest = float(np.max(np.abs(step)))
+                here = here.copy()
+                here[columns] -= size * step * min(1.0, 0.5 / longest if longest else 1.0)
+            if np.max(np.abs(gap)) > CLOSE:
+                return here, False
+        columns, size = [*self.rates], np.array([*self.rates.values()])
+        value, slopes = self._moving(here)
+        scaled = slopes * size
+        weight = np.linalg.norm(scaled, axis=1)
+        weight = np.where(weight > 0, weight, 1.0)
+        own, gap = scaled / weight[:, None], value / weight
+        step = np.linalg.lstsq(own, gap, rcond=TELLING)[0] if len(gap) else np.zeros(len(columns))
+        here = here.copy()
+        here[columns] -= size * step
+        left = np.max(np.abs(own @ step - gap), initial=0.0)
+        return here, bool(left < 1e-6 * max(1.0, np.max(np.abs(gap), initial=0.0)))
+
+    def slopes(self, point: Doubles) -> Doubles:
+        """Return how the first rates of all conditions change with the rates, (conditions, rates).
+
+        Both are counted in sizes of ranges.
+        """
+        scaled = self._moving(point)[1] * np.array([*self.rates.values()])
+        weight = np.linalg.norm(scaled, axis=1, keepdims=True)
+        return np.asarray(scaled / np.where(weight > 0, weight, 1.0))
+
+    @cached_property
+    def _of_places(self) -> list[Expr]:
+        return [self.plain(c.place) for c in self.conditions if c.place is not None]
+
+    @cached_property
+    def _functions(self) -> tuple[Any, Any]:
+        moved = [self.symbols[k] for k in self.places]
+        by, rates = Partials(self.frames), [self.symbols[k] for k in self.rates]
+        placed = [*self._of_places, *(e.diff(s) for e in self._of_places for s in moved)]
+        firsts = [c.first for c in self.conditions]
+        moving = [*firsts, *(by.by(e, s) for e in firsts for s in rates)]
+        flat = placed, [self.plain(e) for e in moving]
+        first, second = (lambdify(self.symbols, e, modules="numpy", cse=True) for e in flat)
+        return first, second
+
+    def plain(self, e: Expr) -> Expr:
+        """Return an expression without named quantities."""
+        definitions = self.frames.sheet.needed([e])
+        known: dict[Symbol, Expr] = {}
+        for symbol, value in definitions.items():
+            known[symbol] = value.xreplace(known)
+        return e.xreplace(known)
+
+    def _placed(self, point: Doubles) -> tuple[Doubles, Doubles]:
+        return _split(self._functions[0](*point), len(self.places))
+
+    def _moving(self, point: Doubles) -> tuple[Doubles, Doubles]:
+        return _split(self._functions[1](*point), len(self.rates))
+
+
+def _split(values: Sequence[Any], columns: int) -> tuple[Doubles, Doubles]:
+    flat = np.array([float(v) for v in values])
+    count = len(flat) // (columns + 1)
+    return flat[:count], flat[count:].reshape(count, columns)
+
+
+def onto(frames: Frames, every: tuple[Tie, ...]) -> Onto:
+    """Return what brings states of a machine onto its conditions."""
+    book, machine = frames.words.vocabulary, frames.machine
+    each = [(c, q) for q in book.given() for c in q.components]
+    names = [c for c, _ in each]
+    size = {c: max(float(q.ends[1] - q.ends[0]), 1e-300) for c, q in each}
+    states = [c for q in book.states for c in q.components]
+    speeds = {s.name for s in machine.speeds}
+    rates = [c.rate.name for c in machine.coordinates if c.free and isinstance(c.rate, Input)]
+    rates += [s.name for s in machine.speeds if s.free]
+    places = [c for c in states if c not in speeds and c not in rates]
+    where = {c: k for k, c in enumerate(names)}
+    hidden = tuple(frames.words.hidden)
+    return Onto(
+        frames, every, (*(book.symbols[c] for c in names), *hidden),
+        {where[c]: size[c] for c in places if c in where},
+        {where[c]: size[c] for c in rates},
+    )  # fmt: skip

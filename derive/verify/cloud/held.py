@@ -1,0 +1,253 @@
+"""What constraints ask of a cloud of particles: positions that fulfil them, and no power lost.
+
+Conditions are formulas and places as series in time; allowed velocities are differences of those of
+two clouds, of which one moves by a rate more. Where a generalized force enforces a condition, it is
+told by d'Alembert's principle: on no velocity have masses times accelerations another power than
+what acts, and the force's own is that of the condition's rate.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from mpmath import mp, mpf
+from numpy.typing import NDArray
+
+from derive.scene import Input, Scene
+from derive.scene.constraint import Constraint, Meeting
+from derive.verify.cloud.balance import acting, at_instant
+from derive.verify.cloud.history import History
+from derive.verify.cloud.series import Series, crossed, each
+
+MakeHistory = Callable[[Mapping[str, Any]], History]
+ROUNDS, FULFILLED = 60, mpf(10) ** -45
+NEAR, FOLLOWED, TELLING = mpf(10) ** -9, mpf(10) ** -35, 1e-6
+
+
+def conditions_of(history: History) -> list[tuple[Constraint, Series]]:
+    """Return every scalar that stays zero, as a series in time."""
+    return [(one, s) for one in history.machine.constraints for s in _series(history, one)]
+
+
+def _series(history: History, one: Constraint) -> list[Series]:
+    if one.meeting is None:
+        return [history.value(one.zero)]
+    meeting = one.meeting
+    here, there = (history.place(meeting.frame, meeting.at),
+                   history.place(meeting.to_frame, meeting.to))  # fmt: skip
+    apart = here - there
+    if one.of_rates:
+        apart = _particle(history, meeting.on, here)
+        if meeting.against:
+            apart = apart - _particle(history, meeting.against, there)
+    axes = history.rotations[meeting.along]
+    return [axes[:, "xyz".index(axis)] @ apart for axis in meeting.axes]
+
+
+def _particle(history: History, body: str, place: NDArray[Any]) -> NDArray[Any]:
+    """Return the velocity of a body's particle that is at a place."""
+    Q, centre = history.body(body), history.centre(body)
+    turning = each(lambda x: x.rate(), Q) @ Q.T
+    found: NDArray[Any] = each(lambda x: x.rate(), centre) + turning @ (place - centre)
+    return found
+
+
+def second_rates(history: History) -> list[Any]:
+    """Return the second rate of every condition."""
+    return [s.velocity if one.of_rates else s.acceleration for one, s in conditions_of(history)]
+
+
+def first_rates(history: History) -> list[Any]:
+    """Return the rate of every condition, or the condition itself if it is of rates."""
+    return [s.value if one.of_rates else s.velocity for one, s in conditions_of(history)]
+
+
+@dataclass
+class Allowed:
+    """A machine at given values, and the velocities that its frames allow, one for each rate."""
+
+    machine: Scene
+    given: Mapping[str, Any]
+    make: MakeHistory
+
+    @cached_property
+    def rates(self) -> tuple[str, ...]:
+        """Return the names of the rates that motion is made of."""
+        coordinates = (c.rate.name for c in self.machine.coordinates if isinstance(c.rate, Input))
+        return (*coordinates, *(s.name for s in self.machine.speeds))
+
+    @cached_property
+    def _base(self) -> History:
+        return self.make({})
+
+    @cached_property
+    def _moved(self) -> list[History]:
+        return [self.make({name: self.given[name] + 1}) for name in self.rates]
+
+    @cached_property
+    def _slopes(self) -> list[list[Any]]:
+        """Return of each rate how the first rates of all conditions change with it."""
+        base = first_rates(self._base)
+        return [[a - b for a, b in zip(first_rates(own), base, strict=True)] for own in self._moved]
+
+    @cached_property
+    def _velocities(self) -> list[list[NDArray[Any]]]:
+        """Return of each rate how the velocities of all particles change with it."""
+        base = _velocities(self._base)
+        return [[a - b for a, b in zip(_velocities(own), base, strict=True)]
+                for own in self._moved]  # fmt: skip
+
+    @cached_property
+    def _turning(self) -> list[dict[str, NDArray[Any]]]:
+        base = {b.name: _turns(self._base, b.name) for b in self.machine.bodies}
+        return [{name: _turns(own, name) - base[name] for name in base} for own in self._moved]
+
+    def left_over(self, history: History) -> list[Any]:
+        """Return of each rate the power that masses times accelerations have beyond what acts."""
+        pushes = [m * each(lambda x: x.acceleration, place)
+                  for body in history.machine.bodies
+                  for m, place in history.particles(body.name)]  # fmt: skip
+        loads = [one for load in history.machine.loads for one in acting(history, load)]
+        places = {b.name: at_instant(history.centre(b.name)) for b in history.machine.bodies}
+        centres = self._centres
+        rows = []
+        for k in range(len(self.rates)):
+            total = sum((f @ v for f, v in zip(pushes, self._velocities[k], strict=True)), mpf(0))
+            for body, place, force, couple in loads:
+                omega = self._turning[k][body]
+                v = centres[k][body] + crossed(omega, place - places[body])
+                total -= force @ v + couple @ omega
+            for (one, _), slope in zip(self._conditions, self._slopes[k], strict=True):
+                if one.factor:
+                    total -= history.scalars[one.factor].value * slope
+            rows.append(total)
+        return rows
+
+    @cached_property
+    def _conditions(self) -> list[tuple[Constraint, Series]]:
+        return conditions_of(self._base)
+
+    @cached_property
+    def _centres(self) -> list[dict[str, NDArray[Any]]]:
+        names = [b.name for b in self.machine.bodies]
+        base = {n: _velocity(self._base.centre(n)) for n in names}
+        return [{n: _velocity(own.centre(n)) - base[n] for n in names} for own in self._moved]
+
+
+def _velocity(place: NDArray[Any]) -> NDArray[Any]:
+    return each(lambda x: x.velocity, place)
+
+
+def _velocities(history: History) -> list[NDArray[Any]]:
+    bodies = history.machine.bodies
+    return [_velocity(place) for b in bodies for _, place in history.particles(b.name)]
+
+
+def _turns(history: History, body: str) -> NDArray[Any]:
+    Q = history.body(body)
+    spin = each(lambda x: x.velocity, Q) @ at_instant(Q).T
+    return np.array([spin[2, 1], spin[0, 2], spin[1, 0]], dtype=object)
+
+
+def generalized(machine: Scene) -> bool:
+    """Tell whether a force enforces a constraint that acts on no body in particular."""
+    return any(one.factor for one in machine.constraints)
+
+
+def meetings(machine: Scene) -> tuple[Meeting, ...]:
+    """Return the points that meet."""
+    return tuple(one.meeting for one in machine.constraints if one.meeting is not None)
+
+
+def fulfilled(machine: Scene, given: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Return a state nearby that fulfils all constraints, to the digits of the cloud, or None.
+
+    Places are moved along the velocities that the frames allow, then rates are: by all conditions
+    at first, then by those that are independent there, which the others must follow.
+    """
+    here = dict(given)
+    for of_rates in (False, True):
+        own: list[int] = []
+        for _ in range(ROUNDS):
+            values, slopes, states = _near(machine, here, of_rates=of_rates)
+            largest = max(map(abs, values), default=mpf(0))
+            if not mp.isfinite(largest):
+                return None
+            if all(abs(values[k]) < FULFILLED for k in own or range(len(values))):
+                break
+            if largest < NEAR and not own:
+                own = _independent(slopes)
+            kept = own or range(len(values))
+            step = _least([[row[k] for k in kept] for row in slopes], [values[k] for k in kept])
+            for k, name in enumerate(states):
+                for c, slope in states[name].items():
+                    here[c] -= slope * step[k]
+        else:
+            return None
+        if largest > FOLLOWED:
+            return None
+    return here
+
+
+def _near(machine: Scene, here: Mapping[str, Any], *, of_rates: bool) -> Any:
+    """Return conditions, their slopes by each rate, and the rates of states by each rate."""
+    free = {m.unknown: mpf(0) for m in (*machine.coordinates, *machine.speeds) if m.free}
+    known = {u.name: mpf(0) for u in machine.unknowns}
+
+    def make(change: Mapping[str, Any]) -> History:
+        return History(machine, {**known, **here, **free, **change})
+
+    base = make({})
+    values = first_rates(base) if of_rates else [
+        s.value for one, s in conditions_of(base) if not one.of_rates
+    ]  # fmt: skip
+    rates = [c.rate.name for c in machine.coordinates if c.free and isinstance(c.rate, Input)]
+    rates += [s.name for s in machine.speeds if s.free]
+    start, slopes, states = first_rates(base), [], {}
+    for name in rates:
+        moved = make({name: here[name] + 1})
+        own = [a - b for a, b in zip(first_rates(moved), start, strict=True)]
+        kept = [of_rates or not one.of_rates for one, _ in conditions_of(base)]
+        slopes.append([x for x, keep in zip(own, kept, strict=True) if keep])
+        states[name] = {name: mpf(1)} if of_rates else _carried(machine, base, moved)
+    return values, slopes, states
+
+
+def _carried(machine: Scene, base: History, moved: History) -> dict[str, Any]:
+    """Return how the states that places are made of move where a rate is one more."""
+    found = {}
+    for c in machine.coordinates:
+        if c.state:
+            found[c.name] = moved.scalars[c.name].velocity - base.scalars[c.name].velocity
+    for frame in machine.frames:
+        if frame.attitude and frame.angular_velocity is not None:
+            own = [at_instant(h.column(frame.angular_velocity)) for h in (moved, base)]
+            x, y, z = own[0] - own[1]
+            w, i, j, k = (base.values[f"{frame.attitude}_{p}"] for p in "wxyz")
+            rates = (-i * x - j * y - k * z, w * x + j * z - k * y,
+                     w * y + k * x - i * z, w * z + i * y - j * x)  # fmt: skip
+            found |= {f"{frame.attitude}_{p}": r / 2 for p, r in zip("wxyz", rates, strict=True)}
+    return {c: slope for c, slope in found.items() if slope}
+
+
+def _independent(slopes: list[list[Any]]) -> list[int]:
+    """Return the places of the first conditions that are independent."""
+    matrix, kept = np.array(slopes, dtype=float).T, list[int]()
+    for k in range(len(matrix)):
+        size = np.linalg.svd(matrix[[*kept, k]], compute_uv=False)
+        if len(size) == len(kept) + 1 and size[-1] > TELLING * size[0]:
+            kept.append(k)
+    return kept
+
+
+def _least(slopes: list[list[Any]], values: list[Any]) -> Any:
+    """Return the least step that takes values off, by slopes of each rate; damped where far."""
+    J = mp.matrix(slopes)  # (rates, conditions)
+    square = J.T * J
+    size = max((abs(square[i, i]) for i in range(square.rows)), default=mpf(1)) or mpf(1)
+    gap = mp.fsum(x * x for x in values)
+    for i in range(square.rows):
+        square[i, i] += size * (gap if gap > NEAR**2 else 0) / (1 + gap)
+    return J * mp.lu_solve(square, mp.matrix(values))

@@ -1,0 +1,53 @@
+"""A constraint that cannot be meant, read or fulfilled is refused by one sentence."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.library.library import library
+from derive.scene import SceneError, parse_scene
+
+SCENES = Path(__file__).parent / "scenes"
+FOUR = (SCENES / "four_bar_closed.toml").read_text(encoding="utf-8")
+SLEIGH = (SCENES / "sleigh.toml").read_text(encoding="utf-8")
+CRANK = (SCENES / "slider_crank_guided.toml").read_text(encoding="utf-8")
+ZERO = 'zero = "y_dot*cos(psi) - x_dot*sin(psi)"'
+GUIDED = 'zero = "r*sin(a) + l*sin(b)"'
+PIN = 'at = ["l", "0", "0"]\nagainst = "right"'
+
+ROWS = (
+    (FOUR, 'axes = ["x", "z"]', 'axes = ["x", "x"]', "must be a list of different ones of x, y"),
+    (FOUR, PIN, 'at = ["l", "0", "0"]\nagainst = "bar"', "holds 'bar' against itself"),
+    (FOUR, 'on = "bar"\nat', "at", "constraint 'd' needs zero = 'formula', or on, a body"),
+    (FOUR, PIN, 'at = ["5*l", "0", "0"]\nagainst = "right"', "no state of the declared ranges was"),
+    (FOUR, '"d_x"', '"d_y"', "wanted has 'd_y', which is no answer"),
+    (FOUR, '"d_x"', '"linearised"', "'linearised' needs coordinates that are free of each other"),
+    (FOUR, "[constraints.d]", "[constraints.c]", "constraint 'c' is called as a load is; say load"),
+    (SLEIGH, ZERO, 'zero = "a"', "constraint 'blade'.zero = 'a' holds nothing that moves"),
+    (SLEIGH, ZERO, f'{ZERO}\non = "sled"', "constraint 'blade' is a formula by zero, so it has no"),
+    (SLEIGH, ZERO, 'zero = "x_ddot"', "constraint 'blade'.zero uses 'x_ddot', which"),
+    (SLEIGH, '"blade", ', '"N_x", ', "wanted has 'N_x', which is no answer"),
+    (SLEIGH, ZERO, f'{ZERO}\nload = "ice"', ""),
+    (CRANK, GUIDED, GUIDED.replace("l*sin", "tau*sin"), "zero uses 'tau', an input, whose rate"),
+    (CRANK, 'load = "guide"', 'load = "gide"', "constraint 'guided'.load must be one of main, pin"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("row", ROWS, ids=[row[3][:40] or "a load by name" for row in ROWS])
+def test_what_cannot_hold_is_refused_by_a_sentence(row: tuple[str, str, str, str]) -> None:
+    text, old, new, says = row
+    assert old in text
+    try:
+        library(parse_scene(text.replace(old, new, 1), "held"))
+        found = ""
+    except SceneError as error:
+        found = str(error)
+    assert found.startswith("scene 'held': ")
+    assert says in found
+    assert "\n" not in found
+
+
+def test_a_force_that_shares_its_part_with_others_cannot_be_told() -> None:
+    text = FOUR.replace('axes = ["x", "z"]', "").replace('"d_x"', '"d_y"')
+    with pytest.raises(SceneError, match="'d_y' cannot be told: constraint 'd along y' says"):
+        library(parse_scene(text, "held"))
