@@ -206,6 +206,8 @@ class Description:
                     at=self._triple(load.at, load.frame),
                     force=self._triple(load.force, load.along),
                     couple=self._triple(load.couple, load.along),
+                    other=load.other
+                    and (load.other[0], self._triple(load.other[1], load.other[0])),
                 )
             case Weight():
                 return replace(load, gravity=self._triple(load.gravity, load.along))

@@ -84,8 +84,8 @@ def on_constraints(scene: Scene, values: Mapping[str, Any]) -> dict[str, Any]:
         return dict(values)
     with mp.workdps(DIGITS):
         found = fulfilled(scene, {name: digits(x) for name, x in values.items()})
-    with ctx.workprec(BITS):
-        return {name: ball_of(x) for name, x in found.items()} if found else {}
+        with ctx.workprec(BITS):
+            return {name: ball_of(x) for name, x in found.items()} if found else {}
 
 
 def fulfilling(scene: Scene, each: Sequence[Sample]) -> Sequence[Sample]:
@@ -142,7 +142,7 @@ def _gaps(
             abs(digits(true[name].value) - value) / scale
             for name, value in found.items()
             if value is not None
-        ]
+        ] + ([cloud.contradiction] if scene.constraints else [])
 
 
 def of_cloud(

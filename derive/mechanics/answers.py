@@ -21,6 +21,7 @@ from derive.mechanics.bodies import (
 from derive.mechanics.contradiction import unbalanced
 from derive.mechanics.frames import ZERO, Frames
 from derive.mechanics.linearised import Linearised, linearised, require_nothing_prescribed
+from derive.mechanics.linearised_held import held_linearised
 from derive.mechanics.loads import potential_energy
 from derive.mechanics.matter import without_factors
 from derive.mechanics.probe import PROBES, independent
@@ -206,7 +207,8 @@ class Answers:
 
     @cached_property
     def _small(self) -> Linearised:
-        self._require_free("linearised")
+        if self.machine.constraints:
+            return held_linearised(self.machine, self.balances)
         return linearised(self.machine, self.balances)
 
     def energy(self, name: str) -> Expr:

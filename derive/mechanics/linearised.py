@@ -71,7 +71,7 @@ def linearised(machine: Scene, balances: Balances) -> Linearised:
     velocities = [sheet.symbols[m.rate.name] if isinstance(m.rate, Input) else
                   sheet.symbols[m.name] for m in free]  # fmt: skip
     places = [sheet.symbols[m.name] if m.kind == "coordinate" else None for m in free]
-    about = _Expansion(base, [*velocities, *(p for p in places if p is not None)])
+    about = Expansion(base, [*velocities, *(p for p in places if p is not None)])
     about.define(below)
     eliminated = _Eliminated(balances, about, written, reactions)
     columns = {
@@ -189,7 +189,7 @@ def _in_order(matrix: Matrix, own: Sequence[tuple[int, int]]) -> Matrix:
 
 
 @dataclass
-class _Expansion:
+class Expansion:
     """Values and first derivatives of named quantities at the given motion."""
 
     base: Mapping[Symbol, Expr]
@@ -223,7 +223,7 @@ class _Eliminated:
     """Balances expanded at the given motion, and the reactions that are eliminated from them."""
 
     balances: Balances
-    small: _Expansion
+    small: Expansion
     rows: Sequence[Expr]
     reactions: Sequence[Symbol]
 

@@ -54,6 +54,8 @@ def _force(frames: Frames, load: Force) -> Iterator[Wrench]:
     force, couple = frames.words.column(load.force), frames.words.column(load.couple)
     yield Wrench(load.name, load.on, point, load.along, force, couple)
     if load.against:
+        if load.other is not None:
+            point = (load.other[0], frames.words.column(load.other[1]))
         yield Wrench(load.name, load.against, point, load.along, -force, -couple)
 
 

@@ -1,10 +1,11 @@
 """The table of constraints: formulas that stay zero, points that meet, and what enforces them."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from derive.scene.constraint import Constraint, Meeting
-from derive.scene.declaration import AXES, Input, SceneError
+from derive.scene.declaration import AXES, Input, Moving, SceneError
 from derive.scene.entries import CONSTRAINT
 from derive.scene.entry import Reading, entries_of
 from derive.scene.escape import brief
@@ -95,12 +96,36 @@ def _axes(one: Table, value: object) -> Any:
     return tuple(axis for axis in AXES if axis in value)  # type: ignore[operator]
 
 
+def with_dependent(given: Table, scalars: Scalars) -> Scalars:
+    """Return the scalars, those marked that constraints name as dependent."""
+    said = [(name, table(value, f"constraint '{name}'")) for name, value in given.entries.items()]
+    named = [who for _, one in said for who in _dependent(one, scalars)]
+    if twice := [who for who in dict.fromkeys(named) if named.count(who) > 1]:
+        raise SceneError(f"'{twice[0]}' is dependent by two constraints; it follows by one")
+
+    def marked(each: tuple[Moving, ...]) -> tuple[Moving, ...]:
+        return tuple(replace(m, dependent=m.name in named) for m in each)
+
+    return replace(scalars, coordinates=marked(scalars.coordinates), speeds=marked(scalars.speeds))
+
+
+def _dependent(one: Table, scalars: Scalars) -> tuple[str, ...]:
+    value = one.entries.get("dependent", ())
+    if value == ():
+        return ()
+    free = tuple(m.name for m in (*scalars.coordinates, *scalars.speeds) if m.free)
+    if not isinstance(value, list) or not value:
+        rule = "must be a list of free coordinates or speeds such as ['q']"
+        raise SceneError(f"{one.of('dependent')} {rule}, not {shown(value)}")
+    return tuple(one_of(name, one.of("dependent"), free) for name in value)
+
+
 def _enforcing(name: str, meeting: Meeting) -> tuple[tuple[Force, tuple[Unknown, ...]]]:
     """Return the pair of forces at the meeting points, and its unknowns."""
     zeros = (ZERO, ZERO, ZERO)
     parts = {axis: f"{name}_{axis}" for axis in meeting.axes}
     x, y, z = (symbol(parts[axis]) if axis in parts else ZERO for axis in AXES)
     load = Force(name, meeting.on, meeting.against, meeting.frame, meeting.at, meeting.along,
-                 (x, y, z), zeros)  # fmt: skip
+                 (x, y, z), zeros, (meeting.to_frame, meeting.to))  # fmt: skip
     each = (identifier(part, f"the force of constraint '{name}'") for part in parts.values())
     return ((load, tuple(Unknown(part, "N", name) for part in each)),)

@@ -61,7 +61,8 @@ class Moving:
     coordinate without a rate has one that the angular velocity of its body fixes.
     A state is summed up from its rate: all that is free, and coordinates that a formula moves. What
     was declared with ``components`` says of which ``vector`` it is one. ``highest`` is what its
-    highest rate is called, "" if that follows from its name.
+    highest rate is called, "" if that follows from its name; what is ``dependent`` follows others
+    by a constraint.
     """
 
     name: str
@@ -76,6 +77,7 @@ class Moving:
     acceleration: Input | Formula | None
     vector: str = ""
     highest: str = ""
+    dependent: bool = False
 
     @property
     def unknown(self) -> str:

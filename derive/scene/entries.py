@@ -188,6 +188,7 @@ CONSTRAINT = (
     Entry("equal", "word", "of the points, or of the bodies' particles there: rolling",
           default="places", words=("places", "velocities")),
     Entry("load", "text", "that enforces it; one by the constraint's name if left out"),
+    Entry("dependent", "any", "free coordinates and speeds that follow the others, a list"),
 )  # fmt: skip
 RESULT = (
     Entry("formula", "any", "of answers, parameters and the motion", default=REQUIRED),

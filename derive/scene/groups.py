@@ -144,7 +144,7 @@ def _accelerations(scene: Scene) -> Iterator[Group]:
 
 
 def _matrices(scene: Scene) -> Iterator[Group]:
-    names = [m.name for m in _moving(scene) if m.free]
+    names = [m.name for m in _moving(scene) if m.free and not m.dependent]
     places = range(1, len(names) + 1)
     for name, by in MATRICES.items():
         parts = tuple(f"{name}_{i}_{k}" for k in places for i in places)

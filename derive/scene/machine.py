@@ -14,8 +14,7 @@ from derive.scene.formula import ZERO, Formula
 from derive.scene.shape import Portion
 
 INERTIAL = "inertial"
-LEFT_OVER = "0 where motion is steady"
-"""What is said of a value of the function ``steady``, which is no answer but a measure."""
+LEFT_OVER = "0 where motion is steady"  # said of ``steady``, no answer but a measure
 Entries = tuple[Formula | None, ...]
 
 
@@ -74,7 +73,7 @@ class Member:
 
 @dataclass(frozen=True)
 class Force:
-    """A force and a couple at a point of a frame, on a body and, opposite, against another."""
+    """A force and a couple at a point, on a body, and opposite, there or at ``other``, on one."""
 
     name: str
     on: str
@@ -84,6 +83,7 @@ class Force:
     along: str
     force: Triple
     couple: Triple
+    other: tuple[str, Triple] | None = None
 
 
 @dataclass(frozen=True)
@@ -228,8 +228,6 @@ class Tensor:
 
 
 Demand = Above | Tensor
-
-
 SOUGHT = ("acceleration", "accelerations", "state_rate")
 """Functions that find accelerations; what else may be asked of a body, its motion says."""
 

@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from typing import Any
 
 from derive.scene.bodies import read_member
-from derive.scene.constraints import read_constraints
+from derive.scene.constraints import read_constraints, with_dependent
 from derive.scene.declaration import Input, SceneError
 from derive.scene.demands import of_bodies
 from derive.scene.doubtful import doubts, require_sizes
@@ -94,7 +94,7 @@ def read_file(
 def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
     """Return the machine of a parsed TOML document, checked table by table."""
     head, part = read_file(document, name, source, MACHINE)
-    scalars = read_scalars(part)
+    scalars = with_dependent(part["constraints"], read_scalars(part))
     check_named(scalars.named, scalars.known)
     frames = read_frames(part["frames"], scalars, tuple(part["bodies"].entries))
     bodies = _bodies(part["bodies"], frames, scalars)

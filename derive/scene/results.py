@@ -171,7 +171,7 @@ def matrix_entries(scalars: Scalars) -> dict[str, Dimension]:
 
     Entries stand for forces or moments; of one kind alone they are told apart by nothing else.
     """
-    free = [m for m in (*scalars.coordinates, *scalars.speeds) if m.free]
+    free = [m for m in (*scalars.coordinates, *scalars.speeds) if m.free and not m.dependent]
     of_a_turn, of_a_way = dimension("kg m^2"), dimension("kg")
     inertia = {"rad": of_a_turn, "rad/s": of_a_turn, "m": of_a_way, "m/s": of_a_way}
     found = {}

@@ -87,6 +87,7 @@ OF_ANY: Mapping[str, Schema] = {
     },
     "unit": _NAME,
     "zero": FORMULA,
+    "dependent": _NAMES,
     "axes": {**_NAMES, "items": {"enum": ["x", "y", "z"]}},
     "unknown": {"anyOf": [_NAME, _NAMES]},
     "vanishes": {"anyOf": [FORMULA, {"type": "array", "items": FORMULA, "minItems": 1}]},

@@ -15,13 +15,14 @@ from derive.check.particles import clouds, on_constraints
 from derive.library.library import Library, library
 from derive.mechanics import constraints, enforced
 from derive.mechanics.constraints import Tie
+from derive.mechanics.mechanism import mechanism
 from derive.program.precision import F64
 from derive.scene import SceneError, parse_scene
 from derive.verify.measure import results
 from derive.verify.sample import samples
 
 SCENES = Path(__file__).parent / "scenes"
-NAMES = ("four_bar_closed", "slider_crank_guided", "sleigh", "five_bars")
+NAMES = ("four_bar_closed", "slider_crank_guided", "sleigh", "five_bars", "bricard")
 TEXTS = {name: (SCENES / f"{name}.toml").read_text(encoding="utf-8") for name in NAMES}
 ROUNDED = 1e-12  # of an acceleration: a state on the constraint is given in doubles
 FEW = 2
@@ -104,12 +105,11 @@ def test_a_blade_by_points_is_the_blade_by_its_formula() -> None:
     assert verdicts(made(by_points)) == {"holds"}
 
 
-@pytest.mark.long
-def test_redundant_rows_are_dropped_and_named() -> None:
-    own = made(TEXTS["five_bars"])
-    (said,) = own.mechanism.doubts()
-    assert said == ("constraint 'c_3 along z' says nothing that the others do not, and is left "
-                    "out: 'c_3_z' is 0")  # fmt: skip
+@pytest.mark.parametrize(("name", "row"), [("five_bars", "c_3"), ("bricard", "line")])
+def test_redundant_rows_are_dropped_and_named(name: str, row: str) -> None:
+    (said,) = mechanism(parse_scene(TEXTS[name], "held")).redundant
+    rule = "says nothing that the others do not, and is left out"
+    assert said == f"constraint '{row} along z' {rule}: '{row}_z' is 0"
 
 
 def _without_factor(by: Any) -> Callable[..., Any]:

@@ -21,7 +21,7 @@ ROWS = (
     (FOUR, 'on = "bar"\nat', "at", "constraint 'd' needs zero = 'formula', or on, a body"),
     (FOUR, PIN, 'at = ["5*l", "0", "0"]\nagainst = "right"', "no state of the declared ranges was"),
     (FOUR, '"d_x"', '"d_y"', "wanted has 'd_y', which is no answer"),
-    (FOUR, '"d_x"', '"linearised"', "'linearised' needs coordinates that are free of each other"),
+    (FOUR, '"d_x"', '"linearised"', "'linearised' needs to know what follows by the constraints"),
     (FOUR, "[constraints.d]", "[constraints.c]", "constraint 'c' is called as a load is; say load"),
     (SLEIGH, ZERO, 'zero = "a"', "constraint 'blade'.zero = 'a' holds nothing that moves"),
     (SLEIGH, ZERO, f'{ZERO}\non = "sled"', "constraint 'blade' is a formula by zero, so it has no"),

@@ -94,7 +94,11 @@ def _unit(scene: Scene, q: Quantity, component: str) -> str:
     if q.unit or q.name not in MATRICES:
         return q.unit or "1"
     row, column = (int(n) - 1 for n in component.rsplit("_", 2)[1:])
-    speeds = [_speed(m.unit, m.kind) for m in (*scene.coordinates, *scene.speeds) if m.free]
+    speeds = [
+        _speed(m.unit, m.kind)
+        for m in (*scene.coordinates, *scene.speeds)
+        if m.free and not m.dependent
+    ]
     power = joined_dimensions(dimension("W"), raised_dimension(speeds[row], Fraction(-1)))
     per = joined_dimensions(power, raised_dimension(speeds[column], Fraction(-1)))
     order = {"mass_matrix": 1, "damping_matrix": 0, "stiffness_matrix": -1}[q.name]

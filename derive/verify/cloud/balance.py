@@ -68,6 +68,7 @@ def _force(history: History, load: Force) -> Iterator[Acting]:
     force, couple = (along(history, load.along, f) for f in (load.force, load.couple))
     yield load.on, place, force, couple
     if load.against:
+        place = place if load.other is None else at_instant(history.place(*load.other))
         yield load.against, place, -force, -couple
 
 

@@ -6,7 +6,7 @@ told by d'Alembert's principle: on no velocity have masses times accelerations a
 what acts, and the force's own is that of the condition's rate.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -109,7 +109,9 @@ class Allowed:
         pushes = [m * each(lambda x: x.acceleration, place)
                   for body in history.machine.bodies
                   for m, place in history.particles(body.name)]  # fmt: skip
-        loads = [one for load in history.machine.loads for one in acting(history, load)]
+        ours = {one.load for one in history.machine.constraints if one.load == one.name}
+        loads = [one for load in history.machine.loads if load.name not in ours
+                 for one in acting(history, load)]  # fmt: skip
         places = {b.name: at_instant(history.centre(b.name)) for b in history.machine.bodies}
         centres = self._centres
         rows = []
@@ -119,15 +121,21 @@ class Allowed:
                 omega = self._turning[k][body]
                 v = centres[k][body] + crossed(omega, place - places[body])
                 total -= force @ v + couple @ omega
-            for (one, _), slope in zip(self._conditions, self._slopes[k], strict=True):
-                if one.factor:
-                    total -= history.scalars[one.factor].value * slope
+            for name, slope in zip(self._factors, self._slopes[k], strict=True):
+                if name:
+                    total -= history.scalars[name].value * slope
             rows.append(total)
         return rows
 
     @cached_property
-    def _conditions(self) -> list[tuple[Constraint, Series]]:
-        return conditions_of(self._base)
+    def _factors(self) -> list[str]:
+        """Return what enforces each condition, "" where a load of the scene does."""
+        found = []
+        for one in self.machine.constraints:
+            axes = one.meeting.axes if one.meeting else ("",)
+            names = [f"{one.name}_{a}" if a else one.factor for a in axes]
+            found += [name if one.load == one.name else "" for name in names]
+        return found
 
     @cached_property
     def _centres(self) -> list[dict[str, NDArray[Any]]]:
@@ -161,8 +169,12 @@ def meetings(machine: Scene) -> tuple[Meeting, ...]:
     return tuple(one.meeting for one in machine.constraints if one.meeting is not None)
 
 
-def fulfilled(machine: Scene, given: Mapping[str, Any]) -> dict[str, Any] | None:
+def fulfilled(
+    machine: Scene, given: Mapping[str, Any], only: Sequence[str] = ()
+) -> dict[str, Any] | None:
     """Return a state nearby that fulfils all constraints, to the digits of the cloud, or None.
+
+    only : the rates that may change, or whose places may; all if none is named
 
     Places are moved along the velocities that the frames allow, then rates are: by all conditions
     at first, then by those that are independent there, which the others must follow.
@@ -171,7 +183,7 @@ def fulfilled(machine: Scene, given: Mapping[str, Any]) -> dict[str, Any] | None
     for of_rates in (False, True):
         own: list[int] = []
         for _ in range(ROUNDS):
-            values, slopes, states = _near(machine, here, of_rates=of_rates)
+            values, slopes, states = _near(machine, here, only, of_rates=of_rates)
             largest = max(map(abs, values), default=mpf(0))
             if not mp.isfinite(largest):
                 return None
@@ -191,7 +203,7 @@ def fulfilled(machine: Scene, given: Mapping[str, Any]) -> dict[str, Any] | None
     return here
 
 
-def _near(machine: Scene, here: Mapping[str, Any], *, of_rates: bool) -> Any:
+def _near(machine: Scene, here: Mapping[str, Any], only: Sequence[str], *, of_rates: bool) -> Any:
     """Return conditions, their slopes by each rate, and the rates of states by each rate."""
     free = {m.unknown: mpf(0) for m in (*machine.coordinates, *machine.speeds) if m.free}
     known = {u.name: mpf(0) for u in machine.unknowns}
@@ -205,6 +217,7 @@ def _near(machine: Scene, here: Mapping[str, Any], *, of_rates: bool) -> Any:
     ]  # fmt: skip
     rates = [c.rate.name for c in machine.coordinates if c.free and isinstance(c.rate, Input)]
     rates += [s.name for s in machine.speeds if s.free]
+    rates = [name for name in rates if not only or name in only]
     start, slopes, states = first_rates(base), [], {}
     for name in rates:
         moved = make({name: here[name] + 1})

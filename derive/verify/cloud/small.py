@@ -6,6 +6,7 @@ from typing import Any
 from mpmath import matrix, mp, mpf
 
 from derive.scene import Input, Scene
+from derive.verify.cloud.held import fulfilled
 from derive.verify.cloud.series import DIGITS
 from derive.verify.cloud.solution import CloudAnswers, answers
 
@@ -17,7 +18,7 @@ def slopes_about_rest(machine: Scene, given: Mapping[str, float]) -> tuple[Any, 
 
     They are minus M^-1 D and minus M^-1 K of the linearised motion.
     """
-    free = [m for m in (*machine.coordinates, *machine.speeds) if m.free]
+    free = [m for m in (*machine.coordinates, *machine.speeds) if m.free and not m.dependent]
     velocities = [m.rate.name if isinstance(m.rate, Input) else m.name for m in free]
     places = [m.name if m.kind == "coordinate" else "" for m in free]
     with mp.workdps(DIGITS):
@@ -51,7 +52,14 @@ def _base(machine: Scene, given: Mapping[str, float]) -> dict[str, Any]:
 
 
 def _difference(machine: Scene, base: Mapping[str, Any], name: str) -> dict[str, Any]:
-    ahead, behind = (
-        answers(machine, dict(base) | {name: base[name] + side * STEP}).unknowns for side in (1, -1)
-    )
+    follow = [m.rate.name if isinstance(m.rate, Input) else m.name
+              for m in (*machine.coordinates, *machine.speeds) if m.dependent]  # fmt: skip
+
+    def moved(side: int) -> dict[str, Any]:
+        there = dict(base) | {name: base[name] + side * STEP}
+        if machine.constraints:
+            there = fulfilled(machine, there, follow) or there
+        return answers(machine, there).unknowns
+
+    ahead, behind = (moved(side) for side in (1, -1))
     return {n: (ahead[n] - behind[n]) / (2 * STEP) for n in ahead if n in behind}

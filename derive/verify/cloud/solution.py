@@ -16,7 +16,7 @@ from derive.verify.cloud.held import Allowed, generalized, second_rates
 from derive.verify.cloud.history import History
 from derive.verify.cloud.series import DIGITS, crossed, each, series
 
-NOTHING = mpf(10) ** (8 - DIGITS)
+NOTHING, REDUNDANT = mpf(10) ** (8 - DIGITS), mpf(10) ** -30
 
 
 @dataclass
@@ -50,11 +50,19 @@ class CloudAnswers:
         return rows, [-x for x in rest]
 
     def _left_over(self, history: History) -> list[Any]:
-        """Return what of all equations is left: of bodies, or of powers, and of constraints."""
+        """Return what of all equations is left: of bodies, of powers, and of constraints.
+
+        A generalized force acts on no body in particular: then powers alone tell.
+        """
         if not self.machine.constraints:
             return left_over(history)
-        rows = self._allowed.left_over(history) if generalized(self.machine) else left_over(history)
-        return [*rows, *second_rates(history)]
+        rows = [] if generalized(self.machine) else left_over(history)
+        return [*rows, *self._allowed.left_over(history), *second_rates(history)]
+
+    @property
+    def _nothing(self) -> Any:
+        """Return what is less than anything: of redundant constraints, which states just fulfil."""
+        return REDUNDANT if self.machine.constraints else NOTHING
 
     @cached_property
     def _allowed(self) -> Allowed:
@@ -70,7 +78,7 @@ class CloudAnswers:
         for k in range(len(self.names)):
             free = [row for row in table if not any(row is p for p in pivots.values())]
             pivot = max(free, key=lambda row: abs(row[k]), default=None)
-            if pivot is None or abs(pivot[k]) < NOTHING:
+            if pivot is None or abs(pivot[k]) < self._nothing:
                 continue
             pivot[:] = [x / pivot[k] for x in pivot]
             for row in table:
@@ -94,7 +102,7 @@ class CloudAnswers:
             found = {}
             for k, row in pivots.items():
                 others = [abs(x) for n, x in enumerate(row[:-1]) if n != k]
-                if max(others, default=mpf(0)) < NOTHING:
+                if max(others, default=mpf(0)) < self._nothing:
                     found[self.names[k]] = row[-1]
             return found
 
