@@ -68,7 +68,7 @@ def test_the_schema_knows_every_kind_of_entry_and_is_small() -> None:
     assert {*OF_KIND, "any"} == {*entry.READERS}
     assert OF_ANY.keys() == {"wanted", "rate", "acceleration", "force", "couple", "lengths",
                              "formula", "gravity_gradient", "unit", "unknown", "vanishes",
-                             "name"}  # fmt: skip
+                             "name", "zero", "axes", "dependent"}  # fmt: skip
     assert len(schema_text()) < LARGEST
 
 

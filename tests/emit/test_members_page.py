@@ -4,6 +4,7 @@ import ctypes
 import json
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -42,7 +43,7 @@ def test_the_json_is_enough_to_call_a_function(tmp_path: Path) -> None:
     assert {told["files"]["f64"]["header"], told["files"]["f64"]["source"]} < own.keys()
     file = shared_members(own, tmp_path, Compiler(find_compiler().command), told["options"])
     shared, many = ctypes.CDLL(str(file)), 5
-    arrays = {"members": many, "stride": many}
+    arrays: dict[str, Any] = {"members": many, "stride": many}
     arrays |= {n: np.full(many, x) for n, x in (("A", 2.0), ("C", 1.0), ("m", 3.0), ("g", 9.0))}
     arrays |= {"l": np.arange(many, dtype=float), "status": np.full(many, 9, np.int32)}
     arrays |= {"constants": np.zeros((6, many)), "theta": np.full(many, np.pi / 2)}

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from sympy import Matrix
@@ -19,9 +20,9 @@ from derive.scene import Scene, load
 from derive.verify.prove import ProofError, prove
 from tests.lower.test_long_form import CATALOGUE, LONG, operations
 
-Any = BlockRule | column.ColumnRule
+Either = BlockRule | column.ColumnRule
 SCENES = Path(__file__).parent.parent / "mechanics" / "scenes"
-CASES: dict[Any, tuple[Path, str]] = {
+CASES: dict[Either, tuple[Path, str]] = {
     constant_tensor: (LONG / "free_body.toml", "acceleration"),
     constant_coefficients: (SCENES / "hoop_pole.toml", "pin"),
     spherical_part: (LONG / "gyrostat.toml", "acceleration"),
@@ -37,14 +38,14 @@ RULES = pytest.mark.parametrize(
 )
 
 
-def shown_by(rule: Any) -> tuple[Scene, str]:
+def shown_by(rule: Either) -> tuple[Scene, str]:
     """Return the scene and the function that a rule is shown by."""
     path, name = CASES[rule]
     scene = load(path)
     return replace(scene, wanted=(name,)), name
 
 
-def exchange(patch: pytest.MonkeyPatch, rule: Any, others: tuple[Any, ...]) -> None:
+def exchange(patch: pytest.MonkeyPatch, rule: Either, others: tuple[Either, ...]) -> None:
     """Put other rules in the place of one."""
     for name in ("OF_COLUMNS", "OF_ANSWERS", "OF_ROWS", "OF_BLOCKS"):
         each = [others if r is rule else (r,) for r in getattr(plan, name)]
@@ -53,7 +54,7 @@ def exchange(patch: pytest.MonkeyPatch, rule: Any, others: tuple[Any, ...]) -> N
 
 @RULES
 def test_without_a_rule_a_scene_takes_more_operations(
-    rule: Any, monkeypatch: pytest.MonkeyPatch
+    rule: Either, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with_it = operations(*shown_by(rule))
     exchange(monkeypatch, rule, ())
@@ -68,7 +69,7 @@ def of_wrong_index(column: Matrix) -> Matrix:
     return Matrix(column[::-1])
 
 
-def wrong(rule: Any, change: Callable[[Matrix], Matrix]) -> Any:
+def wrong(rule: Callable[..., Any], change: Callable[[Matrix], Matrix]) -> Callable[..., object]:
     """Return a rule that changes the right side of a block, or the column that it gives."""
 
     def of_block(found: Solution, block: LinearSystem, rest: Solve) -> bool:
@@ -86,7 +87,7 @@ def wrong(rule: Any, change: Callable[[Matrix], Matrix]) -> Any:
 )
 @RULES
 def test_a_wrong_rule_is_caught_by_the_proof(
-    rule: Any, change: Callable[[Matrix], Matrix], monkeypatch: pytest.MonkeyPatch
+    rule: Either, change: Callable[[Matrix], Matrix], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scene, _ = shown_by(rule)
     prove(library(scene))

@@ -231,8 +231,8 @@ def _loop(stepper: Stepper, precision: Precision) -> str:
     s, p = precision.scalar, precision.name
     names = [c for q in stepper.setup.outputs for c in q.components]
     fields = "".join(f"{s} {name}; " for name in (*names, "none"))
-    plan = "\n".join(c_text.body(stepper.plan, "many", precision))
-    step = "\n".join(c_text.body(stepper.step, "many", precision))
+    plan = "\n".join(c_text.float_body(stepper.plan, "many", precision))
+    step = "\n".join(c_text.float_body(stepper.step, "many", precision))
     width = max(1, len(stepper.plan.results))
     head = f"const struct constants_{p} *constants"
     unused = "(void)constants; (void)plan; (void)h;"

@@ -1,6 +1,7 @@
 """The scenes that ship: all of them load without a doubt, and say what their name says."""
 
 from fractions import Fraction
+from typing import Any
 
 import pytest
 
@@ -33,7 +34,7 @@ def test_every_scene_of_the_catalogue_loads_without_a_warning(name: str) -> None
 @pytest.mark.parametrize("name", catalogue())
 def test_every_scalar_of_the_catalogue_says_what_it_means(name: str) -> None:
     scene = short_of(name) if name in SHORT else load(name)
-    scalars = (*scene.parameters, *scene.coordinates, *scene.speeds)
+    scalars: tuple[Any, ...] = (*scene.parameters, *scene.coordinates, *scene.speeds)
     assert load(name).title != name
     assert all(scalar.meaning for scalar in scalars)
 
@@ -114,7 +115,8 @@ def test_numbers_of_a_file_are_exact() -> None:
 def test_no_name_of_a_user_can_meet_a_name_of_the_emitted_code(name: str) -> None:
     """Every quantity that is not the user's own must be refused as the name of a parameter."""
     scene, spoken = short_of(name), words(scene_of(name)).spoken
-    own = {entry.name for entry in (*scene.parameters, *scene.coordinates, *scene.speeds)}
+    entries: tuple[Any, ...] = (*scene.parameters, *scene.coordinates, *scene.speeds)
+    own = {entry.name for entry in entries}
     names = {part for q in spoken.every() for part in (q.name, *q.components)} - own
     derived = {f"{entry}_{dots}" for entry in own for dots in ("dot", "ddot")}
     wheels = {f"{letter}_{wheel.name}" for wheel in scene.wheels for letter in "su"}
