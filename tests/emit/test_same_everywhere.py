@@ -84,6 +84,7 @@ WHOLE = {
     "emit/page/equation.py: written_names": "quaternions counted",
     "emit/notation/symbolic.py: _degree": "powers",
     "emit/notation/symbolic.py: _term_key": "powers",
+    "mechanics/by_links.py: _pairs": "links counted",
     "program/program.py: flops": "operations counted",
     "report/courses.py: followed_to_the_end": "operations and states counted",
     "report/extrapolation.py: rule_for": "operations counted",
