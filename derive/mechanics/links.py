@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from sympy import Expr, Integer, Matrix, Rational, Symbol, eye, zeros
 
-from derive.lecture.turning import PLACE
+from derive.lecture.turning import PLACE, unit_vector
 from derive.mechanics.bodies import centre, inertia_tensor, mass
 from derive.mechanics.frames import ZERO, Frames
 from derive.mechanics.loads import Wrench, wrenches
@@ -38,6 +38,12 @@ class Bulk:
     def __add__(self, other: "Bulk") -> "Bulk":
         """Return both masses as one."""
         return Bulk(self.mass + other.mass, self.first + other.first, self.second + other.second)
+
+    def moved(self, by: Matrix) -> "Bulk":
+        """Return it moved: every mass by the same."""
+        offset = self.first * by.T
+        second = self.second + offset + offset.T + self.mass * by * by.T
+        return Bulk(self.mass, self.first + self.mass * by, second)
 
 
 NO_BULK = Bulk(Integer(0), ZERO, zeros(3, 3))
@@ -120,6 +126,25 @@ class Links:
         return found
 
 
+def near_hinges(machine: Links) -> Links:
+    """Return the same machine with hinges moved along their axes, nearest to what carries them.
+
+    So the place of a hinge on a link has two components, and often fewer.
+    """
+    found: list[Link] = []
+    moved: list[Matrix] = []
+    for link in machine.links:
+        hinge, along = link.hinge, ZERO
+        if link.parent != BASE:
+            hinge = (hinge + moved[link.parent]).applyfunc(lambda e: e.expand())
+            along = hinge[link.axis] * unit_vector("xyz"[link.axis])
+        moved.append(along)
+        found.append(replace(link, hinge=hinge - along, bulk=link.bulk.moved(along)))
+    pushes = (p if p.link == BASE else replace(p, arm=p.arm + moved[p.link])
+              for p in machine.pushes)  # fmt: skip
+    return replace(machine, links=tuple(found), pushes=tuple(pushes))
+
+
 def at_point(m: Expr, place: Matrix) -> Bulk:
     """Return a mass that is all at one place."""
     return Bulk(m, m * place, m * place * place.T)
@@ -135,7 +160,7 @@ def links(frames: Frames, sought: frozenset[Symbol]) -> Links | None:
     sought : the unknowns of the motion; all others do no work, which who uses this has to prove
     """
     try:
-        return _Survey(frames, sought).read()
+        return near_hinges(_Survey(frames, sought).read())
     except OtherMachineError:
         return None
 

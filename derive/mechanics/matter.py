@@ -35,17 +35,19 @@ def lean(problem: Problem, words: Words) -> Lean:
 
     Raises SceneError if an answer depends on data that the user left out.
     """
-    here = [random_probe(words, n).values for n in range(PROBES)]
+    here = [random_probe(words, n) for n in range(PROBES)]
     there = [random_probe(words, n + OTHERS).values for n in range(PROBES)]
-    own = [_answers(problem, values) for values in here]
+    own = [_answers(problem, probe.values) for probe in here]
     if None in own:
         raise SceneError(f"'{problem.name}' has no answer at a trial point: "
                          "its balances are singular there")  # fmt: skip
 
     def stay(changed: Sequence[dict[Symbol, Any]]) -> bool:
         each = zip(own, here, changed, strict=True)
-        return all(_same(one, _answers(problem, values | more)) for one, values, more in each)
+        return all(_same(one, _changed(problem, probe, more)) for one, probe, more in each)
 
+    for probe in here:
+        probe.define(problem.definitions)
     arguments = sorted(problem.arguments(), key=str)
     idle = [s for s in arguments if stay([{s: values[s]} for values in there])]
     for symbol, what in words.hidden.items():
@@ -67,10 +69,21 @@ def _answers(problem: Problem, values: Mapping[Symbol, Any]) -> list[Any] | None
     with mp.workdps(DIGITS):
         try:
             probe = Probe(dict(values))
-            probe.define(problem.definitions)
+            named = problem.definitions.items()
+            probe.define({s: e for s, e in named if s not in probe.values})
             return answered(problem, probe)
         except ZeroDivisionError:
             return None
+
+
+def _changed(problem: Problem, probe: Probe, more: Mapping[Symbol, Any]) -> list[Any] | None:
+    """Return the answers where some values are others than at a point, all named values known."""
+    other = set(more)
+    for symbol, value in problem.definitions.items():
+        if not other.isdisjoint(value.free_symbols):
+            other.add(symbol)
+    kept = {s: x for s, x in probe.values.items() if s not in other}
+    return _answers(problem, kept | dict(more))
 
 
 def _same(first: list[Any] | None, second: list[Any] | None) -> bool:

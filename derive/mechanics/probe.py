@@ -6,6 +6,7 @@ answer does not depend on. Everything that is decided here is proved again, exac
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from random import Random
 from typing import Any
 
@@ -52,7 +53,7 @@ class Probe:
                     return mp.fprod(self.value(a) for a in e.args)
                 case Pow():
                     return self._power(e)
-            return getattr(mp, e.func.__name__)(self.value(e.args[0]))
+            return _called(e.func.__name__, self.value(e.args[0]))
 
     def _power(self, e: Expr) -> Any:
         base, exponent = self.value(e.base), e.exp
@@ -64,6 +65,12 @@ class Probe:
         """Value named quantities, in order."""
         for symbol, value in definitions.items():
             self.values[symbol] = self.value(value)
+
+
+@lru_cache(maxsize=1000)
+def _called(function: str, x: Any) -> Any:
+    with mp.workdps(DIGITS):
+        return getattr(mp, function)(x)
 
 
 def random_probe(words: Words, number: int) -> Probe:
