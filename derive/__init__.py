@@ -22,10 +22,12 @@ if TYPE_CHECKING:
     from derive.solve.answers import Answered
     from derive.solve.function import SceneFunction
     from derive.solve.generation import Generation
-    from derive.solve.handle import Handle, load
+    from derive.solve.handle import Handle
+    from derive.solve.loaded import load
     from derive.solve.principal import PrincipalAxes, principal_axes
     from derive.solve.several import Comparison, compare, generate
     from derive.solve.simulation import Simulation
+    from derive.solve.sweep import Ensemble
 
 __version__ = "0.1.0"
 __all__ = [
@@ -33,6 +35,7 @@ __all__ = [
     "Comparison",
     "DeriveError",
     "Difference",
+    "Ensemble",
     "Generation",
     "Handle",
     "PrincipalAxes",
@@ -55,10 +58,12 @@ PLACES = {
     "derive.solve.answers": ("Answered",),
     "derive.solve.function": ("SceneFunction",),
     "derive.solve.generation": ("Generation",),
-    "derive.solve.handle": ("Handle", "load"),
+    "derive.solve.handle": ("Handle",),
+    "derive.solve.loaded": ("load",),
     "derive.solve.principal": ("PrincipalAxes", "principal_axes"),
     "derive.solve.several": ("Comparison", "compare", "generate"),
     "derive.solve.simulation": ("Simulation",),
+    "derive.solve.sweep": ("Ensemble",),
 }
 """Where each name stands: its module is imported when it is first asked for, not before."""
 

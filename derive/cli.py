@@ -26,6 +26,7 @@ from derive.command import (
     scenes,
     schema,
     solve,
+    sweep,
 )
 from derive.command.parsed import Parser, parsed
 from derive.command.terminal import complain, console, error_console
@@ -64,6 +65,15 @@ COMMANDS: Mapping[str, tuple[Callable[[argparse.ArgumentParser], None], str, tup
         (
             "derive solve edge_runner_flat --set m=1200 r=0.6 width=0.3 L=0.9 W=3.2 g=9.81",
             "derive solve sleeping_top --set m=0.5 r=0.05 l=0.06 g=9.81 --limit n",
+        ),
+    ),
+    "sweep": (
+        sweep.options,
+        "move a million of a scene's motions, each with its own numbers",
+        (
+            "derive sweep sleeping_top --vary 'alpha=uniform(1deg,3deg)' 'm=normal(0.5,0.01)' \\",
+            "    --set r=0.05 l=0.06 g=9.81 n=40 beta=0 alpha_dot=0 beta_dot=0 --samples 1e6 \\",
+            "    --until 0.5 --stop 'alpha = 0.06' --keep alpha,energy@end --out runs.parquet",
         ),
     ),
     "control": (

@@ -46,7 +46,7 @@ def event(found: Instrument, given: Mapping[str, float], text: object) -> Event:
     sides = text.split("=") if isinstance(text, str) else []
     if not isinstance(text, str) or len(sides) != 2:
         raise SceneError(f"{label} must be an equation such as 'theta = 0', not {met(text)}")
-    functions = _functions(found, given)
+    functions = answers_along(found, given)
     scope = Scope(_dimensions(found, functions), {}, "")
     (left, one), (right, other) = (measured(side.strip(), label, scope) for side in sides)
     alone = "number" in (left.operator, right.operator)
@@ -62,7 +62,7 @@ def event(found: Instrument, given: Mapping[str, float], text: object) -> Event:
     return Event(text.strip(), left - right, functions)
 
 
-def _functions(found: Instrument, given: Mapping[str, float]) -> dict[str, str]:
+def answers_along(found: Instrument, given: Mapping[str, float]) -> dict[str, str]:
     """Return the answers that are known along a motion, each with the function that gives it."""
     states = [c for q in found.library.vocabulary.states for c in q.components]
     scene = found.library.scene

@@ -1,6 +1,6 @@
 """A scene that was loaded, with all that can be done with it; what was made once is kept."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache, partial, reduce
 from pathlib import Path
@@ -13,7 +13,7 @@ from derive.emit.files import require_folder, require_writable, write
 from derive.library.library import Library, library
 from derive.program.program import Quantity
 from derive.report import SceneReport, report, report_files
-from derive.scene import Scene, SceneError, contents, document_text, parse_scene
+from derive.scene import Scene, SceneError, parse_scene
 from derive.scene.table import one_of
 from derive.scene.unit import behind
 from derive.solve.answers import Answered, every_answer, motions_around, small_motion_of
@@ -35,6 +35,7 @@ from derive.solve.instrument import Instrument, instrument
 from derive.solve.motions import limits, roots
 from derive.solve.settings import NamedValues, settable, settings
 from derive.solve.simulation import Simulation, plot_of, simulated
+from derive.solve.sweep import Ensemble, Request, ToldOfSweep, swept_and_shown, unheard
 from derive.solve.told import listener, met, path, require_another_file
 from derive.verify.reference import NoValueError
 
@@ -178,6 +179,30 @@ class Handle:
             write(file.parent, {file.name: plot_of(motion)})
         return motion
 
+    def sweep(
+        self, vary: Mapping[str, str], folder: str | Path, until: float, keep: Sequence[str],
+        values: NamedValues | None = None, samples: float = 1, stop: str | None = None,
+        error: float | None = None, step: float | None = None, seed: int = 0, frames: int = 20,
+        pairs: int = 0, workers: int | None = None, scheduler: str | None = None,
+        chunk: int | None = None, told: ToldOfSweep = unheard,
+    ) -> Ensemble:  # fmt: skip
+        """Move very many members, each with its own numbers, and keep what becomes of them.
+
+        vary    : how components scatter: {"m": "uniform(1, 2)", "theta": "0..1:11"}
+        folder  : for results, as Parquet; a sweep that was stopped goes on there
+        keep    : "theta", a course at ``frames`` instants, "theta@end", "@max", "@min", "@2.5"
+        values  : what does not vary      samples : draws, at each point of the grids if any
+        error   : that the length of the step is to keep to, or ``step``, s, is told
+        pairs   : of points that sensitivities are estimated from, a power of two, or 0
+        workers : processes here, or ``scheduler``, the address of one of Dask's
+        """
+        own = self._settings({} if values is None else values)
+        asked = Request(vary, samples, until, keep, stop, error, step, seed, frames, pairs,
+                        workers, scheduler, chunk)  # fmt: skip
+        into = path("folder", folder)
+        listener(told)
+        return swept_and_shown(self._instrument, self.source, own, asked, into, told)
+
     def generate(
         self,
         folder: str | Path,
@@ -273,28 +298,3 @@ def handle(text: str, name: str, source: str, changes: Alterations) -> Handle:
     if scene.text != text:
         return handle(scene.text, name, source, changes)
     return Handle(scene, source, changes=changes)
-
-
-def load(source: str | Path | Mapping[str, object], name: str = "") -> Handle:
-    """Return a scene: of the catalogue by its name, of a file by its path, or of a dict.
-
-    source : a dict is the parsed form of a TOML file, and read as strictly
-    name   : what the scene of a dict is called; a file's is its stem
-
-    Raises DeriveError with one sentence if there is no such scene or it breaks a rule.
-
-    >>> load("heavy_top").wanted
-    ('state_rate', 'state_rate_jacobian', 'kinetic_energy', 'angular_momentum')
-    """
-    if not isinstance(name, str):
-        raise SceneError(f"a scene's name is a text, not {type(name).__name__}")
-    if isinstance(source, Mapping):
-        if not name:
-            raise SceneError("a scene that is a dict needs a name: load(..., name='rotor')")
-        return handle(document_text(source, name), name, f"{name}.toml", ())
-    if not isinstance(source, str | Path):
-        raise SceneError(f"a scene is a name, a path or a dict, not {type(source).__name__}")
-    text, stem = contents(source)
-    if name not in ("", stem):
-        raise SceneError(f"scene '{stem}': a file names its scene; rename it to '{name}.toml'")
-    return handle(text, stem, str(source), ())

@@ -1,6 +1,6 @@
 """A scene's functions over many members, compiled and called: an array of components a quantity."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from ctypes import c_int, c_ssize_t, c_void_p
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -65,19 +65,44 @@ class MembersCompiled:
         given, found : (components, stride) of each quantity, one stride for all; results may lie
                        over inputs
         """
+        length = given.get(IN_COMMON[0], 0.0)
+        self.call(function, constants, given, found, members)(float(length))
+
+    def call(
+        self,
+        function: str,
+        constants: ByMember | None,
+        given: Mapping[str, ByMember | float],
+        found: Sequence[ByMember],
+        members: int,
+    ) -> Callable[[float], None]:
+        """Return a call that is ready to be made many times: it takes the length of a step alone.
+
+        What it is given must live as long as it does.
+        """
         program = self.library[function]
         stride = next(a.shape[-1] for a in (*found, *given.values()) if isinstance(a, np.ndarray))
         arguments: list[Any] = [c_ssize_t(members), c_ssize_t(stride)]
         scalar = np.ctypeslib.as_ctypes_type(self.precision.dtype)
+        common: list[Any] = []
         for q in program.inputs:
             if q.role == "constants":
                 arguments.append(_at(constants))
             elif q.name in IN_COMMON:
-                arguments.append(scalar(given[q.name]))
+                common.append(scalar())
+                arguments.append(common[-1])
             else:
                 arguments.append(_at(given[q.name]))
+        arguments += map(_at, found)
         each = is_prepared(program) and constants is not None and constants.ndim > 1
-        self._symbol(function, "each" if each else "shared")(*arguments, *map(_at, found))
+        symbol = self._symbol(function, "each" if each else "shared")
+
+        def made(seconds: float) -> None:
+            for one in common:
+                one.value = seconds
+            symbol(*arguments)
+
+        return made
 
     def results(self, program: Program, members: int) -> list[ByMember]:
         """Return memory for the results of a function."""

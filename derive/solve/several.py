@@ -25,7 +25,8 @@ from derive.solve.generation import (
     measuring,
     stored,
 )
-from derive.solve.handle import FRESH, Handle, load, silent
+from derive.solve.handle import FRESH, Handle, silent
+from derive.solve.loaded import load
 from derive.solve.told import listener, met, path
 from derive.verify.kept import Measuring
 

@@ -5,7 +5,7 @@ from shutil import copytree
 
 import pytest
 
-from derive.solve.handle import load
+from derive.solve.loaded import load
 from derive.solve.several import checked
 
 GENERATED = Path(__file__).parents[2] / "generated"

@@ -1,0 +1,261 @@
+"""A sweep from its request to its folder: planned once, chunk by chunk, going on where it was."""
+
+import json
+import os
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from derive.library.digest import digest_of_programs
+from derive.scene import SceneError
+from derive.solve.event import answers_along, event
+from derive.solve.instrument import Instrument
+from derive.solve.sweep.course import ASTRAY, REFUSED
+from derive.solve.sweep.design import Design
+from derive.solve.sweep.engine import ChunkSpan, on_cluster, on_processes
+from derive.solve.sweep.job import ENDED_AT, Job, endings_of
+from derive.solve.sweep.keep import kept_columns
+from derive.solve.sweep.kit import kit_of
+from derive.solve.sweep.plan import SweepPlan
+from derive.solve.sweep.recommended import recommended
+from derive.solve.sweep.request import (
+    ERROR,
+    MOST_FRAMES,
+    MOST_WORKERS,
+    Request,
+    above_zero,
+    design_of,
+    outside_at_start,
+    require_installed,
+    require_motion,
+    scheduler_of,
+    stop_of,
+    whole_number,
+)
+from derive.solve.sweep.store import (
+    MANIFEST,
+    manifest_of,
+    only_sweep_in,
+    part_name,
+    parts_of,
+    put_whole,
+    require_same,
+)
+
+NEEDED = ("scipy", "pyarrow")
+TRIED = 256
+"""Members that are moved by half the step too, to see what its length makes of the results."""
+SECONDS = 1.0
+"""That a chunk is to take: what an engine adds to it, some milliseconds, is then no matter."""
+FEWEST, MOST = 2048, 1 << 18
+"""Members of a chunk: a block, and what fits into memory many times."""
+BYTES = 1 << 26
+"""Of a chunk's numbers, at most."""
+ToldOfSweep = Callable[[str, int, int], None]
+"""Hears what is being done, how many members are done, and how many there are."""
+
+
+def unheard(_says: str, _done: int, _of: int) -> None:
+    """Hear how far a sweep is, and say nothing."""
+
+
+@dataclass(frozen=True)
+class Ensemble:
+    """A sweep that is done: where it lies, how its members ended, what is said of it.
+
+    ended : "until", "stop", "not finite", "refused: ..." and how many members each
+    halved : by column, the most that half the step changes of ``TRIED`` members
+    """
+
+    folder: Path
+    page: Path
+    members: int
+    plain: int
+    ended: Mapping[str, int]
+    says: str
+    halved: Mapping[str, float]
+    doubts: tuple[str, ...]
+
+    @property
+    def unfinished(self) -> int:
+        """Return how many members have no end: refused, or no numbers any more."""
+        return sum(n for how, n in self.ended.items() if how == ASTRAY or how.startswith(REFUSED))
+
+    def column(self, name: str) -> Any:
+        """Return a column of all members in order, as an array; a course as (members, instants).
+
+        Raises SceneError if there is none of that name.
+        """
+        from pyarrow import parquet
+
+        each = [p for _, p in sorted(parts_of(self.folder).items())]
+        if name not in (names := parquet.read_schema(each[0]).names):
+            raise SceneError(f"the sweep has no column {name!r} (known: {', '.join(names)})")
+        tables = [parquet.read_table(p, columns=[name])[name].combine_chunks() for p in each]
+        return np.concatenate([
+            t.to_numpy(zero_copy_only=False) if not hasattr(t, "flatten") or t.type.num_fields == 0
+            else t.flatten().to_numpy().reshape(len(t), -1) for t in tables
+        ])  # fmt: skip
+
+
+def swept(
+    found: Instrument, values: Mapping[str, float], asked: Request, folder: Path, tell: ToldOfSweep
+) -> Ensemble:
+    """Return a sweep that is done, from where its folder stood.
+
+    Raises SceneError for what makes no sense, and OutputError where the folder takes no more.
+    """
+    label = f"scene '{found.name}'"
+    scheduler = scheduler_of(asked.scheduler)
+    require_installed((*NEEDED, *(() if scheduler is None else ("distributed",))))
+    design = design_of(found, asked, values)
+    until = above_zero(label, "until", asked.until)
+    frames = whole_number(f"{label}: frames", asked.frames, MOST_FRAMES, least=1)
+    known = {**values, **{s.name: s.within[0] for s in design.spreads}}
+    require_motion(found, known)
+    error = ERROR if asked.error is None else above_zero(label, "error", asked.error)
+    step = None if asked.step is None else above_zero(label, "step", asked.step)
+    columns = kept_columns(found, known, asked.keep, until)
+    stop = None if asked.stop is None else event(found, known, asked.stop)
+    workers = min(os.cpu_count() or 1, 64) if asked.workers is None else whole_number(
+        f"{label}: workers", asked.workers, MOST_WORKERS, least=1)  # fmt: skip
+    size = asked.chunk
+    if size is not None:
+        size = whole_number(f"{label}: chunk", size, MOST, least=1)
+    request = {
+        "scene": found.name,
+        "programs": digest_of_programs(found.library),
+        "vary": {s.name: [s.kind, *s.ends, s.count] for s in design.spreads},
+        "set": dict(sorted(values.items())),
+        "samples": design.samples,
+        "pairs": design.pairs,
+        "seed": design.seed,
+        "until": until,
+        "frames": frames,
+        "keep": [k.column for k in columns],
+        "stop": stop_of(asked.stop),
+        "step": step,
+        "error": error if step is None else None,
+    }
+    answers = answers_along(found, known)
+    plan = SweepPlan("step_rk4", step or until, until, frames, columns, stop, answers)
+    with only_sweep_in(folder):
+        manifest = manifest_of(folder)
+        if manifest is not None:
+            require_same(folder, manifest["asked"], request)
+        else:
+            manifest = _planned(found, design, plan, values, request, step, error, size, tell)
+            put_whole(folder, MANIFEST, json.dumps(manifest, indent=1, sort_keys=True).encode())
+        plan = replace(plan, step=manifest["step"], length=manifest["length"])
+        told = {name: x for name, x in manifest.items() if name not in ("halved", "chunk")}
+        kit = kit_of(found.library, plan.functions)
+        job = Job(kit, design, plan, dict(values), json.dumps(told, sort_keys=True))
+        by = _moved(job, folder, manifest["chunk"], workers, scheduler, tell)
+    doubts = [*outside_at_start(found, design.spreads, values)]
+    if "CasADi" in by:
+        doubts.append(f"{by['CasADi']} chunks were moved by CasADi: where they were is no compiler")
+    page = folder.with_suffix(".html")
+    return Ensemble(folder, page, design.members, design.plain, _ended(folder), manifest["says"],
+                    manifest["halved"], tuple(doubts))  # fmt: skip
+
+
+def _planned(
+    found: Instrument, design: Design, plan: SweepPlan, values: Mapping[str, float],
+    request: Mapping[str, Any], step: float | None, error: float, size: int | None,
+    tell: ToldOfSweep,
+) -> dict[str, Any]:  # fmt: skip
+    """Return what a folder tells of its sweep: what was asked for, and what was found for it."""
+    if step is None:
+        of = recommended(found.library, plan.until, error,
+                         lambda says: tell(says, 0, design.members))  # fmt: skip
+        plan, says = replace(plan, step=of.step, length=of.length), of.says
+    else:
+        says = f"{plan.step} at {step:g} s, as was asked"
+    tell("trying half the step", 0, design.members)
+    job = Job(kit_of(found.library, plan.functions), design, plan, values, "")
+    halved, spent = _halved(job)
+    width = 8 * (4 + sum(len(plan.instants) for _ in plan.kept))
+    if size is None:
+        size = chunk_size(spent / TRIED, width)
+    return {
+        "asked": request, "step": plan.step, "length": plan.length, "steps": plan.steps,
+        "says": says, "halved": halved, "chunk": size, "members": design.members,
+        "plain": design.plain, "title": found.library.scene.title,
+        "units": {k.column: k.unit for k in plan.kept},
+    }  # fmt: skip
+
+
+def chunk_size(seconds: float, width: int) -> int:
+    """Return how many members make a chunk, a power of two.
+
+    seconds : of a core, for a member        width : bytes of a member in memory
+
+    >>> chunk_size(1e-5, 100), chunk_size(1.0, 100), chunk_size(1e-9, 100)
+    (65536, 2048, 262144)
+    """
+    most = min(MOST, SECONDS / max(seconds, 1e-12), BYTES / width)
+    return max(FEWEST, 1 << max(0, int(np.log2(max(most, 1.0)))))
+
+
+def _halved(job: Job) -> tuple[dict[str, float], float]:
+    """Return the most that half the step changes of each column, and what the tried ones took."""
+    count = min(TRIED, job.design.members)
+    endings_of(job, 0, 1)
+    began = perf_counter()
+    whole = endings_of(job, 0, count)
+    spent = perf_counter() - began
+    half = endings_of(job, 0, count, replace(job.plan, length=job.plan.length / 2))
+    both = {c: (whole.columns[c], half.columns[c]) for c in whole.columns}
+    both[ENDED_AT] = whole.time, half.time
+    found = {}
+    for column, (a, b) in both.items():
+        gaps = np.abs(a - b)
+        gaps = gaps[np.isfinite(gaps)]
+        found[column] = float(gaps.max()) if gaps.size else 0.0
+    return found, spent
+
+
+def _moved(
+    job: Job, folder: Path, size: int, workers: int, scheduler: str | None, tell: ToldOfSweep
+) -> Counter[str]:
+    """Move all members that are not done yet; return by what how many chunks were moved."""
+    members = job.design.members
+    spans = [*_spans(members, size)]
+    done = {*parts_of(folder)}
+    left = [span for span in spans if span[0] not in done]
+    count = sum(n for first, n in spans if first in done)
+    tell("moving", count, members)
+    by: Counter[str] = Counter()
+    sizes = dict(spans)
+    chunks = on_processes(job, left, workers)
+    if scheduler is not None:
+        chunks = on_cluster(job, left, scheduler)
+    with closing(chunks):
+        for chunk in chunks:
+            put_whole(folder, part_name(chunk.first), chunk.file)
+            by[chunk.by] += 1
+            count += sizes[chunk.first]
+            tell("moving", count, members)
+    return by
+
+
+def _spans(members: int, size: int) -> Iterator[ChunkSpan]:
+    for first in range(0, members, size):
+        yield first, min(size, members - first)
+
+
+def _ended(folder: Path) -> dict[str, int]:
+    """Return how members ended, from the files: those of runs before among them."""
+    from pyarrow import parquet
+
+    found: Counter[str] = Counter()
+    for _, part in sorted(parts_of(folder).items()):
+        counts = parquet.read_table(part, columns=["ended"])["ended"].value_counts()
+        found.update({str(c["values"]): int(c["counts"].as_py()) for c in counts})
+    return dict(sorted(found.items()))

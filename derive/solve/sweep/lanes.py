@@ -1,0 +1,225 @@
+"""Members side by side, a lane each: their state moved by steps, their answers, some of them apart.
+
+A state lies in two places by turns, the one before the last step and the one after it. Which lane a
+member has changes no bit of it.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.library.library import Library
+from derive.program.program import Program, Quantity
+from derive.scene.formula import Arithmetic, evaluate
+from derive.scene.functions import FUNCTIONS, PLAIN
+from derive.solve.sweep.kit import ByMembers
+from derive.solve.sweep.plan import SweepPlan
+from derive.solve.sweep.vary import FloatColumn, by_python
+
+COLUMNS: Arithmetic = {
+    "number": float,
+    **PLAIN,
+    "power": lambda base, exponent: base**exponent,
+    **{name: lambda x, own=row.floats: by_python(own, x) for name, row in FUNCTIONS.items()},
+    "sqrt": np.sqrt,
+}
+"""Formulas over members: what NumPy rounds as every machine does, else Python's functions."""
+ByQuantity = dict[str, NDArray[Any]]
+"""(components, lanes) of each quantity."""
+
+
+@dataclass
+class Lanes:
+    """Members on their way.
+
+    ids   : of each lane, its member                constants : for all, or of each lane a column
+    alone : by component what is held, a number or (lanes,)        held : the same by quantity
+    state : before and after the last step          turn : which of both is now
+    """
+
+    by: ByMembers
+    library: Library
+    plan: SweepPlan
+    ids: NDArray[np.int64]
+    constants: NDArray[Any] | None
+    alone: dict[str, Any]
+    held: ByQuantity
+    state: tuple[ByQuantity, ByQuantity]
+    turn: int = 0
+    calls: dict[tuple[str, int], tuple[Callable[[float], None], list[Any]]] = field(
+        default_factory=dict
+    )
+    fresh: dict[str, list[Any]] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.ids)
+
+    @property
+    def now(self) -> ByQuantity:
+        """Return the state as it is."""
+        return self.state[self.turn]
+
+    @property
+    def before(self) -> ByQuantity:
+        """Return the state before the last step."""
+        return self.state[1 - self.turn]
+
+    def on(self, length: float) -> None:
+        """Take a step of so many seconds."""
+        self._called(self.plan.step, length, self.before)
+        self.turn = 1 - self.turn
+        self.fresh.clear()
+
+    def back(self, which: NDArray[np.bool_]) -> None:
+        """Take some lanes back to where they were before the last step."""
+        for name, place in self.now.items():
+            place[:, which] = self.before[name][:, which]
+        self.fresh.clear()
+
+    def value(self, component: str) -> Any:
+        """Return a component of the state, an answer, or what is held: (lanes,) or a number."""
+        for q in self.library.vocabulary.states:
+            if component in q.components:
+                return self.now[q.name][q.components.index(component)]
+        if component in self.plan.answers:
+            return self._answer(component, self.plan.answers[component])
+        return self.alone[component]
+
+    def residual(self) -> FloatColumn:
+        """Return what is zero when the event happens."""
+        stop = self.plan.stop
+        if stop is None:
+            raise ValueError("nothing stops these members")
+        found = evaluate(stop.left, _Read(self), COLUMNS)
+        whole: FloatColumn = np.array(np.broadcast_to(found, len(self)), dtype=np.float64)
+        return whole
+
+    def are_finite(self) -> NDArray[np.bool_]:
+        """ToldOfSweep of which lanes the state is made of numbers."""
+        found = np.ones(len(self), bool)
+        for place in self.now.values():
+            found &= np.isfinite(place).all(axis=0)
+        return found
+
+    def chosen(self, which: NDArray[np.bool_], state: ByQuantity | None = None) -> "Lanes":
+        """Return some lanes alone, in the state that they are in, or in another."""
+
+        def own(x: Any) -> Any:
+            there = isinstance(x, np.ndarray) and x.shape[-1:] == which.shape and x.ndim > 0
+            return np.ascontiguousarray(x[..., which]) if there else x
+
+        of = self.now if state is None else state
+        first = {name: own(x) for name, x in of.items()}
+        second = {name: np.zeros_like(x) for name, x in first.items()}
+        lone = self.constants is None or self.constants.ndim == 1
+        return Lanes(
+            self.by, self.library, self.plan, self.ids[which],
+            self.constants if lone else own(self.constants),
+            {n: own(x) for n, x in self.alone.items()},
+            {n: own(x) for n, x in self.held.items()}, (first, second),
+        )  # fmt: skip
+
+    def beside(self, more: Sequence["Lanes"]) -> "Lanes":
+        """Return these members with others of the same plan, in the states that they are in."""
+        every = [self, *more]
+
+        def all_of(each: Sequence[Any], like: Any) -> Any:
+            return np.concatenate(each, axis=-1) if isinstance(like, np.ndarray) else like
+
+        first = {n: all_of([o.now[n] for o in every], x) for n, x in self.now.items()}
+        second = {name: np.zeros_like(x) for name, x in first.items()}
+        lone = self.constants is None or self.constants.ndim == 1
+        return Lanes(
+            self.by, self.library, self.plan, np.concatenate([o.ids for o in every]),
+            self.constants if lone else all_of([o.constants for o in every], self.constants),
+            {n: all_of([o.alone[n] for o in every], x) for n, x in self.alone.items()},
+            {n: all_of([o.held[n] for o in every], x) for n, x in self.held.items()},
+            (first, second),
+        )  # fmt: skip
+
+    def _answer(self, component: str, function: str) -> Any:
+        if function not in self.fresh:
+            self.fresh[function] = self._called(function, 0.0, {})
+        for q, found in zip(self.library[function].outputs, self.fresh[function], strict=True):
+            if component in q.components:
+                return found[q.components.index(component)]
+        raise KeyError(component)
+
+    def _called(self, function: str, length: float, into: ByQuantity) -> list[Any]:
+        key = (function, self.turn)
+        if key not in self.calls:
+            program = self.library[function]
+            found = [self._room(q, into) for q in program.outputs]
+            given = self.held | self.now
+            made = self.by.call(function, self._read_by(program), given, found, len(self))
+            self.calls[key] = made, found
+        call, results = self.calls[key]
+        call(length)
+        return results
+
+    def _room(self, q: Quantity, into: ByQuantity) -> NDArray[Any]:
+        place = into.get(q.name.removesuffix("_next"))
+        return np.zeros((len(q.components), len(self))) if place is None else place
+
+    def _read_by(self, program: Program) -> NDArray[Any] | None:
+        reads = any(q.role == "constants" for q in program.inputs)
+        return self.constants if reads else None
+
+
+class _Read(dict[str, Any]):
+    """What a formula asks lanes for, by name."""
+
+    def __init__(self, lanes: Lanes) -> None:
+        self.lanes = lanes
+
+    def __contains__(self, name: object) -> bool:
+        return name != "pi"
+
+    def __getitem__(self, name: str) -> Any:
+        return self.lanes.value(name)
+
+
+def lanes_begun(
+    by: ByMembers,
+    library: Library,
+    plan: SweepPlan,
+    given: Mapping[str, FloatColumn | float],
+    ids: NDArray[np.int64],
+) -> tuple[Lanes, NDArray[np.int32]]:
+    """Return members at their start, and what set-up says of each: 0 is right.
+
+    given : each component, a number for all or (all members,)
+    """
+    own = {n: x[ids] if isinstance(x, np.ndarray) else x for n, x in given.items()}
+    count = len(ids)
+
+    def rows(q: Quantity) -> NDArray[Any]:
+        middle = float(((q.low or 0) + (q.high or 0)) / 2)
+        each = [np.broadcast_to(own.get(c, middle), count) for c in q.components]
+        return np.array(each, dtype=np.float64)
+
+    setup = list(library.setup.inputs)
+    constants, status = None, np.zeros(count, np.int32)
+    if setup and not library.fixed:
+        varies = any(isinstance(own.get(c), np.ndarray) for q in setup for c in q.components)
+        parameters = np.concatenate([rows(q) for q in setup])
+        constants, status = by.setup(parameters if varies else parameters[:, :1].copy())
+        if not varies:
+            constants, status = constants[:, 0].copy(), np.repeat(status, count)
+    held = _held(library, plan.functions)
+    state = {q.name: rows(q) for q in library.vocabulary.states}
+    other = {name: np.zeros_like(x) for name, x in state.items()}
+    lanes = Lanes(by, library, plan, ids, constants, own, {q.name: rows(q) for q in held},
+                  (state, other))  # fmt: skip
+    return lanes, status
+
+
+def _held(library: Library, functions: Sequence[str]) -> list[Quantity]:
+    """Return what functions are given beside the state, constants and the length of a step."""
+    states = {q.name for q in library.vocabulary.states}
+    each = [q for name in functions for q in library[name].inputs]
+    return [q for q in {q.name: q for q in each}.values()
+            if q.role != "constants" and q.name not in (*states, "time_step")]  # fmt: skip
