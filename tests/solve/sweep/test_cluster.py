@@ -1,0 +1,112 @@
+"""A sweep on a cluster: a real scheduler, workers as processes, which die, come late and are slow."""
+
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+import derive
+from derive.solve.sweep.store import parts_of
+from tests.solve.sweep.swept_tops import swept_top
+
+pytestmark = pytest.mark.long
+SLEPT = 3.0
+"""s that a slow worker does nothing."""
+
+
+@dataclass
+class Cluster:
+    """A scheduler and its workers, processes of this machine."""
+
+    file: Path
+    processes: list[subprocess.Popen[bytes]] = field(default_factory=list)
+
+    def start(self, kind: str, *more: str) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-m", f"distributed.cli.dask_{kind}", "--no-dashboard"]
+        own = subprocess.Popen(
+            [*command, "--scheduler-file", str(self.file), *more],
+            cwd=self.file.parent, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+        self.processes.append(own)
+        return own
+
+    def worker(self) -> subprocess.Popen[bytes]:
+        return self.start("worker", "--no-nanny", "--nthreads", "1", "--host", "127.0.0.1")
+
+    @property
+    def address(self) -> str:
+        import json
+
+        while not self.file.is_file():
+            time.sleep(0.05)
+        time.sleep(0.2)
+        found: str = json.loads(self.file.read_text())["address"]
+        return found
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[Cluster]:
+    own = Cluster(tmp_path / "scheduler.json")
+    own.start("scheduler", "--host", "127.0.0.1", "--port", "0")
+    yield own
+    for process in own.processes:
+        process.send_signal(signal.SIGCONT)
+        process.kill()
+        process.wait()
+
+
+def files(of: derive.Ensemble) -> dict[str, bytes]:
+    return {p.name: p.read_bytes() for p in parts_of(of.folder).values()}
+
+
+def test_workers_that_die_or_come_late_or_are_slow_change_no_bit(
+    cluster: Cluster, tmp_path: Path
+) -> None:
+    undisturbed = swept_top(tmp_path / "here", samples=2000, chunk=50)
+    first, second = cluster.worker(), cluster.worker()
+    seen: list[int] = []
+
+    def disturb(says: str, count: int, _of: int) -> None:
+        seen.append(count)
+        if says == "moving" and len(seen) == 8:
+            first.kill()
+            cluster.worker()
+        if says == "moving" and len(seen) == 20:
+            second.send_signal(signal.SIGSTOP)
+            time.sleep(SLEPT)
+            second.send_signal(signal.SIGCONT)
+
+    found = swept_top(
+        tmp_path / "there", samples=2000, chunk=50, scheduler=cluster.address, told=disturb
+    )
+    assert first.poll() is not None
+    assert files(found) == files(undisturbed)
+    assert seen == sorted(seen)
+    assert found.doubts == undisturbed.doubts
+
+
+def test_a_full_disk_ends_a_sweep_of_a_cluster_that_then_goes_on(
+    cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(file: int) -> None:
+        if len(parts_of(tmp_path / "there")) == 3:
+            raise OSError(28, "No space left on device")
+
+    cluster.worker()
+    with monkeypatch.context() as patch:
+        patch.setattr("derive.solve.sweep.store.os.fsync", full)
+        with pytest.raises(derive.DeriveError, match="No space left on device"):
+            swept_top(tmp_path / "there", scheduler=cluster.address)
+    assert len(parts_of(tmp_path / "there")) == 3
+    found = swept_top(tmp_path / "there", scheduler=cluster.address)
+    assert files(found) == files(swept_top(tmp_path / "here"))
+
+
+def test_a_scheduler_that_is_not_there_is_told_in_a_sentence(tmp_path: Path) -> None:
+    with pytest.raises(derive.DeriveError, match="no scheduler of Dask answers at"):
+        swept_top(tmp_path / "runs", scheduler="tcp://127.0.0.1:9")
