@@ -1,5 +1,6 @@
-"""A sweep on a cluster: a real scheduler, workers as processes, which die, come late and are slow."""
+"""A sweep on a cluster: a real scheduler, workers that are processes and die, come late, are slow."""
 
+import json
 import signal
 import subprocess
 import sys
