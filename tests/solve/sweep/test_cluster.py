@@ -1,4 +1,4 @@
-"""A sweep on a cluster: a real scheduler, workers that are processes and die, come late, are slow."""
+"""A sweep on a cluster: a real scheduler, and workers that die, come late or are slow."""
 
 import json
 import signal
@@ -41,8 +41,6 @@ class Cluster:
 
     @property
     def address(self) -> str:
-        import json
-
         while not self.file.is_file():
             time.sleep(0.05)
         time.sleep(0.2)
