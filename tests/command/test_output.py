@@ -12,7 +12,7 @@ from derive.command.terminal import console
 
 FULL = Path("/dev/full")
 QUICK = ("equations heavy_top", "schema", "completion bash", "new body brick",
-         "--help", "--version", "solve --help", "control --help")  # fmt: skip
+         "--help", "--version", "solve --help", "control --help", "sweep --help")  # fmt: skip
 LONG = ("generate attitude --samples 256", "check attitude --samples 256", "lecture",
         "solve edge_runner_flat --set m=1200 r=0.6 width=0.3 L=0.9 W=3.2 g=9.81", "report attitude",
         "lecture --without newton", "scenes")  # fmt: skip

@@ -92,6 +92,11 @@ WHOLE = {
     "verify/solution.py: _through": "balls",
     "bench/report/code_size.py: code_size": "bytes",
     "lower/share.py: _negations": "signs counted",
+    "solve/sweep/engine.py: _room": "threads counted",
+    "solve/sweep/ensemble.py: _moved": "members counted",
+    "solve/sweep/ensemble.py: _planned": "columns counted",
+    "solve/sweep/ensemble.py: unfinished": "members counted",
+    "solve/sweep/plan.py: steps": "steps counted",
     "lecture/tree.py: size": "symbols counted",
     "lower/wording.py: spelling": "powers",
 }
