@@ -1,9 +1,13 @@
-"""Every block of docs/sweep.md runs, and gives what stands below it."""
+"""Every block of docs/sweep.md runs, and gives what stands below it; so do its commands."""
 
 import doctest
+import re
+import shlex
 from pathlib import Path
 
 import pytest
+
+from derive.cli import main
 
 PAGE = Path(__file__).parents[3] / "docs" / "sweep.md"
 
@@ -13,3 +17,26 @@ def test_the_examples_of_the_page_run(tmp_path: Path, monkeypatch: pytest.Monkey
     found = doctest.testfile(str(PAGE), module_relative=False)
     assert found.attempted > 5
     assert found.failed == 0
+
+
+def commands() -> list[list[str]]:
+    """Return what is behind ``derive`` in the commands of the page, with fewer samples."""
+    text = PAGE.read_text(encoding="utf-8").replace("\\\n", " ")
+    found = [shlex.split(c) for c in re.findall(r"^    derive (sweep .*)$", text, re.MULTILINE)]
+    return [[{"1e6": "1e3", "2e4": "2e3"}.get(word, word) for word in own] for own in found]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("number", range(2))
+def test_the_commands_of_the_page_run_and_write_what_it_says(
+    number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (scene,) = re.findall(r"```toml\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    Path("damped.toml").write_text(scene, encoding="utf-8")
+    assert len(commands()) == 2
+    own = commands()[number]
+    assert main(own) == 0
+    folder = Path(own[-1])
+    assert f"  {folder}\n  {folder.with_suffix('.html')}" in capsys.readouterr().out
+    assert "<svg" in folder.with_suffix(".html").read_text(encoding="utf-8")
