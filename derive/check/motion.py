@@ -6,25 +6,47 @@ Orders are measured in balls of 500 bits, so they are free of rounding; what rou
 
 from collections.abc import Iterator, Sequence
 
+from flint import ctx
+from mpmath import mp
+
+from derive.check.particles import digits, fulfilling
 from derive.check.verdict import JUDGED, Verdict
 from derive.library.library import Library
 from derive.program.largest import largest
-from derive.scene.wanted import COMPENSATED, STEP_FUNCTIONS
-from derive.verify.convergence import BITS, CLOSED_FORM, LEVELS, course, exactness, order
+from derive.scene.wanted import COMPENSATED, STEP_FUNCTIONS, step_of
+from derive.verify.cloud import CloudAnswers
+from derive.verify.cloud.series import DIGITS
+from derive.verify.convergence import (
+    BITS,
+    CLAIMED,
+    CLOSED_FORM,
+    LEVELS,
+    Course,
+    course,
+    exactness,
+    order,
+    stepped,
+)
 from derive.verify.differences import GAP, slopes
 from derive.verify.sample import Sample
 
 FEW = 2
+LEFT = 2.0**-53
+"""What rounding of doubles leaves anyway of lengths and rates near 1."""
 
 
 def orders_hold(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
-    """Yield whether every step converges as fast as it claims, and every flow is exact."""
+    """Yield whether every step converges as fast as it claims, and every flow is exact.
+
+    Motions of machines with constraints begin where these hold, and steps end there.
+    """
     ordinary = [s for s in each if s.kind == "ordinary"][:FEW]
+    ordinary = list(fulfilling(library.scene, ordinary)) if library.motions else ordinary
     for program in library.motions:
         if program.name == "flow_exact":
             yield _exact(library, ordinary)
         elif program.name in (*STEP_FUNCTIONS, *COMPENSATED):
-            yield _order(library, program.name, ordinary)
+            yield from _order(library, program.name, ordinary)
 
 
 def _exact(library: Library, each: Sequence[Sample]) -> Verdict:
@@ -34,13 +56,38 @@ def _exact(library: Library, each: Sequence[Sample]) -> Verdict:
     return Verdict(library.scene.name, "flow_exact", "exact", "is the motion", outcome, says)
 
 
-def _order(library: Library, name: str, each: Sequence[Sample]) -> Verdict:
-    found = [order(library, name, course(library, name, s.values)) for s in each]
+def _order(library: Library, name: str, each: Sequence[Sample]) -> Iterator[Verdict]:
+    courses = [course(library, name, s.values) for s in each]
+    found = [order(library, name, one) for one in courses]
     measured = ", ".join(map(str, found))
-    claimed = f"claimed {found[0].claimed}, measured {measured}"
-    says = f"in closed form, errors {measured}" if found[0].closed else claimed
+    closed = any(one.closed for one in found)
+    claimed = f"claimed {CLAIMED[step_of(name)]}, measured {measured}"
+    says = f"in closed form, errors {measured}" if closed else claimed
     outcome = JUDGED[all(one.holds for one in found)]
-    return Verdict(library.scene.name, name, "exact", "order", outcome, says)
+    if not found:
+        outcome, says = "skipped", "no state was found at which the constraints hold"
+    yield Verdict(library.scene.name, name, "exact", "order", outcome, says)
+    if found and library.scene.constraints:
+        yield _ends_on_constraints(library, name, courses)
+
+
+def _ends_on_constraints(library: Library, name: str, each: Sequence[Course]) -> Verdict:
+    """Return whether constraints hold after a step but for what doubles round, beside its length.
+
+    What a cloud of particles says of the state after it is compared with how far the state moves.
+    """
+    worst = 0.0
+    for one in each:
+        with ctx.workprec(BITS):
+            after = stepped(library, name, one.given, one.lengths[0])
+            states = [c for q in library.vocabulary.states for c in q.components]
+            there = one.given | {c: after[f"{c}_next"] for c in states}
+        with mp.workdps(DIGITS):
+            cloud = CloudAnswers(library.scene, {n: digits(x) for n, x in there.items()})
+            worst = largest([worst, *map(abs, cloud.distances.values())])
+    says = f"{worst:.1g} in SI units is left of the constraints, in {BITS} bits"
+    row = (library.scene.name, name, "exact", "ends on the constraints")
+    return Verdict(*row, JUDGED[worst < LEFT], says)
 
 
 def step_slopes_hold(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:

@@ -162,6 +162,7 @@ def _simulated(
     digits = 6 if given.stop is None else 12
     at = f"at {motion.times[-1]:.{digits}g} s"
     rows = [(at, n, f"{v[-1]:z.12g}", motion.units[n]) for n, v in motion.states.items()]
+    rows += [("largest on the way", name, f"{off:.2g}", "") for name, off in motion.left]
     return rows, motion.doubts
 
 

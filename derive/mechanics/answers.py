@@ -20,6 +20,7 @@ from derive.mechanics.bodies import (
 )
 from derive.mechanics.contradiction import unbalanced
 from derive.mechanics.frames import ZERO, Frames
+from derive.mechanics.held import bindings
 from derive.mechanics.linearised import Linearised, linearised, require_nothing_prescribed
 from derive.mechanics.linearised_held import held_linearised
 from derive.mechanics.loads import potential_energy
@@ -31,7 +32,7 @@ from derive.mechanics.told_by import steps_of
 from derive.program.program import Quantity
 from derive.scene import Input, Scene, SceneError
 from derive.scene.formula import Formula, symbols
-from derive.scene.results import MATRICES, written_out
+from derive.scene.results import DISTANCES, MATRICES, written_out
 from derive.scene.wanted import JACOBIAN
 
 
@@ -140,6 +141,9 @@ class Answers:
         if name == "linearised":
             return {self._quantity(n): self.matrices[n] for n in MATRICES}
         q = self._quantity(name)
+        if name == DISTANCES:
+            parts = ((c.place, c.first) for c in bindings(self.frames).every)
+            return {q: [e for pair in parts for e in pair if e is not None]}
         if name == "angular_momentum":
             return {q: list(self.angular_momentum)}
         if name in ("kinetic_energy", "potential_energy", "energy"):
@@ -278,6 +282,7 @@ class Answers:
 
 
 SAYS = {
+    DISTANCES: "How far a state is from what the constraints ask of places and of rates.",
     "linearised": "Mass, damping and stiffness matrices of small motion.",
     "acceleration": "Rate of the angular velocity from the moment (forward dynamics).",
     "state_rate": "Rate of the state from the state and the inputs (forward dynamics).",

@@ -25,6 +25,7 @@ SEED = "derive: states on constraints"
 class Bindings:
     """The conditions that are kept, those that are redundant, and what fulfils all.
 
+    every : all of them in the order in which the scene has them
     told : for each unknown that is taken as zero, the condition that it would enforce
     """
 
@@ -32,6 +33,7 @@ class Bindings:
     dropped: tuple[Tie, ...] = ()
     onto: Onto | None = None
     told: Mapping[Symbol, str] = field(default_factory=dict)
+    every: tuple[Tie, ...] = ()
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -66,7 +68,7 @@ def _bindings(frames: Frames) -> Bindings:
     kept = _independent(slopes)
     dropped = [c for k, c in enumerate(every) if k not in kept]
     told = {c.factor: c.name for c in dropped if c.factor is not None}
-    return Bindings(tuple(every[k] for k in kept), tuple(dropped), brings, told)
+    return Bindings(tuple(every[k] for k in kept), tuple(dropped), brings, told, every)
 
 
 def _states(frames: Frames, brings: Onto, box: Box) -> list[np.ndarray]:

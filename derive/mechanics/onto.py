@@ -79,6 +79,27 @@ class Onto:
         left = np.max(np.abs(own @ step - gap), initial=0.0)
         return here, bool(left < 1e-6 * max(1.0, np.max(np.abs(gap), initial=0.0)))
 
+    def distances(self, points: Doubles) -> list[tuple[str, Doubles]]:
+        """Return every condition and its rate at points (components, count), by names."""
+        names = [f"constraint '{c.name}'" for c in self.conditions if c.place is not None]
+        values = self._functions[0](*points)[: len(names)] if names else []
+        names += [f"constraint '{c.name}'" if c.place is None else f"the rate of '{c.name}'"
+                  for c in self.conditions]  # fmt: skip
+        values = [*values, *self._functions[1](*points)[: len(self.conditions)]]
+        return [*zip(names, values, strict=True)]
+
+    def worst(self, point: Doubles) -> tuple[str, float]:
+        """Return the condition that is furthest off, in sizes of ranges, and what it is."""
+        each = []
+        for slopes, sizes in ((self._placed if self._of_places else None, self.places),
+                              (self._moving, self.rates)):  # fmt: skip
+            if slopes is not None:
+                values, by = slopes(point)
+                weight = np.linalg.norm(by * np.array([*sizes.values()]), axis=1)
+                each += list(np.abs(values) / np.where(weight > 0, weight, 1.0))
+        name, value = self.distances(point)[int(np.argmax(each))]
+        return name, float(value)
+
     def slopes(self, point: Doubles) -> Doubles:
         """Return how the first rates of all conditions change with the rates, (conditions, rates).
 

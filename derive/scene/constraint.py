@@ -1,5 +1,6 @@
 """What must hold of a motion besides the joints that frames are made of: a formula, or points."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -40,3 +41,18 @@ class Constraint:
     load: str = ""
     factor: str = ""
     of_rates: bool = False
+
+
+def distances(constraints: Iterable[Constraint]) -> Iterator[tuple[str, str]]:
+    """Yield what is 0 while constraints hold, each with its words: of places, and of rates.
+
+    >>> [name for name, _ in distances([Constraint("loop"), Constraint("blade", of_rates=True)])]
+    ['distance_loop', 'distance_loop_dot', 'distance_blade_dot']
+    """
+    for one in constraints:
+        for axis in one.meeting.axes if one.meeting else ("",):
+            name, along = (f"distance_{one.name}_{axis}", f" along {axis}") if axis else (
+                f"distance_{one.name}", "")  # fmt: skip
+            if not one.of_rates:
+                yield name, f"constraint {one.name}{along}"
+            yield f"{name}_dot", f"the rate of constraint {one.name}{along}"

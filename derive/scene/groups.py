@@ -3,10 +3,11 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
+from derive.scene.constraint import distances
 from derive.scene.declaration import ANY, AXES, Input, Moving
 from derive.scene.formula import ZERO, symbols
 from derive.scene.machine import Force, Group, Groups, Place, Scene, Steady, Unknown
-from derive.scene.results import ENERGIES, MATRICES, unknown_vectors
+from derive.scene.results import DISTANCES, ENERGIES, MATRICES, unknown_vectors
 from derive.scene.scalars import PER_SECOND
 from derive.scene.steady import steady_parts
 
@@ -74,6 +75,8 @@ def _outputs(scene: Scene, states: Iterable[Group]) -> Iterator[Group]:
         yield _answer(r.name, (r.name,), r.unit, r.meaning)
     yield from (g for g in rates if g.name in results)  # by this name the result is meant
     yield from _matrices(scene)
+    if scene.constraints:
+        yield _distances(scene)
     for name, steady in (scene.steady or {"steady": Steady((), (), "")}).items():
         free_of = "" if steady.vanishes else ", without factors that never vanish, so in no unit"
         says = f"what vanishes in a steady motion{free_of}"
@@ -141,6 +144,13 @@ def _accelerations(scene: Scene) -> Iterator[Group]:
         if m.vector:
             vectors.setdefault(m.answer, []).append(one)
     yield from (_joined(vector, each) for vector, each in vectors.items())
+
+
+def _distances(scene: Scene) -> Group:
+    """Return how far a state is from all that constraints ask."""
+    each = dict(distances(scene.constraints))
+    says = f"what is 0 where the constraints hold: {', '.join(each.values())}, each in its own unit"
+    return _answer(DISTANCES, tuple(each), "", says)
 
 
 def _matrices(scene: Scene) -> Iterator[Group]:

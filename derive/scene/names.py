@@ -61,6 +61,7 @@ GENERATED: Mapping[str, str] = {
     "stiffness_matrix": "the stiffness matrix of small motion",
     "linearised": "small motion",
     "steady": "steady motion",
+    "constraint_distances": "how far a state is from what constraints ask",
     "coordinate_rates": "the rates of the coordinates",
     "wheel_speeds": "the speeds of the wheels",
     "wheel_accelerations": "the accelerations of the wheels",

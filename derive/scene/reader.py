@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from typing import Any
 
 from derive.scene.bodies import read_member
+from derive.scene.constraint import distances
 from derive.scene.constraints import read_constraints, with_dependent
 from derive.scene.declaration import Input, SceneError
 from derive.scene.demands import of_bodies
@@ -104,11 +105,13 @@ def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
     results = read_results(part["results"], scalars, unknowns)
     distinct(_declared(scalars, unknowns, results))
     lasting = steady_names(part["steady"])
-    asked = read_asked(head.pop("wanted"), scalars, unknowns, results, lasting)
+    asked = read_asked(head.pop("wanted"), scalars, unknowns, results, lasting,
+                       constraints)  # fmt: skip
     distinct([*_declared(scalars, (), ()), *_vectors(unknowns, asked)])
     steady = read_steady(part["steady"], scalars, unknowns, results, asked)
     welds, hidden = welded(bodies, loads, unknowns, scalars.parameters)
     made = _made(scalars, frames, results, asked, steady)
+    made = [*made, *((name, f"what is 0 by {says}") for name, says in distances(constraints))]
     distinct([*_declared(scalars, unknowns, results), *made])
     scene = Scene(
         **head, parameters=scalars.parameters, coordinates=scalars.coordinates,

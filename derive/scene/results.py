@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
 
+from derive.scene.constraint import Constraint
 from derive.scene.declaration import AXES, SceneError
 from derive.scene.entries import RESULT
 from derive.scene.entry import Reading, entries_of
@@ -22,6 +23,8 @@ FUNCTIONS = (
     *ENERGIES,
     *("angular_momentum", "accelerations", "state_rate", "linearised", "steady"),
 )
+DISTANCES = "constraint_distances"
+"""The answer that machines with constraints have beside all others."""
 MATRICES = {
     "mass_matrix": "acceleration",
     "damping_matrix": "velocity, gyroscopic terms included",
@@ -83,10 +86,11 @@ def read_asked(
     unknowns: tuple[Unknown, ...],
     results: tuple[Result, ...],
     lasting: tuple[str, ...],
+    held: tuple[Constraint, ...] = (),
 ) -> Mapping[str, tuple[str, ...]]:
     """Return the answers that each wanted function gives.
 
-    lasting : the functions of steady motions
+    lasting : the functions of steady motions        held : the constraints
     """
     if not isinstance(value, list) or not value:
         raise SceneError(f"wanted must be a list of at least one answer, not {shown(value)}")
@@ -97,8 +101,8 @@ def read_asked(
     parts = _parts(scalars, unknowns)
     vectors = (m.answer for m in scalars.moving if m.free and m.vector)
     named = (*(u.name for u in unknowns), *(r.name for r in results))
-    known_ = [*FUNCTIONS, *lasting, *OF_MACHINES, *unknown_vectors(unknowns), *named,
-              *unknown_rates(scalars), *vectors]  # fmt: skip
+    known_ = [*FUNCTIONS, *([DISTANCES] if held else []), *lasting, *OF_MACHINES,
+              *unknown_vectors(unknowns), *named, *unknown_rates(scalars), *vectors]  # fmt: skip
     asked: dict[str, tuple[str, ...]] = {}
     for entry in value:
         name, answers = _entry(entry, known_, {"steady", *lasting})

@@ -17,6 +17,7 @@ from derive.solve.arguments import one_number
 from derive.solve.event import event, first_met, residual
 from derive.solve.instrument import Instrument
 from derive.solve.lacking import advice_on
+from derive.solve.onto_constraints import left_of_constraints, start_on_constraints
 
 STEP = "step_rk4"
 WIDTH, HEIGHT, LEFT, GAP = 640, 110, 90, 14
@@ -31,12 +32,14 @@ class Simulation:
     """Times and, for each component of the state, its values.
 
     doubts : warnings about what lies outside of its declared range, given or on the way
+    left   : the largest value of every constraint on the way, and of its rate, which are to be 0
     """
 
     times: NDArray[np.float64]
     states: Mapping[str, NDArray[np.float64]]
     units: Mapping[str, str]
     doubts: tuple[str, ...] = ()
+    left: tuple[tuple[str, float], ...] = ()
 
 
 def simulated(
@@ -66,13 +69,14 @@ def simulated(
     missing = [n for n in names if n not in given]
     if missing:
         raise SceneError(f"scene '{found.name}': a simulation begins at {', '.join(missing)}")
+    given, mended = start_on_constraints(found, given)
     sought = None if stop is None else event(found, given, stop)
     start = [float(given[n]) for n in names]
     moved = _one_step(found, dict(given) | {"time_step": step}, names)
     after = moved.mapaccum("motion", count)(start).full() if count else np.zeros((len(names), 0))
     columns = np.column_stack([start, after])
     times: NDArray[np.float64] = step * np.arange(columns.shape[1], dtype=np.float64)
-    doubts = []
+    doubts = mended
     if sought is not None:
         left, h = residual(found, given, names, sought), casadi.SX.sym("h")
         part = _one_step(found, dict(given) | {"time_step": h}, names, [h])
@@ -85,7 +89,8 @@ def simulated(
     _require_finite(found.name, names, columns, step)
     motion = dict(zip(names, columns, strict=True))
     doubts += _outside(found, given, times, motion)
-    return Simulation(times, motion, _units(states), tuple(doubts))
+    left = tuple(left_of_constraints(found, given, motion))
+    return Simulation(times, motion, _units(states), tuple(doubts), left)
 
 
 def _outside(

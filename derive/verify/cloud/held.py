@@ -59,6 +59,13 @@ def second_rates(history: History) -> list[Any]:
     return [s.velocity if one.of_rates else s.acceleration for one, s in conditions_of(history)]
 
 
+def distances_of(history: History) -> list[Any]:
+    """Return every condition and its rate, those of rates alone."""
+    each = [[s.value] if one.of_rates else [s.value, s.velocity]
+            for one, s in conditions_of(history)]  # fmt: skip
+    return [x for own in each for x in own]
+
+
 def first_rates(history: History) -> list[Any]:
     """Return the rate of every condition, or the condition itself if it is of rates."""
     return [s.value if one.of_rates else s.velocity for one, s in conditions_of(history)]

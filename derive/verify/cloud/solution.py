@@ -9,10 +9,11 @@ import numpy as np
 from mpmath import mp, mpf
 
 from derive.scene import Scene
+from derive.scene.constraint import distances
 from derive.scene.formula import Formula
 from derive.scene.results import written_out
 from derive.verify.cloud.balance import at_instant, left_over, potential_energy
-from derive.verify.cloud.held import Allowed, generalized, second_rates
+from derive.verify.cloud.held import Allowed, distances_of, generalized, second_rates
 from derive.verify.cloud.history import History
 from derive.verify.cloud.series import DIGITS, crossed, each, series
 
@@ -130,7 +131,14 @@ class CloudAnswers:
             height = potential_energy(history)
             energies = {"kinetic_energy": energy, "potential_energy": height}
             energies["energy"] = energy + height
-            return energies | dict(zip(names, along, strict=True))
+            return energies | self.distances | dict(zip(names, along, strict=True))
+
+    @cached_property
+    def distances(self) -> dict[str, Any]:
+        """Return what is 0 where the constraints hold."""
+        names = [name for name, _ in distances(self.machine.constraints)]
+        with mp.workdps(DIGITS):
+            return dict(zip(names, distances_of(self.history({})), strict=True))
 
     @cached_property
     def momentum_rate(self) -> dict[str, Any]:
