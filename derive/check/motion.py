@@ -81,7 +81,7 @@ def _ends_on_constraints(library: Library, name: str, each: Sequence[Course]) ->
         with ctx.workprec(BITS):
             after = stepped(library, name, one.given, one.lengths[0])
             states = [c for q in library.vocabulary.states for c in q.components]
-            there = one.given | {c: after[f"{c}_next"] for c in states}
+            there = dict(one.given) | {c: after[f"{c}_next"] for c in states}
         with mp.workdps(DIGITS):
             cloud = CloudAnswers(library.scene, {n: digits(x) for n, x in there.items()})
             worst = largest([worst, *map(abs, cloud.distances.values())])

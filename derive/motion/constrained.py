@@ -203,8 +203,10 @@ def _with_slopes(
     matrix = [[number(0)] * len(pattern.columns) for _ in range(n)]
     states = {c for q in step.outputs for c in q.components}
     read = {c for q in held.program.inputs if q.is_value for c in q.components}
-    for k, column in enumerate(pattern.columns):
-        changes = {column: number(1)} if column in read and f"{column}_next" not in states else {}
+    for k, label in enumerate(pattern.columns):
+        changes: Row = {}
+        if label in read and f"{label}_next" not in states:
+            changes[label] = number(1)
         changes |= {r: before[i][k] for i, r in enumerate(step.results[:n]) if isinstance(r, str)}
         slopes = forward(tape, ops, changes)
         for i, x in enumerate(after):

@@ -111,8 +111,8 @@ def read_machine(document: dict[str, Any], name: str, source: str) -> Scene:
     steady = read_steady(part["steady"], scalars, unknowns, results, asked)
     welds, hidden = welded(bodies, loads, unknowns, scalars.parameters)
     made = _made(scalars, frames, results, asked, steady)
-    made = [*made, *((name, f"what is 0 by {says}") for name, says in distances(constraints))]
-    distinct([*_declared(scalars, unknowns, results), *made])
+    zeros = ((name, f"what is 0 by {says}") for name, says in distances(constraints))
+    distinct([*_declared(scalars, unknowns, results), *made, *zeros])
     scene = Scene(
         **head, parameters=scalars.parameters, coordinates=scalars.coordinates,
         speeds=scalars.speeds, inputs=scalars.inputs,

@@ -48,7 +48,8 @@ def start_on_constraints(
     doubts = [
         f"{n} begins at {there[names.index(n)]:.9g}{behind(units[n])}, not {given[n]:.9g}, "
         "so that the constraints hold"
-        for n, part in far.items() if part > KEPT
+        for n, part in far.items()
+        if part > KEPT
     ]
     return dict(given) | {n: float(there[names.index(n)]) for n in moved}, doubts
 

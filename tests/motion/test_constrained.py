@@ -137,7 +137,7 @@ def test_a_sled_keeps_to_its_blade_and_a_start_beside_it_is_refused(tmp_path: Pa
 
 @pytest.mark.parametrize(("wanted", "says"), [
     ("step_rk4_sensitivity", "'step_rk4_sensitivity' is of machines without constraints"),
-    ("constraint_distance", r"which is no answer \(is it meant by 'constraint_distances'"),
+    ("constraint_distance", r"which is no answer \(did you mean 'constraint_distances'"),
 ])  # fmt: skip
 def test_what_is_no_step_of_a_machine_with_constraints_is_refused(wanted: str, says: str) -> None:
     with pytest.raises(SceneError, match=says):
