@@ -9,13 +9,12 @@ from dataclasses import replace
 from fractions import Fraction
 
 from derive.lecture.chapters import LECTURE
+from derive.library.on_constraints import on_constraints
 from derive.library.setting import Setting
 from derive.lower.setup import used_inputs
-from derive.mechanics.held import bindings
 from derive.motion import runge_kutta
 from derive.motion.attitude.functions import attitude_program
 from derive.motion.compensated import remainder
-from derive.motion.constrained import Held, held_step
 from derive.motion.exact import flow_exact, principal_ratios, turn_and_rates
 from derive.motion.moser_veselov import plan_dmv, plan_slopes, step_dmv
 from derive.motion.runge_kutta.compact import compact
@@ -27,9 +26,8 @@ from derive.motion.taylor.series import in_loops
 from derive.program.program import Program, Quantity
 from derive.program.recorded import called, needed
 from derive.program.tape import Number, Tape, number, seen_from
-from derive.scene import Input, Scene, SceneError
+from derive.scene import Scene, SceneError
 from derive.scene.declaration import Given
-from derive.scene.formula import Formula, symbols
 from derive.scene.results import DISTANCES
 from derive.scene.wanted import (
     ATTITUDES,
@@ -101,7 +99,7 @@ def _taylor(setting: Setting, order: int) -> Program:
     vocabulary, rate = setting.terms.vocabulary, setting.rates["state_rate"]
     step = _time_step(setting)
     series = taylor_step(rate, vocabulary.states, vocabulary.inputs, order, step)
-    return _held(setting, replace(in_loops(series), assumptions=rate.assumptions))
+    return on_constraints(setting, replace(in_loops(series), assumptions=rate.assumptions))
 
 
 def _runge_kutta(setting: Setting, name: str) -> Program:
@@ -112,7 +110,10 @@ def _runge_kutta(setting: Setting, name: str) -> Program:
     system = System(states, rates["state_rate"], slopes, step, taken, column)
     _check_quaternions(setting, name, len(system.quaternions))
     _check_free_turn(system, name)
-    program = _held(setting, runge_kutta.step(system, name))
+    if _looped(setting, name) and setting.terms.scene.constraints:
+        rule = "is for machines without constraints, which a step is brought back onto"
+        raise SceneError(f"emission = 'compact' {rule}")
+    program = on_constraints(setting, runge_kutta.step(system, name))
     if program.sparsity and not any(pattern.row for pattern in program.sparsity.values()):
         rule = "must have entries, but nothing that it is a derivative by changes the step"
         raise SceneError(f"wanted '{name}' {rule}")
@@ -122,52 +123,6 @@ def _runge_kutta(setting: Setting, name: str) -> Program:
         assumptions=rates["state_rate"].assumptions,
     )
     return compact(system, program) if _looped(setting, name) else program
-
-
-def _held(setting: Setting, step: Program) -> Program:
-    """Return a step that ends on the constraints of its machine, if it has any."""
-    scene, kind = setting.terms.scene, step.name.rpartition("_")[2]
-    if not scene.constraints:
-        return step
-    if kind in ("tangent", "sensitivity"):
-        rule = "is of machines without constraints, which a step is brought back onto"
-        raise SceneError(f"'{step.name}' {rule}; step_rk4_jacobian is of these, too")
-    if _looped(setting, step.name):
-        rule = "is for machines without constraints, which a step is brought back onto"
-        raise SceneError(f"emission = 'compact' {rule}")
-    states = [c for q in setting.terms.vocabulary.states for c in q.components]
-    return held_step(step, states, _conditions(setting))
-
-
-def _conditions(setting: Setting) -> Held:
-    """Return what vanishes where the constraints hold, without what is redundant, and what moves.
-
-    Places that formulas of time alone move are where they are meant to be.
-    """
-    scene, states = setting.terms.scene, setting.terms.vocabulary.states
-    found = bindings(setting.terms.mechanism.answers.frames)
-    places, rates, count = list[int](), list[int](), 0
-    for tie in found.every:
-        kept = tie in found.kept
-        if tie.place is not None:
-            places += [count] * kept
-            count += 1
-        rates += [count] * kept
-        count += 1
-    size = {c: (q.ends[1] - q.ends[0]) ** 2 for q in states for c in q.components}
-
-    def weights(names: Sequence[str]) -> dict[str, Fraction]:
-        most = max((size[c] for c in names), default=Fraction(1))
-        return {c: size[c] / most for c in names}
-
-    speeds = {s.name for s in scene.speeds if s.free}
-    moving = [c.name for c in scene.coordinates if c.free or (
-              isinstance(c.rate, Formula) and speeds & {*symbols(c.rate)})]  # fmt: skip
-    driving = [c.rate.name for c in scene.coordinates if c.free and isinstance(c.rate, Input)]
-    driving += [s.name for s in scene.speeds if s.free]
-    return Held(setting.rates[DISTANCES], tuple(places), tuple(rates),
-                weights(moving), weights(driving),
-                tuple(q.components for q in states if q.is_quaternion))  # fmt: skip
 
 
 def _looped(setting: Setting, name: str) -> bool:

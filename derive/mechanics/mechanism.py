@@ -10,8 +10,9 @@ from sympy import Expr, Integer, Pow
 
 from derive.mechanics.answers import Answers
 from derive.mechanics.balances import Balances
+from derive.mechanics.follows import wants_small_motion, with_what_follows
 from derive.mechanics.frames import Frames
-from derive.mechanics.held import bindings
+from derive.mechanics.held import Bindings, bindings
 from derive.mechanics.inertia import vanishing
 from derive.mechanics.linearised import unsteady
 from derive.mechanics.loads import idle_springs
@@ -111,7 +112,12 @@ class Mechanism:
     @property
     def redundant(self) -> tuple[str, ...]:
         """Return a sentence for each part of a constraint that the others hold anyway."""
-        return bindings(self.answers.frames).doubts
+        return self.held.doubts
+
+    @property
+    def held(self) -> Bindings:
+        """Return the conditions of its constraints."""
+        return bindings(self.answers.frames)
 
     def doubts_at(self, given: Mapping[str, float]) -> tuple[str, ...]:
         """Return warnings that take a scene's equations to be found, where these values are set."""
@@ -161,6 +167,8 @@ def mechanism(machine: Scene) -> Mechanism:
     """Return ``machine`` in the lecture's terms."""
     made = words(machine)
     frames = Frames(machine, made)
+    if wants_small_motion(machine) and (chosen := with_what_follows(frames)) is not machine:
+        return mechanism(chosen)
     inverse = mechanism(machine.inverse) if machine.inverse else None
     return Mechanism(machine, made, Answers(machine, frames, Balances(frames)), inverse)
 

@@ -21,11 +21,11 @@ from derive.scene.functions import PLAIN
 PASSES = 2
 """Corrections of places: a step of order 4 is off by h^5, after them by its square twice, h^20."""
 
-Row = dict[str, Number]
+SlopesBy = dict[str, Number]
 
 
 @dataclass(frozen=True)
-class Held:
+class Homing:
     """What a step brings its state back onto.
 
     program : gives what vanishes, of states and of inputs that are held
@@ -42,7 +42,7 @@ class Held:
     attitudes: tuple[tuple[str, ...], ...]
 
 
-def held_step(step: Program, states: Sequence[str], held: Held) -> Program:
+def held_step(step: Program, states: Sequence[str], held: Homing) -> Program:
     """Return a step whose state is brought onto the constraints, and its derivatives with it.
 
     states : the components of the state, which the first results of the step are, after it
@@ -72,7 +72,7 @@ def held_step(step: Program, states: Sequence[str], held: Held) -> Program:
     )
 
 
-def _tape(step: Program, held: Held) -> Tape:
+def _tape(step: Program, held: Homing) -> Tape:
     """Return a tape whose names are none of the step's, nor of what vanishes."""
     programs = (step, held.program)
     taken = {op.result for p in programs for op in p.ops if isinstance(op, Op)}
@@ -86,7 +86,7 @@ def _number(tape: Tape, operand: Operand) -> Number:
 
 
 def _placed(
-    tape: Tape, held: Held, state: Mapping[str, Number]
+    tape: Tape, held: Homing, state: Mapping[str, Number]
 ) -> tuple[dict[str, Number], Number]:
     """Return a state with places corrected once, and the damping: the square of what was off."""
     lengths = [a for q in held.attitudes for a in q]
@@ -99,7 +99,7 @@ def _placed(
 
 
 def _driven(
-    tape: Tape, held: Held, state: Mapping[str, Number], damping: Number
+    tape: Tape, held: Homing, state: Mapping[str, Number], damping: Number
 ) -> dict[str, Number]:
     """Return a state with rates corrected, which constraints are linear in."""
     values, rows = _valued(tape, held, state, held.rates, [*held.driving])
@@ -107,14 +107,14 @@ def _driven(
 
 
 def _valued(
-    tape: Tape, held: Held, state: Mapping[str, Number], results: Sequence[int], by: Sequence[str]
-) -> tuple[list[Number], list[Row]]:
+    tape: Tape, held: Homing, state: Mapping[str, Number], results: Sequence[int], by: Sequence[str]
+) -> tuple[list[Number], list[SlopesBy]]:
     """Return results of what vanishes, and the slopes of each by components of the state."""
     program = held.program
     wanted = [program.results[k] for k in results]
     inputs = (c for q in program.inputs if q.is_value for c in q.components)
     known = {c: state[c] if c in state else tape.input(c) for c in inputs}
-    slopes: dict[str, Row] = {c: {c: number(1)} for c in by}
+    slopes: dict[str, SlopesBy] = {c: {c: number(1)} for c in by}
 
     def value(operand: Operand) -> Number:
         if isinstance(operand, str):
@@ -132,9 +132,9 @@ def _valued(
     return [value(r) for r in wanted], [slopes.get(str(r), {}) for r in wanted]
 
 
-def _summed(parts: Iterable[tuple[Number, Row]]) -> Row:
+def _summed(parts: Iterable[tuple[Number, SlopesBy]]) -> SlopesBy:
     """Return the sum of rows, each times a number, without what vanishes."""
-    total: Row = {}
+    total: SlopesBy = {}
     for factor, row in parts:
         for c, x in row.items():
             total[c] = total.get(c, number(0)) + factor * x
@@ -143,7 +143,7 @@ def _summed(parts: Iterable[tuple[Number, Row]]) -> Row:
 
 def _corrected(
     state: Mapping[str, Number],
-    off: tuple[list[Number], list[Row]],
+    off: tuple[list[Number], list[SlopesBy]],
     weights: Mapping[str, Fraction],
     damping: Number | None,
 ) -> tuple[dict[str, Number], Number]:
@@ -166,7 +166,7 @@ def _corrected(
     return found, damping
 
 
-def _inner(a: Row, b: Row) -> Number:
+def _inner(a: SlopesBy, b: SlopesBy) -> Number:
     return sum((x * b[c] for c, x in a.items() if c in b), number(0))
 
 
@@ -189,7 +189,7 @@ def _solved(square: Sequence[Sequence[Number]], right: Sequence[Number]) -> list
 
 
 def _with_slopes(
-    tape: Tape, held: Held, step: Program, state: tuple[Sequence[Number], int]
+    tape: Tape, held: Homing, step: Program, state: tuple[Sequence[Number], int]
 ) -> tuple[list[Number], tuple[Quantity, Sparsity]]:
     """Return the nonzeros of the whole step's Jacobian, and what is said of them.
 
@@ -204,7 +204,7 @@ def _with_slopes(
     states = {c for q in step.outputs for c in q.components}
     read = {c for q in held.program.inputs if q.is_value for c in q.components}
     for k, label in enumerate(pattern.columns):
-        changes: Row = {}
+        changes: SlopesBy = {}
         if label in read and f"{label}_next" not in states:
             changes[label] = number(1)
         changes |= {r: before[i][k] for i, r in enumerate(step.results[:n]) if isinstance(r, str)}

@@ -6,8 +6,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.mechanics.held import bindings
-from derive.mechanics.onto import Onto
 from derive.scene import SceneError
 from derive.scene.unit import behind
 from derive.solve.instrument import Instrument
@@ -17,8 +15,6 @@ TYPED = 1e-3
 KEPT = 1e-6
 """A part of its range by which nobody minds that a value is mended."""
 
-Doubles = NDArray[np.float64]
-
 
 def start_on_constraints(
     found: Instrument, given: Mapping[str, float]
@@ -27,7 +23,7 @@ def start_on_constraints(
 
     Raises SceneError if the state is further from them than it could be by rounding.
     """
-    brings = bindings(found.library.mechanism.answers.frames).onto
+    brings = found.library.mechanism.held.onto
     if brings is None:
         return dict(given), []
     names = [c for q in found.library.vocabulary.given() for c in q.components]
@@ -55,10 +51,10 @@ def start_on_constraints(
 
 
 def left_of_constraints(
-    found: Instrument, given: Mapping[str, float], columns: Mapping[str, Doubles]
+    found: Instrument, given: Mapping[str, float], columns: Mapping[str, NDArray[np.float64]]
 ) -> list[tuple[str, float]]:
     """Return the largest value of every condition on a motion, by its name."""
-    brings = bindings(found.library.mechanism.answers.frames).onto
+    brings = found.library.mechanism.held.onto
     if brings is None:
         return []
     names = [c for q in found.library.vocabulary.given() for c in q.components]
@@ -69,12 +65,12 @@ def left_of_constraints(
     return [(name, float(np.max(np.abs(own)))) for name, own in brings.distances(each)]
 
 
-def _point(brings: Onto, names: list[str], given: Mapping[str, Any]) -> Doubles:
+def _point(brings: Any, names: list[str], given: Mapping[str, Any]) -> NDArray[np.float64]:
     """Return all that conditions may rest on; what is not given, they do not rest on."""
     rest = dict.fromkeys(names, 1.0) | dict(given)
     return np.array([float(rest[n]) for n in names] + [1.0] * (len(brings.symbols) - len(names)))
 
 
-def _moving(brings: Onto, names: list[str]) -> list[tuple[str, int, float]]:
+def _moving(brings: Any, names: list[str]) -> list[tuple[str, int, float]]:
     every = {**brings.places, **brings.rates}
     return [(names[k], k, size) for k, size in every.items()]
