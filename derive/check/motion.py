@@ -5,8 +5,9 @@ Orders are measured in balls of 500 bits, so they are free of rounding; what rou
 """
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
-from flint import ctx
+from flint import arb, ctx
 from mpmath import mp
 
 from derive.check.particles import digits, fulfilling
@@ -25,14 +26,16 @@ from derive.verify.convergence import (
     course,
     exactness,
     order,
+    right_hand_side,
     stepped,
 )
 from derive.verify.differences import GAP, slopes
 from derive.verify.sample import Sample
 
 FEW = 2
-LEFT = 1e-25
-"""What two corrections leave at most of a step that is off by some 1e-7: its fourth power."""
+PART, LEFT = 0.02, 1e-25
+"""What two corrections leave at most where states move by a part of their ranges: the fourth power
+of what the step is off by, some 1e-7."""
 
 
 def orders_hold(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:
@@ -76,8 +79,8 @@ def _ends_on_constraints(library: Library, name: str, each: Sequence[Course]) ->
     worst = 0.0
     for one in each:
         with ctx.workprec(BITS):
-            after = stepped(library, name, one.given, one.lengths[0])
             states = [c for q in library.vocabulary.states for c in q.components]
+            after = stepped(library, name, one.given, _length(library, one))
             there = dict(one.given) | {c: after[f"{c}_next"] for c in states}
         with mp.workdps(DIGITS):
             cloud = CloudAnswers(library.scene, {n: digits(x) for n, x in there.items()})
@@ -85,6 +88,14 @@ def _ends_on_constraints(library: Library, name: str, each: Sequence[Course]) ->
     says = f"{worst:.1g} in SI units is left of the constraints, in {BITS} bits"
     row = (library.scene.name, name, "exact", "ends on the constraints")
     return Verdict(*row, JUDGED[worst < LEFT], says)
+
+
+def _length(library: Library, one: Course) -> Any:
+    """Return a length of step in which no state moves by more than a part of its range."""
+    sizes = [float(q.ends[1] - q.ends[0]) for q in library.vocabulary.states for _ in q.components]
+    start = [one.given[c] for q in library.vocabulary.states for c in q.components]
+    rates = right_hand_side(library, one.given)(start)
+    return arb(PART / largest(abs(float(r)) / s for r, s in zip(rates, sizes, strict=True)))
 
 
 def step_slopes_hold(library: Library, each: Sequence[Sample]) -> Iterator[Verdict]:

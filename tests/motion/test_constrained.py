@@ -89,7 +89,7 @@ def test_a_step_that_does_not_come_back_is_noticed(
 @pytest.mark.long
 def test_a_step_without_corrections_of_places_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(constrained, "PASSES", 0)
-    found = outcomes(made("four_bar_closed", "step_rk4"))
+    found = outcomes(made("slider_crank_guided", "step_rk4"))
     assert found["step_rk4", "ends on the constraints"] == "FAILS"
 
 
