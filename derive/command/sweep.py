@@ -20,7 +20,7 @@ from derive.command.solve import values_named
 from derive.command.terminal import complain, console, error_console, print_rows
 from derive.solve.sweep.request import ERROR
 
-FRAMES = 20
+INSTANTS = 20
 LONGEST = 16
 """Digits and signs of a count that is typed."""
 ABOUT = """\
@@ -33,7 +33,7 @@ how a number scatters (--vary NAME=...; quote it, for shells read parentheses):
   loguniform(1, 10)          its logarithm is uniform
   0..1:11                    a grid of eleven; grids are crossed, each point has all --samples
 
-what is kept (--keep, by commas or spaces): theta is its course at --frames instants, theta@end,
+what is kept (--keep, by commas or spaces): theta is its course at --instants, theta@end,
 theta@max, theta@min and theta@2.5 (after 2.5 s) are numbers; states, and answers known on the way
 
 The length of the step is the one that the report of the scene finds to keep to --error, or --step.
@@ -62,8 +62,8 @@ def options(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument("--keep", metavar="WHAT", help="what is kept of each", **several)
     command.add_argument(
-        "--frames", type=number_of, default=FRAMES, metavar="N",
-        help=f"instants of a course beside its start (default: {FRAMES})",
+        "--instants", type=number_of, default=INSTANTS, metavar="N",
+        help=f"instants of a course beside its start (default: {INSTANTS})",
     )  # fmt: skip
     length = command.add_mutually_exclusive_group()
     length.add_argument(
@@ -116,7 +116,7 @@ def sweep(given: argparse.Namespace) -> int:
 
         found = scene.sweep(
             vary, given.out, given.until, keep, values, given.samples, given.stop, given.error,
-            given.step, given.seed, given.frames, given.pairs, given.workers, given.scheduler,
+            given.step, given.seed, given.instants, given.pairs, given.workers, given.scheduler,
             given.chunk, told,
         )  # fmt: skip
     for doubt in found.doubts:

@@ -63,7 +63,7 @@ def _row(sides: Sides, balance: Balance, value: Expr, probes: Sequence[Probe]) -
 def _virtual_powers(sides: Sides, held: Sequence[Tie]) -> Iterator[tuple[str, Expr]]:
     """Yield for each rate, by what moves with it, the power that is nothing."""
     frames, by = sides.frames, Partials(sides.frames)
-    bodies = [_Moved(sides, name) for name in sides.efforts]
+    bodies = [_Driven(sides, name) for name in sides.efforts]
     for name, rate in by.rates.items():
         total: Expr = Integer(0)
         for body in bodies:
@@ -79,7 +79,7 @@ def _virtual_powers(sides: Sides, held: Sequence[Tie]) -> Iterator[tuple[str, Ex
             yield name, frames.sheet.linear("virtual.power", total)
 
 
-class _Moved:
+class _Driven:
     """A body: its velocities along its own axes, and what force and moment is left of its loads."""
 
     def __init__(self, sides: Sides, name: str) -> None:

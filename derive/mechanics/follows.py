@@ -13,10 +13,10 @@ from random import Random
 import numpy as np
 from sympy import lambdify
 
+from derive.mechanics.box import Box, ranges
 from derive.mechanics.frames import Frames
 from derive.mechanics.held import bindings
 from derive.mechanics.onto import TELLING, Doubles
-from derive.mechanics.sweep import Box, ranges
 from derive.scene import Input, Scene, SceneError
 from derive.scene.declaration import Moving
 from derive.scene.escape import at_place
@@ -24,7 +24,7 @@ from derive.scene.formula import symbol, symbols
 from derive.scene.groups import grouped
 from derive.scene.results import MATRICES, written_out
 
-POINTS, MOST = 32, 20_000
+POINTS, MOST, SAME = 32, 20_000, 6
 SEED = "derive: what follows"
 
 
@@ -110,10 +110,13 @@ def _best(
     able: Sequence[int], count: int, pivots: Callable[[Sequence[int]], Doubles]
 ) -> tuple[int, ...]:
     """Return the choice whose smallest pivot is largest; of very many, one by one."""
+    def least(own: Sequence[int]) -> float:
+        return round(float(np.min(pivots(own))), SAME)
+
     if comb(len(able), count) <= MOST:
-        return max(combinations(able, count), key=lambda own: float(np.min(pivots(own))))
+        return max(combinations(able, count), key=least)
     found: tuple[int, ...] = ()
     for _ in range(count):
         rest = (k for k in able if k not in found)
-        found = max(((*found, k) for k in rest), key=lambda own: float(np.min(pivots(own))))
+        found = max(((*found, k) for k in rest), key=least)
     return tuple(sorted(found))

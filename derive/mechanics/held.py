@@ -11,10 +11,10 @@ from random import Random
 import numpy as np
 from sympy import Symbol
 
+from derive.mechanics.box import Box, ranges
 from derive.mechanics.constraints import Tie, ties
 from derive.mechanics.frames import Frames
 from derive.mechanics.onto import TELLING, Onto, onto
-from derive.mechanics.sweep import Box, ranges
 from derive.scene import SceneError
 
 STATES, TRIES = 3, 60

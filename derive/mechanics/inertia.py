@@ -6,8 +6,9 @@ from mpmath import mp
 from sympy import Expr, Symbol
 
 from derive.mechanics.balances import Balances
+from derive.mechanics.box import ranges
 from derive.mechanics.probe import DIGITS
-from derive.mechanics.sweep import LEAST, Weakest, probe_at, ranges
+from derive.mechanics.sweep import LEAST, Weakest, probe_at
 from derive.mechanics.valued import Valued
 from derive.scene import Scene, SceneError
 

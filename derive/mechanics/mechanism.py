@@ -10,6 +10,7 @@ from sympy import Expr, Integer, Pow
 
 from derive.mechanics.answers import Answers
 from derive.mechanics.balances import Balances
+from derive.mechanics.box import ranges
 from derive.mechanics.follows import wants_small_motion, with_what_follows
 from derive.mechanics.frames import Frames
 from derive.mechanics.held import Bindings, bindings
@@ -21,7 +22,7 @@ from derive.mechanics.problem import Problem, substituted
 from derive.mechanics.rotation import FreeRotation, free_rotation
 from derive.mechanics.sheet import below
 from derive.mechanics.signs import signs_taken
-from derive.mechanics.sweep import ranges, regular, weakest
+from derive.mechanics.sweep import regular, weakest
 from derive.mechanics.vocabulary import Vocabulary
 from derive.mechanics.words import Words, words
 from derive.scene import Scene, SceneError

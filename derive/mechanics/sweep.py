@@ -4,9 +4,8 @@ A quotient is right at a trial point and wrong where its divisor vanishes. So ev
 valued at many points at once, beside the size of its terms, and followed to where it is smallest.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from random import Random
 from typing import Any
 
 import numpy as np
@@ -14,96 +13,18 @@ from mpmath import mp, mpf
 from numpy.typing import NDArray
 from sympy import Add, Expr, Mul, Pow, Rational, Symbol, pi, tan
 
+from derive.mechanics.box import Box, ranges
 from derive.mechanics.probe import DIGITS, Probe, random_probe
 from derive.mechanics.words import Words
-from derive.program.program import Quantity
 from derive.scene.escape import at_place
 
 Sized = tuple[
     NDArray[Any], NDArray[Any]
 ]  # values at all points, and the sizes of the terms they are made of
-RANDOM, CORNERS, NEAR = 96, 24, 2
-SPECIAL = (0.0, np.pi / 4, np.pi / 2, np.pi, 3 * np.pi / 2)
 STARTS, ROUNDS = 3, 40  # a round halves the steps at least every second time
 LOW = 0.1  # what is nowhere smaller than this at the points is not searched for
 LEAST = 1e-4  # of the size of its terms: a divisor that loses more digits than that is a pole
 LEAST_OF_MASSES = 1e-6  # of a mass matrix beside its entries; 20 equal rods in line have 1.4e-5
-BEYOND = 1e-9  # of a range: what bringing a point back may leave
-SEED = "derive: sweep"
-
-
-@dataclass(frozen=True)
-class Box:
-    """The range of every component that an expression may hold, and which of them are angles."""
-
-    symbols: tuple[Symbol, ...]
-    names: tuple[str, ...]
-    low: NDArray[Any]
-    high: NDArray[Any]
-    turns: tuple[bool, ...]
-    fixed: frozenset[Symbol]
-    quaternions: tuple[slice, ...]
-    onto: Any = None
-
-    def brought(self, points: NDArray[Any]) -> NDArray[Any]:
-        """Return points that fulfil the constraints; those that cannot are not among them."""
-        if self.onto is None:
-            return points
-        found, fits = self.onto.brought(points)
-        inside = np.array([self.within(p, self.onto.places) for p in found], bool)
-        return np.asarray(found[fits & inside])
-
-    def within(self, point: NDArray[Any], places: Iterable[int]) -> bool:
-        """Tell whether places of a point are within their ranges."""
-        return not self.outside(point, places)
-
-    def outside(self, point: NDArray[Any], places: Iterable[int]) -> str:
-        """Return words for the first place beyond its range, "" if there is none."""
-        for k in places:
-            spare = BEYOND * (self.high[k] - self.low[k])
-            if not self.low[k] - spare <= point[k] <= self.high[k] + spare:
-                return f"{self.names[k]} = {point[k]:.4g}"
-        return ""
-
-    def trials(self) -> NDArray[Any]:
-        """Return points of the ranges, (points, components)."""
-        dice, size = Random(SEED), len(self.symbols)  # noqa: S311 - trial points, no secret
-        rows = [[dice.random() for _ in range(size)] for _ in range(RANDOM)]
-        rows += [[float(dice.randrange(2)) for _ in range(size)] for _ in range(CORNERS)]
-        found = self.low + (self.high - self.low) * np.array(rows).reshape(len(rows), size)
-        whole = [found]
-        for k, turns in enumerate(self.turns):
-            for x in self._special(k, turns):
-                near = found[:NEAR].copy()
-                near[:, k] = x
-                whole.append(near)
-        zero = found[:NEAR].copy()
-        zero[:, (self.low <= 0) & (self.high >= 0)] = 0
-        return np.vstack([*whole, zero])
-
-    def _special(self, k: int, turns: bool) -> list[float]:  # noqa: FBT001
-        each = [s * x for x in SPECIAL for s in (1, -1)] if turns else [0.0]
-        return [x for x in dict.fromkeys(each) if self.low[k] <= x <= self.high[k]]
-
-
-def ranges(words: Words) -> Box:
-    """Return the ranges of all that is given, and of data left out by the user."""
-    book = words.vocabulary
-    each: list[tuple[Symbol, str, Quantity]] = [
-        (book.symbols[c], c, q) for q in book.given() for c in q.components
-    ]
-    ends = [tuple(map(float, q.ends)) for _, _, q in each] + [(1.0, 2.0)] * len(words.hidden)
-    return Box(
-        (*(s for s, _, _ in each), *words.hidden),
-        (*(c for _, c, _ in each), *words.hidden.values()),
-        np.array([low for low, _ in ends]),
-        np.array([high for _, high in ends]),
-        (*(q.unit == "rad" for _, _, q in each), *(False for _ in words.hidden)),
-        frozenset((*(s for s, _, q in each if q in book.parameters), *words.hidden)),
-        tuple(slice(k, k + 4) for k, (_, c, q) in enumerate(each)
-              if q.is_quaternion and c == q.components[0]),
-        words.held[0].onto if words.held else None,
-    )  # fmt: skip
 
 
 @dataclass
@@ -154,8 +75,16 @@ def _attitudes(rows: NDArray[Any]) -> NDArray[Any]:
     return np.asarray(rows / np.linalg.norm(rows, axis=1, keepdims=True))
 
 
-def sweep_at(of: Box, points: NDArray[Any], definitions: Mapping[Symbol, Expr]) -> Sweep:
-    """Return all values at points; what moves has the size of its range, or nothing is at rest."""
+def sweep_at(
+    of: Box,
+    points: NDArray[Any],
+    definitions: Mapping[Symbol, Expr],
+    reaches: Mapping[Symbol, float] | None = None,
+) -> Sweep:
+    """Return all values at points; what moves has the size of its range, or nothing is at rest.
+
+    reaches : the size that a named quantity has at most, unless it is larger itself
+    """
     reach, points = np.maximum(abs(of.low), abs(of.high)), points.copy()
     for own in of.quaternions:
         points[:, own] = _attitudes(points[:, own])
@@ -165,8 +94,21 @@ def sweep_at(of: Box, points: NDArray[Any], definitions: Mapping[Symbol, Expr]) 
     })  # fmt: skip
     with np.errstate(all="ignore"):
         for symbol, value in definitions.items():
-            found.values[symbol] = found.of(value)
+            named, size = found.of(value)
+            most = size if reaches is None else np.maximum(abs(named), reaches[symbol])
+            found.values[symbol] = named, np.minimum(size, most)
     return found
+
+
+def reaches_of(of: Box, definitions: Mapping[Symbol, Expr]) -> dict[Symbol, float]:
+    """Return the largest that named quantities become at points of the ranges.
+
+    What moves has the size of its range; sizes of what is named upon it multiply from one to the
+    next, and come to exceed by far whatever it can be.
+    """
+    found = sweep_at(of, of.brought(of.trials()), definitions)
+    return {s: float(np.max(np.nan_to_num(abs(found.values[s][0])), initial=0.0))
+            for s in definitions}  # fmt: skip
 
 
 def probe_at(words: Words, place: Mapping[str, float], definitions: Mapping[Symbol, Expr]) -> Probe:
@@ -215,13 +157,15 @@ def weakest(
     definitions: Mapping[Symbol, Expr],
     measure: Callable[[Sweep], Any],
     bound: float = LEAST,
+    reaches: Mapping[Symbol, float] | None = None,
 ) -> Weakest:
     """Return the smallest value of a measure on the ranges that points and a search find."""
 
     def at(points: NDArray[Any]) -> NDArray[Any]:
         with np.errstate(all="ignore"):
-            found = np.broadcast_to(measure(sweep_at(of, points, definitions)), len(points))
-        sizes: NDArray[Any] = np.nan_to_num(found, nan=0.0)
+            found = measure(sweep_at(of, points, definitions, reaches))
+        every = np.broadcast_to(found, len(points))
+        sizes: NDArray[Any] = np.nan_to_num(every, nan=0.0)
         return sizes
 
     points = of.brought(of.trials())

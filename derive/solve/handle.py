@@ -182,7 +182,7 @@ class Handle:
     def sweep(
         self, vary: Mapping[str, str], folder: str | Path, until: float, keep: Sequence[str],
         values: NamedValues | None = None, samples: float = 1, stop: str | None = None,
-        error: float | None = None, step: float | None = None, seed: int = 0, frames: int = 20,
+        error: float | None = None, step: float | None = None, seed: int = 0, instants: int = 20,
         pairs: int = 0, workers: int | None = None, scheduler: str | None = None,
         chunk: int | None = None, told: ToldOfSweep = unheard,
     ) -> Ensemble:  # fmt: skip
@@ -190,14 +190,14 @@ class Handle:
 
         vary    : how components scatter: {"m": "uniform(1, 2)", "theta": "0..1:11"}
         folder  : for results, as Parquet; a sweep that was stopped goes on there
-        keep    : "theta", a course at ``frames`` instants, "theta@end", "@max", "@min", "@2.5"
+        keep    : "theta", a course at so many ``instants``, "theta@end", "@max", "@min", "@2.5"
         values  : what does not vary      samples : draws, at each point of the grids if any
         error   : that the length of the step is to keep to, or ``step``, s, is told
         pairs   : of points that sensitivities are estimated from, a power of two, or 0
         workers : processes here, or ``scheduler``, the address of one of Dask's
         """
         own = self._settings({} if values is None else values)
-        asked = Request(vary, samples, until, keep, stop, error, step, seed, frames, pairs,
+        asked = Request(vary, samples, until, keep, stop, error, step, seed, instants, pairs,
                         workers, scheduler, chunk)  # fmt: skip
         into = path("folder", folder)
         listener(told)

@@ -27,10 +27,10 @@ def start_on_constraints(
     if brings is None:
         return dict(given), []
     names = [c for q in found.library.vocabulary.given() for c in q.components]
-    here = _point(brings, names, given)
+    here = _values_given(brings, names, given)
     (there,), (fits,) = brings.brought(here[None, :])
     label = f"scene '{found.name}'"
-    moved = {n: (float(there[k] - here[k]), size) for n, k, size in _moving(brings, names)}
+    moved = {n: (float(there[k] - here[k]), size) for n, k, size in _free_in_time(brings, names)}
     far = {n: abs(by) / size for n, (by, size) in moved.items()}
     if not fits or max(far.values()) > TYPED:
         name, value = brings.worst(here)
@@ -59,18 +59,18 @@ def left_of_constraints(
         return []
     names = [c for q in found.library.vocabulary.given() for c in q.components]
     count = len(next(iter(columns.values())))
-    each = np.tile(_point(brings, names, given)[:, None], count)
+    each = np.tile(_values_given(brings, names, given)[:, None], count)
     for n, values in columns.items():
         each[names.index(n)] = values
     return [(name, float(np.max(np.abs(own)))) for name, own in brings.distances(each)]
 
 
-def _point(brings: Any, names: list[str], given: Mapping[str, Any]) -> NDArray[np.float64]:
+def _values_given(brings: Any, names: list[str], given: Mapping[str, Any]) -> NDArray[np.float64]:
     """Return all that conditions may rest on; what is not given, they do not rest on."""
     rest = dict.fromkeys(names, 1.0) | dict(given)
     return np.array([float(rest[n]) for n in names] + [1.0] * (len(brings.symbols) - len(names)))
 
 
-def _moving(brings: Any, names: list[str]) -> list[tuple[str, int, float]]:
+def _free_in_time(brings: Any, names: list[str]) -> list[tuple[str, int, float]]:
     every = {**brings.places, **brings.rates}
     return [(names[k], k, size) for k, size in every.items()]

@@ -22,8 +22,8 @@ REFUSED = {
     "report ball.toml --out=": "report: argument --out: must be a path, not ''",
     "solve ball.toml --until 1e400": "solve: argument --until: must be a number of seconds, as 0.5,"
     " not '1e400'",
-    "report ball.toml --keep": "report: '--keep' is no option of it (but of check)",
-    "report ball.toml --kee=3": "report: '--kee' is no option of it (but of check)",
+    "report ball.toml --keep": "report: '--keep' is no option of it (but of check, sweep)",
+    "report ball.toml --kee=3": "report: '--kee' is no option of it (but of check, sweep)",
     "report ball.toml --zzz": "report: '--zzz' is no option (known: --until, --out)",
     "scenes --keepp": "scenes: '--keepp' is no option",
     "scenes --": "scenes: '--'",

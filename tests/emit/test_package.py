@@ -59,7 +59,7 @@ def test_the_test_of_a_package_passes_and_its_example_runs(name: str, tmp_path: 
 
 @pytest.mark.parametrize(("old", "new"), [
     ("moment_x_in + t1", "moment_x_in - t1"),
-    ("omega_dot[0] = t3;", "omega_dot[0] = t2;"),
+    ("omega_dot[0] = t3;", "omega_dot[0] = -t3;"),
     ("= s6.high;", "= s6.low;"),
     ("return 0;", "return 1;"),
 ])  # fmt: skip

@@ -41,6 +41,7 @@ ASKED = {
     "mechanics/choice.py: linalg": "which balances tell unknowns apart, by margins of digits",
     "lower/arrange/pivots.py: linalg": "which pivots do not vanish, by margins of digits",
     "mechanics/sweep.py: linalg": "where divisors vanish, by margins of digits",
+    "mechanics/follows.py: linalg": "what follows by constraints, by margins of digits",
     "mechanics/onto.py: linalg": "states on constraints at which divisors and ranks are looked at",
     "mechanics/held.py: linalg": "which constraints say something, by margins of digits",
     "verify/cloud/held.py: linalg": "which constraints are independent, by margins of digits",
@@ -97,6 +98,7 @@ WHOLE = {
     "solve/sweep/ensemble.py: _planned": "columns counted",
     "solve/sweep/ensemble.py: unfinished": "members counted",
     "solve/sweep/plan.py: steps": "steps counted",
+    "lower/arrange/spherical_part.py: terms_of": "terms counted",
     "lecture/tree.py: size": "symbols counted",
     "lower/wording.py: spelling": "powers",
 }

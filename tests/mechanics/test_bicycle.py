@@ -86,6 +86,7 @@ def test_the_small_motion_is_that_of_the_cloud() -> None:
 
 
 @pytest.mark.long
+@pytest.mark.whole
 def test_a_force_and_its_opposite_at_one_point_are_noticed_where_points_are_apart() -> None:
     scene = parse_scene(BICYCLE.replace('["linearised"]', '["accelerations"]'), "bicycle")
     loads = tuple(replace(f, other=None) if isinstance(f, Force) else f for f in scene.loads)

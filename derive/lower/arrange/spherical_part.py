@@ -8,19 +8,23 @@ cancel, and on the way there are fewer operations.
 
 from collections.abc import Mapping, Sequence
 from itertools import permutations
+from math import prod
 
-from sympy import Add, Expr, Integer, Matrix, Mul, Symbol, diag, eye
+from sympy import Add, Expr, Integer, Matrix, Mul, Pow, Symbol, diag, eye
 
 from derive.lower.arrange.column import NamedColumns
 
 ZERO = Integer(0)
 MOST = 8  # symbols of which three are tried as omega
+LONGEST_SUM = 400  # terms that a component is multiplied out to; longer ones are left as they are
 
 Products = Mapping[frozenset[Symbol], Expr]  # coefficients of products of two symbols
 
 
 def spherical_part(column: Matrix, columns: NamedColumns) -> Matrix | None:
     """Return a column with omega x l, and l named, for the products with omega that are in it."""
+    if max(map(terms_of, column)) > LONGEST_SUM:
+        return None
     parts = [columns.like_terms(e) for e in column]
     pairs = [{pair: c for p, c in own.items() if (pair := _pair(p))} for own in parts]
     symbols = sorted({s for own in pairs for pair in own for s in pair}, key=str)
@@ -35,6 +39,20 @@ def spherical_part(column: Matrix, columns: NamedColumns) -> Matrix | None:
                     for own, t in zip(parts, turning, strict=True)]  # fmt: skip
             return cross + Matrix([Add(*terms) for terms in rest])
     return None
+
+
+def terms_of(e: Expr) -> int:
+    """Return how many terms an expression has, multiplied out, before like ones are gathered.
+
+    >>> from sympy import symbols
+    >>> a, b, c = symbols("a b c")
+    >>> terms_of((a + b) * (a + b + c) - 2 * a), terms_of((a + b) ** 3)
+    (7, 8)
+    """
+    each = [terms_of(a) for a in e.args] if isinstance(e, Add | Mul) else []
+    if isinstance(e, Pow) and e.exp.is_Integer and e.exp > 0:
+        return int(terms_of(e.base) ** e.exp)
+    return sum(each) if isinstance(e, Add) else prod(each)
 
 
 def _pair(product: Expr) -> frozenset[Symbol]:

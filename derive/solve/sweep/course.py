@@ -21,7 +21,7 @@ from derive.solve.sweep.lanes import Lanes, lanes_begun
 from derive.solve.sweep.plan import SweepPlan
 from derive.solve.sweep.vary import FloatColumn
 
-BLOCK = 2048
+TOGETHER = 2048
 """Members that move together: their states and constants stay in the cache of a core."""
 HALVINGS = 45
 """Of a step, until an event in it is found."""
@@ -67,18 +67,18 @@ def endings(
     }
     whole = Endings(columns, np.full(count, UNTIL, object), np.full(count, np.nan))
     with np.errstate(all="ignore"):
-        for first in range(0, count, BLOCK):
-            ids = np.arange(first, min(first + BLOCK, count))
+        for first in range(0, count, TOGETHER):
+            ids = np.arange(first, min(first + TOGETHER, count))
             lanes, status = lanes_begun(by, library, plan, given, ids)
             for number in np.unique(status[status != RIGHT]):
                 whole.ended[ids[status == number]] = f"{REFUSED}{SAYS[int(number)]}"
-            again = _moved(lanes.chosen(status == RIGHT), whole, "later")
+            again = _to_their_ends(lanes.chosen(status == RIGHT), whole, "later")
             if len(again):
-                _moved(lanes_begun(by, library, plan, given, again)[0], whole, "at once")
+                _to_their_ends(lanes_begun(by, library, plan, given, again)[0], whole, "at once")
     return whole
 
 
-def _moved(lanes: Lanes, whole: Endings, refining: Refining) -> NDArray[np.int64]:
+def _to_their_ends(lanes: Lanes, whole: Endings, refining: Refining) -> NDArray[np.int64]:
     """Move members to their ends; return those that a pole was taken for an event of."""
     plan, met = lanes.plan, list[_Met]()
     _at_instant(lanes, whole, 0.0, np.ones(len(lanes), bool))

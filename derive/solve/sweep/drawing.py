@@ -42,7 +42,7 @@ def _opened(high: float, alternative: str) -> str:
     return f'{head} class="plot"><title>{escape(alternative)}</title>'
 
 
-def _frame(
+def _axes_drawn(
     across: tuple[float, float], up: tuple[float, float] | None, below: str, alternative: str
 ) -> Iterator[str]:
     """Yield an SVG's beginning: its size, what is said of it, ticks and what they are of."""
@@ -76,7 +76,7 @@ def fan_drawn(fan: Fan, unit: str) -> str:
     name = fan.column.partition("@")[0]
     ends = f"{cuts[0][-1]:.4g} to {cuts[-1][-1]:.4g}, median {cuts[2][-1]:.4g}"
     says = f"{name} in time: at the last instant drawn 90 % of members lie within {ends}"
-    parts = [*_frame(across, up, "t, s", says)]
+    parts = [*_axes_drawn(across, up, "t, s", says)]
     for low, high, kind in ((0, 4, "outer"), (1, 3, "inner")):
         there_and_back = [*zip(xs, cuts[high], strict=True),
                           *reversed([*zip(xs, cuts[low], strict=True)])]  # fmt: skip
@@ -92,7 +92,7 @@ def histogram(of: Scatter, unit: str) -> str:
     """Return a histogram of a column."""
     across, most = (of.edges[0], of.edges[-1]), max(of.heights)
     says = f"{of.column}: 90 % lie within {of.quantiles[0]:.4g} to {of.quantiles[-1]:.4g}"
-    parts = [*_frame(across, None, f"{of.column}{behind(unit)}", says)]
+    parts = [*_axes_drawn(across, None, f"{of.column}{behind(unit)}", says)]
     for k, count in enumerate(of.heights):
         x, end = (_across(of.edges[n], across) for n in (k, k + 1))
         y = _up(count, (0.0, float(most)))

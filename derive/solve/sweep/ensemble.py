@@ -26,7 +26,7 @@ from derive.solve.sweep.plan import SweepPlan
 from derive.solve.sweep.recommended import recommended
 from derive.solve.sweep.request import (
     ERROR,
-    MOST_FRAMES,
+    MOST_INSTANTS,
     MOST_WORKERS,
     Request,
     above_zero,
@@ -116,7 +116,7 @@ def swept(
     require_installed((*NEEDED, *(() if scheduler is None else ("distributed",))))
     design = design_of(found, asked, values)
     until = above_zero(label, "until", asked.until)
-    frames = whole_number(f"{label}: frames", asked.frames, MOST_FRAMES, least=1)
+    instants = whole_number(f"{label}: instants", asked.instants, MOST_INSTANTS, least=1)
     known = {**values, **{s.name: s.within[0] for s in design.spreads}}
     require_motion(found, known)
     error = ERROR if asked.error is None else above_zero(label, "error", asked.error)
@@ -137,14 +137,14 @@ def swept(
         "pairs": design.pairs,
         "seed": design.seed,
         "until": until,
-        "frames": frames,
+        "instants": instants,
         "keep": [k.column for k in columns],
         "stop": stop_of(asked.stop),
         "step": step,
         "error": error if step is None else None,
     }
     answers = answers_along(found, known)
-    plan = SweepPlan("step_rk4", step or until, until, frames, columns, stop, answers)
+    plan = SweepPlan("step_rk4", step or until, until, instants, columns, stop, answers)
     with only_sweep_in(folder):
         manifest = manifest_of(folder)
         if manifest is not None:
@@ -156,7 +156,7 @@ def swept(
         told = {name: x for name, x in manifest.items() if name not in ("halved", "chunk")}
         kit = kit_of(found.library, plan.functions)
         job = Job(kit, design, plan, dict(values), json.dumps(told, sort_keys=True))
-        by = _moved(job, folder, manifest["chunk"], workers, scheduler, tell)
+        by = _chunks_done(job, folder, manifest["chunk"], workers, scheduler, tell)
     doubts = [*outside_at_start(found, design.spreads, values)]
     if "CasADi" in by:
         doubts.append(f"{by['CasADi']} chunks were moved by CasADi: where they were is no compiler")
@@ -221,7 +221,7 @@ def _halved(job: Job) -> tuple[dict[str, float], float]:
     return found, spent
 
 
-def _moved(
+def _chunks_done(
     job: Job, folder: Path, size: int, workers: int, scheduler: str | None, tell: ToldOfSweep
 ) -> Counter[str]:
     """Move all members that are not done yet; return by what how many chunks were moved."""

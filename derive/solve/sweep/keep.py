@@ -41,7 +41,7 @@ def kept_columns(
     if isinstance(texts, str) or not isinstance(texts, Sequence):
         rule = "takes a list of texts, as ['theta', 'theta@max']"
         raise SceneError(f"{label} {rule}, not {met(texts)}")
-    units, whole = _known(found, given)
+    units, whole = _units_along(found, given)
     each: dict[str, KeptColumn] = {}
     for text in texts:
         if not isinstance(text, str):
@@ -73,7 +73,7 @@ def _how(label: str, text: str, word: str, until: float) -> tuple[str, float]:
     return "at", time
 
 
-def _known(
+def _units_along(
     found: Instrument, given: Mapping[str, float]
 ) -> tuple[dict[str, str], dict[str, tuple[str, ...]]]:
     """Return the unit of every component that is known along a motion, and the whole names."""

@@ -17,14 +17,14 @@ ROUNDING = 1e-12
 class SweepPlan:
     """How members move, and what is kept.
 
-    length : s, the longest step        frames : instants of a course beside its start
+    length : s, the longest step        intervals : of a course
     answers : the function of every answer that is known along a motion
     """
 
     step: str
     length: float
     until: float
-    frames: int
+    intervals: int
     kept: tuple[KeptColumn, ...]
     stop: Event | None
     answers: Mapping[str, str]
@@ -39,7 +39,7 @@ class SweepPlan:
     @cached_property
     def instants(self) -> tuple[float, ...]:
         """Return the instants of a course, from 0 to the end."""
-        return tuple(self.until * k / self.frames for k in range(self.frames + 1))
+        return tuple(self.until * k / self.intervals for k in range(self.intervals + 1))
 
     @cached_property
     def marks(self) -> tuple[float, ...]:

@@ -22,7 +22,7 @@ from derive.solve.told import count, met
 EXTRA = "pip install 'derive-eom[sweep]'"
 MOST_MEMBERS = 1 << 32
 MOST_SEED = 2**63 - 1
-MOST_FRAMES = 10_000
+MOST_INSTANTS = 10_000
 MOST_WORKERS = 4096
 ERROR = 1e-6
 
@@ -39,7 +39,7 @@ class Request:
     error: Any
     step: Any
     seed: Any
-    frames: Any
+    instants: Any
     pairs: Any
     workers: Any
     scheduler: object

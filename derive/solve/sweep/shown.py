@@ -45,7 +45,7 @@ def page_of(found: Instrument, source: str, of: Ensemble) -> str:
     stops = ENDED_AT if of.ended.get(STOPPED) else None
     numbers = [c for c in asked["keep"] if not c.endswith(f"@{COURSE}")]
     numbers = [*([stops] if stops else []), *numbers]
-    times = [asked["until"] * k / asked["frames"] for k in range(asked["frames"] + 1)]
+    times = [asked["until"] * k / asked["instants"] for k in range(asked["instants"] + 1)]
     courses = {c: times for c in asked["keep"] if c.endswith(f"@{COURSE}")}
     says = summary(of.folder, of.plain, varied, numbers, courses)
     units = {**told["units"], ENDED_AT: "s"}

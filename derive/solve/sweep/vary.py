@@ -27,7 +27,7 @@ SIGMAS = 3.0
 """Standard deviations to either side that count as where a normal value may lie."""
 CALLED = re.compile(r"([a-z]+)\(([^()]*)\)")
 GRID = re.compile(r"([^:]+?)\.\.([^:]+):([^:]*)")
-KNOWN = "uniform(1, 2), normal(0.1, 0.01), normal(0.1, 0.01, 0, 0.2), loguniform(1, 10), 0..1:11"
+EXAMPLES = "uniform(1, 2), normal(0.1, 0.01), normal(0.1, 0.01, 0, 0.2), loguniform(1, 10), 0..1:11"
 WHOLE = re.compile(r"[0-9]{1,7}")
 
 
@@ -149,7 +149,7 @@ def _spread(label: str, name: str, text: str, unit: str) -> Spread:
     called = CALLED.fullmatch(text)
     if called is None or called[1] not in SPREADS:
         hint = nearest(called[1], SPREADS) if called else ""
-        rule = f"it varies as one of {KNOWN}"
+        rule = f"it varies as one of {EXAMPLES}"
         raise SceneError(f"{label}: {rule}, not {shown(text)}{hint}")
     ends = tuple(number(label, end.strip(), unit) for end in called[2].split(","))
     _require_ends(label, called[1], ends, unit)

@@ -15,7 +15,7 @@ def swept_top(folder: Path, **more: Any) -> derive.Ensemble:
     """Return a sweep of the sleeping top, of 600 members unless told otherwise."""
     told: dict[str, Any] = {
         "vary": VARIED, "folder": folder, "until": 0.2, "keep": KEPT, "values": HELD,
-        "samples": 600, "stop": STOP, "step": 1e-3, "seed": 7, "frames": 4, "workers": 1,
+        "samples": 600, "stop": STOP, "step": 1e-3, "seed": 7, "instants": 4, "workers": 1,
         "chunk": 100,
     }  # fmt: skip
     return derive.load("sleeping_top").sweep(**told | more)
