@@ -94,7 +94,7 @@ WHOLE = {
     "bench/report/code_size.py: code_size": "bytes",
     "lower/share.py: _negations": "signs counted",
     "solve/sweep/engine.py: _room": "threads counted",
-    "solve/sweep/ensemble.py: _moved": "members counted",
+    "solve/sweep/ensemble.py: _chunks_done": "members counted",
     "solve/sweep/ensemble.py: _planned": "columns counted",
     "solve/sweep/ensemble.py: unfinished": "members counted",
     "solve/sweep/plan.py: steps": "steps counted",

@@ -74,7 +74,7 @@ def good(folder: Path) -> dict[str, Any]:
         "tensor": np.eye(3), "parameters": {}, "precision": "double", "by": "any",
         "values": {}, "until": 0.01, "step": 1e-3, "plot": None, "form": "text", "stop": None,
         "steady": "steady", "vary": {"m": "uniform(1, 2)"}, "keep": ["omega_x"], "error": None,
-        "seed": 0, "frames": 20, "pairs": 0, "workers": 1, "scheduler": None, "chunk": None,
+        "seed": 0, "instants": 20, "pairs": 0, "workers": 1, "scheduler": None, "chunk": None,
         "omega": [1, 2, 3], "omega_dot": [1, 2, 3],
         "scene": derive.load(BALL, "ball"), "turn": "z 1", "end": {}, "limits": {}, "avoid": (),
         "cost": {"time": 1}, "steps": 10, "starts": 1, "method": "shooting", "solver": "ipopt",
