@@ -188,7 +188,8 @@ def _influence(column: str, values: FloatColumn, varied: Sequence[str]) -> Itera
         return
     from SALib.analyze import sobol
 
-    problem = {"num_vars": len(varied), "names": list(varied), "bounds": [[0, 1]] * len(varied)}
+    names = np.array([*varied])  # of a list older SALib with newer pandas warns
+    problem = {"num_vars": len(varied), "names": names, "bounds": [[0, 1]] * len(varied)}
     with np.errstate(all="ignore"):
         of = sobol.analyze(problem, pairs.ravel(), calc_second_order=False, seed=0)
     each = zip(varied, of["S1"], of["S1_conf"], of["ST"], of["ST_conf"], strict=True)
