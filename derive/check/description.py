@@ -13,6 +13,7 @@ from typing import Any
 from flint import arb
 
 from derive.scene import Scene
+from derive.scene.constraint import Constraint
 from derive.scene.declaration import Axis, Triple, Turning
 from derive.scene.formula import ZERO, Formula, number, substitute, symbol
 from derive.scene.machine import (
@@ -72,6 +73,7 @@ class Description:
             frames=tuple(map(self._frame, machine.frames)),
             bodies=tuple(map(self._member, machine.bodies)),
             loads=tuple(map(self._load, machine.loads)),
+            constraints=tuple(map(self._constraint, machine.constraints)),
             momentum=replace(place, at=self._triple(place.at, place.frame)),
             results=results,
             steady=steady,
@@ -216,6 +218,19 @@ class Description:
             case Spring():
                 at, to = self._triple(load.at, load.frame), self._triple(load.to, load.to_frame)
                 return replace(load, at=at, to=to)
+
+    def _constraint(self, one: Constraint) -> Constraint:
+        meeting = one.meeting
+        return replace(
+            one,
+            zero=self._formula(one.zero),
+            meeting=meeting and replace(
+                meeting,
+                at=self._triple(meeting.at, meeting.frame),
+                to=self._triple(meeting.to, meeting.to_frame),
+                directions=tuple(self._triple(e, meeting.along) for e in meeting.directions),
+            ),
+        )  # fmt: skip
 
 
 def relabelled(machine: Scene) -> Description:

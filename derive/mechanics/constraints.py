@@ -13,7 +13,6 @@ from sympy import Expr, Integer, Matrix, Symbol
 from derive.lecture.stated import by_law
 from derive.mechanics.bodies import centre, centre_velocity
 from derive.mechanics.frames import Frames, Located
-from derive.mechanics.sheet import AXES
 from derive.scene import Input, SceneError
 from derive.scene.constraint import Constraint, Meeting
 
@@ -50,10 +49,11 @@ def _conditions(frames: Frames, one: Constraint) -> Iterator[Tie]:
         return
     meeting = one.meeting
     column = _velocities(frames, meeting) if one.of_rates else _places(frames, one.name, meeting)
-    for axis in meeting.axes:
+    for axis, direction in zip(meeting.axes, meeting.directions, strict=True):
         own = sheet.symbols.get(f"{one.name}_{axis}") if one.load == one.name else None
         name = f"{one.name} along {axis}"
-        yield _made(frames, name, one, (column[AXES.index(axis)], one.of_rates), own)
+        along = (frames.words.column(direction).T * column)[0]
+        yield _made(frames, name, one, (along, one.of_rates), own)
 
 
 def _made(

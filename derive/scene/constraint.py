@@ -2,16 +2,18 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Literal
 
-from derive.scene.declaration import Axis, Triple
-from derive.scene.formula import ZERO, Formula
+from derive.scene.declaration import AXES, Axis, Triple
+from derive.scene.formula import ZERO, Formula, number
 
 
 @dataclass(frozen=True)
 class Meeting:
     """A point of a frame on one body that stays at a point of another, on axes of a frame.
 
+    axes  : what the parts are called          directions : and where these point, along ``along``
     equal : the places of the points, or the velocities of the bodies' particles there
     """
 
@@ -23,6 +25,7 @@ class Meeting:
     to: Triple
     along: str
     axes: tuple[Axis, ...]
+    directions: tuple[Triple, ...]
     equal: Literal["places", "velocities"]
 
 
@@ -41,6 +44,12 @@ class Constraint:
     load: str = ""
     factor: str = ""
     of_rates: bool = False
+
+
+def unit_along(axis: Axis) -> Triple:
+    """Return the unit vector along an axis."""
+    x, y, z = (number(Fraction(a == axis)) for a in AXES)
+    return x, y, z
 
 
 def distances(constraints: Iterable[Constraint]) -> Iterator[tuple[str, str]]:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from derive.scene.constraint import Constraint, Meeting
+from derive.scene.constraint import Constraint, Meeting, unit_along
 from derive.scene.declaration import AXES, Input, Moving, SceneError
 from derive.scene.entries import CONSTRAINT
 from derive.scene.entry import Reading, entries_of
@@ -82,8 +82,10 @@ def _meeting(one: Table, said: Mapping[str, Any], carriers: Mapping[str, str]) -
     against = said["against"] or ""
     frame = said["frame"] or carriers[said["on"]]
     other = said["to_frame"] or (carriers[against] if against else INERTIAL)
+    axes = _axes(one, said["axes"])
+    directions = tuple(map(unit_along, axes))
     return Meeting(said["on"], frame, said["at"], against, other, said["to"], said["along"],
-                   _axes(one, said["axes"]), said["equal"])  # fmt: skip
+                   axes, directions, said["equal"])  # fmt: skip
 
 
 def _axes(one: Table, value: object) -> Any:

@@ -43,6 +43,45 @@ def test_a_body_in_long_form_is_the_same_along_other_axes(name: str) -> None:
     assert "FAILS" not in outcomes(made, made).values()
 
 
+HELD = Path(__file__).parents[1] / "mechanics" / "scenes"
+BLADE = """
+wanted = ["accelerations"]
+parameters.m = { unit = "kg", range = [1, 2] }
+parameters.a = { unit = "m", range = [0.1, 0.3] }
+speeds.u = { unit = "m/s", range = [-1, 1] }
+speeds.v = { unit = "m/s", range = [-1, 1] }
+speeds.w = { unit = "rad/s", range = [-1, 1] }
+frames.sled = { angular_velocity = ["0", "0", "w"], velocity = ["u", "v", "0"] }
+constraints.blade = { on = "sled", at = ["a", "0", "0"], axes = ["y"], along = "sled", equal = "velocities" }
+
+[bodies.sled]
+frame  = "sled"
+kind   = "principal"
+mass   = "m"
+moments = [1, 1.5, 2]
+
+[loads]
+ice = { on = "sled", force = ["0", "0", "?N"], couple = ["?c_x", "?c_y", "0"] }
+wind = { on = "sled", force = [1, 2, 0] }
+"""
+
+
+@pytest.mark.parametrize("along", ["inertial", "bar"])
+def test_points_that_meet_meet_along_other_axes(along: str) -> None:
+    text = (HELD / "four_bar_closed.toml").read_text(encoding="utf-8")
+    text = text.replace("[constraints.d]", f'[constraints.d]\nalong = "{along}"')
+    made = library(parse_scene(text.replace('"energy", ', ""), "four"))
+    found = outcomes(made, made)
+    assert found["cyclic relabelling", "accelerations"] == "holds"
+    assert found["cyclic relabelling", "d_x"] == "holds"
+
+
+def test_a_blade_runs_along_other_axes() -> None:
+    made = library(parse_scene(BLADE, "blade"))
+    assert {check: row for (check, _), row in outcomes(made, made).items()} == {
+        "cyclic relabelling": "holds", "rotation of axes": "holds"}  # fmt: skip
+
+
 GIVEN = """
 wanted = ["moment"]
 body = { kind = "principal", moments = [1, 1.5, 2] }

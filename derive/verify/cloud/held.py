@@ -43,7 +43,7 @@ def _series(history: History, one: Constraint) -> list[Series]:
         if meeting.against:
             apart = apart - _particle(history, meeting.against, there)
     axes = history.rotations[meeting.along]
-    return [axes[:, "xyz".index(axis)] @ apart for axis in meeting.axes]
+    return [(axes @ history.column(direction)) @ apart for direction in meeting.directions]
 
 
 def _particle(history: History, body: str, place: NDArray[Any]) -> NDArray[Any]:
