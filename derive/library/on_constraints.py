@@ -2,13 +2,30 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import Any, Protocol
 
 from derive.library.setting import Setting
 from derive.motion.constrained import Homing, held_step
 from derive.program.program import Program
-from derive.scene import Input, SceneError
+from derive.scene import Input, Scene, SceneError
 from derive.scene.formula import Formula, symbols
 from derive.scene.results import DISTANCES
+
+
+class OfMachine(Protocol):
+    """What a scene's functions rest on, and what holds its machine."""
+
+    @property
+    def scene(self) -> Scene:
+        """Return the scene as it was read."""
+
+    @property
+    def vocabulary(self) -> Any:
+        """Return what its quantities are called."""
+
+    @property
+    def mechanism(self) -> Any:
+        """Return its machine."""
 
 
 def on_constraints(setting: Setting, step: Program) -> Program:
@@ -20,16 +37,15 @@ def on_constraints(setting: Setting, step: Program) -> Program:
         rule = "is of machines without constraints, which a step is brought back onto"
         raise SceneError(f"'{step.name}' {rule}; step_rk4_jacobian is of these, too")
     states = [c for q in setting.terms.vocabulary.states for c in q.components]
-    return held_step(step, states, _conditions(setting))
+    return held_step(step, states, conditions(setting.terms, setting.rates[DISTANCES]))
 
 
-def _conditions(setting: Setting) -> Homing:
+def conditions(of: OfMachine, distances: Program) -> Homing:
     """Return what vanishes where the constraints hold, without what is redundant, and what moves.
 
     Places that formulas of time alone move are where they are meant to be.
     """
-    scene, states = setting.terms.scene, setting.terms.vocabulary.states
-    found = setting.terms.mechanism.held
+    scene, states, found = of.scene, of.vocabulary.states, of.mechanism.held
     places, rates, count = list[int](), list[int](), 0
     for tie in found.every:
         kept = tie in found.kept
@@ -49,6 +65,6 @@ def _conditions(setting: Setting) -> Homing:
               isinstance(c.rate, Formula) and speeds & {*symbols(c.rate)})]  # fmt: skip
     driving = [c.rate.name for c in scene.coordinates if c.free and isinstance(c.rate, Input)]
     driving += [s.name for s in scene.speeds if s.free]
-    return Homing(setting.rates[DISTANCES], tuple(places), tuple(rates),
+    return Homing(distances, tuple(places), tuple(rates),
                 weights(moving), weights(driving),
                 tuple(q.components for q in states if q.is_quaternion))  # fmt: skip

@@ -11,6 +11,7 @@ from fractions import Fraction
 from functools import partial
 
 from derive.motion.attitude.quaternion import norm_squared
+from derive.motion.runge_kutta.system import next_of
 from derive.program.pattern import compressed
 from derive.program.program import MATRIX, Op, Operand, Program, Quantity, Sparsity, operands_of
 from derive.program.recorded import needed
@@ -70,6 +71,43 @@ def held_step(step: Program, states: Sequence[str], held: Homing) -> Program:
         results=results,
         sparsity=sparsity,
     )
+
+
+def nearer(name: str, states: Sequence[Quantity], held: Homing) -> Program:
+    """Return what brings a state once nearer to the constraints, all of places or all of rates.
+
+    held : with either places or rates
+    Its last result is the square of how far the state was off, counted as ``held`` weighs.
+    """
+    names = [c for q in states for c in q.components]
+    bare = Program(name, "The state, once nearer to the constraints.", tuple(states), (), (), ())
+    tape = _tape(bare, held)
+    found = {c: tape.input(c) for c in names}
+    if held.places:
+        found, off = _placed(tape, held, found)
+    else:
+        values = _valued(tape, held, found, held.rates, [*held.driving])
+        found, off = _corrected(found, values, held.driving, None)
+    after = (next_of(q) for q in states)
+    results = tuple(x.operand for x in (*found.values(), off))
+    given = {q.name for q in states}
+    return replace(
+        bare,
+        inputs=(*(q for q in held.program.inputs if q.name not in given), *states),
+        outputs=(*after, Quantity("off", ("off",), (), "1", "", None, None, "square of how far")),
+        ops=needed(tape.ops, results),
+        results=results,
+    )
+
+
+def reaches(states: Sequence[Quantity], held: Homing) -> list[set[str]]:
+    """Return what each condition of ``held``, of either places or rates, is corrected by."""
+    bare = Program("", "", tuple(states), (), (), ())
+    tape = _tape(bare, held)
+    start = {c: tape.input(c) for q in states for c in q.components}
+    lengths = [a for q in held.attitudes for a in q]
+    by = [*held.moving, *lengths] if held.places else [*held.driving]
+    return [{*row} for row in _valued(tape, held, start, (*held.places, *held.rates), by)[1]]
 
 
 def _tape(step: Program, held: Homing) -> Tape:

@@ -17,7 +17,7 @@ from derive.library.library import Library
 from derive.program.status import RIGHT, SAYS
 from derive.solve.sweep.keep import COURSE
 from derive.solve.sweep.kit import ByMembers
-from derive.solve.sweep.lanes import Lanes, lanes_begun
+from derive.solve.sweep.lanes import UNCLOSED, Lanes, lanes_begun
 from derive.solve.sweep.plan import SweepPlan
 from derive.solve.sweep.vary import FloatColumn
 
@@ -26,6 +26,7 @@ TOGETHER = 2048
 HALVINGS = 45
 """Of a step, until an event in it is found."""
 UNTIL, STOPPED, ASTRAY, REFUSED = "until", "stop", "not finite", "refused: "
+WHY = {**SAYS, UNCLOSED: "no start nearby fulfils the constraints"}
 Refining = Literal["later", "at once"]
 EXTREMES: Mapping[str, Any] = {"max": np.maximum, "min": np.minimum}
 
@@ -71,7 +72,7 @@ def endings(
             ids = np.arange(first, min(first + TOGETHER, count))
             lanes, status = lanes_begun(by, library, plan, given, ids)
             for number in np.unique(status[status != RIGHT]):
-                whole.ended[ids[status == number]] = f"{REFUSED}{SAYS[int(number)]}"
+                whole.ended[ids[status == number]] = f"{REFUSED}{WHY[int(number)]}"
             again = _to_their_ends(lanes.chosen(status == RIGHT), whole, "later")
             if len(again):
                 _to_their_ends(lanes_begun(by, library, plan, given, again)[0], whole, "at once")

@@ -3,7 +3,7 @@
 import json
 import os
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,9 +13,11 @@ from typing import Any
 import numpy as np
 
 from derive.library.digest import digest_of_programs
+from derive.library.library import Library
 from derive.scene import SceneError
 from derive.solve.event import answers_along, event
 from derive.solve.instrument import Instrument
+from derive.solve.sweep.closing import closing_of, require_middle_near
 from derive.solve.sweep.course import ASTRAY, REFUSED
 from derive.solve.sweep.design import Design
 from derive.solve.sweep.engine import ChunkSpan, on_cluster, on_processes
@@ -121,7 +123,10 @@ def swept(
     require_motion(found, known)
     error = ERROR if asked.error is None else above_zero(label, "error", asked.error)
     step = None if asked.step is None else above_zero(label, "step", asked.step)
-    columns = kept_columns(found, known, asked.keep, until)
+    closing = closing_of(found.library, [s.name for s in design.spreads])
+    require_middle_near(found, design.spreads, values)
+    begun = [f"{name}@0" for name in closing.moved]
+    columns = kept_columns(found, known, asked.keep, until, begun)
     stop = None if asked.stop is None else event(found, known, asked.stop)
     workers = min(os.cpu_count() or 1, 64) if asked.workers is None else whole_number(
         f"{label}: workers", asked.workers, MOST_WORKERS, least=1)  # fmt: skip
@@ -143,21 +148,24 @@ def swept(
         "step": step,
         "error": error if step is None else None,
     }
+    onto = tuple(p.name for p in closing.programs)
     answers = answers_along(found, known)
-    plan = SweepPlan("step_rk4", step or until, until, instants, columns, stop, answers)
+    plan = SweepPlan("step_rk4", step or until, until, instants, columns, stop, answers, onto)
+    library = replace(found.library, motions=(*found.library.motions, *closing.programs))
     with only_sweep_in(folder):
         manifest = manifest_of(folder)
         if manifest is not None:
             require_same(folder, manifest["asked"], request)
         else:
-            manifest = _planned(found, design, plan, values, request, step, error, size, tell)
+            manifest = _planned(library, design, plan, values, request, step, error, size,
+                                closing.moved, tell)  # fmt: skip
             put_whole(folder, MANIFEST, json.dumps(manifest, indent=1, sort_keys=True).encode())
         plan = replace(plan, step=manifest["step"], length=manifest["length"])
         told = {name: x for name, x in manifest.items() if name not in ("halved", "chunk")}
-        kit = kit_of(found.library, plan.functions)
+        kit = kit_of(library, plan.functions)
         job = Job(kit, design, plan, dict(values), json.dumps(told, sort_keys=True))
         by = _chunks_done(job, folder, manifest["chunk"], workers, scheduler, tell)
-    doubts = [*outside_at_start(found, design.spreads, values)]
+    doubts = [*closing.doubts, *outside_at_start(found, design.spreads, values)]
     if "CasADi" in by:
         doubts.append(f"{by['CasADi']} chunks were moved by CasADi: where they were is no compiler")
     page = folder.with_suffix(".html")
@@ -166,19 +174,19 @@ def swept(
 
 
 def _planned(
-    found: Instrument, design: Design, plan: SweepPlan, values: Mapping[str, float],
+    library: Library, design: Design, plan: SweepPlan, values: Mapping[str, float],
     request: Mapping[str, Any], step: float | None, error: float, size: int | None,
-    tell: ToldOfSweep,
+    moved: Sequence[str], tell: ToldOfSweep,
 ) -> dict[str, Any]:  # fmt: skip
     """Return what a folder tells of its sweep: what was asked for, and what was found for it."""
     if step is None:
-        of = recommended(found.library, plan.until, error,
+        of = recommended(library, plan.until, error,
                          lambda says: tell(says, 0, design.members))  # fmt: skip
         plan, says = replace(plan, step=of.step, length=of.length), of.says
     else:
         says = f"{plan.step} at {step:g} s, as was asked"
     tell("trying half the step", 0, design.members)
-    job = Job(kit_of(found.library, plan.functions), design, plan, values, "")
+    job = Job(kit_of(library, plan.functions), design, plan, values, "")
     halved, spent = _halved(job)
     width = 8 * (4 + sum(len(plan.instants) for _ in plan.kept))
     if size is None:
@@ -186,8 +194,8 @@ def _planned(
     return {
         "asked": request, "step": plan.step, "length": plan.length, "steps": plan.steps,
         "says": says, "halved": halved, "chunk": size, "members": design.members,
-        "plain": design.plain, "title": found.library.scene.title,
-        "units": {k.column: k.unit for k in plan.kept},
+        "plain": design.plain, "title": library.scene.title,
+        "units": {k.column: k.unit for k in plan.kept}, "moved": moved,
     }  # fmt: skip
 
 

@@ -85,5 +85,3 @@ def chunk_made(job: Job, first: int, count: int) -> Chunk:
 def same(job: Job) -> Job:
     """Return a job: as a task of a cluster, one that is done again where its worker is gone."""
     return job
-
-

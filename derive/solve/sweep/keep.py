@@ -30,11 +30,11 @@ class KeptColumn:
 
 
 def kept_columns(
-    found: Instrument, given: Mapping[str, float], texts: object, until: float
+    found: Instrument, given: Mapping[str, float], texts: object, until: float, more: Sequence[str]
 ) -> tuple[KeptColumn, ...]:
     """Return what is kept, of texts such as ``theta``, ``energy@end`` and ``theta@2.5``.
 
-    given : names that have a value, beside the state
+    given : names that have a value, beside the state        more : what else is kept
     Raises SceneError for what is not known along a motion, and for other words behind the ``@``.
     """
     label = f"scene '{found.name}': keep"
@@ -43,7 +43,7 @@ def kept_columns(
         raise SceneError(f"{label} {rule}, not {met(texts)}")
     units, whole = _units_along(found, given)
     each: dict[str, KeptColumn] = {}
-    for text in texts:
+    for text in (*texts, *more):
         if not isinstance(text, str):
             raise SceneError(f"{label} takes texts, as 'theta@max', not {met(text)}")
         name, at, word = (part.strip() for part in text.strip().partition("@"))

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from derive.library.library import Library
 from derive.program.program import Program, Quantity
+from derive.program.status import RIGHT
 from derive.scene.formula import Arithmetic, evaluate
 from derive.scene.functions import FUNCTIONS, PLAIN
 from derive.solve.sweep.kit import ByMembers
@@ -27,6 +28,12 @@ COLUMNS: Arithmetic = {
     "sqrt": np.sqrt,
 }
 """Formulas over members: what NumPy rounds as every machine does, else Python's functions."""
+ROUNDS = 60
+"""Until a start that comes nearer to the constraints must be on them."""
+CLOSE = 1e-22
+"""The square of a distance, in parts of ranges, from which one more correction leaves rounding."""
+UNCLOSED = -1
+"""What stands in the place of set-up's status where no start fulfils the constraints."""
 ByQuantity = dict[str, NDArray[Any]]
 """(components, lanes) of each quantity."""
 
@@ -72,6 +79,33 @@ class Lanes:
         self._called(self.plan.step, length, self.before)
         self.turn = 1 - self.turn
         self.fresh.clear()
+
+    def onto(self) -> NDArray[np.bool_]:
+        """Bring the lanes onto the constraints; tell which of them could be.
+
+        Each stays where it is once it is there, so no lane changes what becomes of another.
+        """
+        right = np.ones(len(self), bool)
+        for name in self.plan.onto:
+            there = np.zeros(len(self), bool)
+            for _ in range(ROUNDS):
+                off = self._called(name, 0.0, self.before)[-1][0]
+                for of, place in self.before.items():
+                    place[:, there] = self.now[of][:, there]
+                self.turn = 1 - self.turn
+                there |= off < CLOSE * self._square_of_size()
+                if (there | ~np.isfinite(off)).all():
+                    break
+            right &= there
+        return right
+
+    def _square_of_size(self) -> FloatColumn:
+        """Return the largest component of each lane in parts of its range, squared, above one."""
+        found = np.ones(len(self))
+        for q in self.library.vocabulary.states:
+            wide = float(q.ends[1] - q.ends[0])
+            np.maximum(found, ((self.before[q.name] / wide) ** 2).max(axis=0), out=found)
+        return found
 
     def back(self, which: NDArray[np.bool_]) -> None:
         """Take some lanes back to where they were before the last step."""
@@ -189,7 +223,7 @@ def lanes_begun(
     given: Mapping[str, FloatColumn | float],
     ids: NDArray[np.int64],
 ) -> tuple[Lanes, NDArray[np.int32]]:
-    """Return members at their start, and what set-up says of each: 0 is right.
+    """Return members at their start, and what set-up says of each: 0 is right, or UNCLOSED.
 
     given : each component, a number for all or (all members,)
     """
@@ -214,6 +248,8 @@ def lanes_begun(
     other = {name: np.zeros_like(x) for name, x in state.items()}
     lanes = Lanes(by, library, plan, ids, constants, own, {q.name: rows(q) for q in held},
                   (state, other))  # fmt: skip
+    if plan.onto:
+        status = np.where((status == RIGHT) & ~lanes.onto(), UNCLOSED, status)
     return lanes, status
 
 

@@ -19,6 +19,7 @@ class SweepPlan:
 
     length : s, the longest step        intervals : of a course
     answers : the function of every answer that is known along a motion
+    onto : functions that bring a start onto the constraints, one after the other
     """
 
     step: str
@@ -28,13 +29,14 @@ class SweepPlan:
     kept: tuple[KeptColumn, ...]
     stop: Event | None
     answers: Mapping[str, str]
+    onto: tuple[str, ...] = ()
 
     @cached_property
     def functions(self) -> tuple[str, ...]:
         """Return the functions that are called."""
         used = (*(k.component for k in self.kept), *(symbols(self.stop.left) if self.stop else ()))
         asked = (self.answers[n] for n in used if n in self.answers)
-        return tuple(dict.fromkeys((self.step, *asked)))
+        return tuple(dict.fromkeys((*self.onto, self.step, *asked)))
 
     @cached_property
     def instants(self) -> tuple[float, ...]:

@@ -96,9 +96,6 @@ def above_zero(label: str, name: str, value: Any) -> float:
 def require_motion(found: Instrument, known: Mapping[str, float]) -> None:
     """Raise SceneError if a scene cannot be moved as `solve` moves it, or values are missing."""
     scene, label = found.library.scene, f"scene '{found.name}'"
-    if scene.constraints:
-        says = "its motions begin where constraints hold, and a sweep does not bring members there"
-        raise SceneError(f"{label}: {says}")
     if STEP not in scene.wanted:
         raise SceneError(advice_on(scene, STEP, "a sweep"))
     states = [c for q in found.library.vocabulary.states for c in q.components]

@@ -3,6 +3,7 @@
 import json
 import shlex
 from collections.abc import Mapping
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -47,7 +48,8 @@ def page_of(found: Instrument, source: str, of: Ensemble) -> str:
     numbers = [*([stops] if stops else []), *numbers]
     times = [asked["until"] * k / asked["instants"] for k in range(asked["instants"] + 1)]
     courses = {c: times for c in asked["keep"] if c.endswith(f"@{COURSE}")}
-    says = summary(of.folder, of.plain, varied, numbers, courses)
+    begun = {name: f"{name}@0" for name in told["moved"]}
+    says = summary(of.folder, of.plain, varied, begun, numbers, courses)
     units = {**told["units"], ENDED_AT: "s"}
     return TEMPLATES.get_template("sweep.html.jinja").render(
         of=of,
@@ -87,9 +89,10 @@ def in_words(way: list[Any]) -> str:
 
 
 def replayed(source: str, told: Mapping[str, Any], inputs: Mapping[str, float]) -> str:
-    """Return the command that moves one member again."""
+    """Return the command that moves one member again, from where it began if it did."""
     asked = told["asked"]
-    values = [f"{name}={x!r}" for name, x in {**asked["set"], **inputs}.items()]
+    own = {name: x for name, x in inputs.items() if isfinite(x)}
+    values = [f"{name}={x!r}" for name, x in {**asked["set"], **own}.items()]
     command = ["derive", "solve", source, "--set", *values, "--until", f"{asked['until']!r}"]
     command += ["--step", f"{told['length']!r}"]
     command += ["--stop", asked["stop"]] if asked["stop"] else []

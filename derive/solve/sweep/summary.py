@@ -21,6 +21,11 @@ MOST_READ = 1 << 20
 MOST_COURSES = 1 << 14
 """Members that quantiles in time are of, the first ones."""
 BINS = 40
+APART = 1e-12
+"""Of their size, at which the ends of a histogram are: below lies what rounding makes."""
+FURTHEST, NOTHING = 8e307, 1e-300
+"""Half of what the ends of a histogram are apart at most: twice as much is a number still; what is
+further out stands in its last bars. And at least, for all between them are numbers, too."""
 FEWEST_LEFT = 0.1
 """Of the members, those that must still run for quantiles of an instant."""
 LISTED = 10
@@ -93,12 +98,13 @@ class Summary:
 
 
 def summary(
-    folder: Path, plain: int, varied: Sequence[str], numbers: Sequence[str],
-    courses: Mapping[str, Sequence[float]],
+    folder: Path, plain: int, varied: Sequence[str], begun: Mapping[str, str],
+    numbers: Sequence[str], courses: Mapping[str, Sequence[float]],
 ) -> Summary:  # fmt: skip
     """Return what the files of a sweep say.
 
     plain : members that are not there for sensitivities alone
+    begun : states that members are brought to at their start, and the columns that tell where
     numbers, courses : columns of numbers, and of courses with their instants
     """
     heads: dict[str, list[FloatColumn]] = {c: [] for c in (*numbers, *courses)}
@@ -109,6 +115,7 @@ def summary(
         member = np.asarray(table[MEMBER])
         own = member < plain
         inputs = {name: table[name] for name in varied}
+        inputs |= {name: table[column] for name, column in begun.items()}
         for k in np.flatnonzero([str(how).startswith((ASTRAY, REFUSED)) for how in table[ENDED]]):
             if len(lost) < LISTED:
                 of = {name: float(x[k]) for name, x in inputs.items()}
@@ -165,9 +172,18 @@ def _scatter(column: str, values: FloatColumn) -> Scatter:
     values = values[np.isfinite(values)]
     if not len(values):
         return Scatter(column, 0, (), (), ())
-    heights, edges = np.histogram(values, BINS)
+    ends = _ends_apart(values)
+    heights, edges = np.histogram(np.clip(values, *ends), BINS, ends)
     cuts = tuple(np.quantile(values, QUANTILES).tolist())
     return Scatter(column, len(values), cuts, tuple(edges.tolist()), tuple(heights.tolist()))
+
+
+def _ends_apart(values: FloatColumn) -> tuple[float, float]:
+    """Return the ends of values, as far apart as numbers between them need."""
+    middle, half = float(values.min() / 2 + values.max() / 2), float(np.ptp(values / 2))
+    half = min(max(half, abs(middle) * APART), FURTHEST)
+    half = half if half > NOTHING else 1.0
+    return middle - half, middle + half
 
 
 def _fan(column: str, times: Sequence[float], values: FloatColumn) -> Fan:

@@ -54,6 +54,15 @@ class Spread:
             return self.ends[2], self.ends[3]
         return self.ends[0] - SIGMAS * self.ends[1], self.ends[0] + SIGMAS * self.ends[1]
 
+    @property
+    def middle(self) -> float:
+        """Return a value in the middle: a mean, or halfway between both ends."""
+        if self.kind == "normal":
+            return min(max(self.ends[0], self.within[0]), self.within[1])
+        if self.kind == "loguniform":
+            return math.sqrt(self.ends[0]) * math.sqrt(self.ends[1])
+        return self.ends[0] / 2 + self.ends[1] / 2
+
     def values(self, parts: FloatColumn) -> FloatColumn:
         """Return the values for parts of one, each above 0 and below 1."""
         return SPREADS[self.kind](self.ends, parts)

@@ -5,9 +5,12 @@ import re
 import shlex
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from derive.cli import main
+from derive.solve.sweep.drawing import histogram
+from derive.solve.sweep.summary import _scatter
 
 PAGE = Path(__file__).parents[3] / "docs" / "sweep.md"
 
@@ -24,6 +27,18 @@ def commands() -> list[list[str]]:
     text = PAGE.read_text(encoding="utf-8").replace("\\\n", " ")
     found = [shlex.split(c) for c in re.findall(r"^    derive (sweep .*)$", text, re.MULTILINE)]
     return [[{"1e6": "1e3", "2e4": "2e3"}.get(word, word) for word in own] for own in found]
+
+
+@pytest.mark.parametrize("values", [
+    (-20.0, -20.0 + 4e-15), (3.0, 3.0), (0.0, 0.0), (-1.7e308, 1.7e308), (5e-324, 1e-323),
+])  # fmt: skip
+def test_a_column_that_hardly_scatters_or_beyond_measure_has_a_histogram(
+    values: tuple[float, float],
+) -> None:
+    found = _scatter("a@end", np.array([*values, *values]))
+    assert sum(found.heights) == 4
+    assert np.isfinite(found.edges).all()
+    assert "<svg" in histogram(found, "1")
 
 
 @pytest.mark.long

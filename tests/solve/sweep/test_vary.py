@@ -1,8 +1,6 @@
 """How numbers scatter: read by a grammar, drawn by a sequence that the member's number enters."""
 
-from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +8,6 @@ import pytest
 import derive
 from derive.cli import main
 from derive.solve.sweep.design import Design
-from derive.solve.sweep.request import require_motion
 from derive.solve.sweep.summary import _influence
 from derive.solve.sweep.vary import Spread
 from tests.solve.sweep.swept_tops import swept_top
@@ -59,13 +56,6 @@ def test_what_makes_no_sense_is_refused_in_a_sentence(
         swept_top(tmp_path / "runs", **option)
     assert says in str(refused.value)
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_machine_with_constraints_is_refused() -> None:
-    held = replace(derive.load("sleeping_top").scene, constraints=("pin",))
-    found = SimpleNamespace(name="held", library=SimpleNamespace(scene=held))
-    with pytest.raises(derive.DeriveError, match="does not bring members there"):
-        require_motion(found, {})
 
 
 def test_without_the_extra_the_command_says_what_to_install(
