@@ -1,11 +1,15 @@
 """Chunks moved at once: by processes of this machine, or by the workers of a cluster of Dask."""
 
+import os
 import pickle
+import signal
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from functools import lru_cache
+from multiprocessing import parent_process
+from threading import Thread
 from typing import Any
 
 from derive.scene import SceneError
@@ -29,6 +33,21 @@ def _unpacked(packed: bytes) -> Job:
     return job
 
 
+def _ends_with_its_parent() -> None:
+    """Have this process end as soon as the one that started it does, by whatever.
+
+    A key that is to stop that one is not for this one, which is told by it.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=_outlived, daemon=True).start()
+
+
+def _outlived() -> None:
+    if (parent := parent_process()) is not None:
+        parent.join()
+    os._exit(1)
+
+
 def on_processes(
     job: Job, spans: Sequence[ChunkSpan], workers: int
 ) -> Generator[Chunk, None, None]:
@@ -38,7 +57,7 @@ def on_processes(
             yield chunk_made(job, *span)
         return
     packed, most = pickle.dumps(job), AHEAD * workers
-    with ProcessPoolExecutor(workers) as pool:
+    with ProcessPoolExecutor(workers, initializer=_ends_with_its_parent) as pool:
         try:
             yield from _in_turn(lambda span: pool.submit(_own_chunk, packed, *span), spans, most)
         except BrokenProcessPool:
@@ -72,8 +91,10 @@ def on_cluster(
     Raises SceneError if there is no scheduler, or if chunks end their workers again and again.
     """
     import distributed
+    from distributed.comm import get_address_host_port
 
     try:
+        get_address_host_port(scheduler)
         client = distributed.Client(scheduler, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         says = f"no scheduler of Dask answers at '{scheduler[:100]}'"

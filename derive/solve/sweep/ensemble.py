@@ -17,6 +17,7 @@ from derive.library.library import Library
 from derive.scene import SceneError
 from derive.solve.event import answers_along, event
 from derive.solve.instrument import Instrument
+from derive.solve.simulation import MOST as MOST_STEPS
 from derive.solve.sweep.closing import closing_of, require_middle_near
 from derive.solve.sweep.course import ASTRAY, REFUSED
 from derive.solve.sweep.design import Design
@@ -151,6 +152,9 @@ def swept(
     onto = tuple(p.name for p in closing.programs)
     answers = answers_along(found, known)
     plan = SweepPlan("step_rk4", step or until, until, instants, columns, stop, answers, onto)
+    if plan.steps > MOST_STEPS:
+        rule = f"a member moves by at most {MOST_STEPS:,} steps"
+        raise SceneError(f"{label}: {rule}; {until:g} s at {plan.length:g} s are {plan.steps:,}")
     library = replace(found.library, motions=(*found.library.motions, *closing.programs))
     with only_sweep_in(folder):
         manifest = manifest_of(folder)
@@ -182,9 +186,9 @@ def _planned(
     if step is None:
         of = recommended(library, plan.until, error,
                          lambda says: tell(says, 0, design.members))  # fmt: skip
-        plan, says = replace(plan, step=of.step, length=of.length), of.says
+        plan, says, replay = replace(plan, step=of.step, length=of.length), of.says, of.replay
     else:
-        says = f"{plan.step} at {step:g} s, as was asked"
+        says, replay = f"{plan.step} at {step:g} s, as was asked", step
     tell("trying half the step", 0, design.members)
     job = Job(kit_of(library, plan.functions), design, plan, values, "")
     halved, spent = _halved(job)
@@ -193,7 +197,7 @@ def _planned(
         size = chunk_size(spent / TRIED, width)
     return {
         "asked": request, "step": plan.step, "length": plan.length, "steps": plan.steps,
-        "says": says, "halved": halved, "chunk": size, "members": design.members,
+        "replay": replay, "says": says, "halved": halved, "chunk": size, "members": design.members,
         "plain": design.plain, "title": library.scene.title,
         "units": {k.column: k.unit for k in plan.kept}, "moved": moved,
     }  # fmt: skip

@@ -10,17 +10,22 @@ from derive.library.library import Library
 from derive.program.precision import F64
 from derive.report.courses import step_errors
 from derive.report.driver import drivers
-from derive.report.sentence import cheapest, in_time, least, rounded_down
+from derive.report.sentence import cheapest, choice, in_time, least, of_step, rounded_down
 from derive.report.wishes import STEPS, Wished
 from derive.scene import SceneError
+from derive.solve.simulation import STEP
 
 
 @dataclass(frozen=True)
 class Recommended:
-    """A step, its length in s, and a sentence on where these are from."""
+    """A step, its length in s, and a sentence on where these are from.
+
+    replay : s, the length of the step of ``derive solve`` that keeps to the same error, or nearest
+    """
 
     step: str
     length: float
+    replay: float
     says: str
 
 
@@ -48,7 +53,10 @@ def recommended(
         raise SceneError(f"scene '{scene.name}': {says}: {best_of}; {mend}")
     length = best.attempt.length
     says = f"{best.attempt.step} at {in_time(length)} keeps below {error:g} over {until:g} s"
-    return Recommended(best.attempt.step, length, f"{says} from the hardest states found")
+    alone = choice(found, STEP, F64.name, error)
+    tried = [alone.attempt] if alone else of_step(found, STEP, F64.name)
+    replay = min(tried, key=lambda a: a.worst).length
+    return Recommended(best.attempt.step, length, replay, f"{says} from the hardest states found")
 
 
 def usable(library: Library) -> tuple[str, ...]:

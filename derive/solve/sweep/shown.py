@@ -17,7 +17,7 @@ from derive.solve.sweep.course import STOPPED
 from derive.solve.sweep.drawing import bars, fan_drawn, histogram
 from derive.solve.sweep.ensemble import Ensemble, ToldOfSweep, swept
 from derive.solve.sweep.job import ENDED_AT
-from derive.solve.sweep.keep import COURSE
+from derive.solve.sweep.keep import COURSE, WORDS
 from derive.solve.sweep.request import Request
 from derive.solve.sweep.store import MANIFEST
 from derive.solve.sweep.summary import MOST_COURSES, MOST_READ, summary
@@ -44,11 +44,12 @@ def page_of(found: Instrument, source: str, of: Ensemble) -> str:
     asked = told["asked"]
     varied = list(asked["vary"])
     stops = ENDED_AT if of.ended.get(STOPPED) else None
-    numbers = [c for c in asked["keep"] if not c.endswith(f"@{COURSE}")]
+    begun = {name: f"{name}@0" for name in told["moved"]}
+    apart = {*begun.values()}
+    numbers = [c for c in asked["keep"] if c not in apart and not c.endswith(f"@{COURSE}")]
     numbers = [*([stops] if stops else []), *numbers]
     times = [asked["until"] * k / asked["instants"] for k in range(asked["instants"] + 1)]
     courses = {c: times for c in asked["keep"] if c.endswith(f"@{COURSE}")}
-    begun = {name: f"{name}@0" for name in told["moved"]}
     says = summary(of.folder, of.plain, varied, begun, numbers, courses)
     units = {**told["units"], ENDED_AT: "s"}
     return TEMPLATES.get_template("sweep.html.jinja").render(
@@ -62,7 +63,7 @@ def page_of(found: Instrument, source: str, of: Ensemble) -> str:
         histograms=[(s, drawn(histogram(s, units[s.column]))) for s in says.scatters if s.count],
         influences=[(i, drawn(bars(i))) for i in says.influences],
         scatters={s.column: s for s in says.scatters},
-        replay=lambda inputs: replayed(source, told, inputs),
+        replay=lambda inputs, column="": replayed(source, told, inputs, column),
         units=units,
         ways=told["asked"]["vary"],
         in_words=in_words,
@@ -88,12 +89,17 @@ def in_words(way: list[Any]) -> str:
     return f"{kind}({', '.join(f'{end:.12g}' for end in ends)})"
 
 
-def replayed(source: str, told: Mapping[str, Any], inputs: Mapping[str, float]) -> str:
-    """Return the command that moves one member again, from where it began if it did."""
+def replayed(source: str, told: Mapping[str, Any], inputs: Mapping[str, float], column: str) -> str:
+    """Return the command that moves one member again, from where it began if it did.
+
+    column : that it is looked at for: of an instant, the motion is until then
+    """
     asked = told["asked"]
     own = {name: x for name, x in inputs.items() if isfinite(x)}
     values = [f"{name}={x!r}" for name, x in {**asked["set"], **own}.items()]
-    command = ["derive", "solve", source, "--set", *values, "--until", f"{asked['until']!r}"]
-    command += ["--step", f"{told['length']!r}"]
+    word = column.partition("@")[2]
+    until = asked["until"] if word in ("", *WORDS) else float(word)
+    command = ["derive", "solve", source, "--set", *values, "--until", f"{until!r}"]
+    command += ["--step", f"{told['replay']!r}"]
     command += ["--stop", asked["stop"]] if asked["stop"] else []
     return shlex.join(command)

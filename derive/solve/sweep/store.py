@@ -7,9 +7,11 @@ tells of one sweep and takes no other; who finds it half full goes on.
 import json
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
+from time import monotonic, sleep
 from typing import Any
 
 from derive.emit.files import OutputError
@@ -19,6 +21,8 @@ from derive.scene.table import shown
 MANIFEST = "_sweep.json"
 """A name that readers of Parquet folders pass over, as all that begin so."""
 LOCK = "_lock"
+PATIENCE = 2.0
+"""s, until processes of a sweep that was killed must have left its folder."""
 PART = re.compile(r"part-([0-9]{12})\.parquet")
 
 
@@ -44,11 +48,20 @@ def only_sweep_in(folder: Path) -> Iterator[None]:
         with suppress(ImportError):
             import fcntl
 
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                raise SceneError(f"folder '{folder}': another sweep is at work in it") from None
+            ends = monotonic() + PATIENCE
+            while not _locked(partial(fcntl.flock, file, fcntl.LOCK_EX | fcntl.LOCK_NB)):
+                if monotonic() > ends:
+                    raise SceneError(f"folder '{folder}': another sweep is at work in it")
+                sleep(PATIENCE / 40)
         yield
+
+
+def _locked(lock: Callable[[], None]) -> bool:
+    try:
+        lock()
+    except OSError:
+        return False
+    return True
 
 
 def manifest_of(folder: Path) -> dict[str, Any] | None:

@@ -93,11 +93,23 @@ def _normal(ends: Sequence[float], parts: FloatColumn) -> FloatColumn:
     from scipy.special import ndtr, ndtri
 
     mean, deviation = ends[:2]
+    sign = 1.0
     if len(ends) == 4:
-        low, high = (float(ndtr((end - mean) / deviation)) for end in ends[2:])
+        # parts near 1 are told apart by no more than 2^-53: what lies above the mean is mirrored
+        sign = -1.0 if ends[2] > mean else 1.0
+        low, high = (float(ndtr(sign * (end - mean) / deviation)) for end in ends[2:])
         parts = low + (high - low) * parts
-    found: FloatColumn = mean + deviation * np.asarray(ndtri(parts))
+    found: FloatColumn = mean + sign * deviation * np.asarray(ndtri(parts))
     return np.clip(found, ends[2], ends[3]) if len(ends) == 4 else found
+
+
+def _weight(mean: float, deviation: float, low: float, high: float) -> float:
+    """Return the part of normal values that lies between both ends."""
+    apart = (abs(end - mean) / deviation / math.sqrt(2) for end in (low, high))
+    first, second = map(math.erfc, apart)
+    if low <= mean <= high:
+        return 1 - (first + second) / 2
+    return abs(first - second) / 2
 
 
 def by_python(function: Callable[[float], float], values: Any) -> FloatColumn:
@@ -154,6 +166,7 @@ def _spread(label: str, name: str, text: str, unit: str) -> Spread:
         if not 0 < count <= MOST_OF_GRID:
             rule = f"a grid has a whole number of values, up to {MOST_OF_GRID}"
             raise SceneError(f"{label}: {rule}, not {shown(grid[3])}")
+        _require_apart(label, low, high)
         return Spread(name, "grid", (low, high), count)
     called = CALLED.fullmatch(text)
     if called is None or called[1] not in SPREADS:
@@ -165,6 +178,12 @@ def _spread(label: str, name: str, text: str, unit: str) -> Spread:
     return Spread(name, called[1], ends)
 
 
+def _require_apart(label: str, low: float, high: float) -> None:
+    if not math.isfinite(high - low):
+        rule = "what is between both ends must be a number"
+        raise SceneError(f"{label}: {rule}, but they are {low:g} and {high:g}")
+
+
 def _require_ends(label: str, kind: str, ends: Sequence[float], unit: str) -> None:
     if len(ends) != 2 and not (kind == "normal" and len(ends) == 4):
         rule = "takes mean and deviation, and may take both ends" if kind == "normal" else (
@@ -173,8 +192,14 @@ def _require_ends(label: str, kind: str, ends: Sequence[float], unit: str) -> No
     if kind == "normal" and ends[1] <= 0:
         rule = "a deviation is above zero"
         raise SceneError(f"{label}: {rule}, not {ends[1]:g}{behind(unit)}")
+    if kind == "normal" and len(ends) == 4 and not _weight(*ends):
+        says = "nothing of it that numbers can tell lies between"
+        raise SceneError(f"{label}: {says} {ends[2]:g} and {ends[3]:g}{behind(unit)}")
     low, high = ends[-2:] if kind != "normal" or len(ends) == 4 else (0.0, 1.0)
     if not low < high:
         raise SceneError(f"{label}: the first end is below the second, but {low:g} to {high:g}")
+    _require_apart(label, low, high)
     if kind == "loguniform" and low <= 0:
         raise SceneError(f"{label}: ends of loguniform are above zero, not {low:g}{behind(unit)}")
+    if kind == "loguniform" and not math.isfinite(high / low):
+        raise SceneError(f"{label}: the second end must be a number of times the first")

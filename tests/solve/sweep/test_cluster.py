@@ -106,6 +106,7 @@ def test_a_full_disk_ends_a_sweep_of_a_cluster_that_then_goes_on(
     assert files(found) == files(swept_top(tmp_path / "here"))
 
 
-def test_a_scheduler_that_is_not_there_is_told_in_a_sentence(tmp_path: Path) -> None:
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "127.0.0.1", "carrier://pigeon:8786"])
+def test_a_scheduler_that_is_not_there_is_told_in_a_sentence(address: str, tmp_path: Path) -> None:
     with pytest.raises(derive.DeriveError, match="no scheduler of Dask answers at"):
-        swept_top(tmp_path / "runs", scheduler="tcp://127.0.0.1:9")
+        swept_top(tmp_path / "runs", scheduler=address)

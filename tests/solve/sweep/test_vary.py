@@ -1,5 +1,6 @@
 """How numbers scatter: read by a grammar, drawn by a sequence that the member's number enters."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +28,10 @@ ROUNDING = 3e-3
     ("m", "0..1:none", "a whole number of values"),
     ("m", "__import__('os')", "it varies as one of"),
     ("m", "uniform(1deg, 2deg)", "the value is in kg, not in deg"),
+    ("m", "uniform(-1e308, 1e308)", "what is between both ends must be a number"),
+    ("m", "-1e308..1e308:3", "what is between both ends must be a number"),
+    ("m", "loguniform(1e-200, 1e200)", "the second end must be a number of times the first"),
+    ("m", "normal(0, 1, 60, 61)", "nothing of it that numbers can tell lies between 60 and 61 kg"),
     ("q", "uniform(1, 2)", "has no 'q' to set"),
     ("r", "uniform(1, 2)", "'r' is set and varies"),
 ])  # fmt: skip
@@ -47,6 +52,7 @@ def test_what_cannot_be_read_is_refused_in_a_sentence(
     ({"pairs": 3}, "pairs must be a power of two"),
     ({"samples": 0}, "must be a whole number above zero"),
     ({"until": -1}, "until must be a number above zero"),
+    ({"step": 1e-9}, "a member moves by at most 10,000,000 steps; 0.2 s at 1e-09 s are 2"),
     ({"stop": "alpha"}, "must be an equation"),
 ])  # fmt: skip
 def test_what_makes_no_sense_is_refused_in_a_sentence(
@@ -82,6 +88,16 @@ def test_draws_have_the_means_and_deviations_that_are_asked_for() -> None:
     assert drawn["b"].std() == pytest.approx(2.0, abs=10 * ROUNDING)
     assert np.log(drawn["c"]).mean() == pytest.approx(np.log(10), abs=10 * ROUNDING)
     assert (drawn["a"].min() > 1, drawn["a"].max() < 2) == (True, True)
+
+
+@pytest.mark.parametrize("mean", [-9.0, 0.0, 9.0, 30.0])
+def test_what_is_cut_out_of_a_tail_scatters_as_it_does_there(mean: float) -> None:
+    way = Spread("a", "normal", (mean, 1.0, 0.0, 1.0))
+    drawn = way.values(np.array([0.01, 0.25, 0.5, 0.75, 0.99]))
+    assert (np.diff(np.sort(drawn)) > 0).all()
+    (low, middle, high) = (math.erfc(abs(x - mean) / math.sqrt(2)) / 2 for x in (0, drawn[2], 1))
+    if abs(mean) > 1:
+        assert middle == pytest.approx((low + high) / 2, rel=1e-6)
 
 
 def test_grids_are_crossed_and_every_point_has_the_same_draws() -> None:
