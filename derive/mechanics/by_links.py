@@ -11,6 +11,7 @@ from sympy import Expr, Integer, Symbol
 from derive.mechanics.absolute_angles import absolute_angles, relative
 from derive.mechanics.articulated import articulated
 from derive.mechanics.articulated_plane import articulated_plane
+from derive.mechanics.held_together import held_together
 from derive.mechanics.links import Links, links
 from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.probe import NOTHING, PROBES, random_probe
@@ -26,24 +27,27 @@ OnTheWay = Mapping[Symbol, Expr]
 
 def by_links(mechanism: Mechanism, base: str) -> Iterator[tuple[str, OnTheWay]]:
     """Yield ways to the unknowns of a function: how, values in order, what they stand on before."""
-    if mechanism.scene.constraints:
-        return
     found, sheet = mechanism.lean(base), mechanism.answers.frames.sheet
     problem = found.problem
     held = frozenset(s for e in problem.answers.values() for s in e.free_symbols)
     sought = held & frozenset(problem.unknowns)  # what else balances hold is a reaction
-    machine = links(mechanism.answers.frames, sought)
-    if machine is None or not machine.links:
-        return
-    if sought not in (machine.free, machine.driving):
-        return
+    long = False
+    if mechanism.scene.constraints:
+        ways = held_together(mechanism, sought)
+    else:
+        machine = links(mechanism.answers.frames, sought)
+        if machine is None or not machine.links or machine.composed:
+            return
+        if sought not in (machine.free, machine.driving):
+            return
+        ways, long = _solved(machine, sorted(sought, key=str)), _pairs(machine) > MOST_PAIRS
     known = dict.fromkeys(mechanism.words.hidden, Integer(1)) | dict(found.taken)
-    for how, own in _solved(machine, sorted(sought, key=str)):
+    for how, own in ways:
         needed = sheet.needed([*own.values(), *problem.answers.values()])
         way = {s: e.xreplace(known) for s, e in {**needed, **own}.items()}
         if _same_answers(mechanism.words, problem, way):
             yield how, way
-            if how == ARTICULATED and _pairs(machine) > MOST_PAIRS:
+            if how == ARTICULATED and long:
                 return
 
 

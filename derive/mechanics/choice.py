@@ -18,6 +18,7 @@ from derive.mechanics.probe import (
     independent,
     independent_at_all,
 )
+from derive.mechanics.sweep import LEAST
 from derive.mechanics.valued import Valued
 from derive.scene import Scene, SceneError
 from derive.scene.machine import Force
@@ -143,8 +144,12 @@ def _matrices(
             valued = Valued(balances.sides, probe)
             each.append([balances.at(row, valued) for row in rows])
     found = []
+    usual: NDArray[Any] | None = None
     for own in each:
         matrix = np.array([[float(values[k]) for k in places] for values in own])
+        here = np.linalg.norm(matrix, axis=1, keepdims=True)
+        usual = here if usual is None else usual
+        matrix = np.where(here > LEAST * usual, matrix, 0)  # a row that vanishes tells nothing
         for axis in (1, 0, 1):
             size = np.linalg.norm(matrix, axis=axis, keepdims=True)
             matrix = matrix / np.where(size > 0, size, 1)

@@ -39,7 +39,8 @@ def _leaves_something(row: ValuedBalance) -> bool:
 
 def contradiction(balances: Balances) -> str:
     """Return a sentence on balances that nothing can satisfy, or nothing if there are none."""
-    if not all(_contradicted(balances.spanning, point) for point in range(PROBES)):
+    telling = balances.telling if balances.held else balances.spanning
+    if not all(_contradicted(telling, point) for point in range(PROBES)):
         return ""
     rows = unbalanced(balances)
     if rows:

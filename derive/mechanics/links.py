@@ -6,10 +6,11 @@ All vectors are columns along the axes of a link, or of the base, which does not
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from sympy import Expr, Integer, Matrix, Rational, Symbol, eye, zeros
+from sympy import Expr, Integer, Matrix, Rational, Symbol, eye
 
 from derive.lecture.turning import PLACE, unit_vector
 from derive.mechanics.bodies import centre, inertia_tensor, mass
+from derive.mechanics.bulk import NO_BULK, Bulk, at_point
 from derive.mechanics.frames import ZERO, Frames
 from derive.mechanics.loads import Wrench, wrenches
 from derive.scene.declaration import Turning
@@ -25,28 +26,6 @@ class Drift:
 
     rest: Matrix
     slopes: Mapping[Symbol, Matrix]
-
-
-@dataclass(frozen=True)
-class Bulk:
-    """A mass with its first and second moments about a point, sums of m, m r and m r r^T."""
-
-    mass: Expr
-    first: Matrix
-    second: Matrix
-
-    def __add__(self, other: "Bulk") -> "Bulk":
-        """Return both masses as one."""
-        return Bulk(self.mass + other.mass, self.first + other.first, self.second + other.second)
-
-    def moved(self, by: Matrix) -> "Bulk":
-        """Return it moved: every mass by the same."""
-        offset = self.first * by.T
-        second = self.second + offset + offset.T + self.mass * by * by.T
-        return Bulk(self.mass, self.first + self.mass * by, second)
-
-
-NO_BULK = Bulk(Integer(0), ZERO, zeros(3, 3))
 
 
 @dataclass(frozen=True)
@@ -88,6 +67,7 @@ class Links:
 
     motors : the known moment about the axis of a link that its parent takes on
     drives : the same where it is sought, with its sign
+    composed : what turns by several angles at once: what its unknown is made of
     """
 
     links: tuple[Link, ...]
@@ -96,6 +76,7 @@ class Links:
     pushes: tuple[Push, ...]
     motors: Mapping[int, Expr] = field(default_factory=dict)
     drives: Mapping[int, tuple[Symbol, Expr]] = field(default_factory=dict)
+    composed: Mapping[Symbol, tuple[Expr, Mapping[Symbol, Expr]]] = field(default_factory=dict)
 
     @property
     def free(self) -> frozenset[Symbol]:
@@ -103,6 +84,12 @@ class Links:
         drifts = (*(d for _, d in self.carried), *(k.drift for k in self.links if k.drift))
         angles = (k.unknown for k in self.links if k.unknown is not None)
         return frozenset((*angles, *(u for d in drifts for u in d.slopes)))
+
+    @property
+    def motion(self) -> frozenset[Symbol]:
+        """Return the accelerations that it is made of in the end, however links turn by them."""
+        of = (u for _, slopes in self.composed.values() for u in slopes)
+        return self.free - self.composed.keys() | frozenset(of)
 
     @property
     def driving(self) -> frozenset[Symbol]:
@@ -145,11 +132,6 @@ def near_hinges(machine: Links) -> Links:
     return replace(machine, links=tuple(found), pushes=tuple(pushes))
 
 
-def at_point(m: Expr, place: Matrix) -> Bulk:
-    """Return a mass that is all at one place."""
-    return Bulk(m, m * place, m * place * place.T)
-
-
 class OtherMachineError(Exception):
     """A machine that has more than links which turn freely."""
 
@@ -176,6 +158,7 @@ class _Survey:
         self.links: list[Link] = []
         self.motors: dict[int, Expr] = {}
         self.drives: dict[int, tuple[Symbol, Expr]] = {}
+        self.composed: dict[Symbol, tuple[Expr, Mapping[Symbol, Expr]]] = {}
         self.of: dict[str, int] = {INERTIAL: BASE}
         self.at: dict[str, Matrix] = {INERTIAL: ZERO}  # the origin of a frame, in its link's axes
 
@@ -191,7 +174,8 @@ class _Survey:
         other = weights | {load.name for load in driven}
         acting = [w for w in wrenches(self.frames) if w.load not in other]
         pushes = tuple(p for w in acting for p in self._push(w))
-        return Links(tuple(self.links), tuple(carried), gravity, pushes, self.motors, self.drives)
+        return Links(tuple(self.links), tuple(carried), gravity, pushes, self.motors, self.drives,
+                     self.composed)  # fmt: skip
 
     def _frame(self, frame: Frame) -> None:
         moves = (frame.angular_velocity, frame.velocity, frame.acceleration, frame.rolls)
@@ -209,9 +193,13 @@ class _Survey:
     def _turned(self, turn: Turning, parent: int, place: Matrix) -> None:
         sheet, (R, rate) = self.frames.sheet, self.frames.one_turn(turn)
         rest, slopes = sheet.split(sheet.rate(rate))
-        if slopes and (rest != 0 or list(slopes.values()) != [1]):
-            raise OtherMachineError
         axis, unknown = PLACE[turn.axis], next(iter(slopes), None)
+        if slopes and (rest != 0 or list(slopes.values()) != [1]):
+            unknown = Symbol(f"turning {len(self.links)}", real=True)
+            self.composed[unknown] = (rest, slopes)
+            if not self._constant(Matrix([*slopes.values()])):
+                raise OtherMachineError
+            rest = Integer(0)
         i, j = (axis + 1) % 3, (axis + 2) % 3
         drift = self._drift(place) if parent == BASE else None
         self.links.append(Link(parent, axis, unknown, rest, rate, R[i, i], R[j, i], place, drift))

@@ -11,8 +11,9 @@ from dataclasses import dataclass, field
 from sympy import Expr, Integer, Matrix, Symbol, zeros
 
 from derive.lecture.turning import unit_vector
+from derive.mechanics.bulk import Bulk
 from derive.mechanics.frames import ZERO
-from derive.mechanics.links import BASE, Bulk, Link, Links
+from derive.mechanics.links import BASE, Link, Links
 from derive.mechanics.mass_matrix import MassMatrix
 
 
