@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from typing import Any
 
 from sympy import Expr, Integer, Pow
 
@@ -33,6 +34,7 @@ class Mechanism:
     """A machine with its words and balances; problems are posed once and kept.
 
     inverse : the machine with its motion given, and what moves it sought
+    told    : what its readers are told of a function, by what it is and of which
     """
 
     scene: Scene
@@ -41,6 +43,7 @@ class Mechanism:
     inverse: Mechanism | None = None
     wholes: dict[str, Problem] = field(default_factory=dict)
     leans: dict[str, Lean] = field(default_factory=dict)
+    told: dict[tuple[str, str], Any] = field(default_factory=dict)
 
     @property
     def vocabulary(self) -> Vocabulary:
@@ -89,7 +92,7 @@ class Mechanism:
         """Return the machine with balances of single bodies, about their mass centres only."""
         a = self.answers
         plain = Answers(a.machine, a.frames, a.balances.body_by_body())
-        return replace(self, answers=plain, wholes={}, leans={})
+        return replace(self, answers=plain, wholes={}, leans={}, told={})
 
     def rotation(self) -> FreeRotation | None:
         """Return the rotation of the only body that turns freely, None if there is none."""

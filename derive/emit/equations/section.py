@@ -98,7 +98,15 @@ def recalled(part: Paragraph) -> Iterator[tuple[str, list[Symbol], str]]:
 
 
 def section(library: Library, base: str) -> Section:
-    """Return the equations of a function, its symbols without names yet."""
+    """Return the equations of a function, its symbols without names yet; made once."""
+    place, kept = ("section", base), library.mechanism.told
+    if place not in kept:
+        kept[place] = _section(library, base)
+    found: Section = kept[place]
+    return found
+
+
+def _section(library: Library, base: str) -> Section:
     known = library.mechanism
     own, written = known.posed(base), written_equations(known, base)
     symbols, label = own.words.sheet.symbols, own.words.sheet.label

@@ -144,7 +144,15 @@ def for_readers(mechanism: Mechanism, base: str) -> Problem:
 
 
 def written_equations(mechanism: Mechanism, base: str) -> Readable:
-    """Return the equations of a function as a reader wants them."""
+    """Return the equations of a function as a reader wants them, made once."""
+    place, kept = ("written", base), mechanism.told
+    if place not in kept:
+        kept[place] = _written_equations(mechanism, base)
+    found: Readable = kept[place]
+    return found
+
+
+def _written_equations(mechanism: Mechanism, base: str) -> Readable:
     own, told = mechanism.posed(base).vocabulary, for_readers(mechanism, base)
     loads = (c for q in own.inputs if q.unit in ("N", "N m") for c in q.components)
     given = frozenset(own.symbols[c] for c in loads)
