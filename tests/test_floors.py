@@ -36,7 +36,7 @@ WITHOUT_SYMPY = (
     *("lower/schedule", "lower/derivative", "lower/forms", "lower/setup", "lower/cancel"),
 )
 """Folders and modules that must not know the symbols."""
-MOST_ASKERS = 10
+MOST_ASKERS = 11
 MOST_LINES = 300
 """Modules outside mechanics that may import it: what others need of it, a library tells them."""
 FORMS = ("ShortForm", "short_form", "long_form", "read_short", "read_scene", "read_machine")

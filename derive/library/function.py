@@ -20,6 +20,7 @@ from derive.lower.forms import (
     without_what_cancels,
 )
 from derive.lower.graph import Graph, Value
+from derive.lower.implied import jacobian_by_factors
 from derive.lower.lower import lower
 from derive.lower.setup import Constants, hot, used_inputs
 from derive.mechanics.mechanism import Mechanism
@@ -30,6 +31,9 @@ from derive.program.pattern import compressed
 from derive.program.program import MATRIX, Program, Quantity, Sparsity
 from derive.scene import Scene, SceneError
 from derive.scene.wanted import JACOBIAN, SENSITIVITY, without_ending
+
+MANY_UNKNOWNS = 4
+"""Of so many, no solution is differentiated where its factors will do: that is dearer, and slow."""
 
 
 @dataclass(frozen=True)
@@ -80,12 +84,14 @@ class Graphed:
 class Arranged:
     """A wanted function in the graph: its problem, and its output components by quantity.
 
-    ways : operations of the cheapest program of each way to arrange it, the way taken first
+    ways    : operations of the cheapest program of each way to arrange it, the way taken first
+    implied : the cheapest arrangement of each way whose slopes follow from equations it solves
     """
 
     problem: Problem
     outputs: tuple[tuple[Value, ...], ...]
     ways: Mapping[str, int] = field(default_factory=dict)
+    implied: tuple[Arrangement, ...] = ()
 
 
 def graphed(mechanism: Mechanism) -> Graphed:
@@ -107,7 +113,9 @@ def arranged(terms: Graphed, base: str) -> Arranged:
     costs = [cost(terms.graph, _best(terms, one)) for one in found]
     order = sorted(range(len(found)), key=costs.__getitem__)
     each = {ways[n].by: costs[n][0] for n in reversed(order)}
-    return replace(found[order[0]], ways=dict(reversed(each.items())))
+    implied = {ways[n].by: ways[n] for n in reversed(order) if ways[n].implied}
+    taken = dict(reversed(each.items()))
+    return replace(found[order[0]], ways=taken, implied=tuple(implied.values()))
 
 
 def function(terms: Graphed, wanted: Arranged, name: str) -> Program:
@@ -162,8 +170,13 @@ def _differentiated(
     Outputs are looked at one by one, and those together that vary by components of one vector.
     """
     inputs = tuple(tuple(terms.leaves[c] for c in q.components) for q in columns)
-    ways = dict.fromkeys((_one_by_one(wanted), _together(terms.graph, wanted)))
-    found = [_in_groups(terms.graph, wanted, groups, inputs) for groups in ways]
+    leaves = [leaf for quantity in inputs for leaf in quantity]
+    every = (jacobian_by_factors(terms.graph, way, terms.by_symbol(), leaves)
+             for way in wanted.implied)  # fmt: skip
+    found = [one for one in every if one is not None]
+    if not found or len(wanted.problem.unknowns) < MANY_UNKNOWNS:
+        ways = dict.fromkeys((_one_by_one(wanted), _together(terms.graph, wanted)))
+        found += [_in_groups(terms.graph, wanted, groups, inputs) for groups in ways]
     return min(found, key=lambda one: cost(terms.graph, [*one[0], *(e for r in one[1] for e in r)]))
 
 

@@ -1,9 +1,9 @@
 """Derivatives of graph values: one rule a row, zeros and constants known as they arise."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
-from derive.lower.graph import ONE, ZERO, Graph, Value
+from derive.lower.graph import ONE, UNIT, ZERO, Graph, Value
 
 Differentiation = Callable[[Graph, tuple[Value, ...]], tuple[Value, ...]]
 
@@ -29,8 +29,13 @@ def slopes_by(graph: Graph, leaf: Value) -> Callable[[Value], Value]:
     >>> slopes_by(g, x)(g.power(x, 3)) == g.mul([g.number(3), g.power(x, 2)])
     True
     """
-    memory: dict[int, Value] = {leaf[1]: (Fraction(1), ONE)}
-    varies = not graph.fixed[leaf[1]]
+    return slopes_from(graph, {leaf[1]: UNIT})
+
+
+def slopes_from(graph: Graph, known: Mapping[int, Value]) -> Callable[[Value], Value]:
+    """Return what differentiates values whose slopes follow from those of some nodes, known."""
+    memory = dict(known)
+    varies = not any(graph.fixed[node] for node in known)
 
     def visit(node: int) -> Value:
         if node not in memory:

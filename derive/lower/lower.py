@@ -1,11 +1,11 @@
 """From SymPy expressions to the graph: the last file that knows SymPy."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, pi, sin, tan
 
-from derive.lower.arrange.arrangement import Arrangement
+from derive.lower.arrange.arrangement import Arrangement, Definition
 from derive.lower.derivative import RULES
 from derive.lower.graph import Graph, Value
 
@@ -15,13 +15,21 @@ def lower(graph: Graph, arrangement: Arrangement, leaves: Mapping[Symbol, Value]
 
     leaves : the graph's value of every input's symbol
     """
+    known = defined(graph, arrangement.definitions, leaves)
+    return [value_of(graph, e, known) for e in arrangement.outputs]
+
+
+def defined(
+    graph: Graph, definitions: Iterable[Definition], leaves: Mapping[Symbol, Value]
+) -> dict[Symbol, Value]:
+    """Return the values of definitions, and of all that they are made of, by symbol."""
     known = dict(leaves)
-    for definition in arrangement.definitions:
+    for definition in definitions:
         name, value = definition.symbol.name, value_of(graph, definition.value, known)
         let = definition.kind == "let"
         named = graph.let(name, value, definition.family) if let else graph.cut(name, value)
         known[definition.symbol] = named
-    return [value_of(graph, e, known) for e in arrangement.outputs]
+    return known
 
 
 def value_of(graph: Graph, e: Expr, known: Mapping[Symbol, Value]) -> Value:

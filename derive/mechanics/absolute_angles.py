@@ -9,21 +9,24 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from sympy import Expr, Integer, Matrix, Symbol
+from sympy import Expr, Integer, Matrix, Symbol, cos, sin
 
 from derive.mechanics.frames import ZERO
+from derive.mechanics.implied import Turned
 from derive.mechanics.links import BASE, Links, Push
 from derive.mechanics.mass_matrix import MassMatrix
 
-Turned = tuple[Expr, Expr]  # the cosine and the sine of an angle
-NOT_TURNED: Turned = (Integer(1), Integer(0))
+Rotation = tuple[Expr, Expr]  # the cosine and the sine of an angle
+NOT_TURNED: Rotation = (Integer(1), Integer(0))
 
 
-def absolute_angles(machine: Links) -> MassMatrix | None:
-    """Return the mass matrix of links about parallel axes, None if some are not parallel."""
+def absolute_angles(machine: Links) -> "AbsoluteAngles | None":
+    """Return the equations of links about parallel axes, None if some are not parallel."""
     if machine.drives or len({link.axis for link in machine.links}) != 1:
         return None
-    return _AbsoluteAngles(machine, MassMatrix()).assembled()
+    found = AbsoluteAngles(machine, MassMatrix())
+    found.assemble()
+    return found
 
 
 def relative(machine: Links, found: Mapping[Symbol, Expr]) -> dict[Symbol, Expr]:
@@ -38,20 +41,26 @@ def relative(machine: Links, found: Mapping[Symbol, Expr]) -> dict[Symbol, Expr]
 
 
 @dataclass
-class _AbsoluteAngles:
+class AbsoluteAngles:
+    """A mass matrix with its right side, and what it is made of.
+
+    between : the cosine and sine of the angle from a link to one that it carries
+    """
+
     machine: Links
     system: MassMatrix
-    between: dict[tuple[int, int], Turned] = field(default_factory=dict)
+    between: dict[tuple[int, int], Rotation] = field(default_factory=dict)
 
-    def assembled(self) -> MassMatrix:
+    def assemble(self) -> None:
+        """Set up the mass matrix."""
         links, system = self.machine.links, self.system
         self.axis = links[0].axis
         self.bodies = self.machine.augmented()
-        speeds: list[Expr] = []
+        self.speeds: list[Expr] = []
         for link in links:
-            above = Integer(0) if link.parent == BASE else speeds[link.parent]
-            speeds.append(system.cut("speed", above + link.rate))
-        self.squares = [system.cut("square", omega**2) for omega in speeds]
+            above = Integer(0) if link.parent == BASE else self.speeds[link.parent]
+            self.speeds.append(system.cut("speed", above + link.rate))
+        self.squares = [system.cut("square", omega**2) for omega in self.speeds]
         for k, link in enumerate(links):
             x, y, _ = self._plane(Matrix(self.bodies[k].second.diagonal()))
             system.add(link.unknown, link.unknown, x + y)
@@ -66,7 +75,26 @@ class _AbsoluteAngles:
             system.act(links[k].unknown, moment)
             if links[k].parent != BASE:
                 system.act(links[links[k].parent].unknown, -moment)
-        return system
+
+    def kinds(self) -> tuple[tuple[Turned, ...], ...]:
+        """Return absolute angles and speeds with the slopes by them, none if they stand hidden."""
+        links = self.machine.links
+        slopes: list[dict[Symbol, Expr]] = [{} for _ in links]
+        for (inner, outer), (c, s) in self.between.items():
+            slopes[outer] |= {c: -s, s: c}
+            if inner != BASE:
+                slopes[inner] |= {c: s, s: -c}
+        every = [*self.speeds, *(e for turn in self.between.values() for e in turn)]
+        plain = len({e for e in every if e.is_Symbol}) == len(every)
+        if not plain or any(k.cosine.func is not cos for k in links):
+            return ()
+        if any(k.sine != sin(*k.cosine.args) for k in links):
+            return ()
+        angles = (Turned(k.cosine.args[0], by, k.parent)
+                  for k, by in zip(links, slopes, strict=True))  # fmt: skip
+        rates = (Turned(k.rate, {omega: Integer(1)}, k.parent)
+                 for k, omega in zip(links, self.speeds, strict=True))  # fmt: skip
+        return tuple(angles), tuple(rates)
 
     def _plane(self, v: Matrix) -> tuple[Expr, Expr, Expr]:
         """Return the components that turn, then that along the axis."""
@@ -127,13 +155,13 @@ class _AbsoluteAngles:
         c, s = self._turned(BASE, end)
         return self._rotated((c, -s), self._rotated(self._turned(BASE, start), vector))
 
-    def _rotated(self, turn: Turned, vector: Matrix) -> Matrix:
+    def _rotated(self, turn: Rotation, vector: Matrix) -> Matrix:
         (c, s), (x, y, z) = turn, self._plane(vector)
         found = {(self.axis + 1) % 3: c * x - s * y, (self.axis + 2) % 3: s * x + c * y,
                  self.axis: z}  # fmt: skip
         return Matrix([found[k] for k in range(3)])
 
-    def _turned(self, inner: int, outer: int) -> Turned:
+    def _turned(self, inner: int, outer: int) -> Rotation:
         """Return the cosine and sine of the angle from a link to one that it carries."""
         if inner == outer:
             return NOT_TURNED

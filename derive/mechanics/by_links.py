@@ -12,6 +12,7 @@ from derive.mechanics.absolute_angles import absolute_angles, relative
 from derive.mechanics.articulated import articulated
 from derive.mechanics.articulated_plane import articulated_plane
 from derive.mechanics.held_together import held_together
+from derive.mechanics.implied import Implied, by_passes, by_rows
 from derive.mechanics.links import Links, links
 from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.probe import NOTHING, PROBES, random_probe
@@ -25,15 +26,21 @@ MOST_PAIRS = 45
 OnTheWay = Mapping[Symbol, Expr]
 
 
-def by_links(mechanism: Mechanism, base: str) -> Iterator[tuple[str, OnTheWay]]:
-    """Yield ways to the unknowns of a function: how, values in order, what they stand on before."""
+def by_links(
+    mechanism: Mechanism, base: str
+) -> Iterator[tuple[str, OnTheWay, Implied | None]]:  # fmt: skip
+    """Yield ways to the unknowns of a function: how, values in order, what they stand on before.
+
+    Beside these stands what slopes of the unknowns follow from, where a mass matrix was solved.
+    """
     found, sheet = mechanism.lean(base), mechanism.answers.frames.sheet
     problem = found.problem
     held = frozenset(s for e in problem.answers.values() for s in e.free_symbols)
     sought = held & frozenset(problem.unknowns)  # what else balances hold is a reaction
+    ways: Iterator[tuple[str, OnTheWay, Implied | None]]
     long = False
     if mechanism.scene.constraints:
-        ways = held_together(mechanism, sought)
+        ways = ((how, own, None) for how, own in held_together(mechanism, sought))
     else:
         machine = links(mechanism.answers.frames, sought)
         if machine is None or not machine.links or machine.composed:
@@ -42,32 +49,35 @@ def by_links(mechanism: Mechanism, base: str) -> Iterator[tuple[str, OnTheWay]]:
             return
         ways, long = _solved(machine, sorted(sought, key=str)), _pairs(machine) > MOST_PAIRS
     known = dict.fromkeys(mechanism.words.hidden, Integer(1)) | dict(found.taken)
-    for how, own in ways:
-        needed = sheet.needed([*own.values(), *problem.answers.values()])
+    for how, own, implied in ways:
+        more = implied.expressions() if implied else ()
+        needed = sheet.needed([*own.values(), *problem.answers.values(), *more])
         way = {s: e.xreplace(known) for s, e in {**needed, **own}.items()}
         if _same_answers(mechanism.words, problem, way):
-            yield how, way
+            yield how, way, implied and implied.xreplace(known)
             if how == ARTICULATED and long:
                 return
 
 
-def _solved(machine: Links, unknowns: Sequence[Symbol]) -> Iterator[tuple[str, OnTheWay]]:
+def _solved(
+    machine: Links, unknowns: Sequence[Symbol]
+) -> Iterator[tuple[str, OnTheWay, Implied | None]]:  # fmt: skip
     if not machine.free:
-        yield "recursion", driven(machine)
+        yield "recursion", driven(machine), None
         return
     if machine.drives or any(link.unknown is None for link in machine.links):
         return
     turning = {link.unknown for link in machine.links}
     others = [u for u in unknowns if u not in turning]
-    yield ARTICULATED, articulated_plane(machine, others) or articulated(machine, others)
-    systems = absolute_angles(machine), recursion(machine)
+    yield ARTICULATED, articulated_plane(machine, others) or articulated(machine, others), None
+    absolute, system = absolute_angles(machine), recursion(machine)
     for order in _orders(machine, unknowns):
-        for absolute, system in zip((True, False), systems, strict=True):
-            if system is not None:
-                own, found = system.solved(order)
-                values = relative(machine, found) if absolute else found
-                how = "absolute angles" if absolute else "recursion"
-                yield how, {**own.definitions, **values}
+        if absolute is not None:
+            own, found = absolute.system.solved(order)
+            implied = by_rows(absolute.system, own, found, absolute.kinds())
+            yield "absolute angles", {**own.definitions, **relative(machine, found)}, implied
+        own, found = system.solved(order)
+        yield "recursion", {**own.definitions, **found}, by_passes(machine, own, found)
 
 
 def _pairs(machine: Links) -> int:

@@ -46,7 +46,9 @@ def held_together(mechanism: Mechanism, sought: frozenset[Symbol]) -> HeldWays:
     if not sought or not sought <= free | {row.force for row in rows}:
         return
     machine = _all_turning(machine)
-    for how, system in ((ABSOLUTE, absolute_angles(machine)), (RELATIVE, recursion(machine))):
+    absolute = absolute_angles(machine)
+    ways = (ABSOLUTE, absolute.system if absolute else None), (RELATIVE, recursion(machine))
+    for how, system in ways:
         if system is not None:
             yield from _solved(mechanism, machine, (how, system), rows, sought)
 

@@ -3,7 +3,7 @@
 In any order L D L^T divides by what is positive, as the energy of every motion is.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from sympy import Expr, Integer, Matrix, Symbol
@@ -11,13 +11,26 @@ from sympy import Expr, Integer, Matrix, Symbol
 from derive.mechanics.links import Drift
 
 
+@dataclass(frozen=True)
+class Factors:
+    """L and the inverse of D, by unknown: L below its diagonal, in an order."""
+
+    order: tuple[Symbol, ...]
+    below: Mapping[tuple[Symbol, Symbol], Expr]
+    inverses: Mapping[Symbol, Expr]
+
+
 @dataclass
 class MassMatrix:
-    """What is computed on the way, in order, each by a symbol; then both sides, by unknown."""
+    """What is computed on the way, in order, each by a symbol; then both sides, by unknown.
+
+    factors : once it is solved
+    """
 
     definitions: dict[Symbol, Expr] = field(default_factory=dict)
     entries: dict[tuple[Symbol, Symbol], Expr] = field(default_factory=dict)
     right: dict[Symbol, Expr] = field(default_factory=dict)
+    factors: Factors | None = None
 
     def cut(self, name: str, value: Expr) -> Expr:
         """Return a symbol for a value, unless it is plain."""
@@ -60,20 +73,21 @@ class MassMatrix:
         own = MassMatrix(dict(self.definitions))
         A, left = dict(self.entries), list(order)
         b = {u: own.cut("b", self.right.get(u, Integer(0))) for u in order}
-        factors, inverses = dict[tuple[Symbol, Symbol], Expr](), []
+        factors, inverses = dict[tuple[Symbol, Symbol], Expr](), dict[Symbol, Expr]()
         for u in order:
             left.remove(u)
-            inverses.append(own.cut("inverse", 1 / A[u, u]))
+            inverses[u] = own.cut("inverse", 1 / A[u, u])
             held = [n for n in left if A.get((n, u), 0) != 0]
             for n in held:
-                factors[n, u] = own.cut("factor", A[n, u] * inverses[-1])
+                factors[n, u] = own.cut("factor", A[n, u] * inverses[u])
                 b[n] = own.cut("b", b[n] - factors[n, u] * b[u])
             for place, n in enumerate(held):
                 for m in held[place:]:
                     less = A.get((n, m), Integer(0)) - factors[n, u] * A[m, u]
                     A[n, m] = A[m, n] = own.cut("a", less)
+        own.factors = Factors(tuple(order), factors, inverses)
         found: dict[Symbol, Expr] = {}
-        for u, inverse in reversed(list(zip(order, inverses, strict=True))):
+        for u, inverse in reversed(inverses.items()):
             rest = sum((e * found[n] for (n, k), e in factors.items() if k == u), Integer(0))
             found[u] = own.cut("x", b[u] * inverse - rest)
         return own, found

@@ -68,7 +68,7 @@ def test_links_are_solved_whatever_carries_and_pushes_them(name: str) -> None:
 
 @pytest.mark.long
 def test_a_long_chain_is_solved_without_a_matrix() -> None:
-    ways_ = [how for how, _ in by_links(machine_of(chain("y" * 11)), "accelerations")]
+    ways_ = [how for how, *_ in by_links(machine_of(chain("y" * 11)), "accelerations")]
     assert ways_ == [ways.ARTICULATED]
 
 

@@ -1,8 +1,10 @@
 """Definitions as they are found: what is computed on the way, each with a name."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from sympy import Expr, Symbol
+
+from derive.mechanics.implied import Implied as Implied
 
 
 @dataclass(frozen=True)
@@ -23,9 +25,11 @@ class Definition:
 class Arrangement:
     """Definitions in order, and the output components.
 
-    by : the way that they were found
+    by      : the way that they were found
+    implied : what slopes of solved unknowns follow from, if that is known
     """
 
     definitions: tuple[Definition, ...]
     outputs: tuple[Expr, ...]
     by: str = "balances"
+    implied: Implied | None = field(default=None, compare=False)

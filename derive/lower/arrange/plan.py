@@ -69,8 +69,10 @@ def arrange(mechanism: Mechanism, problem: Problem) -> tuple[Arrangement, ...]:
     own = mechanism.posed(problem.name)
     lean = prepared(own, own.lean(problem.name).problem)
     answers = tuple(lean.answers.values())
-    found = ((_cut(way, lean.unknowns), how) for how, way in by_links(own, problem.name))
-    recursive = tuple(Arrangement(definitions, answers, how) for definitions, how in found)
+    recursive = tuple(
+        Arrangement(_cut(way, lean.unknowns), answers, how, implied)
+        for how, way, implied in by_links(own, problem.name)
+    )
     if recursive and _longest(lean) > LONGEST_ROW:
         return recursive
     ways = (Way(lean), _ruled(own, lean), _written_out(own, lean))

@@ -1,0 +1,92 @@
+"""Jacobians of accelerations come by the factors that solved these, and no solution is derived."""
+
+from dataclasses import replace
+
+import pytest
+
+from bench.chains import chain
+from derive.library.library import library
+from derive.lower import implied as by_factors
+from derive.lower.arrange.arrangement import Arrangement
+from derive.lower.graph import Graph
+from derive.mechanics.by_links import by_links
+from derive.mechanics.implied import Implied, Turned
+from derive.mechanics.mechanism import mechanism
+from derive.scene import parse_scene
+from derive.verify.prove import ProofError, prove
+from tests.mechanics.chains import ON_A_CART, PUSHED
+
+PLANAR = {2: 69, 3: 221, 4: 485, 5: 886, 6: 1450}
+IN_TURN = {2: 60, 3: 434, 4: 1109, 5: 2087, 6: 3376}
+"""Operations of the accelerations of equal rods with their Jacobian."""
+AXES = {"parallel": ("y", PLANAR), "in turn": ("yx", IN_TURN)}
+CASES = [(name, rods) for name, (_, own) in AXES.items() for rods in own]
+
+
+def with_jacobian(text: str) -> str:
+    return text.replace('["accelerations"]', '["accelerations_jacobian"]')
+
+
+@pytest.mark.parametrize(
+    ("name", "rods"),
+    [case if case[1] < 3 else pytest.param(*case, marks=pytest.mark.long) for case in CASES],
+)
+def test_a_chain_is_linearised_by_the_factors_that_solve_it(name: str, rods: int) -> None:
+    axes, most = AXES[name]
+    made = library(parse_scene(with_jacobian(chain((axes * rods)[:rods])), "chain"))
+    program = made["accelerations_jacobian"]
+    assert program.flops() <= most[rods]
+    assert program.count.get("div", 0) == rods - 1
+    prove(made)
+
+
+@pytest.mark.parametrize(
+    "text", [ON_A_CART, pytest.param(PUSHED, marks=pytest.mark.long)], ids=["cart", "pushed"]
+)
+def test_links_that_branch_slide_and_are_pushed_are_linearised(text: str) -> None:
+    prove(library(parse_scene(with_jacobian(text), "chain")))
+
+
+def mutants(own: Implied) -> dict[str, Implied]:
+    """Return what slopes follow from with each part of it wrong, one at a time."""
+    first, *others = own.left
+    pair, *_ = own.factors.below
+    below = {**own.factors.below, pair: -own.factors.below[pair]}
+    inverses = {u: 2 * e for u, e in own.factors.inverses.items()}
+    angles, rates = own.kinds
+    wrong = tuple(replace(t, slopes={s: -e for s, e in t.slopes.items()}) for t in angles)
+    alone: tuple[Turned, ...] = tuple(replace(t, parent=-1) for t in rates)
+    return {
+        "equation": replace(own, left={**own.left, first: own.left[others[0]]}),
+        "factor": replace(own, factors=replace(own.factors, below=below)),
+        "pivot": replace(own, factors=replace(own.factors, inverses=inverses)),
+        "slope": replace(own, kinds=(wrong, rates)),
+        "outboard": replace(own, kinds=(angles, alone)),
+    }
+
+
+@pytest.mark.parametrize("name", ["equation", "factor", "pivot", "slope", "outboard"])
+def test_what_slopes_follow_from_is_not_proved_if_it_is_wrong(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    right = by_factors.jacobian_by_factors
+
+    def wrong(graph: Graph, way: Arrangement, *rest):
+        assert way.implied is not None
+        if not way.implied.kinds:
+            return None
+        return right(graph, replace(way, implied=mutants(way.implied)[name]), *rest)
+
+    monkeypatch.setattr("derive.library.function.jacobian_by_factors", wrong)
+    monkeypatch.setattr("derive.library.function.MANY_UNKNOWNS", 0)
+    made = library(parse_scene(with_jacobian(chain("yy")), "chain"))
+    with pytest.raises(ProofError):
+        prove(made)
+
+
+def test_a_chain_is_told_how_its_equations_change_with_each_absolute_angle() -> None:
+    own = mechanism(parse_scene(chain("yyy"), "chain"))
+    told = {how: implied for how, _, implied in by_links(own, "accelerations")}
+    angles, rates = told["absolute angles"].kinds  # type: ignore[union-attr]
+    assert [t.parent for t in angles] == [t.parent for t in rates] == [-1, 0, 1]
+    assert told["articulated bodies"] is None
