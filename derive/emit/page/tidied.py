@@ -43,19 +43,19 @@ def _tidied_once(value: Expr) -> Expr:
     inner = _signed(value.func(*map(_tidied_once, value.args)))
     if not (inner.is_Add or inner.is_Mul):
         return inner
-    return min((inner, *map(_signed, _forms(inner))), key=_length)
+    return min(dict.fromkeys((inner, *map(_signed, dict.fromkeys(_forms(inner))))), key=_length)
 
 
 def _forms(value: Expr) -> Iterator[Expr]:
     outside = factor_terms(value, sign=False)
     yield outside
-    if value.count_ops() > LONGEST or not value.has(Add):
+    if _length(value)[0] > LONGEST or not value.has(Add):
         return
     whole = expand(value)
     every = [value, whole]
     if value.has(sin, cos):
         every += [TR10i(whole), reduced(value), expand(TR6(whole))]
-    for one in every:
+    for one in dict.fromkeys(every):
         yield from (one, _gathered(one))
 
 
@@ -73,6 +73,7 @@ def _gathered(value: Expr) -> Expr:
     return common * _gathered(Add(*inside)) + _gathered(Add(*rest))
 
 
+@lru_cache(KEPT)
 def _signed(value: Expr) -> Expr:
     """Return products with the signs of their sums brought before them."""
     if value.is_Add:
@@ -93,6 +94,7 @@ def _minuses(value: Expr) -> int:
     return len([t for t in Add.make_args(value) if t.as_coeff_Mul()[0].is_negative])
 
 
+@lru_cache(KEPT)
 def _length(value: Expr) -> tuple[int, int]:
     """Return how long an expression is to a reader: its operations, then its leading signs."""
     sums = [f.base if isinstance(f, Pow) else f for f in Mul.make_args(value)]
