@@ -5,7 +5,7 @@ parameters and inputs being floats of their declared ranges: absolute, the large
 components. What cannot be proved says why.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,17 +17,16 @@ from derive.program.program import Bound, Program, Quantity
 from derive.verify.columns import planned
 from derive.verify.draw import Dice, Sampled
 from derive.verify.measure import upwards
-from derive.verify.operators import Column
 from derive.verify.proved.cut import UNIT, Cells, Cutting, Region
 from derive.verify.proved.enclosed import BROAD
 from derive.verify.proved.seen import SEARCH, Search, seen
 from derive.verify.proved.traits import Traits, choice_name, traits
-from derive.verify.proved.unfolded import Operation, unfolded
+from derive.verify.proved.unfolded import Operation, pruned, unfolded
 from derive.verify.scale import measured_outputs
 from derive.verify.search import SAMPLING, Sampling
 
-WORK = 48_000_000
-"""Operations, of a box for a result, after which no part is cut any more."""
+WORK = 96_000_000
+"""Operations, of a box for a result, of a function, after which no part is cut any more."""
 LONGEST = 2000
 """Operations of a function that bounds are tried of."""
 WHY = {
@@ -71,38 +70,69 @@ def proved_bounds(library: Library, by: Proof) -> tuple[Bound, ...]:
     return tuple(b for program in library.printed() for b in bounds_of(library, program, by))
 
 
-def bounds_of(library: Library, program: Program, by: Proof) -> Iterator[Bound]:
-    """Yield the bounds of a function: parts cut for float serve double as well."""
+@dataclass(frozen=True)
+class Proved:
+    """An output's bound over parts of the ranges, or why it has none."""
+
+    name: str
+    most: float = 0.0
+    why: str = ""
+    at: Cutting | None = None
     parts: Cells | None = None
+
+
+def bounds_of(library: Library, program: Program, by: Proof) -> Iterator[Bound]:
+    """Yield the bounds of a function, output by output: parts cut for float serve double too."""
+    each: list[Proved] = []
     for precision in PRECISIONS:
-        outputs = [q.name for q, _ in measured_outputs(program)]
+        each = _proved(library, program, precision, by.work, {p.name: p.parts for p in each})
+        peaks = [p.at.peaks for p in each if p.at and not p.why]
+        off = [0.0] * len(each)
+        if peaks:
+            off = seen(Sampled(library, precision), planned(program), peaks, by.search)
+        for one, found in zip(each, off, strict=True):
+            place = program.name, precision.name, one.name
+            if one.why or one.at is None:
+                yield Bound(*place, why=one.why)
+            else:
+                yield Bound(*place, upwards(one.most), float(f"{found:.1e}"), assumed(one.at))
+
+
+def _proved(
+    library: Library,
+    program: Program,
+    precision: Precision,
+    work: int,
+    cut: Mapping[str, Cells | None],
+) -> list[Proved]:
+    """Return the bound of each output, which has its share of what others leave of the work."""
+    outputs, found = measured_outputs(program), list[Proved]()
+    for n, (q, span) in enumerate(outputs):
+        parts, at = cut.get(q.name), None
         try:
-            at = cutting(library, program, precision, by.work)
-            parts = at.run() if parts is None else at.valued(parts.lows, parts.highs)
-            proved, names = _largest(at, parts, program), at.box.names
+            at = cutting(library, program, span, precision, work // (len(outputs) - n))
+            parts = at.valued(parts.lows, parts.highs) if parts else at.run()
+            found.append(Proved(q.name, _largest(at, parts), "", at, parts))
         except UnprovedError as why:
-            yield from (Bound(program.name, precision.name, o, why=str(why)) for o in outputs)
-            continue
-        found = seen(
-            Sampled(library, precision), planned(program), (names, _worst(at, parts)), by.search
-        )
-        for output, most, off in zip(outputs, proved, found, strict=True):
-            told = upwards(most), float(f"{off:.1e}")
-            yield Bound(program.name, precision.name, output, *told, assumed(at))
+            found.append(Proved(q.name, 0.0, str(why), at, parts))
+        work -= at.spent if at else 0
+    return found
 
 
-def cutting(library: Library, program: Program, precision: Precision, work: int) -> Cutting:
-    """Return what bounds a function. Raises UnprovedError where no bound is tried."""
+def cutting(
+    library: Library, program: Program, span: slice, precision: Precision, work: int
+) -> Cutting:
+    """Return what bounds an output of a function. Raises UnprovedError where no bound is tried."""
     if any(q.role == "plan" for q in program.inputs):
         raise UnprovedError("its plan, of another function, has no enclosure here")
     trace = unfolded(library, program, precision.bits)
+    trace = pruned(trace.steps, trace.results[span])
     if len(trace.steps) > LONGEST:
         raise UnprovedError(f"{len(trace.steps)} operations are more than the {LONGEST} tried")
     whole = any(q.is_quaternion for q in program.inputs)
     of = traits(trace, precision, quaternions=whole)
     name = f"derive: {library.scene.name} {F32.name} bound {program.name}"
-    outputs = [span for _, span in measured_outputs(program)]
-    return Cutting(of, box(library, program, of), work, Dice(name), outputs)
+    return Cutting(of, box(library, program, of), work, Dice(name))
 
 
 def box(library: Library, program: Program, of: Traits) -> Region:
@@ -130,11 +160,10 @@ def ends_in_floats(of: dict[str, Quantity], name: str, precision: Precision) -> 
     return -most * precision.unit_roundoff, most * precision.unit_roundoff
 
 
-def _largest(at: Cutting, parts: Cells, program: Program) -> list[float]:
-    """Return the bound of each measured output. Raises UnprovedError if it has none."""
-    each = parts.shifts.max(axis=1, initial=0.0)
-    found = [float(each[span].max()) for _, span in measured_outputs(program)]
-    if not np.all(np.isfinite(found)):
+def _largest(at: Cutting, parts: Cells) -> float:
+    """Return the bound of an output. Raises UnprovedError if it has none."""
+    found = float(parts.shifts.max(initial=0.0))
+    if not np.isfinite(found):
         steps = at.traits.trace.steps
         raise UnprovedError(_why([steps[n] for n in np.unique(parts.blamed) if n >= 0]))
     return found
@@ -145,15 +174,6 @@ def _why(steps: list[Operation]) -> str:
         if step.operator in WHY:
             return WHY[step.operator] + (", in set-up" if step.origin == "pairs" else "")
     return "ranges of its values grow beyond all measure"
-
-
-def _worst(at: Cutting, parts: Cells, count: int = 96) -> Column:
-    """Return points of the parts with the largest bounds: corners, and points between."""
-    order = np.argsort(-at.scores(parts), kind="stable")[:count]
-    which = np.resize(order, 8 * count)
-    dice = at.dice.uniform(len(at.box.names), len(which))
-    dice[:, : 4 * count] = np.round(dice[:, : 4 * count])
-    return np.asarray(parts.lows[:, which] + (parts.highs - parts.lows)[:, which] * dice)
 
 
 def assumed(at: Cutting) -> tuple[str, ...]:

@@ -20,10 +20,18 @@ TIGHT = 1.1
 """A bound is no more than this of one at a point: nothing is left to cut for."""
 UNIT = (0.999, 1.001)
 """Of the squared length of a quaternion that is given."""
+NARROWER = 1e-6
+"""As much of a length is kept from these ends, more than floats round."""
 MARGIN = 1e-12
 """More than rounding takes from ends that are found by roots."""
 FINEST = 4
 TRIED_AT = 512
+"""Points that a climb to the largest bound begins with, and takes in each of its turns."""
+CLIMBS, KEPT = 12, 48
+ENDS = 0.5
+"""Of all moves go to an end of a range: bounds are largest there."""
+START = 0.1
+"""Of the work may be spent on cutting quaternions evenly, before the worst parts are cut."""
 PIECES = 8
 """Into so many a side is cut to see what cutting it takes from a bound."""
 MOST = 32768
@@ -41,6 +49,15 @@ class Region:
     lows: Column
     highs: Column
     quaternions: tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """Points at which the bound is largest, a column each: of what is named, and how large."""
+
+    names: tuple[str, ...]
+    points: Column
+    most: float
 
 
 @dataclass
@@ -65,20 +82,19 @@ def joined(each: Sequence[Cells]) -> Cells:
 
 @dataclass
 class Cutting:
-    """A bound in the making: work is counted in operations over one box, for one result.
+    """The bound of an output in the making: the largest of its components', over all parts.
 
-    outputs : which results are components of one, whose bound is that of the largest
+    Work is counted in operations over one box, for one result.
     """
 
     traits: Traits
     box: Region
     work: int
     dice: Dice
-    outputs: Sequence[slice]
     spent: int = 0
 
     def valued(self, lows: Column, highs: Column) -> Cells:
-        """Return parts with their bounds, those without a unit quaternion left out."""
+        """Return parts with their bounds, those that hold nothing left out."""
         lows, highs = self._on_the_sphere(lows, highs)
         rows = len(self.traits.trace.results)
         step = max(1, FULL // rows)
@@ -93,12 +109,13 @@ class Cutting:
         ranges = {n: (lows[k], highs[k]) for k, n in enumerate(self.box.names)}
         with np.errstate(all="ignore"):
             found = enclosed(self.traits, ranges, count)
-            return Cells(lows, highs, shifts(found), np.where(found.void, -1, found.blamed))
+            every = Cells(lows, highs, shifts(found), found.blamed)
+        return every.of(~found.void) if found.void.any() else every
 
     def scores(self, parts: Cells) -> Column:
         """Return how much the bound of each part is above what is certain at points."""
-        over = self._of_outputs(parts.shifts) / np.maximum(self.least, 1e-280)[:, None]
-        return np.asarray(np.where(np.isnan(over), np.inf, over).max(axis=0))
+        over = parts.shifts.max(axis=0, initial=0.0) / max(self.peaks.most, 1e-280)
+        return np.asarray(np.where(np.isnan(over), np.inf, over))
 
     def run(self) -> Cells:
         """Return parts that make up the box, cut while that makes the bound smaller."""
@@ -116,39 +133,63 @@ class Cutting:
         return parts
 
     @cached_property
-    def least(self) -> Column:
-        """Return the largest bound of each output at points, below which none of all can be."""
-        d = len(self.box.names)
-        dice = self.dice.uniform(d, TRIED_AT)
-        dice[:, : TRIED_AT // 2] = np.round(dice[:, : TRIED_AT // 2])
-        points = self.box.lows[:, None] + (self.box.highs - self.box.lows)[:, None] * dice
+    def peaks(self) -> Peaks:
+        """Return points with the largest bounds that a climb finds: none of all can be below."""
+        count = max(16, min(TRIED_AT, self.work // (CLIMBS * 4 * self._price())))
+        points = np.repeat(self.box.lows[:, None], count, axis=1)
+        points = self._moved(points, np.ones_like(points))
+        most = self._certain(points)
+        for turn in range(CLIMBS):
+            points, most = _first(points, most)
+            start = points[:, np.resize(np.arange(points.shape[1]), count)]
+            other = self._moved(start, np.full_like(start, 2.0 ** -(turn / 2)))
+            points = np.concatenate([points, other], axis=1)
+            most = np.concatenate([most, self._certain(other)])
+        points, most = _first(points, most)
+        return Peaks(self.box.names, points, float(most.max(initial=0.0)))
+
+    def _moved(self, start: Column, share: Column) -> Column:
+        """Return points with some components at ends of their ranges, some moved by a share."""
+        d, count = start.shape
+        to, ends = self.dice.uniform(d, count), self.dice.uniform(d, count) < ENDS
+        to = self.box.lows[:, None] + (self.box.highs - self.box.lows)[:, None] * np.where(
+            ends, np.round(to), to
+        )
+        some = np.maximum(self.dice.uniform(count) / 2, 1.5 / max(d, 1))
+        some = np.where(share < 1, some, 1.0)
+        changed = self.dice.uniform(d, count) < some
+        by = np.where(ends, 1.0, share) * changed
+        return self._at(start + (to - start) * by)
+
+    def _at(self, points: Column) -> Column:
+        """Return points of the box with quaternions of about unit length."""
+        points = np.clip(points, self.box.lows[:, None], self.box.highs[:, None])
         for places in self.box.quaternions:
-            at = points[list(places)]
-            size = np.sqrt(reduce(add, (x * x for x in at)))
-            points[list(places)] = at / np.where(size > 0, size, 1.0)
+            points[list(places)] = of_about_unit_length(points[list(places)])
+        return points
+
+    def _certain(self, points: Column) -> Column:
+        """Return the bound at points, where choices are what they are."""
         free = [n.startswith("choice") for n in self.box.names]
         ends = points.copy(), points.copy()
         ends[0][free], ends[1][free] = 0.0, 1.0
-        found = self.valued(*ends)
-        bounds = np.where(np.isfinite(found.shifts), found.shifts, 0.0)
-        return np.asarray(self._of_outputs(bounds).max(axis=1, initial=0.0))
-
-    def _of_outputs(self, each: Column) -> Column:
-        """Return the largest of each output's components, a row an output."""
-        return np.array([each[span].max(axis=0) for span in self.outputs])
+        ranges = {n: (ends[0][k], ends[1][k]) for k, n in enumerate(self.box.names)}
+        self._count(points.shape[1])
+        with np.errstate(all="ignore"):
+            found = shifts(enclosed(self.traits, ranges, points.shape[1])).max(axis=0, initial=0.0)
+        return np.where(np.isfinite(found), found, 0.0)
 
     def _started(self) -> tuple[Column, Column]:
-        """Return parts to begin with: quaternions, of the sphere alone, cut as finely as pays."""
+        """Return parts to begin with: by choices, then quaternions, of the sphere alone."""
         ends = self.box.lows[:, None], self.box.highs[:, None]
+        for k in (k for k, n in enumerate(self.box.names) if n.startswith("choice")):
+            decided = self.valued(*_in_two(ends, k))
+            ends = decided.lows, decided.highs
         for _ in range(FINEST if self.box.quaternions else 0):
             finer = ends
             for k in (k for places in self.box.quaternions for k in places):
-                middle = (finer[0][k] + finer[1][k]) / 2
-                low, high = (np.concatenate([x, x], axis=1) for x in finer)
-                low[k, len(middle) :] = middle
-                high[k, : len(middle)] = middle
-                finer = self._on_the_sphere(low, high)
-            if finer[0].shape[1] > min(MOST / 4, 0.8 * self.work / self._price()):
+                finer = self._on_the_sphere(*_in_two(finer, k))
+            if finer[0].shape[1] > min(MOST / 4, START * self.work / self._price()):
                 break
             ends = finer
         return ends
@@ -209,6 +250,33 @@ class Cutting:
 
     def _price(self) -> int:
         return len(self.traits.trace.steps) * (4 + len(self.traits.trace.results))
+
+
+def _first(points: Column, most: Column) -> tuple[Column, Column]:
+    """Return the points with the largest bounds."""
+    first = np.argsort(-most, kind="stable")[:KEPT]
+    return points[:, first], most[first]
+
+
+def of_about_unit_length(each: Column) -> Column:
+    """Return vectors, a column each, as little longer or shorter as brings them near unit length.
+
+    >>> of_about_unit_length(np.array([[3.0], [4.0]])).round(4)
+    array([[0.6003],
+           [0.8004]])
+    """
+    size = np.sqrt(reduce(add, (x * x for x in each)))
+    least, most = np.sqrt(UNIT[0]) * (1 + NARROWER), np.sqrt(UNIT[1]) * (1 - NARROWER)
+    return np.asarray(each * (np.clip(size, least, most) / np.where(size > 0, size, 1.0)))
+
+
+def _in_two(ends: tuple[Column, Column], k: int) -> tuple[Column, Column]:
+    """Return boxes cut in two along a side."""
+    middle = (ends[0][k] + ends[1][k]) / 2
+    low, high = (np.concatenate([x, x], axis=1) for x in ends)
+    low[k, len(middle) :] = middle
+    high[k, : len(middle)] = middle
+    return low, high
 
 
 def _width(found: Enclosed) -> Column:

@@ -139,10 +139,12 @@ def _made(found: Enclosed, index: int, step: Operation) -> At:
         exact = np.clip(exact[0], *BROAD), np.clip(exact[1], *BROAD)
     nothing = np.zeros(len(found.blamed))
     if step.origin == "rounded":
+        if of.exact[index]:
+            return exact, nothing, None
         (error,) = (found.errors[o] for o in step.operands)
         least = float(np.finfo(of.precision.dtype).smallest_subnormal)
         most = (greatest(exact) + error) * UPWARDS
-        own = nothing if of.exact[index] else error + half_unit(most, of.precision.bits, least)
+        own = error + half_unit(most, of.precision.bits, least)
         return _widened(exact, own), nothing, own
     if step.operator in (*COMPARED, "both", "either"):
         return exact, nothing, None
@@ -175,6 +177,8 @@ def _rounding(
     steps, bits = of.trace.steps, of.precision.bits
     least = float(np.finfo(of.precision.dtype).smallest_subnormal)
     if step.operator in ("neg", "abs", "select", "power_of_two"):
+        return None
+    if step.operator == "add" and step.operands[0] == step.operands[1]:
         return None
     numbers = [steps[o].number for o in step.operands]
     if step.operator == "mul" and any(q is not None and _shifts(q) for q in numbers):

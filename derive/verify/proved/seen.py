@@ -11,10 +11,12 @@ from operator import add
 
 import numpy as np
 
-from derive.program.program import Program
-from derive.verify.columns import Plan, arithmetics, found_and_true
-from derive.verify.draw import Dice, Sampled, admitted, complete, drawn, on_the_sphere
+from derive.motion.compensated import REMAINDER
+from derive.program.program import Program, placed
+from derive.verify.columns import Plan, arithmetics, found_and_true, supplied
+from derive.verify.draw import Dice, Sampled, admitted, drawn
 from derive.verify.operators import Column
+from derive.verify.proved.cut import Peaks, of_about_unit_length
 from derive.verify.scale import measured_outputs
 
 
@@ -41,30 +43,74 @@ class Search:
 SEARCH = Search()
 
 
-def gaps(of: Sampled, plan: Plan, rows: Column) -> Column:
-    """Return how far each measured output is off at samples: the largest of its components."""
-    by = arithmetics(of.precision.dtype)
-    with np.errstate(all="ignore"):
-        pairs = found_and_true(plan, complete(of, rows), by)
-        each = np.array([np.abs(by.off(f, t)) for f, t in pairs])
-    each = np.where(np.isfinite(each), each, 0.0)
-    spans = [span for _, span in measured_outputs(plan.program)]
-    return np.array([each[span].max(axis=0) for span in spans])
+@dataclass(frozen=True)
+class Sought:
+    """What a search moves: what a function rests on alone, quaternions of about unit length."""
+
+    of: Sampled
+    plan: Plan
+    moved: Column
+
+    def gaps(self, rows: Column) -> Column:
+        """Return how far each measured output is off at samples: the largest of its components."""
+        by, outputs = arithmetics(self.of.precision.dtype), measured_outputs(self.plan.program)
+        with np.errstate(all="ignore"):
+            at = supplied(self.of.setup, named(self.of, rows), by)
+            each = np.array([np.abs(by.off(f, t)) for f, t in found_and_true(self.plan, at, by)])
+        each = np.where(np.isfinite(each), each, 0.0)
+        return np.array([each[span].max(axis=0) for _, span in outputs])
+
+    def fitting(self, rows: Column, start: Column) -> Column:
+        """Return samples on the ranges, of bodies that can be, else those that they came from."""
+        rows = np.clip(rows, self.of.lows[:, None], self.of.highs[:, None])
+        for q, span in placed(self.of.quantities):
+            if q.is_quaternion:
+                rows[span] = of_about_unit_length(rows[span])
+        return np.where(admitted(self.of, rows), rows, start)
+
+    def beside(self, dice: Dice, parents: Column, by: Search, share: float) -> Column:
+        """Return samples beside parents, the nearer the more of the search is done."""
+        start = parents[:, (dice.uniform(by.batch) * parents.shape[1]).astype(int)]
+        fine = 1 + by.finest * share * dice.uniform(by.batch)
+        reach = np.ldexp(1.0, -fine.astype(int))
+        many = dice.uniform(by.batch)
+        shape = len(self.moved), by.batch
+        changed = dice.uniform(*shape) < np.maximum(many * many, 1.5 / len(self.moved))
+        across = (self.of.highs - self.of.lows)[self.moved, None] * reach
+        rows = start.copy()
+        rows[self.moved] += np.where(changed, (2 * dice.uniform(*shape) - 1) * across, 0.0)
+        return self.fitting(rows, start)
 
 
-def seen(of: Sampled, plan: Plan, beside: tuple[Sequence[str], Column], by: Search) -> list[float]:
+def named(of: Sampled, rows: Column) -> dict[str, Column]:
+    """Return samples by component, remainders as parts of their states, as floats."""
+    dtype = of.precision.dtype
+    own: dict[str, Column] = dict(zip(of.names, rows.astype(dtype), strict=True))
+    return own | {
+        c: own[c] * np.abs(own[c.removeprefix(f"{REMAINDER}_")]) * dtype(of.precision.unit_roundoff)
+        for q in of.quantities
+        for c in q.components
+        if q.role == "remainder"
+    }
+
+
+def seen(of: Sampled, plan: Plan, peaks: Sequence[Peaks], by: Search) -> list[float]:
     """Return the largest error that is found of each measured output, absolute.
 
-    beside : points to begin from besides, the names of their components and a column a point
+    peaks : where bounds are largest, to begin from besides
     """
     by, name = by.of(plan.program), plan.program.name
     dice = Dice(f"derive: {of.library.scene.name} {of.precision.name} seen {name}")
-    rows = np.concatenate([drawn(of, dice, by.samples), _at(of, dice, beside)], axis=1)
-    found = gaps(of, plan, rows)
+    met = {n for each in peaks for n in each.names}
+    sought = Sought(of, plan, np.flatnonzero([n in met for n in of.names]))
+    start = drawn(of, dice, by.samples)
+    every = [sought.fitting(start, start), *(_at(sought, dice, each) for each in peaks)]
+    rows = np.concatenate(every, axis=1)
+    found = sought.gaps(rows)
     best, kept = found.max(axis=1), _worst(rows, found, by.kept)
-    for turn in range(by.rounds):
-        rows = np.concatenate([kept, _beside(of, dice, kept, by, turn / by.rounds)], axis=1)
-        found = gaps(of, plan, rows)
+    for turn in range(by.rounds if len(sought.moved) else 0):
+        rows = np.concatenate([kept, sought.beside(dice, kept, by, turn / by.rounds)], axis=1)
+        found = sought.gaps(rows)
         best, kept = np.maximum(best, found.max(axis=1)), _worst(rows, found, by.kept)
     return [float(x) for x in best]
 
@@ -75,30 +121,11 @@ def _worst(rows: Column, found: Column, kept: int) -> Column:
     return rows[:, np.unique(np.concatenate(each))]
 
 
-def _at(of: Sampled, dice: Dice, beside: tuple[Sequence[str], Column]) -> Column:
-    names, points = beside
-    start = drawn(of, dice, points.shape[1])
+def _at(sought: Sought, dice: Dice, peaks: Peaks) -> Column:
+    """Return samples at points; of a remainder, whose sample is a part of its state, any."""
+    start = drawn(sought.of, dice, peaks.points.shape[1])
     rows = start.copy()
-    for name, row in zip(names, points, strict=True):
-        if name in of.names:
-            rows[of.names.index(name)] = row
-    return _fitting(of, rows, start)
-
-
-def _fitting(of: Sampled, rows: Column, start: Column) -> Column:
-    """Return samples on the ranges, of bodies that can be, else those that they came from."""
-    rows = np.clip(rows, of.lows[:, None], of.highs[:, None])
-    rows = on_the_sphere(of, rows)
-    return np.where(admitted(of, rows), rows, start)
-
-
-def _beside(of: Sampled, dice: Dice, parents: Column, by: Search, share: float) -> Column:
-    """Return samples beside parents, the nearer the more of the search is done."""
-    start = parents[:, (dice.uniform(by.batch) * parents.shape[1]).astype(int)]
-    fine = 1 + by.finest * share * dice.uniform(by.batch)
-    reach = np.ldexp(1.0, -fine.astype(int))
-    many = dice.uniform(by.batch)
-    changed = dice.uniform(*start.shape) < np.maximum(many * many, 1.5 / len(of.names))
-    across = (of.highs - of.lows)[:, None] * reach
-    steps = np.where(changed, (2 * dice.uniform(*start.shape) - 1) * across, 0.0)
-    return _fitting(of, start + steps, start)
+    for name, row in zip(peaks.names, peaks.points, strict=True):
+        if name in sought.of.names and not name.startswith(REMAINDER):
+            rows[sought.of.names.index(name)] = row
+    return sought.fitting(rows, start)

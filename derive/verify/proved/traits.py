@@ -120,6 +120,8 @@ def _is_exact(step: Operation, operands: Sequence[bool], precision: Precision) -
             return Fraction(float(rounded(q, precision.dtype))) == q
         case "rounded" | "neg" | "abs" | "select" | "less" | "at_most" | "both" | "either":
             return all(operands)
+        case "add":
+            return all(operands) and step.operands[0] == step.operands[1]
     return False
 
 
