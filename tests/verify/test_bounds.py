@@ -219,7 +219,7 @@ def cut_of(name: str, function: str, output: str, work: int = QUICK.work) -> Cut
 
 
 def test_an_output_is_cut_along_what_it_rests_on_alone() -> None:
-    """A turn does not change how fast a body is turned faster: eight parts of it would be wasted."""
+    """A turn does not change how a body is turned: parts of all turns would be wasted on it."""
     names = cut_of("rigid_body", "state_rate", "omega_dot").box.names
     assert "omega_x" in names
     assert "moment_x" in names

@@ -105,18 +105,20 @@ def _proved(
     work: int,
     cut: Mapping[str, Cells | None],
 ) -> list[Proved]:
-    """Return the bound of each output, which has its share of what others leave of the work."""
-    outputs, found = measured_outputs(program), list[Proved]()
-    for n, (q, span) in enumerate(outputs):
-        parts, at = cut.get(q.name), None
+    """Return the bound of each output: the short ones first, whose work is left to the others."""
+    found, ahead = dict[str, Proved](), dict[str, Cutting]()
+    for q, span in measured_outputs(program):
         try:
-            at = cutting(library, program, span, precision, work // (len(outputs) - n))
-            parts = at.valued(parts.lows, parts.highs) if parts else at.run()
-            found.append(Proved(q.name, _largest(at, parts), "", at, parts))
+            ahead[q.name] = cutting(library, program, span, precision, work)
         except UnprovedError as why:
-            found.append(Proved(q.name, 0.0, str(why), at, parts))
-        work -= at.spent if at else 0
-    return found
+            found[q.name] = Proved(q.name, why=str(why))
+    for name, at in sorted(ahead.items(), key=lambda item: item[1].price):
+        at.work = work // (len(measured_outputs(program)) - len(found))
+        parts = cut.get(name)
+        parts = at.valued(parts.lows, parts.highs) if parts else at.run()
+        found[name] = Proved(name, *_largest(at, parts), at, parts)
+        work -= at.spent
+    return [found[q.name] for q, _ in measured_outputs(program)]
 
 
 def cutting(
@@ -160,13 +162,13 @@ def ends_in_floats(of: dict[str, Quantity], name: str, precision: Precision) -> 
     return -most * precision.unit_roundoff, most * precision.unit_roundoff
 
 
-def _largest(at: Cutting, parts: Cells) -> float:
-    """Return the bound of an output. Raises UnprovedError if it has none."""
+def _largest(at: Cutting, parts: Cells) -> tuple[float, str]:
+    """Return the bound of an output, or why it has none."""
     found = float(parts.shifts.max(initial=0.0))
-    if not np.isfinite(found):
-        steps = at.traits.trace.steps
-        raise UnprovedError(_why([steps[n] for n in np.unique(parts.blamed) if n >= 0]))
-    return found
+    if np.isfinite(found):
+        return found, ""
+    steps = at.traits.trace.steps
+    return found, _why([steps[n] for n in np.unique(parts.blamed) if n >= 0])
 
 
 def _why(steps: list[Operation]) -> str:

@@ -135,7 +135,7 @@ class Cutting:
     @cached_property
     def peaks(self) -> Peaks:
         """Return points with the largest bounds that a climb finds: none of all can be below."""
-        count = max(16, min(TRIED_AT, self.work // (CLIMBS * 4 * self._price())))
+        count = max(16, min(TRIED_AT, self.work // (CLIMBS * 4 * self.price)))
         points = np.repeat(self.box.lows[:, None], count, axis=1)
         points = self._moved(points, np.ones_like(points))
         most = self._certain(points)
@@ -189,7 +189,7 @@ class Cutting:
             finer = ends
             for k in (k for places in self.box.quaternions for k in places):
                 finer = self._on_the_sphere(*_in_two(finer, k))
-            if finer[0].shape[1] > min(MOST / 4, START * self.work / self._price()):
+            if finer[0].shape[1] > min(MOST / 4, START * self.work / self.price):
                 break
             ends = finer
         return ends
@@ -246,9 +246,11 @@ class Cutting:
         return np.asarray(np.maximum(np.where(np.isfinite(gains), gains, 0.0), 1e-6 * width))
 
     def _count(self, boxes: int) -> None:
-        self.spent += boxes * self._price()
+        self.spent += boxes * self.price
 
-    def _price(self) -> int:
+    @property
+    def price(self) -> int:
+        """Return what one box costs, of the work."""
         return len(self.traits.trace.steps) * (4 + len(self.traits.trace.results))
 
 

@@ -24,13 +24,14 @@ from derive.verify.scale import measured_outputs
 class Search:
     """How widely a search goes: samples to begin with, then rounds of more from the worst.
 
+    kept   : of these, for each output
     finest : halvings of the ranges that steps come down to     operations : of a round, at most
     """
 
     samples: int = 4096
-    rounds: int = 80
+    rounds: int = 120
     batch: int = 4096
-    kept: int = 6
+    kept: int = 32
     finest: int = 24
     operations: int = 600_000
 
@@ -41,6 +42,8 @@ class Search:
 
 
 SEARCH = Search()
+ABOUT = 20
+"""Samples that are tried about a point."""
 
 
 @dataclass(frozen=True)
@@ -69,16 +72,21 @@ class Sought:
         return np.where(admitted(self.of, rows), rows, start)
 
     def beside(self, dice: Dice, parents: Column, by: Search, share: float) -> Column:
-        """Return samples beside parents, the nearer the more of the search is done."""
+        """Return samples beside parents, the nearer the more of the search is done.
+
+        Most differ by few components: what rounding does to the others' values stays.
+        """
         start = parents[:, (dice.uniform(by.batch) * parents.shape[1]).astype(int)]
-        fine = 1 + by.finest * share * dice.uniform(by.batch)
+        few = np.maximum(dice.uniform(by.batch) ** 4, 1.5 / len(self.moved))
+        changed = dice.uniform(len(self.moved), by.batch) < few
+        return self.shaken(dice, start, 1 + by.finest * share * dice.uniform(by.batch), changed)
+
+    def shaken(self, dice: Dice, start: Column, fine: Column, changed: Column) -> Column:
+        """Return samples moved by parts of the ranges that are so many times halved."""
         reach = np.ldexp(1.0, -fine.astype(int))
-        many = dice.uniform(by.batch)
-        shape = len(self.moved), by.batch
-        changed = dice.uniform(*shape) < np.maximum(many * many, 1.5 / len(self.moved))
         across = (self.of.highs - self.of.lows)[self.moved, None] * reach
-        rows = start.copy()
-        rows[self.moved] += np.where(changed, (2 * dice.uniform(*shape) - 1) * across, 0.0)
+        by, rows = (2 * dice.uniform(*changed.shape) - 1) * across, start.copy()
+        rows[self.moved] += np.where(changed, by, 0.0)
         return self.fitting(rows, start)
 
 
@@ -104,7 +112,7 @@ def seen(of: Sampled, plan: Plan, peaks: Sequence[Peaks], by: Search) -> list[fl
     met = {n for each in peaks for n in each.names}
     sought = Sought(of, plan, np.flatnonzero([n in met for n in of.names]))
     start = drawn(of, dice, by.samples)
-    every = [sought.fitting(start, start), *(_at(sought, dice, each) for each in peaks)]
+    every = [sought.fitting(start, start), *(_at(sought, dice, each, by) for each in peaks)]
     rows = np.concatenate(every, axis=1)
     found = sought.gaps(rows)
     best, kept = found.max(axis=1), _worst(rows, found, by.kept)
@@ -121,11 +129,17 @@ def _worst(rows: Column, found: Column, kept: int) -> Column:
     return rows[:, np.unique(np.concatenate(each))]
 
 
-def _at(sought: Sought, dice: Dice, peaks: Peaks) -> Column:
-    """Return samples at points; of a remainder, whose sample is a part of its state, any."""
-    start = drawn(sought.of, dice, peaks.points.shape[1])
+def _at(sought: Sought, dice: Dice, peaks: Peaks, by: Search) -> Column:
+    """Return samples about points, or how it rounds just there would decide who is kept.
+
+    Of a remainder, whose sample is a part of its state, any.
+    """
+    points = np.repeat(peaks.points, ABOUT, axis=1)
+    start = drawn(sought.of, dice, points.shape[1])
     rows = start.copy()
-    for name, row in zip(peaks.names, peaks.points, strict=True):
+    for name, row in zip(peaks.names, points, strict=True):
         if name in sought.of.names and not name.startswith(REMAINDER):
             rows[sought.of.names.index(name)] = row
-    return sought.fitting(rows, start)
+    rows, count = sought.fitting(rows, start), points.shape[1]
+    fine = by.finest * (1 + 3 * dice.uniform(count)) / 4
+    return sought.shaken(dice, rows, fine, np.ones((len(sought.moved), count), bool))
