@@ -37,10 +37,10 @@ def on_constraints(setting: Setting, step: Program) -> Program:
         rule = "is of machines without constraints, which a step is brought back onto"
         raise SceneError(f"'{step.name}' {rule}; step_rk4_jacobian is of these, too")
     states = [c for q in setting.terms.vocabulary.states for c in q.components]
-    return held_step(step, states, conditions(setting.terms, setting.rates[DISTANCES]))
+    return held_step(step, states, homing(setting.terms, setting.rates[DISTANCES]))
 
 
-def conditions(of: OfMachine, distances: Program) -> Homing:
+def homing(of: OfMachine, distances: Program) -> Homing:
     """Return what vanishes where the constraints hold, without what is redundant, and what moves.
 
     Places that formulas of time alone move are where they are meant to be.

@@ -149,7 +149,8 @@ def _matrices(
         matrix = np.array([[float(values[k]) for k in places] for values in own])
         here = np.linalg.norm(matrix, axis=1, keepdims=True)
         usual = here if usual is None else usual
-        matrix = np.where(here > LEAST * usual, matrix, 0)  # a row that vanishes tells nothing
+        if balances.held:  # a condition that vanishes tells nothing
+            matrix = np.where(here > LEAST * usual, matrix, 0)
         for axis in (1, 0, 1):
             size = np.linalg.norm(matrix, axis=axis, keepdims=True)
             matrix = matrix / np.where(size > 0, size, 1)

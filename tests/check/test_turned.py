@@ -52,7 +52,13 @@ speeds.u = { unit = "m/s", range = [-1, 1] }
 speeds.v = { unit = "m/s", range = [-1, 1] }
 speeds.w = { unit = "rad/s", range = [-1, 1] }
 frames.sled = { angular_velocity = ["0", "0", "w"], velocity = ["u", "v", "0"] }
-constraints.blade = { on = "sled", at = ["a", "0", "0"], axes = ["y"], along = "sled", equal = "velocities" }
+
+[constraints.blade]
+on    = "sled"
+at    = ["a", "0", "0"]
+axes  = ["y"]
+along = "sled"
+equal = "velocities"
 
 [bodies.sled]
 frame  = "sled"

@@ -11,7 +11,7 @@ from fractions import Fraction
 import numpy as np
 
 from derive.library.library import Library
-from derive.library.on_constraints import conditions
+from derive.library.on_constraints import homing
 from derive.motion.constrained import Homing, nearer, reaches
 from derive.program.program import Program
 from derive.scene import SceneError
@@ -49,7 +49,7 @@ def closing_of(library: Library, varied: Collection[str]) -> Closing:
     if not library.scene.constraints:
         return Closing()
     states = library.vocabulary.states
-    held = conditions(library, library[DISTANCES])
+    held = homing(library, library[DISTANCES])
     size = {c: (q.ends[1] - q.ends[0]) ** 2 for q in states for c in q.components}
     each = {PLACES: replace(held, rates=(), moving=_weighed(held.moving, size)),
             RATES: replace(held, places=(), driving=_weighed(held.driving, size))}  # fmt: skip

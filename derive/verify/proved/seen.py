@@ -47,7 +47,7 @@ ABOUT = 20
 
 
 @dataclass(frozen=True)
-class Sought:
+class Searched:
     """What a search moves: what a function rests on alone, quaternions of about unit length."""
 
     of: Sampled
@@ -110,7 +110,7 @@ def seen(of: Sampled, plan: Plan, peaks: Sequence[Peaks], by: Search) -> list[fl
     by, name = by.of(plan.program), plan.program.name
     dice = Dice(f"derive: {of.library.scene.name} {of.precision.name} seen {name}")
     met = {n for each in peaks for n in each.names}
-    sought = Sought(of, plan, np.flatnonzero([n in met for n in of.names]))
+    sought = Searched(of, plan, np.flatnonzero([n in met for n in of.names]))
     start = drawn(of, dice, by.samples)
     every = [sought.fitting(start, start), *(_at(sought, dice, each, by) for each in peaks)]
     rows = np.concatenate(every, axis=1)
@@ -129,7 +129,7 @@ def _worst(rows: Column, found: Column, kept: int) -> Column:
     return rows[:, np.unique(np.concatenate(each))]
 
 
-def _at(sought: Sought, dice: Dice, peaks: Peaks, by: Search) -> Column:
+def _at(sought: Searched, dice: Dice, peaks: Peaks, by: Search) -> Column:
     """Return samples about points, or how it rounds just there would decide who is kept.
 
     Of a remainder, whose sample is a part of its state, any.
