@@ -143,8 +143,12 @@ def _without(monomial: Monomial, node: int) -> Monomial:
     return tuple((n, p - (n == node)) for n, p in monomial if p - (n == node))
 
 
-def degree(monomial: Monomial, nodes: frozenset[int]) -> int | None:
-    """Return the degree of ``monomial`` in ``nodes``; None if one of them is in a denominator."""
-    if any(power < 0 and node in nodes for node, power in monomial):
+def degree(graph: Graph, monomial: Monomial, nodes: frozenset[int]) -> int | None:
+    """Return the degree of ``monomial`` in ``nodes``; None if a factor varies otherwise with one.
+
+    Such a factor is a power below the line, a call, or a sum that counts as a variable of its own.
+    """
+    others = [node for node, power in monomial if power < 0 or node not in nodes]
+    if not nodes.isdisjoint(graph.within((UNIT[0], node) for node in others)):
         return None
     return sum(power for node, power in monomial if node in nodes)

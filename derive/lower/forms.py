@@ -166,7 +166,7 @@ def by_euler(
         return None
     own = [frozenset(leaf[1] for leaf in quantity) for quantity in group.inputs]
     degrees = degrees_that_sum(
-        [degree(m, nodes) for nodes in own] for terms in expanded for m in terms
+        [degree(graph, m, nodes) for nodes in own] for terms in expanded for m in terms
     )
     if degrees is None:
         return None
