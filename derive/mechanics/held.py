@@ -74,22 +74,33 @@ def _bindings(frames: Frames) -> Bindings:
 def _states(frames: Frames, brings: Onto, box: Box) -> list[np.ndarray]:
     """Return states of the ranges that fulfil all conditions."""
     dice, found = Random(SEED), []  # noqa: S311 - trial states, no secret
+    flat = list[np.ndarray]()
     best = ""
     for _ in range(TRIES):
-        parts = np.array([dice.random() for _ in box.symbols])
-        point, fits = brings.brought((box.low + (box.high - box.low) * parts)[None, :])
+        start = box.low + (box.high - box.low) * np.array([dice.random() for _ in box.symbols])
+        point, fits = brings.brought(start[None, :])
         if fits[0] and box.within(point[0], brings.places):
             found.append(point[0])
+            flat.append(brings.flat(start, point[0]))
             if len(found) == STATES:
-                return found
+                break
         elif fits[0]:
             best = box.outside(point[0], brings.places)
     if found:
+        _require_slopes(brings, np.all(flat, axis=0))
         return found
     names = ", ".join(f"'{c.name}'" for c in frames.machine.constraints)
     rule = f"no state of the declared ranges was found that fulfils constraint {names}"
     more = f"; the nearest has {best}" if best else ", nor any near them: do they contradict"
     raise SceneError(f"{rule}{more}{'' if best else ' each other?'}")
+
+
+def _require_slopes(brings: Onto, flat: np.ndarray) -> None:
+    """Refuse a condition that changes with nothing wherever it holds: no force enforces it."""
+    names = [c.name for c, is_flat in zip(brings.conditions, flat, strict=True) if is_flat]
+    if names:
+        rule = "changes with nothing where it is 0, as a square does, so nothing enforces it"
+        raise SceneError(f"constraint '{names[0]}' {rule}; say what is 0 by itself")
 
 
 def _independent(each: list[np.ndarray]) -> list[int]:

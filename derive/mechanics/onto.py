@@ -1,4 +1,4 @@
-"""States brought onto the constraints of a machine: places by Newton's method, rates by one step.
+"""States brought onto the constraints of a machine by Newton's method: places, then rates.
 
 Of all states that fulfil the constraints the one nearby is taken, distances counted in parts of the
 declared ranges; so no coordinate need be chosen to follow the others, and none can fail to.
@@ -19,6 +19,7 @@ from derive.scene import Input
 
 ROUNDS = 60
 CLOSE = 1e-11  # of a condition beside the size of its slopes: what floats leave of it
+FULFILLED = 1e-6  # of a range: what rates may be off by
 TELLING = 1e-7  # a singular value below this part of the largest is none
 
 Doubles = NDArray[Any]
@@ -67,17 +68,27 @@ class Onto:
                 here[columns] -= size * step * min(1.0, 0.5 / longest if longest else 1.0)
             if np.max(np.abs(gap)) > CLOSE:
                 return here, False
+        return self._driven(here)
+
+    def _driven(self, here: Doubles) -> tuple[Doubles, bool]:
+        """Return a point with its rates moved, at once where conditions are linear in them."""
         columns, size = [*self.rates], np.array([*self.rates.values()])
-        value, slopes = self._moving(here)
-        scaled = slopes * size
-        weight = np.linalg.norm(scaled, axis=1)
-        weight = np.where(weight > 0, weight, 1.0)
-        own, gap = scaled / weight[:, None], value / weight
-        step = np.linalg.lstsq(own, gap, rcond=TELLING)[0] if len(gap) else np.zeros(len(columns))
         here = here.copy()
-        here[columns] -= size * step
+        for _ in range(ROUNDS):
+            value, slopes = self._moving(here)
+            scaled = slopes * size
+            weight = np.linalg.norm(scaled, axis=1)
+            weight = np.where(weight > 0, weight, 1.0)
+            own, gap = scaled / weight[:, None], value / weight
+            if not np.all(np.isfinite(gap)):
+                return here, False
+            step = np.linalg.lstsq(own, gap, rcond=TELLING)[0]
+            here[columns] -= size * step
+            far = np.max(np.abs(step), initial=0.0)
+            if far < CLOSE:
+                break
         left = np.max(np.abs(own @ step - gap), initial=0.0)
-        return here, bool(left < 1e-6 * max(1.0, np.max(np.abs(gap), initial=0.0)))
+        return here, bool(max(left, far) < FULFILLED)
 
     def distances(self, points: Doubles) -> list[tuple[str, Doubles]]:
         """Return every condition and its rate at points (components, count), by names."""
@@ -105,9 +116,18 @@ class Onto:
 
         Both are counted in sizes of ranges.
         """
+        scaled, weight = self._scaled(point)
+        return np.asarray(scaled / np.where(weight > 0, weight, 1.0)[:, None])
+
+    def flat(self, before: Doubles, after: Doubles) -> Doubles:
+        """Return which conditions change with nothing at a point that another was brought to."""
+        was, now = self._scaled(before)[1], self._scaled(after)[1]
+        return np.asarray(now < TELLING * was)
+
+    def _scaled(self, point: Doubles) -> tuple[Doubles, Doubles]:
+        """Return the slopes of first rates in sizes of ranges, and the length of each row."""
         scaled = self._moving(point)[1] * np.array([*self.rates.values()])
-        weight = np.linalg.norm(scaled, axis=1, keepdims=True)
-        return np.asarray(scaled / np.where(weight > 0, weight, 1.0))
+        return scaled, np.linalg.norm(scaled, axis=1)
 
     @cached_property
     def _of_places(self) -> list[Expr]:

@@ -33,6 +33,7 @@ class Homing:
     places  : which of its results are of places     rates : and which are of rates
     moving  : states that places are changed by, each with the square of its range
     driving : the same of rates                      attitudes : the quaternions among the states
+    passes  : corrections of rates, one where conditions are linear in them
     """
 
     program: Program
@@ -40,6 +41,7 @@ class Homing:
     rates: tuple[int, ...]
     moving: Mapping[str, Fraction]
     driving: Mapping[str, Fraction]
+    passes: int
     attitudes: tuple[tuple[str, ...], ...]
 
 
@@ -54,7 +56,8 @@ def held_step(step: Program, states: Sequence[str], held: Homing) -> Program:
     for _ in range(PASSES if held.places else 0):
         found, own = _placed(tape, held, found)
         damping = damping or own
-    found = _driven(tape, held, found, damping or number(0))
+    for _ in range(held.passes):
+        found = _driven(tape, held, found, damping or number(0))
     after = [found[name] for name in states]
     more, outputs, sparsity = [_number(tape, r) for r in step.results[n:]], step.outputs, None
     if step.sparsity:
@@ -139,7 +142,7 @@ def _placed(
 def _driven(
     tape: Tape, held: Homing, state: Mapping[str, Number], damping: Number
 ) -> dict[str, Number]:
-    """Return a state with rates corrected, which constraints are linear in."""
+    """Return a state with rates corrected once."""
     values, rows = _valued(tape, held, state, held.rates, [*held.driving])
     return _corrected(state, (values, rows), held.driving, damping)[0]
 

@@ -40,6 +40,9 @@ less than a whole order either way, and more above, where that term may be the l
 CLOSED_FORM = 1e-40
 """A relative error that only a motion in closed form has; the catalogue's largest is 4e-56."""
 
+NOTHING = 1e-100
+"""A relative error that is none, in 500 bits: the motion is a polynomial, and the step has it."""
+
 ROUNDED = 1e-17
 """A relative error that rounding covers: a closed form may end there, with its series."""
 
@@ -69,10 +72,14 @@ class Order:
         """Tell whether the order is what is claimed, or a closed form is the motion."""
         if self.closed:
             return largest(self.errors) < ROUNDED
+        if largest(self.errors) < NOTHING:
+            return True
         return self.claimed - BELOW <= self.measured <= self.claimed + ABOVE
 
     def __str__(self) -> str:
-        return f"{largest(self.errors):.1g}" if self.closed else f"{self.measured:.2f}"
+        if self.closed:
+            return f"{largest(self.errors):.1g}"
+        return "exact" if largest(self.errors) < NOTHING else f"{self.measured:.2f}"
 
 
 def right_hand_side(library: Library, values: Mapping[str, Any]) -> RightHandSide:

@@ -56,8 +56,8 @@ frames.sled = { angular_velocity = ["0", "0", "w"], velocity = ["u", "v", "0"] }
 [constraints.blade]
 on    = "sled"
 at    = ["a", "0", "0"]
-axes  = ["y"]
 along = "sled"
+axes  = ["y"]
 equal = "velocities"
 
 [bodies.sled]

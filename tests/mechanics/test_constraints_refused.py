@@ -29,6 +29,9 @@ ROWS = (
     (SLEIGH, ZERO, 'zero = "x_ddot"', "constraint 'blade'.zero uses 'x_ddot', which"),
     (SLEIGH, '"blade", ', '"N_x", ', "wanted has 'N_x', which is no answer"),
     (SLEIGH, ZERO, f'{ZERO}\nload = "ice"', ""),
+    (SLEIGH, ZERO, 'zero = "(x - y)^2"', "constraint 'blade' changes with nothing where it is 0"),
+    (SLEIGH, ZERO, 'zero = "x^2 + y^2"', "constraint 'blade' changes with nothing where it is 0"),
+    (SLEIGH, ZERO, 'zero = "x_dot^2 + y_dot^2"', "constraint 'blade' changes with nothing where"),
     (CRANK, GUIDED, GUIDED.replace("l*sin", "tau*sin"), "zero uses 'tau', an input, whose rate"),
     (CRANK, 'load = "guide"', 'load = "gide"', "constraint 'guided'.load must be one of main, pin"),
 )  # fmt: skip

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 import derive
+from derive.check.energy import energy_balance
 from derive.check.motion import orders_hold, step_slopes_hold
+from derive.check.particles import clouds
 from derive.library.library import Library, library
 from derive.motion import constrained
 from derive.program.precision import F64
@@ -53,6 +55,32 @@ def test_a_sled_steps_along_its_blade_with_the_order_and_slopes_that_it_claims()
     should = {(step, check): "holds" for step in steps for check in checks}
     assert outcomes(own) == should | {("step_rk4_jacobian", "slopes"): "holds"}
     assert own["step_rk4"].says.endswith("(order 4), brought back onto the constraints.")
+
+
+DRIVEN = """
+wanted = ["step_rk4", "step_rk4_jacobian", "energy", "c", "constraint_distances"]
+motion.time_step = { range = [0.001, 0.01] }
+parameters.m = { unit = "kg", range = [1, 2] }
+parameters.v = { unit = "m/s", range = [0.5, 1] }
+coordinates.x = { unit = "m", range = [-1, 1] }
+coordinates.z = { unit = "m", range = [-1, 1] }
+frames.f = { origin = ["x", "0", "z"] }
+bodies.b = { frame = "f", shape = "point", mass = "m" }
+loads.weight = { gravity = ["0", "0", -9.81] }
+loads.wall = { on = "b", force = ["0", "?N", "0"] }
+constraints.c.zero = "ZERO"
+"""
+
+
+@pytest.mark.parametrize("zero", ["z_dot - v", "x_dot^2 + z_dot^2 - v^2"])
+def test_a_formula_of_rates_may_be_any_and_what_enforces_it_works(zero: str) -> None:
+    own = library(parse_scene(DRIVEN.replace("ZERO", zero), "driven"))
+    each = samples(own.mechanism, F64, 2, 0).each
+    every = (*clouds(own, each), *energy_balance(own, each))
+    found = {(v.function, v.check): v.outcome for v in every}
+    assert set(found.values()) == {"holds"}
+    assert ("energy", "power balance") in found
+    assert set(outcomes(own).values()) == {"holds"}
 
 
 @pytest.mark.long

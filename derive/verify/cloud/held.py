@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 
 from derive.scene import Input, Scene
 from derive.scene.constraint import Constraint, Meeting
+from derive.scene.formula import Formula, evaluate
 from derive.verify.cloud.balance import acting, at_instant
 from derive.verify.cloud.history import History
-from derive.verify.cloud.series import Series, crossed, each
+from derive.verify.cloud.series import ARITHMETIC, Series, crossed, each, motion_series, series
 
 MakeHistory = Callable[[Mapping[str, Any]], History]
 ROUNDS, FULFILLED = 60, mpf(10) ** -45
@@ -71,6 +72,24 @@ def first_rates(history: History) -> list[Any]:
     return [s.value if one.of_rates else s.velocity for one, s in conditions_of(history)]
 
 
+def _first_slopes(base: History, moved: History, rate: str) -> list[Any]:
+    """Return how the first rates of all conditions change with a rate, one more where ``moved``.
+
+    Where a formula is of rates it may be no line in them: it is followed as if that rate grew.
+    """
+    return [
+        _slope_by(base, one.zero, rate) if one.of_rates and one.meeting is None else after - before
+        for (one, _), after, before in zip(
+            conditions_of(base), first_rates(moved), first_rates(base), strict=True)
+    ]  # fmt: skip
+
+
+def _slope_by(base: History, formula: Formula, rate: str) -> Any:
+    still = {name: series(s.value) for name, s in base.scalars.items()}
+    growing = {rate: motion_series(base.scalars[rate].value, mpf(1))}
+    return evaluate(formula, still | growing, ARITHMETIC).velocity
+
+
 @dataclass
 class Allowed:
     """A machine at given values, and the velocities that its frames allow, one for each rate."""
@@ -96,8 +115,8 @@ class Allowed:
     @cached_property
     def _slopes(self) -> list[list[Any]]:
         """Return of each rate how the first rates of all conditions change with it."""
-        base = first_rates(self._base)
-        return [[a - b for a, b in zip(first_rates(own), base, strict=True)] for own in self._moved]
+        each = zip(self.rates, self._moved, strict=True)
+        return [_first_slopes(self._base, own, name) for name, own in each]
 
     @cached_property
     def _velocities(self) -> list[list[NDArray[Any]]]:
@@ -133,6 +152,19 @@ class Allowed:
                     total -= history.scalars[name].value * slope
             rows.append(total)
         return rows
+
+    def powers(self, history: History) -> list[Any]:
+        """Return the power of each generalized force, on the rates as they are."""
+        return [
+            history.scalars[name].value * sum(
+                (self._slopes[r][k] * self.given[rate] for r, rate in enumerate(self.rates)), mpf(0)
+            )
+            for k, name in enumerate(self._factors) if name and name in self._generalized
+        ]  # fmt: skip
+
+    @property
+    def _generalized(self) -> frozenset[str]:
+        return frozenset(one.factor for one in self.machine.constraints)
 
     @cached_property
     def _factors(self) -> list[str]:
@@ -225,10 +257,10 @@ def _near(machine: Scene, here: Mapping[str, Any], only: Sequence[str], *, of_ra
     rates = [c.rate.name for c in machine.coordinates if c.free and isinstance(c.rate, Input)]
     rates += [s.name for s in machine.speeds if s.free]
     rates = [name for name in rates if not only or name in only]
-    start, slopes, states = first_rates(base), [], {}
+    slopes, states = [], {}
     for name in rates:
         moved = make({name: here[name] + 1})
-        own = [a - b for a, b in zip(first_rates(moved), start, strict=True)]
+        own = _first_slopes(base, moved, name)
         kept = [of_rates or not one.of_rates for one, _ in conditions_of(base)]
         slopes.append([x for x, keep in zip(own, kept, strict=True) if keep])
         states[name] = {name: mpf(1)} if of_rates else _carried(machine, base, moved)

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from derive.scene.formula import ZERO
 from derive.scene.machine import Spring, Weight
 from derive.verify.cloud.balance import acting, along, at_instant
-from derive.verify.cloud.held import conditions_of, first_rates
 from derive.verify.cloud.history import History
 from derive.verify.cloud.series import DIGITS, crossed, each
 from derive.verify.cloud.solution import CloudAnswers
@@ -40,9 +39,7 @@ def powers(answers: CloudAnswers) -> Powers:
             for body, place, force, couple in acting(history, load)
             for p in _power(history, body, place, force, couple)
         ]
-        for (one, _), rate in zip(conditions_of(history), first_rates(history), strict=True):
-            if one.factor:
-                every.append(history.scalars[one.factor].value * rate)
+        every += answers.allowed.powers(history)
         return Powers(tuple(every), tuple(_conservative(history)))
 
 

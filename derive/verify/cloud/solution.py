@@ -58,7 +58,7 @@ class CloudAnswers:
         if not self.machine.constraints:
             return left_over(history)
         rows = [] if generalized(self.machine) else left_over(history)
-        return [*rows, *self._allowed.left_over(history), *second_rates(history)]
+        return [*rows, *self.allowed.left_over(history), *second_rates(history)]
 
     @property
     def _nothing(self) -> Any:
@@ -66,7 +66,8 @@ class CloudAnswers:
         return REDUNDANT if self.machine.constraints else NOTHING
 
     @cached_property
-    def _allowed(self) -> Allowed:
+    def allowed(self) -> Allowed:
+        """Return the velocities that the frames allow."""
         return Allowed(self.machine, self.given, self.history)
 
     @cached_property
