@@ -43,7 +43,7 @@ def held_together(mechanism: Mechanism, sought: frozenset[Symbol]) -> HeldWays:
         rest, slopes = sheet.split(c.second)
         force = c.factor or Symbol(f"force of {c.name}", real=True)
         rows.append(HeldCondition({**slopes, ONE: rest}, force))
-    if not sought or not sought <= free | {row.force for row in rows}:
+    if not rows or not sought or not sought <= free | {row.force for row in rows}:
         return
     machine = _all_turning(machine)
     absolute = absolute_angles(machine)

@@ -17,6 +17,7 @@ PIN = 'at = ["l", "0", "0"]\nagainst = "right"'
 
 ROWS = (
     (FOUR, 'axes = ["x", "z"]', 'axes = ["x", "x"]', "must be a list of different ones of x, y"),
+    (FOUR, 'axes = ["x", "z"]', 'axes = [["x"]]', "must be a list of different ones of x, y"),
     (FOUR, PIN, 'at = ["l", "0", "0"]\nagainst = "bar"', "holds 'bar' against itself"),
     (FOUR, 'on = "bar"\nat', "at", "constraint 'd' needs zero = 'formula', or on, a body"),
     (FOUR, PIN, 'at = ["5*l", "0", "0"]\nagainst = "right"', "no state of the declared ranges was"),
@@ -55,3 +56,11 @@ def test_a_force_that_shares_its_part_with_others_cannot_be_told() -> None:
     text = FOUR.replace('axes = ["x", "z"]', "").replace('"d_x"', '"d_y"')
     with pytest.raises(SceneError, match="'d_y' cannot be told: constraint 'd along y' says"):
         library(parse_scene(text, "held"))
+
+
+@pytest.mark.parametrize("zero", ["q_1 - q_1", "sin(q_1)^2 + cos(q_1)^2 - 1"])
+def test_what_is_always_0_is_left_out(zero: str) -> None:
+    loop = FOUR.replace(', "d_x"', "").partition("[constraints")[0]
+    found = library(parse_scene(f'{loop}[constraints.none]\nzero = "{zero}"\n', "held"))
+    assert found.mechanism.held.kept == ()
+    assert found.mechanism.held.doubts[0].startswith("constraint 'none' says nothing that the")
