@@ -1,7 +1,7 @@
 """``derive sweep``: very many motions, each with its own numbers, and what becomes of them."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from rich.progress import (
@@ -109,11 +109,7 @@ def sweep(given: argparse.Namespace) -> int:
     values = values_named(given.set)
     keep = [name for text in given.keep for name in text.split(",") if name.strip()]
     with _progress() as shown:
-        task = shown.add_task(scene.name, total=None)
-
-        def told(says: str, done: int, of: int) -> None:
-            shown.update(task, description=f"{scene.name}: {says}", completed=done, total=of)
-
+        told = follower(shown, scene.name)
         found = scene.sweep(
             vary, given.out, given.until, keep, values, given.samples, given.stop, given.error,
             given.step, given.seed, given.instants, given.pairs, given.workers, given.scheduler,
@@ -126,6 +122,20 @@ def sweep(given: argparse.Namespace) -> int:
     for place in (found.folder, found.page):
         console.print(f"  {place}", highlight=False, soft_wrap=True)
     return 0
+
+
+def follower(shown: Progress, name: str) -> Callable[[str, int, int], None]:
+    """Return what hears how far a sweep is: what was done before it began takes it no time."""
+    task = shown.add_task(name, total=None)
+    last: list[str] = []
+
+    def told(says: str, done: int, of: int) -> None:
+        if says not in last:
+            last[:] = [says]
+            shown.reset(task, description=f"{name}: {says}", completed=done, total=of)
+        shown.update(task, completed=done)
+
+    return told
 
 
 def _endings(ended: Any) -> Table:

@@ -39,6 +39,10 @@ class Onto:
     places: Mapping[int, float]
     rates: Mapping[int, float]
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what another process needs: functions are made anew there."""
+        return {name: x for name, x in self.__dict__.items() if name != "_functions"}
+
     def brought(self, points: Doubles) -> tuple[Doubles, Doubles]:
         """Return points (count, components) that fulfil the conditions, and which of them do."""
         found = np.array(points, float)

@@ -1,4 +1,4 @@
-"""Where members of a machine with constraints begin: what varies stays, the rest closes the loops.
+"""Where members begin that cannot as they are drawn: attitudes have length one, loops are closed.
 
 Of all states around the start that is set, whose varying components are as drawn, one that fulfils
 the constraints is come nearer to step by step, distances counted in parts of the declared ranges.
@@ -26,11 +26,14 @@ PLACES, RATES = "onto_places", "onto_rates"
 
 @dataclass(frozen=True)
 class Closing:
-    """How members are brought onto constraints: first their places, then their rates.
+    """How members are brought to their start: attitudes to length one, then onto constraints.
 
-    moved : components of the state that this may change        crowded : those that vary among them
+    turned  : attitudes of which components vary        programs : of places first, then of rates
+    moved   : components of the state that all this may change
+    crowded : those among them that vary, and would follow nothing if there was more to move
     """
 
+    turned: tuple[str, ...] = ()
     programs: tuple[Program, ...] = ()
     moved: tuple[str, ...] = ()
     crowded: tuple[str, ...] = ()
@@ -46,14 +49,18 @@ class Closing:
 
 def closing_of(library: Library, varied: Collection[str]) -> Closing:
     """Return how members begin, of which some components vary."""
-    if not library.scene.constraints:
-        return Closing()
     states = library.vocabulary.states
+    turned = {
+        q.name: q.components for q in states if q.is_quaternion and {*q.components} & {*varied}
+    }
+    if not library.scene.constraints:
+        return Closing(tuple(turned), moved=tuple(c for own in turned.values() for c in own))
     held = homing(library, library[DISTANCES])
     size = {c: (q.ends[1] - q.ends[0]) ** 2 for q in states for c in q.components}
     each = {PLACES: replace(held, rates=(), moving=_weighed(held.moving, size)),
             RATES: replace(held, places=(), driving=_weighed(held.driving, size))}  # fmt: skip
-    programs, moved = list[Program](), set[str]()
+    lengths = {c for own in turned.values() for c in own}
+    programs, moved = list[Program](), {*lengths}
     for name, whole in each.items():
         if not (whole.places or whole.rates):
             continue
@@ -64,7 +71,8 @@ def closing_of(library: Library, varied: Collection[str]) -> Closing:
         programs.append(nearer(name, states, own))
         moved |= set[str]().union(*rows)
     kept = tuple(c for q in states for c in q.components if c in moved)
-    return Closing(tuple(programs), kept, tuple(c for c in kept if c in varied))
+    crowded = tuple(c for c in kept if c in varied and c not in lengths)
+    return Closing(tuple(turned), tuple(programs), kept, crowded)
 
 
 def _weighed(names: Collection[str], size: Mapping[str, Fraction]) -> dict[str, Fraction]:

@@ -151,7 +151,9 @@ def swept(
     }
     onto = tuple(p.name for p in closing.programs)
     answers = answers_along(found, known)
-    plan = SweepPlan("step_rk4", step or until, until, instants, columns, stop, answers, onto)
+    plan = SweepPlan(
+        "step_rk4", step or until, until, instants, columns, stop, answers, closing.turned, onto
+    )
     if plan.steps > MOST_OF_STEPS:
         rule = f"a member moves by at most {MOST_OF_STEPS:,} steps"
         raise SceneError(f"{label}: {rule}; {until:g} s at {plan.length:g} s are {plan.steps:,}")

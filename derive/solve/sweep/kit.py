@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import Lock
 from types import ModuleType
 from typing import Any, Protocol
 
@@ -31,6 +32,8 @@ from derive.solve.members import ByMember, MembersCompiled, shared_members
 
 KITS = 4
 """Kits that a worker keeps ready, those that it used last."""
+ONE = Lock()
+"""Of the threads of a worker, which would else compile the same at once."""
 
 
 class ByMembers(Protocol):
@@ -90,7 +93,8 @@ def ready(kit: Kit) -> Ready:
 
     Raises CompilerError with what a compiler says against it.
     """
-    return _ready(_ByContent(kit))
+    with ONE:
+        return _ready(_ByContent(kit))
 
 
 class _ByContent:

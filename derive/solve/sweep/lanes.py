@@ -245,6 +245,8 @@ def lanes_begun(
             constants, status = constants[:, 0].copy(), np.repeat(status, count)
     held = _held(library, plan.functions)
     state = {q.name: rows(q) for q in library.vocabulary.states}
+    for name in plan.turned:
+        state[name] /= np.sqrt(sum(x * x for x in state[name]))
     other = {name: np.zeros_like(x) for name, x in state.items()}
     lanes = Lanes(by, library, plan, ids, constants, own, {q.name: rows(q) for q in held},
                   (state, other))  # fmt: skip

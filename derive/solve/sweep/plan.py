@@ -19,6 +19,7 @@ class SweepPlan:
 
     length : s, the longest step        intervals : of a course
     answers : the function of every answer that is known along a motion
+    turned : attitudes that are brought to length one at the start
     onto : functions that bring a start onto the constraints, one after the other
     """
 
@@ -29,6 +30,7 @@ class SweepPlan:
     kept: tuple[KeptColumn, ...]
     stop: Event | None
     answers: Mapping[str, str]
+    turned: tuple[str, ...] = ()
     onto: tuple[str, ...] = ()
 
     @cached_property

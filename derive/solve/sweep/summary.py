@@ -174,7 +174,7 @@ def _scatter(column: str, values: FloatColumn) -> Scatter:
         return Scatter(column, 0, (), (), ())
     ends = _ends_apart(values)
     heights, edges = np.histogram(np.clip(values, *ends), BINS, ends)
-    cuts = tuple(np.quantile(values, QUANTILES).tolist())
+    cuts = tuple((2 * np.quantile(values / 2, QUANTILES)).tolist())
     return Scatter(column, len(values), cuts, tuple(edges.tolist()), tuple(heights.tolist()))
 
 

@@ -72,7 +72,7 @@ def test_what_varies_stays_as_it_is_drawn(tmp_path: Path) -> None:
 def test_chunks_and_the_want_of_a_compiler_change_no_bit_of_a_start(
     sled: derive.Ensemble, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert same(sled, swept_sled(tmp_path, chunk=37))
+    assert same(sled, swept_sled(tmp_path, chunk=37, workers=2))
 
     def none() -> None:
         raise CompilerError(HOW_TO_GET_ONE)
@@ -94,6 +94,20 @@ def test_a_start_that_is_not_brought_on_is_noticed(
     found = columns(swept_sled(tmp_path))
     slip = found["y_dot@0"] * np.cos(found["psi"]) - found["x_dot@0"] * np.sin(found["psi"])
     assert np.abs(slip).max() > 0.01
+
+
+def test_an_attitude_that_varies_by_components_begins_at_length_one(tmp_path: Path) -> None:
+    own = derive.load("tumbling_body")
+    held = {"I_xx": 1.44, "I_yy": 1.64, "I_zz": 1.84, "omega_x": 1, "omega_y": 1, "omega_z": 1,
+            "attitude_w": 1, "attitude_y": 0, "attitude_z": 0}  # fmt: skip
+    found = columns(own.sweep({"attitude_x": "uniform(-0.5, 0.5)"}, tmp_path / "runs", 0.5,
+                              ["attitude_x@end"], held, 64, step=0.01, workers=1))  # fmt: skip
+    whole = np.sqrt(1 + found["attitude_x"] ** 2)
+    assert np.abs(found["attitude_w@0"] - 1 / whole).max() < ROUNDED
+    assert np.abs(found["attitude_x@0"] - found["attitude_x"] / whole).max() < ROUNDED
+    line = own.simulate(held | {c: found[f"{c}@0"][5] for c in ("attitude_w", "attitude_x")},
+                        0.5, 0.01)  # fmt: skip
+    assert line.states["attitude_x"][-1] == pytest.approx(found["attitude_x@end"][5], abs=CLOSE)
 
 
 def test_where_too_much_varies_all_of_it_is_moved_and_said(tmp_path: Path) -> None:

@@ -1,5 +1,7 @@
 """Sweeps: the same bits however they are cut, every member as `simulate` moves it, none lost."""
 
+import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -141,6 +143,22 @@ def test_without_a_compiler_casadi_gives_the_same_bits_and_is_named(
     kit._ready.cache_clear()
     assert same(found, top)
     assert [d for d in found.doubts if "CasADi" in d] != []
+
+
+def test_threads_of_a_worker_compile_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    made, compiled = list[int](), kit.shared_members
+
+    def counted(*told: Any) -> Any:
+        made.append(1)
+        time.sleep(0.2)
+        return compiled(*told)
+
+    monkeypatch.setattr(kit, "shared_members", counted)
+    kit._ready.cache_clear()
+    own = kit.kit_of(derive.load("sleeping_top").library, ["step_rk4"])
+    with ThreadPoolExecutor(4) as threads:
+        each = [*threads.map(kit.ready, [own] * 4)]
+    assert (len(made), len({id(x) for x in each})) == (1, 1)
 
 
 def test_a_disk_that_is_full_ends_a_sweep_that_then_goes_on(

@@ -5,9 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.progress import Progress
 
 import derive
 from derive.cli import main
+from derive.command.sweep import follower
 from derive.solve.sweep.design import Design
 from derive.solve.sweep.summary import _influence
 from derive.solve.sweep.vary import Spread
@@ -71,6 +73,18 @@ def test_without_the_extra_the_command_says_what_to_install(
     told = ["sweep", "sleeping_top", "--vary", "m=uniform(1,2)", "--until", "1", "--keep", "alpha"]
     assert main([*told, "--out", str(tmp_path / "runs")]) == 2
     assert "pip install 'derive-eom[sweep]'" in capsys.readouterr().err
+
+
+def test_time_left_is_told_by_what_this_run_did_alone() -> None:
+    clock = iter(range(100))
+    shown = Progress(get_time=lambda: float(next(clock)), disable=True)
+    told = follower(shown, "top")
+    told("trying half the step", 0, 1000)
+    for done in (600, 601, 602, 603):
+        told("moving", done, 1000)
+    assert shown.tasks[0].speed is not None
+    assert shown.tasks[0].speed <= 1.0
+    assert (shown.tasks[0].completed, shown.tasks[0].total) == (603, 1000)
 
 
 def test_the_number_of_a_member_alone_says_what_is_drawn_for_it() -> None:
