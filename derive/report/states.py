@@ -1,7 +1,8 @@
 """States of the declared ranges to begin motions at: anywhere in them, and at their corners.
 
 Numbers are floats of the smaller type, so that both precisions begin at the same state and have the
-same motion; but for quaternions, which each precision holds as long as it can.
+same motion; but for quaternions, which each precision holds as long as it can, and for machines
+with constraints, whose states fulfil these to the last bit of a double.
 """
 
 from collections.abc import Mapping, Sequence
@@ -102,7 +103,24 @@ def _given(library: Library, of: Sampled, rows: Column) -> Begun:
             size = np.sqrt(np.sum(rows[span] ** 2, axis=0))
             rows[span] = np.where(size > 0, rows[span] / size, np.eye(4)[:, :1])
     names = tuple(c for q in given for c in q.components)
-    return Begun(names, rows[[of.names.index(name) for name in names]])
+    return Begun(names, _held(library, rows[[of.names.index(name) for name in names]]))
+
+
+def _held(library: Library, columns: Column) -> Column:
+    """Return states that fulfil the constraints, if there are any, as many as there were.
+
+    In the place of those that cannot be brought onto them stand others, which can.
+    """
+    brings = library.mechanism.held.onto
+    if brings is None or not columns.shape[1]:
+        return columns
+    hidden = np.ones((len(brings.symbols) - len(columns), columns.shape[1]))
+    found, fits = brings.brought(np.concatenate([columns, hidden]).T)
+    there = np.flatnonzero(fits)
+    if not len(there):
+        return columns
+    which = np.where(fits, np.arange(len(fits)), there[np.arange(len(fits)) % len(there)])
+    return np.asarray(found[which, : len(columns)].T, np.float64)
 
 
 def _in_motion(library: Library, every: Begun) -> Begun:

@@ -110,6 +110,12 @@ def test_an_attitude_that_varies_by_components_begins_at_length_one(tmp_path: Pa
     assert line.states["attitude_x"][-1] == pytest.approx(found["attitude_x@end"][5], abs=CLOSE)
 
 
+def test_the_report_finds_a_step_for_what_is_held(tmp_path: Path) -> None:
+    own = swept_sled(tmp_path, step=None, samples=64)
+    assert own.says.endswith("keeps below 1e-06 over 0.5 s from the hardest states found")
+    assert own.halved["psi@end"] < 1e-6
+
+
 def test_where_too_much_varies_all_of_it_is_moved_and_said(tmp_path: Path) -> None:
     vary = TURNED | {"x_dot": "normal(1.2, 0.1)", "y_dot": f"normal({MIDDLE:.17g}, 0.1)"}
     own = swept_sled(tmp_path, vary=vary, values=SLED | {"psi_dot": 0.5})
