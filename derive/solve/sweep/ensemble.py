@@ -174,9 +174,21 @@ def swept(
     doubts = [*closing.doubts, *outside_at_start(found, design.spreads, values)]
     if "CasADi" in by:
         doubts.append(f"{by['CasADi']} chunks were moved by CasADi: where they were is no compiler")
-    page = folder.with_suffix(".html")
+    page = page_beside(folder)
     return Ensemble(folder, page, design.members, design.plain, _ended(folder), manifest["says"],
                     manifest["halved"], tuple(doubts))  # fmt: skip
+
+
+def page_beside(folder: Path) -> Path:
+    """Return where the page of a folder lies: beside it, and never where it lies itself.
+
+    >>> [page_beside(Path(text)).name for text in ("runs.parquet", "runs", "runs.html")]
+    ['runs.html', 'runs.html', 'runs.html.html']
+    """
+    named = folder if folder.name not in ("", "..") else folder.resolve()
+    if named.suffix == ".html":
+        return named.with_name(f"{named.name}.html")
+    return named.with_suffix(".html")
 
 
 def _planned(

@@ -11,6 +11,7 @@ import pytest
 from derive.cli import main
 from derive.solve.sweep.drawing import histogram
 from derive.solve.sweep.summary import _scatter
+from tests.solve.sweep.swept_tops import swept_top
 
 PAGE = Path(__file__).parents[3] / "docs" / "sweep.md"
 
@@ -27,6 +28,17 @@ def commands() -> list[list[str]]:
     text = PAGE.read_text(encoding="utf-8").replace("\\\n", " ")
     found = [shlex.split(c) for c in re.findall(r"^    derive (sweep .*)$", text, re.MULTILINE)]
     return [[{"1e6": "1e3", "2e4": "2e3"}.get(word, word) for word in own] for own in found]
+
+
+@pytest.mark.parametrize(("told", "page"), [(".", "here.html"), ("runs.html", "runs.html.html")])
+def test_the_page_lies_beside_its_folder_whatever_that_is_called(
+    told: str, page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    found = swept_top(Path(told), samples=20)
+    assert (found.page.name, found.page.is_file()) == (page, True)
+    assert swept_top(Path(told), samples=20).ended == found.ended
 
 
 @pytest.mark.parametrize("values", [
