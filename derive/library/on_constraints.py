@@ -5,9 +5,7 @@ from fractions import Fraction
 from typing import Any, Protocol
 
 from derive.library.setting import Setting
-from derive.mechanics.constraints import Partials, Tie
-from derive.mechanics.frames import Frames
-from derive.motion.constrained import PASSES, Homing, held_step
+from derive.motion.constrained import Homing, held_step
 from derive.program.program import Program
 from derive.scene import Input, Scene, SceneError
 from derive.scene.formula import Formula, symbols
@@ -39,10 +37,10 @@ def on_constraints(setting: Setting, step: Program) -> Program:
         rule = "is of machines without constraints, which a step is brought back onto"
         raise SceneError(f"'{step.name}' {rule}; step_rk4_jacobian is of these, too")
     states = [c for q in setting.terms.vocabulary.states for c in q.components]
-    return held_step(step, states, homing(setting.terms, setting.rates[DISTANCES]))
+    return held_step(step, states, homing_of(setting.terms, setting.rates[DISTANCES]))
 
 
-def homing(of: OfMachine, distances: Program) -> Homing:
+def homing_of(of: OfMachine, distances: Program) -> Homing:
     """Return what vanishes where the constraints hold, without what is redundant, and what moves.
 
     Places that formulas of time alone move are where they are meant to be.
@@ -67,15 +65,6 @@ def homing(of: OfMachine, distances: Program) -> Homing:
               isinstance(c.rate, Formula) and speeds & {*symbols(c.rate)})]  # fmt: skip
     driving = [c.rate.name for c in scene.coordinates if c.free and isinstance(c.rate, Input)]
     driving += [s.name for s in scene.speeds if s.free]
-    frames = of.mechanism.answers.frames
-    again = any(_curved(frames, tie) for tie in found.kept if tie.place is None)
     return Homing(distances, tuple(places), tuple(rates),
-                weights(moving), weights(driving), PASSES if again else 1,
+                weights(moving), weights(driving),
                 tuple(q.components for q in states if q.is_quaternion))  # fmt: skip
-
-
-def _curved(frames: Frames, tie: Tie) -> bool:
-    """Tell whether a condition is no line in the rates that it is of."""
-    by = Partials(frames)
-    slopes = [by.by(tie.first, rate) for rate in by.rates.values()]
-    return any(by.by(slope, rate) != 0 for slope in slopes for rate in by.rates.values())

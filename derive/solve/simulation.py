@@ -22,7 +22,7 @@ from derive.solve.onto_constraints import left_of_constraints, start_on_constrai
 STEP = "step_rk4"
 WIDTH, HEIGHT, LEFT, GAP = 640, 110, 90, 14
 ROUNDING = 1e-12  # so that 1 s is ten steps of 0.1 s, and no short one more
-MOST_OF_STEPS = 10_000_000  # steps: what fits into the memory of a small machine
+LONGEST_MOTION = 10_000_000  # steps: what fits into the memory of a small machine
 MOST_TICKS = 10  # on the axis of time
 SHOWN = 600  # points of a line, at most
 
@@ -118,10 +118,10 @@ def _count(until: float, step: float) -> int:
         raise SceneError(f"step must be a positive number of seconds, not {step}")
     if not (isfinite(until) and until >= 0):
         raise SceneError(f"until must be a number of seconds from 0 up, not {until}")
-    if until > MOST_OF_STEPS * step:
+    if until > LONGEST_MOTION * step:
         raise SceneError(
-            f"until must be at most {MOST_OF_STEPS:,} steps of {step:g} s, that is "
-            f"{MOST_OF_STEPS * step:g} s, not {until:g}"
+            f"until must be at most {LONGEST_MOTION:,} steps of {step:g} s, that is "
+            f"{LONGEST_MOTION * step:g} s, not {until:g}"
         )
     return ceil(until / step * (1 - ROUNDING))
 

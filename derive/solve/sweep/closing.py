@@ -11,7 +11,7 @@ from fractions import Fraction
 import numpy as np
 
 from derive.library.library import Library
-from derive.library.on_constraints import homing
+from derive.library.on_constraints import homing_of
 from derive.motion.constrained import Homing, nearer, reaches
 from derive.program.program import Program
 from derive.scene import SceneError
@@ -55,7 +55,7 @@ def closing_of(library: Library, varied: Collection[str]) -> Closing:
     }
     if not library.scene.constraints:
         return Closing(tuple(turned), moved=tuple(c for own in turned.values() for c in own))
-    held = homing(library, library[DISTANCES])
+    held = homing_of(library, library[DISTANCES])
     size = {c: (q.ends[1] - q.ends[0]) ** 2 for q in states for c in q.components}
     each = {PLACES: replace(held, rates=(), moving=_weighed(held.moving, size)),
             RATES: replace(held, places=(), driving=_weighed(held.driving, size))}  # fmt: skip

@@ -17,7 +17,7 @@ from derive.library.library import Library
 from derive.scene import SceneError
 from derive.solve.event import answers_along, event
 from derive.solve.instrument import Instrument
-from derive.solve.simulation import MOST_OF_STEPS
+from derive.solve.simulation import LONGEST_MOTION
 from derive.solve.sweep.closing import closing_of, require_middle_near
 from derive.solve.sweep.course import ASTRAY, REFUSED
 from derive.solve.sweep.design import Design
@@ -154,8 +154,8 @@ def swept(
     plan = SweepPlan(
         "step_rk4", step or until, until, instants, columns, stop, answers, closing.turned, onto
     )
-    if plan.steps > MOST_OF_STEPS:
-        rule = f"a member moves by at most {MOST_OF_STEPS:,} steps"
+    if plan.steps > LONGEST_MOTION:
+        rule = f"a member moves by at most {LONGEST_MOTION:,} steps"
         raise SceneError(f"{label}: {rule}; {until:g} s at {plan.length:g} s are {plan.steps:,}")
     library = replace(found.library, motions=(*found.library.motions, *closing.programs))
     with only_sweep_in(folder):

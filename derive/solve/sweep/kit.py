@@ -32,7 +32,7 @@ from derive.solve.members import ByMember, MembersCompiled, shared_members
 
 KITS = 4
 """Kits that a worker keeps ready, those that it used last."""
-ONE = Lock()
+COMPILING = Lock()
 """Of the threads of a worker, which would else compile the same at once."""
 
 
@@ -93,7 +93,7 @@ def ready(kit: Kit) -> Ready:
 
     Raises CompilerError with what a compiler says against it.
     """
-    with ONE:
+    with COMPILING:
         return _ready(_ByContent(kit))
 
 
