@@ -4,7 +4,7 @@ No solution is differentiated: what is left of the equations is, a column a leaf
 that solved them solve these too.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import takewhile
@@ -12,6 +12,7 @@ from itertools import takewhile
 from sympy import Symbol
 
 from derive.lower.arrange.arrangement import Arrangement, Definition, Implied
+from derive.lower.cancel import what_is_left
 from derive.lower.derivative import slopes_by, slopes_from
 from derive.lower.graph import UNIT, ZERO, Graph, Value
 from derive.lower.lower import defined, value_of
@@ -54,8 +55,9 @@ def _apart(graph: Graph, way: Arrangement, of: Implied, known: Mapping[Symbol, V
 
 @dataclass(frozen=True)
 class _OfLink:
-    """An angle of a link, or a rate, and the slopes of nodes by what it makes absolute."""
+    """An angle of a link, or a rate: the slopes of nodes by what it makes absolute."""
 
+    unknown: Symbol
     value: Value
     slopes: Mapping[int, Value]
     parent: int
@@ -71,44 +73,79 @@ class _Left:
         self.left = {u: value_of(graph, e, known) for u, e in implied.left.items()}
         self.nodes = {u: known[e][1] for u, e in implied.solved.items()}
         self.held = dict.fromkeys(self.nodes.values(), ZERO)
-        kinds = [
+        angles, rates = (
             [
                 _OfLink(
+                    t.unknown,
                     value_of(graph, t.value, known),
                     {known[s][1]: value_of(graph, e, known) for s, e in t.slopes.items()},
                     t.parent,
                 )
                 for t in kind
             ]
-            for kind in implied.kinds
-        ]
-        every = [t for kind in kinds for t in kind]
-        self.held |= {n: ZERO for t in every for n in t.slopes}
-        self.turning = [pair for kind in kinds for pair in self._outboard(kind)]
+            for kind in (implied.angles, implied.rates)
+        )
+        self.held |= {n: ZERO for t in (*angles, *rates) for n in t.slopes}
+        self.turning = [*self._turned(angles), *zip(rates, self._outboard(rates), strict=True)]
 
-    def _outboard(self, kind: Sequence[_OfLink]) -> list[tuple[Value, ByUnknown]]:
-        """Return of each link's own angle or rate the value, and slopes by it, outboard and all."""
-        graph = self.graph
-        each = [self._by(slopes_from(graph, {**self.held, **t.slopes})) for t in kind]
+    def _outboard(self, kind: Sequence[_OfLink]) -> list[ByUnknown]:
+        """Return slopes by each link's own angle or rate: by those of all that it carries."""
+        each = [self._by(t.slopes) for t in kind]
         for n, t in reversed(list(enumerate(kind))):
             if t.parent >= 0:
-                each[t.parent] = {
-                    u: graph.cut("slope", graph.add([x, each[n][u]]))
-                    for u, x in each[t.parent].items()
-                }
-        return [(t.value, own) for t, own in zip(kind, each, strict=True)]
+                each[t.parent] = self._sum(each[t.parent], each[n], UNIT[0])
+        return each
 
-    def _by(self, slope: Callable[[Value], Value]) -> dict[Symbol, Value]:
+    def _turned(self, kind: Sequence[_OfLink]) -> list[tuple[_OfLink, ByUnknown]]:
+        """Return the same of angles; what a link carries is told by what it does not carry.
+
+        If all turned alike, most would stay as it is: so nothing is left that takes itself away.
+        """
+        graph, below, found = self.graph, self._outboard(kind), list[ByUnknown]()
+        for n, t in enumerate(kind):
+            carried = _carried(kind, n)
+            if t.parent < 0:
+                alike: dict[int, Value] = {}
+                for node, x in (pair for k in carried for pair in kind[k].slopes.items()):
+                    alike[node] = graph.add([alike.get(node, ZERO), x])
+                own = self._by(alike)
+                own = dict(zip(own, *what_is_left(graph, [[*own.values()]]), strict=True))
+            else:
+                own = self._sum(found[t.parent], self._by(kind[t.parent].slopes), MINUS)
+                for k, other in enumerate(kind):
+                    if other.parent == t.parent and k != n:
+                        own = self._sum(own, below[k], MINUS)
+            within = {kind[k].unknown for k in carried}
+            found.append({u: own[u] if u in within else below[n][u] for u in self.left})
+        return list(zip(kind, found, strict=True))
+
+    def _sum(self, first: ByUnknown, second: ByUnknown, sign: Fraction) -> ByUnknown:
+        graph = self.graph
+        pairs = {u: [x, graph.scaled(second[u], sign)] for u, x in first.items()}
+        return {u: graph.cut("slope", graph.add(pair)) for u, pair in pairs.items()}
+
+    def _by(self, nodes: Mapping[int, Value]) -> ByUnknown:
+        """Return slopes by some nodes, all others held."""
+        slope = slopes_from(self.graph, {**self.held, **nodes})
         return {u: self.graph.cut("slope", slope(value)) for u, value in self.left.items()}
 
     def slopes(self, leaf: Value) -> ByUnknown:
         """Return the slopes of what is left by a leaf."""
         graph = self.graph
-        found = self._by(slopes_from(graph, {leaf[1]: UNIT} | self.held))
-        for value, own in self.turning:
-            by = slopes_by(graph, leaf)(value)
+        found = self._by({leaf[1]: UNIT} if leaf[1] not in self.held else {})
+        for t, own in self.turning:
+            by = slopes_by(graph, leaf)(t.value)
             found = {u: graph.add([x, graph.mul([own[u], by])]) for u, x in found.items()}
         return found
+
+
+def _carried(kind: Sequence[_OfLink], n: int) -> list[int]:
+    """Return the places of a link and of all that it carries."""
+    found = [n]
+    for k, t in enumerate(kind):
+        if t.parent in found:
+            found.append(k)
+    return found
 
 
 def _solved(

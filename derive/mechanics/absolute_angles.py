@@ -6,13 +6,13 @@ angle between them alone, times constants: what hangs on a link is one mass at i
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from sympy import Expr, Integer, Matrix, Symbol, cos, sin
 
 from derive.mechanics.frames import ZERO
-from derive.mechanics.implied import Turned
+from derive.mechanics.implied import Implied, Turned
 from derive.mechanics.links import BASE, Links, Push
 from derive.mechanics.mass_matrix import MassMatrix
 
@@ -76,8 +76,8 @@ class AbsoluteAngles:
             if links[k].parent != BASE:
                 system.act(links[links[k].parent].unknown, -moment)
 
-    def kinds(self) -> tuple[tuple[Turned, ...], ...]:
-        """Return absolute angles and speeds with the slopes by them, none if they stand hidden."""
+    def told(self, implied: Implied) -> Implied:
+        """Return what slopes follow from with those by absolute angles, if these stand open."""
         links = self.machine.links
         slopes: list[dict[Symbol, Expr]] = [{} for _ in links]
         for (inner, outer), (c, s) in self.between.items():
@@ -87,14 +87,14 @@ class AbsoluteAngles:
         every = [*self.speeds, *(e for turn in self.between.values() for e in turn)]
         plain = len({e for e in every if e.is_Symbol}) == len(every)
         if not plain or any(k.cosine.func is not cos for k in links):
-            return ()
+            return implied
         if any(k.sine != sin(*k.cosine.args) for k in links):
-            return ()
-        angles = (Turned(k.cosine.args[0], by, k.parent)
+            return implied
+        angles = (Turned(k.unknown, k.cosine.args[0], by, k.parent)
                   for k, by in zip(links, slopes, strict=True))  # fmt: skip
-        rates = (Turned(k.rate, {omega: Integer(1)}, k.parent)
+        rates = (Turned(k.unknown, k.rate, {omega: Integer(1)}, k.parent)
                  for k, omega in zip(links, self.speeds, strict=True))  # fmt: skip
-        return tuple(angles), tuple(rates)
+        return replace(implied, angles=tuple(angles), rates=tuple(rates))
 
     def _plane(self, v: Matrix) -> tuple[Expr, Expr, Expr]:
         """Return the components that turn, then that along the axis."""

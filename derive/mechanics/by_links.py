@@ -74,7 +74,7 @@ def _solved(
     for order in _orders(machine, unknowns):
         if absolute is not None:
             own, found = absolute.system.solved(order)
-            implied = by_rows(absolute.system, own, found, absolute.kinds())
+            implied = absolute.told(by_rows(absolute.system, own, found))
             yield "absolute angles", {**own.definitions, **relative(machine, found)}, implied
         own, found = system.solved(order)
         yield "recursion", {**own.definitions, **found}, by_passes(machine, own, found)

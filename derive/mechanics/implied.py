@@ -19,9 +19,10 @@ from derive.mechanics.recursion import Recursion
 class Turned:
     """An angle of a link on its parent, or its rate; what changes with the absolute one, by what.
 
-    parent : its place among all of a kind, below 0 for the base
+    unknown : the acceleration of the angle     parent : its place, below 0 for the base
     """
 
+    unknown: Symbol
     value: Expr
     slopes: Mapping[Symbol, Expr]
     parent: int
@@ -33,19 +34,20 @@ class Implied:
 
     solved : each unknown of the system, as it was found
     left   : b - A x by unknown, made of ``definitions`` and of what is on the way to ``solved``
-    kinds  : links' angles, and their rates, parents first
+    angles : of links, parents first, and their rates
     """
 
     solved: Mapping[Symbol, Expr]
     left: Mapping[Symbol, Expr]
     factors: Factors
     definitions: Mapping[Symbol, Expr]
-    kinds: tuple[tuple[Turned, ...], ...] = ()
+    angles: tuple[Turned, ...] = ()
+    rates: tuple[Turned, ...] = ()
 
     def expressions(self) -> tuple[Expr, ...]:
         """Return all that is not on the way to what is solved."""
-        turned = (t for kind in self.kinds for t in kind)
-        return (*self.left.values(), *self.definitions.values(), *(t.value for t in turned))
+        turned = (t.value for t in (*self.angles, *self.rates))
+        return (*self.left.values(), *self.definitions.values(), *turned)
 
     def xreplace(self, known: Mapping[Symbol, Expr]) -> "Implied":
         """Return it with symbols replaced."""
@@ -53,12 +55,12 @@ class Implied:
         def put(values: Mapping[Symbol, Expr]) -> dict[Symbol, Expr]:
             return {s: e.xreplace(known) for s, e in values.items()}
 
-        kinds = tuple(tuple(replace(t, value=t.value.xreplace(known)) for t in kind)
-                      for kind in self.kinds)  # fmt: skip
+        kinds = (tuple(replace(t, value=t.value.xreplace(known)) for t in kind)
+                 for kind in (self.angles, self.rates))  # fmt: skip
         of = self.factors
         below = {pair: e.xreplace(known) for pair, e in of.below.items()}
         factors = Factors(of.order, below, put(of.inverses))
-        return Implied(put(self.solved), put(self.left), factors, put(self.definitions), kinds)
+        return Implied(put(self.solved), put(self.left), factors, put(self.definitions), *kinds)
 
 
 def by_passes(machine: Links, own: MassMatrix, found: Mapping[Symbol, Expr]) -> Implied:
@@ -87,14 +89,11 @@ def _as_found(machine: Links, found: Mapping[Symbol, Expr]) -> Links:
     return replace(machine, links=each, carried=carried)
 
 
-def by_rows(
-    system: MassMatrix, own: MassMatrix, found: Mapping[Symbol, Expr],
-    kinds: tuple[tuple[Turned, ...], ...],
-) -> Implied:  # fmt: skip
+def by_rows(system: MassMatrix, own: MassMatrix, found: Mapping[Symbol, Expr]) -> Implied:
     """Return the same by the rows of a mass matrix."""
     left = {}
     for u in found:
         row = [e * found[v] for (w, v), e in system.entries.items() if w == u]
         left[u] = system.right.get(u, Integer(0)) - sum(row, Integer(0))
     assert own.factors is not None  # noqa: S101
-    return Implied(found, left, own.factors, {}, kinds)
+    return Implied(found, left, own.factors, {})
