@@ -12,7 +12,7 @@ where it cannot and a derivative exists, it gives NaN or an infinity.
 import casadi as ca
 
 PARAMETERS = ['m_1', 'm_2', 'l_1', 'c_1', 'c_2', 'I_1', 'I_2', 'g']
-CONSTANTS = ['m_2_l_1_c_2', 'k1', 'inverse', 'm_2_c_2_g', 'k2', 'k3', 'm_2_l_1_c_2_inverse', 'k4', 'k5', 'k6', 'k7', 'minus_m_2_c_2_g', 'k8', 'k9', 'k10']
+CONSTANTS = ['m_2_l_1_c_2', 'k1', 'inverse', 'm_2_c_2_g', 'k2', 'minus_inverse', 'k3', 'k4', 'k5', 'k6', 'minus_m_2_c_2_g', 'k7', 'k8', 'k9']
 SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 2: 'a mass is not positive', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
@@ -207,30 +207,29 @@ def _tried():
     s11 = _mul((parameters[7], 0.0), s0)
     s12 = _mul((parameters[4], 0.0), s0)
     s13 = _add((parameters[6], 0.0), s12)
-    s14 = _mul(s5, s10)
-    s15 = _mul(s10, s1)
-    s16 = _add((parameters[2], 0.0), (parameters[4], 0.0))
-    s17 = _add(s2, s0)
-    s18 = _mul(s16, s17)
-    s19 = _add((parameters[6], 0.0), s18)
-    s20 = _add(s19, s8)
-    s21 = _add(s1, s13)
-    s22 = _mul(s16, s0)
-    s23 = _add((parameters[6], 0.0), s22)
-    s24 = _mul((parameters[7], 0.0), s3)
-    s25 = _mul((parameters[1], 0.0), (parameters[7], 0.0))
-    s26 = _mul(s25, s16)
-    s27 = _add(s24, s26)
-    s28 = _neg(s27)
-    s29 = _neg(s11)
-    s30 = _mul(s13, (0.5, 0.0))
-    s31 = _mul((parameters[7], 0.0), s2)
-    s32 = _add(s24, s31)
-    s33 = _add(s13, s9)
-    s34 = _mul(s33, (0.5, 0.0))
-    constants = ca.vertcat(s1[0], s5[0], s10[0], s11[0], s13[0], s14[0], s15[0], s20[0], s21[0], s23[0], s28[0], s29[0], s30[0], s32[0], s34[0])
+    s14 = _neg(s10)
+    s15 = _add((parameters[2], 0.0), (parameters[4], 0.0))
+    s16 = _add(s2, s0)
+    s17 = _mul(s15, s16)
+    s18 = _add((parameters[6], 0.0), s17)
+    s19 = _add(s18, s8)
+    s20 = _add(s1, s13)
+    s21 = _mul(s15, s0)
+    s22 = _add((parameters[6], 0.0), s21)
+    s23 = _mul((parameters[7], 0.0), s3)
+    s24 = _mul((parameters[1], 0.0), (parameters[7], 0.0))
+    s25 = _mul(s24, s15)
+    s26 = _add(s23, s25)
+    s27 = _neg(s26)
+    s28 = _neg(s11)
+    s29 = _mul(s13, (0.5, 0.0))
+    s30 = _mul((parameters[7], 0.0), s2)
+    s31 = _add(s23, s30)
+    s32 = _add(s13, s9)
+    s33 = _mul(s32, (0.5, 0.0))
+    constants = ca.vertcat(s1[0], s5[0], s10[0], s11[0], s13[0], s14[0], s19[0], s20[0], s22[0], s27[0], s28[0], s29[0], s31[0], s33[0])
     status = ca.SX(0)
-    status = _refused(status, 5, _endless(s1[0]), _endless(s5[0]), _endless(s10[0]), _endless(s11[0]), _endless(s13[0]), _endless(s14[0]), _endless(s15[0]), _endless(s20[0]), _endless(s21[0]), _endless(s23[0]), _endless(s28[0]), _endless(s29[0]), _endless(s30[0]), _endless(s32[0]), _endless(s34[0]))
+    status = _refused(status, 5, _endless(s1[0]), _endless(s5[0]), _endless(s10[0]), _endless(s11[0]), _endless(s13[0]), _endless(s14[0]), _endless(s19[0]), _endless(s20[0]), _endless(s22[0]), _endless(s27[0]), _endless(s28[0]), _endless(s29[0]), _endless(s31[0]), _endless(s33[0]))
     status = _refused(status, 4, parameters[5] < 0.0, parameters[6] < 0.0)
     status = _refused(status, 2, parameters[0] <= 0.0, parameters[1] <= 0.0)
     status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]), _endless(parameters[3]), _endless(parameters[4]), _endless(parameters[5]), _endless(parameters[6]), _endless(parameters[7]))
@@ -268,7 +267,7 @@ def state_rate_hot():
 
 
 def _state_rate():
-    constants = ca.SX.sym("constants", 15)
+    constants = ca.SX.sym("constants", 14)
     q_1 = ca.SX.sym("q_1", 1)
     q_1_dot = ca.SX.sym("q_1_dot", 1)
     q_2 = ca.SX.sym("q_2", 1)
@@ -333,7 +332,7 @@ def state_rate_jacobian_hot():
 
 
 def _state_rate_jacobian():
-    constants = ca.SX.sym("constants", 15)
+    constants = ca.SX.sym("constants", 14)
     q_1 = ca.SX.sym("q_1", 1)
     q_1_dot = ca.SX.sym("q_1_dot", 1)
     q_2 = ca.SX.sym("q_2", 1)
@@ -342,97 +341,83 @@ def _state_rate_jacobian():
     t0_both = _sine_cosine(q_2[0])
     t0 = t0_both[1]
     t1 = t0 * constants[0]
-    t2 = t1 * constants[2]
-    t3 = t1 * t2
-    t4 = constants[4] - t3
-    t5 = 1.0 / t4
-    t6 = q_1_dot[0] + q_2_dot[0]
-    t7 = t6 * t6
-    t8 = t0_both[0]
-    t9 = t8 * constants[0]
-    t10 = t7 * t9
-    t11_both = _sine_cosine(q_1[0])
-    t11 = t11_both[0]
-    t12 = t11 * constants[1]
-    t13 = t10 + t12
-    t14 = t13 - T[0]
-    t15 = t14 * constants[2]
-    t16 = t11_both[1]
-    t17 = t8 * t16
-    t18 = t11 * t0
+    t2 = t1 * constants[5]
+    t3 = t0_both[0]
+    t4_both = _sine_cosine(q_1[0])
+    t4 = t4_both[1]
+    t5 = t3 * t4
+    t6 = t4_both[0]
+    t7 = t6 * t0
+    t8 = t5 + t7
+    t9 = t8 * constants[3]
+    t10 = T[0] + t9
+    t11 = t3 * constants[0]
+    t12 = q_1_dot[0] * q_1_dot[0]
+    t13 = t11 * t12
+    t14 = t10 - t13
+    t15 = q_1_dot[0] + q_2_dot[0]
+    t16 = t15 * t15
+    t17 = t16 * t11
+    t18 = t6 * constants[1]
     t19 = t17 + t18
-    t20 = t19 * constants[3]
-    t21 = T[0] + t20
-    t22 = q_1_dot[0] * q_1_dot[0]
-    t23 = t9 * t22
-    t24 = t21 - t23
-    t25 = t14 * t2
-    t26 = t24 - t25
-    t27 = t26 * t5
-    t28 = t2 * t27
-    t29 = t15 - t28
-    t30 = t27 - t29
-    t31 = t16 * constants[5]
-    t32 = t8 * t11
-    t33 = t0 * t16
-    t34 = t32 - t33
-    t35 = t34 * constants[3]
-    t36 = t2 * t16
-    t37 = t36 * constants[1]
-    t38 = t35 + t37
-    t39 = t2 * t5
-    t40 = t38 * t39
-    t41 = t31 + t40
-    t42 = t5 * t38
-    t43 = t42 + t41
-    t44 = -t43
-    t45 = t6 * t9
-    t46 = t45 * constants[2]
-    t47 = q_1_dot[0] * t9
-    t48 = t2 * t45
-    t49 = t47 + t48
-    t50 = t49 * t39
-    t51 = t46 + t50
-    t52 = t51 * 2.0
-    t53 = t5 * t49
-    t54 = t53 + t51
-    t55 = t54 * 2.0
-    t56 = -t55
-    t57 = t1 * t22
-    t58 = t57 + t35
-    t59 = t7 * t3
+    t20 = t19 - T[0]
+    t21 = t20 * t2
+    t22 = t14 + t21
+    t23 = t1 * t2
+    t24 = t23 + constants[4]
+    t25 = 1.0 / t24
+    t26 = t22 * t25
+    t27 = t2 * t26
+    t28 = t20 * constants[5]
+    t29 = t27 - t28
+    t30 = t26 - t29
+    t31 = t0 * t4
+    t32 = t3 * t6
+    t33 = t31 - t32
+    t34 = t33 * constants[3]
+    t35 = t4 * constants[1]
+    t36 = t2 * t35
+    t37 = t34 + t36
+    t38 = t25 * t37
+    t39 = t2 * t38
+    t40 = t35 * constants[5]
+    t41 = t39 - t40
+    t42 = t38 - t41
+    t43 = t15 * t11
+    t44 = t43 * 2.0
+    t45 = t2 * t44
+    t46 = q_1_dot[0] * t11
+    t47 = _kept(t45 - t46)
+    t48 = t47 - t46
+    t49 = t25 * t48
+    t50 = t2 * t49
+    t51 = t44 * constants[5]
+    t52 = t50 - t51
+    t53 = t49 - t52
+    t54 = t1 * t12
+    t55 = t29 * t11
+    t56 = t54 - t55
+    t57 = t34 - t56
+    t58 = t16 * t1
+    t59 = t11 * t26
     t60 = t58 + t59
-    t61 = t8 * constants[6]
-    t62 = t14 * t61
-    t63 = t60 - t62
-    t64 = t5 * t63
-    t65 = t27 * t5
-    t66 = t9 * t2
-    t67 = t1 * t61
-    t68 = t66 + t67
-    t69 = t65 * t68
-    t70 = t64 + t69
-    t71 = t2 * t70
-    t72 = t7 * t0
-    t73 = t72 * constants[6]
-    t74 = t27 * t61
-    t75 = t73 + t74
-    t76 = t71 + t75
-    t77 = t70 + t76
-    t78 = -t77
-    t79 = t39 * t48
-    t80 = t46 + t79
-    t81 = t80 * 2.0
-    t82 = t39 * t45
-    t83 = t82 + t80
-    t84 = t83 * 2.0
-    t85 = -t84
-    t86 = t2 + 1.0
-    t87 = t86 * t39
-    t88 = constants[2] + t87
-    t89 = -t88
-    t90 = t5 * t86
-    t91 = t90 + t88
+    t61 = t2 * t60
+    t62 = t57 + t61
+    t63 = t25 * t62
+    t64 = t2 * t63
+    t65 = t60 * constants[5]
+    t66 = t64 - t65
+    t67 = t63 - t66
+    t68 = t25 * t45
+    t69 = t2 * t68
+    t70 = t69 - t51
+    t71 = t68 - t70
+    t72 = t2 - 1.0
+    t73 = t25 * t72
+    t74 = t2 * t73
+    t75 = t74 - constants[5]
+    t76 = -t75
+    t77 = t75 - t73
     return ca.Function(
         "acrobot_state_rate_jacobian_hot",
         [constants, q_1, q_1_dot, q_2, q_2_dot, T],
@@ -441,7 +426,7 @@ def _state_rate_jacobian():
             ca.vertcat(t29),
             ca.vertcat(q_2_dot[0]),
             ca.vertcat(t30),
-            ca.SX(ca.Sparsity(4, 5, [0, 2, 5, 7, 10, 12], [1, 3, 0, 1, 3, 1, 3, 1, 2, 3, 1, 3]), ca.vertcat(t41, t44, 1.0, t52, t56, t76, t78, t81, 1.0, t85, t89, t91)),
+            ca.SX(ca.Sparsity(4, 5, [0, 2, 5, 7, 10, 12], [1, 3, 0, 1, 3, 1, 3, 1, 2, 3, 1, 3]), ca.vertcat(t41, t42, 1.0, t52, t53, t66, t67, t70, 1.0, t71, t76, t77)),
         ],
         ['constants', 'q_1', 'q_1_dot', 'q_2', 'q_2_dot', 'T'],
         ['q_1_rate', 'q_1_dot_rate', 'q_2_rate', 'q_2_dot_rate', 'jacobian'],
@@ -460,14 +445,14 @@ def linearised_hot():
 
 
 def _linearised():
-    constants = ca.SX.sym("constants", 15)
+    constants = ca.SX.sym("constants", 14)
     return ca.Function(
         "acrobot_linearised_hot",
         [constants],
         [
-            ca.vertcat(constants[7], constants[8], constants[9], constants[4]),
+            ca.vertcat(constants[6], constants[7], constants[8], constants[4]),
             ca.vertcat(0.0, 0.0, 0.0, 0.0),
-            ca.vertcat(constants[10], constants[11], constants[11], constants[11]),
+            ca.vertcat(constants[9], constants[10], constants[10], constants[10]),
         ],
         ['constants'],
         ['mass_matrix', 'damping_matrix', 'stiffness_matrix'],
@@ -486,25 +471,25 @@ def energy_hot():
 
 
 def _energy():
-    constants = ca.SX.sym("constants", 15)
+    constants = ca.SX.sym("constants", 14)
     q_1 = ca.SX.sym("q_1", 1)
     q_1_dot = ca.SX.sym("q_1_dot", 1)
     q_2 = ca.SX.sym("q_2", 1)
     q_2_dot = ca.SX.sym("q_2_dot", 1)
     t0 = q_2_dot[0] * q_2_dot[0]
-    t1 = t0 * constants[12]
+    t1 = t0 * constants[11]
     t2_both = _sine_cosine(q_1[0])
     t2 = t2_both[1]
     t3_both = _sine_cosine(q_2[0])
     t3 = t3_both[1]
     t4 = t3 * constants[3]
-    t5 = t4 + constants[13]
+    t5 = t4 + constants[12]
     t6 = t2 * t5
     t7 = t1 + t6
     t8 = t3 * constants[0]
     t9 = t8 + constants[4]
     t10 = q_2_dot[0] * t9
-    t11 = t8 + constants[14]
+    t11 = t8 + constants[13]
     t12 = q_1_dot[0] * t11
     t13 = t10 + t12
     t14 = q_1_dot[0] * t13
@@ -537,7 +522,7 @@ def step_rk4_hot():
 
 
 def _step_rk4():
-    constants = ca.SX.sym("constants", 15)
+    constants = ca.SX.sym("constants", 14)
     q_1 = ca.SX.sym("q_1", 1)
     q_1_dot = ca.SX.sym("q_1_dot", 1)
     q_2 = ca.SX.sym("q_2", 1)

@@ -27,7 +27,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 258ca18a4f9b465e.
+ * Body of these files: sha256 366c0d57b6b4b250.
  */
 #ifndef ACROBOT_F32_H
 #define ACROBOT_F32_H
@@ -43,16 +43,15 @@ typedef struct {
     float inverse; /* 1/(I_1 + m_1*c_1^2 + m_2*l_1^2) */
     float m_2_c_2_g; /* m_2*c_2*g */
     float k2; /* I_2 + m_2*c_2^2 */
-    float k3; /* g*(m_2*l_1 + m_1*c_1)*(1/(I_1 + m_1*c_1^2 + m_2*l_1^2)) */
-    float m_2_l_1_c_2_inverse; /* m_2*l_1*c_2*(1/(I_1 + m_1*c_1^2 + m_2*l_1^2)) */
-    float k4; /* I_1 + I_2 + m_1*c_1^2 + (l_1 + c_2)*(m_2*l_1 + m_2*c_2) */
-    float k5; /* I_2 + m_2*c_2^2 + m_2*l_1*c_2 */
-    float k6; /* I_2 + m_2*c_2*(l_1 + c_2) */
-    float k7; /* -(m_1*c_1*g + m_2*g*(l_1 + c_2)) */
+    float minus_inverse; /* -(1/(I_1 + m_1*c_1^2 + m_2*l_1^2)) */
+    float k3; /* I_1 + I_2 + m_1*c_1^2 + (l_1 + c_2)*(m_2*l_1 + m_2*c_2) */
+    float k4; /* I_2 + m_2*c_2^2 + m_2*l_1*c_2 */
+    float k5; /* I_2 + m_2*c_2*(l_1 + c_2) */
+    float k6; /* -(m_1*c_1*g + m_2*g*(l_1 + c_2)) */
     float minus_m_2_c_2_g; /* -m_2*c_2*g */
-    float k8; /* 1/2*(I_2 + m_2*c_2^2) */
-    float k9; /* m_1*c_1*g + m_2*l_1*g */
-    float k10; /* 1/2*(I_1 + I_2 + m_2*c_2^2 + m_1*c_1^2 + m_2*l_1^2) */
+    float k7; /* 1/2*(I_2 + m_2*c_2^2) */
+    float k8; /* m_1*c_1*g + m_2*l_1*g */
+    float k9; /* 1/2*(I_1 + I_2 + m_2*c_2^2 + m_1*c_1^2 + m_2*l_1^2) */
 } acrobot_constants_f32;
 
 /* Make the constants of this scene from its parameters; call it once.
@@ -69,9 +68,7 @@ typedef struct {
  *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
- * Cost: once; 33 operations on pairs.
- * On Cortex-M0+, -O2: 67279 to 69722 instructions, 2024 B of code, 688 B of stack.
- * On Cortex-M4F, -O2: 1361 instructions, 1692 B of code, 608 B of stack.
+ * Cost: once; 31 operations on pairs.
  */
 int acrobot_setup_f32(float m_1, float m_2, float l_1, float c_1, float c_2, float I_1, float I_2,
     float g, acrobot_constants_f32 *constants);
@@ -110,8 +107,6 @@ int acrobot_setup_f32(float m_1, float m_2, float l_1, float c_1, float c_2, flo
  *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 4 add, 6 sub, 16 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 10233 to 11746 instructions, 872 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 232 to 234 instructions, 640 B of code, 84 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -141,13 +136,11 @@ void acrobot_state_rate_f32(const acrobot_constants_f32 *constants, float q_1, f
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.46, largest 33 u of the largest product or sum in the equation (of jacobian;
+ * Error: median 0.46, largest 25 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
- * Cost: 22 add, 8 sub, 52 mul, 1 div, 5 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 15716 to 17339 instructions, 1440 B of code, 192 B of stack.
- * On Cortex-M4F, -O2: 313 to 315 instructions, 960 B of code, 116 B of stack.
+ * Cost: 9 add, 20 sub, 43 mul, 1 div, 1 neg, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -156,10 +149,7 @@ void acrobot_state_rate_jacobian_f32(const acrobot_constants_f32 *constants, flo
     float q_1_dot, float q_2, float q_2_dot, float T, float *q_1_rate, float *q_1_dot_rate,
     float *q_2_rate, float *q_2_dot_rate, float jacobian[12]);
 
-/* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 15802 to 17460 instructions, 1456 B of code, 192 B of stack.
- * On Cortex-M4F, -O2: 321 to 323 instructions, 976 B of code, 116 B of stack.
- */
+/* The same, the whole matrix: 20 entries. */
 void acrobot_state_rate_jacobian_dense_f32(const acrobot_constants_f32 *constants, float q_1,
     float q_1_dot, float q_2, float q_2_dot, float T, float *q_1_rate, float *q_1_dot_rate,
     float *q_2_rate, float *q_2_dot_rate, float jacobian[20]);
@@ -193,8 +183,6 @@ void acrobot_state_rate_jacobian_dense_f32(const acrobot_constants_f32 *constant
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 9.6e-07 (seen
  *            9.5e-07), damping_matrix 0 (seen 0), stiffness_matrix 3.9e-06 (seen 3.8e-06).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 22 instructions, 44 B of code, 12 B of stack.
- * On Cortex-M4F, -O2: 21 instructions, 60 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -228,8 +216,6 @@ void acrobot_linearised_f32(const acrobot_constants_f32 *constants, float mass_m
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 0.00039 J (seen 0.0003);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 6 add, 1 sub, 10 mul, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 8797 to 10398 instructions, 740 B of code, 128 B of stack.
- * On Cortex-M4F, -O2: 214 to 216 instructions, 572 B of code, 68 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, constant_mass, further_axes_are_right_handed, rate_seen_from_N,
  *            rigid.
@@ -263,8 +249,6 @@ void acrobot_energy_f32(const acrobot_constants_f32 *constants, float q_1, float
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 44 add, 24 sub, 99 mul, 8 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 47744 to 53931 instructions, 2228 B of code, 288 B of stack.
- * On Cortex-M4F, -O2: 974 to 982 instructions, 1524 B of code, 228 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

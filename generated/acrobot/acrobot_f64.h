@@ -25,7 +25,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 67530af39f73463b.
+ * Body of these files: sha256 ec108da177349bd6.
  */
 #ifndef ACROBOT_F64_H
 #define ACROBOT_F64_H
@@ -41,16 +41,15 @@ typedef struct {
     double inverse; /* 1/(I_1 + m_1*c_1^2 + m_2*l_1^2) */
     double m_2_c_2_g; /* m_2*c_2*g */
     double k2; /* I_2 + m_2*c_2^2 */
-    double k3; /* g*(m_2*l_1 + m_1*c_1)*(1/(I_1 + m_1*c_1^2 + m_2*l_1^2)) */
-    double m_2_l_1_c_2_inverse; /* m_2*l_1*c_2*(1/(I_1 + m_1*c_1^2 + m_2*l_1^2)) */
-    double k4; /* I_1 + I_2 + m_1*c_1^2 + (l_1 + c_2)*(m_2*l_1 + m_2*c_2) */
-    double k5; /* I_2 + m_2*c_2^2 + m_2*l_1*c_2 */
-    double k6; /* I_2 + m_2*c_2*(l_1 + c_2) */
-    double k7; /* -(m_1*c_1*g + m_2*g*(l_1 + c_2)) */
+    double minus_inverse; /* -(1/(I_1 + m_1*c_1^2 + m_2*l_1^2)) */
+    double k3; /* I_1 + I_2 + m_1*c_1^2 + (l_1 + c_2)*(m_2*l_1 + m_2*c_2) */
+    double k4; /* I_2 + m_2*c_2^2 + m_2*l_1*c_2 */
+    double k5; /* I_2 + m_2*c_2*(l_1 + c_2) */
+    double k6; /* -(m_1*c_1*g + m_2*g*(l_1 + c_2)) */
     double minus_m_2_c_2_g; /* -m_2*c_2*g */
-    double k8; /* 1/2*(I_2 + m_2*c_2^2) */
-    double k9; /* m_1*c_1*g + m_2*l_1*g */
-    double k10; /* 1/2*(I_1 + I_2 + m_2*c_2^2 + m_1*c_1^2 + m_2*l_1^2) */
+    double k7; /* 1/2*(I_2 + m_2*c_2^2) */
+    double k8; /* m_1*c_1*g + m_2*l_1*g */
+    double k9; /* 1/2*(I_1 + I_2 + m_2*c_2^2 + m_1*c_1^2 + m_2*l_1^2) */
 } acrobot_constants_f64;
 
 /* Make the constants of this scene from its parameters; call it once.
@@ -67,8 +66,7 @@ typedef struct {
  *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
- * Cost: once; 33 operations on pairs.
- * On Cortex-M0+, -O2: 131269 to 138111 instructions, 3780 B of code, 1320 B of stack.
+ * Cost: once; 31 operations on pairs.
  */
 int acrobot_setup_f64(double m_1, double m_2, double l_1, double c_1, double c_2, double I_1,
     double I_2, double g, acrobot_constants_f64 *constants);
@@ -107,7 +105,6 @@ int acrobot_setup_f64(double m_1, double m_2, double l_1, double c_1, double c_2
  *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 4 add, 6 sub, 16 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 26129 to 29483 instructions, 1392 B of code, 240 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -137,12 +134,11 @@ void acrobot_state_rate_f64(const acrobot_constants_f64 *constants, double q_1, 
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.43, largest 24 u of the largest product or sum in the equation (of jacobian;
+ * Error: median 0.43, largest 27 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
- * Cost: 22 add, 8 sub, 52 mul, 1 div, 5 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 38854 to 42388 instructions, 2284 B of code, 336 B of stack.
+ * Cost: 9 add, 20 sub, 43 mul, 1 div, 1 neg, 2 sin, 2 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -151,9 +147,7 @@ void acrobot_state_rate_jacobian_f64(const acrobot_constants_f64 *constants, dou
     double q_1_dot, double q_2, double q_2_dot, double T, double *q_1_rate, double *q_1_dot_rate,
     double *q_2_rate, double *q_2_dot_rate, double jacobian[12]);
 
-/* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 39053 to 42561 instructions, 2344 B of code, 336 B of stack.
- */
+/* The same, the whole matrix: 20 entries. */
 void acrobot_state_rate_jacobian_dense_f64(const acrobot_constants_f64 *constants, double q_1,
     double q_1_dot, double q_2, double q_2_dot, double T, double *q_1_rate, double *q_1_dot_rate,
     double *q_2_rate, double *q_2_dot_rate, double jacobian[20]);
@@ -187,7 +181,6 @@ void acrobot_state_rate_jacobian_dense_f64(const acrobot_constants_f64 *constant
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 1.8e-15 (seen
  *            1.8e-15), damping_matrix 0 (seen 0), stiffness_matrix 7.2e-15 (seen 7.1e-15).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 42 to 43 instructions, 84 B of code, 20 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -221,7 +214,6 @@ void acrobot_linearised_f64(const acrobot_constants_f64 *constants, double mass_
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 7.3e-13 J (seen
  *            5.3e-13); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 6 add, 1 sub, 10 mul, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 22977 to 26410 instructions, 1188 B of code, 216 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, constant_mass, further_axes_are_right_handed, rate_seen_from_N,
  *            rigid.
@@ -255,7 +247,6 @@ void acrobot_energy_f64(const acrobot_constants_f64 *constants, double q_1, doub
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 44 add, 24 sub, 99 mul, 8 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 119480 to 132816 instructions, 3492 B of code, 512 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

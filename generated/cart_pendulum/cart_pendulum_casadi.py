@@ -12,7 +12,7 @@ where it cannot and a derivative exists, it gives NaN or an infinity.
 import casadi as ca
 
 PARAMETERS = ['M', 'm', 'l', 'I', 'b', 'g']
-CONSTANTS = ['m_l', 'b', 'pivot', 'm_l_g', 'M_plus_m', 'k1', 'minus_m_l', 'minus_b', 'k2', 'k3', 'm_l_pivot', 'twice_m_l', 'k4', 'k5', 'minus_m_l_g', 'k6', 'half_M_plus_m', 'factor', 'M', 'm', 'm_l_factor', 'k7', 'k8', 'k9', 'k10']
+CONSTANTS = ['m_l', 'b', 'pivot', 'm_l_g', 'M_plus_m', 'k1', 'minus_b', 'minus_inverse', 'twice_m_l', 'k2', 'minus_m_l_g', 'k3', 'half_M_plus_m', 'factor', 'M', 'm', 'm_l_factor', 'k4', 'k5', 'k6', 'k7']
 SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 2: 'a mass is not positive', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
@@ -199,32 +199,29 @@ def _tried():
     s3 = _div((1.0, 0.0), s2)
     s4 = _mul(s0, (parameters[5], 0.0))
     s5 = _add((parameters[1], 0.0), (parameters[0], 0.0))
-    s6 = _neg(s0)
-    s7 = _neg((parameters[4], 0.0))
-    s8 = _mul((parameters[4], 0.0), s3)
-    s9 = _neg(s8)
-    s10 = _mul(s0, s3)
-    s11 = _mul(s4, s10)
-    s12 = _mul(s0, (2.0, 0.0))
-    s13 = _mul(s3, s12)
-    s14 = _neg(s4)
-    s15 = _mul(s2, (0.5, 0.0))
-    s16 = _mul(s5, (0.5, 0.0))
-    s17 = _mul(s0, s10)
-    s18 = _sub(s5, s17)
-    s19 = _mul((parameters[4], 0.0), s18)
-    s20 = _mul((parameters[4], 0.0), s5)
-    s21 = _sub(s19, s20)
-    s22 = _mul((parameters[1], 0.0), (parameters[5], 0.0))
-    s23 = _mul((parameters[5], 0.0), (parameters[0], 0.0))
-    s24 = _add(s22, s23)
-    s25 = _mul(s18, s24)
-    s26 = _mul(s0, s18)
-    s27 = _sub(s24, s11)
-    s28 = _mul(s5, s27)
-    constants = ca.vertcat(s0[0], parameters[4], s3[0], s4[0], s5[0], s3[0], s6[0], s7[0], s9[0], s11[0], s10[0], s12[0], s13[0], s2[0], s14[0], s15[0], s16[0], s10[0], parameters[0], parameters[1], s17[0], s21[0], s25[0], s26[0], s28[0])
+    s6 = _neg((parameters[4], 0.0))
+    s7 = _neg(s3)
+    s8 = _mul(s0, (2.0, 0.0))
+    s9 = _neg(s4)
+    s10 = _mul(s2, (0.5, 0.0))
+    s11 = _mul(s5, (0.5, 0.0))
+    s12 = _mul(s0, s3)
+    s13 = _mul(s0, s12)
+    s14 = _sub(s5, s13)
+    s15 = _mul((parameters[4], 0.0), s14)
+    s16 = _mul((parameters[4], 0.0), s5)
+    s17 = _sub(s15, s16)
+    s18 = _mul((parameters[1], 0.0), (parameters[5], 0.0))
+    s19 = _mul((parameters[5], 0.0), (parameters[0], 0.0))
+    s20 = _add(s18, s19)
+    s21 = _mul(s14, s20)
+    s22 = _mul(s0, s14)
+    s23 = _mul(s12, s4)
+    s24 = _sub(s20, s23)
+    s25 = _mul(s5, s24)
+    constants = ca.vertcat(s0[0], parameters[4], s3[0], s4[0], s5[0], s3[0], s6[0], s7[0], s8[0], s2[0], s9[0], s10[0], s11[0], s12[0], parameters[0], parameters[1], s13[0], s17[0], s21[0], s22[0], s25[0])
     status = ca.SX(0)
-    status = _refused(status, 5, _endless(s0[0]), _endless(s3[0]), _endless(s4[0]), _endless(s5[0]), _endless(s6[0]), _endless(s7[0]), _endless(s9[0]), _endless(s11[0]), _endless(s10[0]), _endless(s12[0]), _endless(s13[0]), _endless(s2[0]), _endless(s14[0]), _endless(s15[0]), _endless(s16[0]), _endless(s17[0]), _endless(s21[0]), _endless(s25[0]), _endless(s26[0]), _endless(s28[0]))
+    status = _refused(status, 5, _endless(s0[0]), _endless(s3[0]), _endless(s4[0]), _endless(s5[0]), _endless(s6[0]), _endless(s7[0]), _endless(s8[0]), _endless(s2[0]), _endless(s9[0]), _endless(s10[0]), _endless(s11[0]), _endless(s12[0]), _endless(s13[0]), _endless(s17[0]), _endless(s21[0]), _endless(s22[0]), _endless(s25[0]))
     status = _refused(status, 4, parameters[3] < 0.0)
     status = _refused(status, 2, parameters[0] <= 0.0, parameters[1] <= 0.0)
     status = _refused(status, 1, _endless(parameters[0]), _endless(parameters[1]), _endless(parameters[2]), _endless(parameters[3]), _endless(parameters[4]), _endless(parameters[5]))
@@ -262,7 +259,7 @@ def state_rate_hot():
 
 
 def _state_rate():
-    constants = ca.SX.sym("constants", 25)
+    constants = ca.SX.sym("constants", 21)
     x_dot = ca.SX.sym("x_dot", 1)
     theta = ca.SX.sym("theta", 1)
     theta_dot = ca.SX.sym("theta_dot", 1)
@@ -313,61 +310,51 @@ def state_rate_jacobian_hot():
 
 
 def _state_rate_jacobian():
-    constants = ca.SX.sym("constants", 25)
+    constants = ca.SX.sym("constants", 21)
     x_dot = ca.SX.sym("x_dot", 1)
     theta = ca.SX.sym("theta", 1)
     theta_dot = ca.SX.sym("theta_dot", 1)
     F = ca.SX.sym("F", 1)
-    t0_both = _sine_cosine(theta[0])
-    t0 = t0_both[1]
-    t1 = t0 * constants[6]
-    t2 = t1 * constants[2]
-    t3 = t1 * t2
-    t4 = constants[4] - t3
-    t5 = 1.0 / t4
-    t6 = x_dot[0] * constants[7]
-    t7 = F[0] + t6
-    t8 = t0_both[0]
-    t9 = t8 * constants[3]
-    t10 = t2 * t9
-    t11 = t7 + t10
-    t12 = t8 * constants[6]
-    t13 = theta_dot[0] * theta_dot[0]
-    t14 = t12 * t13
-    t15 = t11 - t14
-    t16 = t5 * t15
-    t17 = t1 * t16
-    t18 = t17 + t9
-    t19 = t18 * constants[5]
-    t20 = t5 * constants[7]
-    t21 = t1 * t5
-    t22 = t21 * constants[8]
-    t23 = t0 * constants[3]
-    t24 = t2 * t23
-    t25 = t8 * t8
-    t26 = t25 * constants[9]
-    t27 = t24 + t26
-    t28 = t1 * t13
-    t29 = t27 - t28
-    t30 = t5 * t29
-    t31 = t5 * t16
-    t32 = t2 * t12
-    t33 = t1 * t8
-    t34 = t33 * constants[10]
-    t35 = t32 - t34
-    t36 = t31 * t35
-    t37 = t30 - t36
-    t38 = t1 * t37
-    t39 = t23 + t38
-    t40 = t16 * t12
-    t41 = t39 - t40
-    t42 = t41 * constants[5]
-    t43 = theta_dot[0] * t8
-    t44 = t5 * t43
-    t45 = t44 * constants[11]
-    t46 = t21 * t43
-    t47 = t46 * constants[12]
-    t48 = t21 * constants[5]
+    t0 = x_dot[0] * constants[6]
+    t1 = F[0] + t0
+    t2 = theta_dot[0] * theta_dot[0]
+    t3_both = _sine_cosine(theta[0])
+    t3 = t3_both[0]
+    t4 = t3 * constants[0]
+    t5 = t2 * t4
+    t6 = t1 + t5
+    t7 = t3 * constants[3]
+    t8 = t3_both[1]
+    t9 = t8 * constants[0]
+    t10 = t9 * constants[7]
+    t11 = t7 * t10
+    t12 = t6 + t11
+    t13 = t9 * t10
+    t14 = t13 + constants[4]
+    t15 = 1.0 / t14
+    t16 = t12 * t15
+    t17 = t10 * t16
+    t18 = t7 * constants[7]
+    t19 = t17 - t18
+    t20 = t15 * constants[6]
+    t21 = t10 * t20
+    t22 = t2 * t9
+    t23 = t19 * t4
+    t24 = t22 + t23
+    t25 = t8 * constants[3]
+    t26 = t16 * t4
+    t27 = t25 + t26
+    t28 = t10 * t27
+    t29 = t24 + t28
+    t30 = t15 * t29
+    t31 = t10 * t30
+    t32 = t27 * constants[7]
+    t33 = t31 - t32
+    t34 = theta_dot[0] * t3
+    t35 = t34 * constants[8]
+    t36 = t15 * t35
+    t37 = t10 * t36
+    t38 = t10 * t15
     return ca.Function(
         "cart_pendulum_state_rate_jacobian_hot",
         [constants, x_dot, theta, theta_dot, F],
@@ -376,7 +363,7 @@ def _state_rate_jacobian():
             ca.vertcat(t16),
             ca.vertcat(theta_dot[0]),
             ca.vertcat(t19),
-            ca.SX(ca.Sparsity(4, 5, [0, 0, 3, 5, 8, 10], [0, 1, 3, 1, 3, 1, 2, 3, 1, 3]), ca.vertcat(1.0, t20, t22, t37, t42, t45, 1.0, t47, t5, t48)),
+            ca.SX(ca.Sparsity(4, 5, [0, 0, 3, 5, 8, 10], [0, 1, 3, 1, 3, 1, 2, 3, 1, 3]), ca.vertcat(1.0, t20, t21, t30, t33, t36, 1.0, t37, t15, t38)),
         ],
         ['constants', 'x_dot', 'theta', 'theta_dot', 'F'],
         ['x_rate', 'x_dot_rate', 'theta_rate', 'theta_dot_rate', 'jacobian'],
@@ -395,14 +382,14 @@ def linearised_hot():
 
 
 def _linearised():
-    constants = ca.SX.sym("constants", 25)
+    constants = ca.SX.sym("constants", 21)
     return ca.Function(
         "cart_pendulum_linearised_hot",
         [constants],
         [
-            ca.vertcat(constants[4], constants[0], constants[0], constants[13]),
+            ca.vertcat(constants[4], constants[0], constants[0], constants[9]),
             ca.vertcat(constants[1], 0.0, 0.0, 0.0),
-            ca.vertcat(0.0, 0.0, 0.0, constants[14]),
+            ca.vertcat(0.0, 0.0, 0.0, constants[10]),
         ],
         ['constants'],
         ['mass_matrix', 'damping_matrix', 'stiffness_matrix'],
@@ -421,7 +408,7 @@ def energy_hot():
 
 
 def _energy():
-    constants = ca.SX.sym("constants", 25)
+    constants = ca.SX.sym("constants", 21)
     x_dot = ca.SX.sym("x_dot", 1)
     theta = ca.SX.sym("theta", 1)
     theta_dot = ca.SX.sym("theta_dot", 1)
@@ -429,11 +416,11 @@ def _energy():
     t0 = t0_both[1]
     t1 = t0 * constants[3]
     t2 = theta_dot[0] * theta_dot[0]
-    t3 = t2 * constants[15]
+    t3 = t2 * constants[11]
     t4 = t1 + t3
     t5 = t0 * theta_dot[0]
     t6 = t5 * constants[0]
-    t7 = x_dot[0] * constants[16]
+    t7 = x_dot[0] * constants[12]
     t8 = t6 + t7
     t9 = x_dot[0] * t8
     t10 = t4 + t9
@@ -460,7 +447,7 @@ def rail_hot():
 
 
 def _rail():
-    constants = ca.SX.sym("constants", 25)
+    constants = ca.SX.sym("constants", 21)
     x_dot = ca.SX.sym("x_dot", 1)
     theta = ca.SX.sym("theta", 1)
     theta_dot = ca.SX.sym("theta_dot", 1)
@@ -468,31 +455,31 @@ def _rail():
     t0_both = _sine_cosine(theta[0])
     t0 = t0_both[1]
     t1 = t0 * constants[0]
-    t2 = t1 * constants[17]
-    t3 = t0 * constants[18]
-    t4 = t0 * constants[19]
+    t2 = t1 * constants[13]
+    t3 = t0 * constants[14]
+    t4 = t0 * constants[15]
     t5 = t3 + t4
     t6 = t2 - t5
     t7 = t0 * t6
     t8 = t0_both[0]
-    t9 = t8 * constants[18]
-    t10 = t8 * constants[19]
+    t9 = t8 * constants[14]
+    t10 = t8 * constants[15]
     t11 = t9 + t10
     t12 = t8 * t11
     t13 = t7 - t12
     t14 = 1.0 / t13
-    t15 = F[0] * constants[20]
-    t16 = x_dot[0] * constants[21]
+    t15 = F[0] * constants[16]
+    t16 = x_dot[0] * constants[17]
     t17 = t15 + t16
     t18 = t8 * t17
-    t19 = t0 * constants[22]
+    t19 = t0 * constants[18]
     t20 = t18 + t19
     t21 = theta_dot[0] * theta_dot[0]
-    t22 = t21 * constants[23]
+    t22 = t21 * constants[19]
     t23 = t20 - t22
     t24 = t0 * t23
     t25 = t8 * t8
-    t26 = t25 * constants[24]
+    t26 = t25 * constants[20]
     t27 = t24 + t26
     t28 = t14 * t27
     t29 = -t28
@@ -519,7 +506,7 @@ def step_rk4_hot():
 
 
 def _step_rk4():
-    constants = ca.SX.sym("constants", 25)
+    constants = ca.SX.sym("constants", 21)
     x = ca.SX.sym("x", 1)
     x_dot = ca.SX.sym("x_dot", 1)
     theta = ca.SX.sym("theta", 1)

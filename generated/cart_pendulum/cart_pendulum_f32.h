@@ -27,7 +27,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 dcb6fac103262afa.
+ * Body of these files: sha256 b43116c02c73fb8a.
  */
 #ifndef CART_PENDULUM_F32_H
 #define CART_PENDULUM_F32_H
@@ -48,25 +48,21 @@ typedef struct {
     float m_l_g; /* m*l*g */
     float M_plus_m; /* M + m */
     float k1; /* 1/(I + m*l^2) */
-    float minus_m_l; /* -m*l */
     float minus_b; /* -b */
-    float k2; /* -b/(I + m*l^2) */
-    float k3; /* m^2*l^2*g*(1/(I + m*l^2)) */
-    float m_l_pivot; /* m*l*(1/(I + m*l^2)) */
+    float minus_inverse; /* -(1/(I + m*l^2)) */
     float twice_m_l; /* 2*m*l */
-    float k4; /* 2*m*l/(I + m*l^2) */
-    float k5; /* I + m*l^2 */
+    float k2; /* I + m*l^2 */
     float minus_m_l_g; /* -m*l*g */
-    float k6; /* 1/2*(I + m*l^2) */
+    float k3; /* 1/2*(I + m*l^2) */
     float half_M_plus_m; /* 1/2*(M + m) */
     float factor; /* m*l*(1/(I + m*l^2)) */
     float M; /* M */
     float m; /* m */
     float m_l_factor; /* m*l*(m*l*(1/(I + m*l^2))) */
-    float k7; /* b*(M + m - m*l*(m*l*(1/(I + m*l^2)))) - b*(M + m) */
-    float k8; /* (m*g + M*g)*(M + m - m*l*(m*l*(1/(I + m*l^2)))) */
-    float k9; /* m*l*(M + m - m*l*(m*l*(1/(I + m*l^2)))) */
-    float k10; /* (M + m)*(m*g + M*g - m*l*g*(m*l*(1/(I + m*l^2)))) */
+    float k4; /* b*(M + m - m*l*(m*l*(1/(I + m*l^2)))) - b*(M + m) */
+    float k5; /* (m*g + M*g)*(M + m - m*l*(m*l*(1/(I + m*l^2)))) */
+    float k6; /* m*l*(M + m - m*l*(m*l*(1/(I + m*l^2)))) */
+    float k7; /* (M + m)*(m*g + M*g - m*l*g*(m*l*(1/(I + m*l^2)))) */
 } cart_pendulum_constants_f32;
 
 /* Make the constants of this scene from its parameters; call it once.
@@ -81,9 +77,7 @@ typedef struct {
  *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
- * Cost: once; 25 operations on pairs.
- * On Cortex-M0+, -O2: 56742 to 58787 instructions, 1976 B of code, 632 B of stack.
- * On Cortex-M4F, -O2: 1157 instructions, 1584 B of code, 480 B of stack.
+ * Cost: once; 23 operations on pairs.
  */
 int cart_pendulum_setup_f32(float M, float m, float l, float I, float b, float g,
     cart_pendulum_constants_f32 *constants);
@@ -115,8 +109,6 @@ int cart_pendulum_setup_f32(float M, float m, float l, float I, float b, float g
  *            8.8e-05 rad/s^2 (seen 4.1e-05); assumed: sines and cosines of our own within 0.79
  *            ulp.
  * Cost: 1 add, 4 sub, 11 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 5627 to 6415 instructions, 760 B of code, 128 B of stack.
- * On Cortex-M4F, -O2: 130 to 131 instructions, 580 B of code, 60 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -140,16 +132,14 @@ void cart_pendulum_state_rate_f32(const cart_pendulum_constants_f32 *constants, 
  * Follows from, for each body: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.75, largest 16 u of the largest product or sum in the equation (of jacobian;
+ * Error: median 0.76, largest 14 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: x_rate 0 m/s (seen 0),
- *            x_dot_rate 3e-05 m/s^2 (seen 1.1e-05), theta_rate 0 rad/s (seen 0), theta_dot_rate
- *            0.00015 rad/s^2 (seen 4.3e-05), jacobian 0.00017 (seen 5.1e-05); assumed: sines and
+ *            x_dot_rate 3e-05 m/s^2 (seen 1e-05), theta_rate 0 rad/s (seen 0), theta_dot_rate
+ *            0.00015 rad/s^2 (seen 5e-05), jacobian 0.00016 (seen 6e-05); assumed: sines and
  *            cosines of our own within 0.79 ulp.
- * Cost: 5 add, 6 sub, 35 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 9023 to 9910 instructions, 1048 B of code, 152 B of stack.
- * On Cortex-M4F, -O2: 182 to 183 instructions, 784 B of code, 60 B of stack.
+ * Cost: 7 add, 2 sub, 27 mul, 1 div, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -157,10 +147,7 @@ void cart_pendulum_state_rate_jacobian_f32(const cart_pendulum_constants_f32 *co
     float x_dot, float theta, float theta_dot, float F, float *x_rate, float *x_dot_rate,
     float *theta_rate, float *theta_dot_rate, float jacobian[10]);
 
-/* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 9031 to 9858 instructions, 1068 B of code, 152 B of stack.
- * On Cortex-M4F, -O2: 193 to 194 instructions, 812 B of code, 60 B of stack.
- */
+/* The same, the whole matrix: 20 entries. */
 void cart_pendulum_state_rate_jacobian_dense_f32(const cart_pendulum_constants_f32 *constants,
     float x_dot, float theta, float theta_dot, float F, float *x_rate, float *x_dot_rate,
     float *theta_rate, float *theta_dot_rate, float jacobian[20]);
@@ -188,8 +175,6 @@ void cart_pendulum_state_rate_jacobian_dense_f32(const cart_pendulum_constants_f
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 6e-08 (seen 6e-08),
  *            damping_matrix 0 (seen 0), stiffness_matrix 6e-08 (seen 6e-08).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 20 to 21 instructions, 40 B of code, 12 B of stack.
- * On Cortex-M4F, -O2: 19 instructions, 56 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -217,8 +202,6 @@ void cart_pendulum_linearised_f32(const cart_pendulum_constants_f32 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 2.8e-06 J (seen
  *            2.2e-06); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 7 mul, 1 cos.
- * On Cortex-M0+, -O2: 4513 to 5409 instructions, 668 B of code, 112 B of stack.
- * On Cortex-M4F, -O2: 114 to 115 instructions, 520 B of code, 44 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass,
  *            rate_seen_from_N, rigid.
  */
@@ -248,8 +231,6 @@ void cart_pendulum_energy_f32(const cart_pendulum_constants_f32 *constants, floa
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rail 2.3e-05 N (seen 9.6e-06);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 5 add, 3 sub, 18 mul, 1 div, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 6694 to 7532 instructions, 836 B of code, 120 B of stack.
- * On Cortex-M4F, -O2: 139 to 140 instructions, 620 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -281,8 +262,6 @@ void cart_pendulum_rail_f32(const cart_pendulum_constants_f32 *constants, float 
  *            theta_dot_next 3.5e-06 rad/s (seen 1e-06); assumed: sines and cosines of our own
  *            within 0.79 ulp.
  * Cost: 29 add, 16 sub, 78 mul, 4 div, 4 sin, 4 cos.
- * On Cortex-M0+, -O2: 27845 to 30959 instructions, 1756 B of code, 224 B of stack.
- * On Cortex-M4F, -O2: 533 to 537 instructions, 1152 B of code, 164 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */

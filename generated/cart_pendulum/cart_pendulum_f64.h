@@ -25,7 +25,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 d81dc66f989d1167.
+ * Body of these files: sha256 85c740f2e69a624d.
  */
 #ifndef CART_PENDULUM_F64_H
 #define CART_PENDULUM_F64_H
@@ -46,25 +46,21 @@ typedef struct {
     double m_l_g; /* m*l*g */
     double M_plus_m; /* M + m */
     double k1; /* 1/(I + m*l^2) */
-    double minus_m_l; /* -m*l */
     double minus_b; /* -b */
-    double k2; /* -b/(I + m*l^2) */
-    double k3; /* m^2*l^2*g*(1/(I + m*l^2)) */
-    double m_l_pivot; /* m*l*(1/(I + m*l^2)) */
+    double minus_inverse; /* -(1/(I + m*l^2)) */
     double twice_m_l; /* 2*m*l */
-    double k4; /* 2*m*l/(I + m*l^2) */
-    double k5; /* I + m*l^2 */
+    double k2; /* I + m*l^2 */
     double minus_m_l_g; /* -m*l*g */
-    double k6; /* 1/2*(I + m*l^2) */
+    double k3; /* 1/2*(I + m*l^2) */
     double half_M_plus_m; /* 1/2*(M + m) */
     double factor; /* m*l*(1/(I + m*l^2)) */
     double M; /* M */
     double m; /* m */
     double m_l_factor; /* m*l*(m*l*(1/(I + m*l^2))) */
-    double k7; /* b*(M + m - m*l*(m*l*(1/(I + m*l^2)))) - b*(M + m) */
-    double k8; /* (m*g + M*g)*(M + m - m*l*(m*l*(1/(I + m*l^2)))) */
-    double k9; /* m*l*(M + m - m*l*(m*l*(1/(I + m*l^2)))) */
-    double k10; /* (M + m)*(m*g + M*g - m*l*g*(m*l*(1/(I + m*l^2)))) */
+    double k4; /* b*(M + m - m*l*(m*l*(1/(I + m*l^2)))) - b*(M + m) */
+    double k5; /* (m*g + M*g)*(M + m - m*l*(m*l*(1/(I + m*l^2)))) */
+    double k6; /* m*l*(M + m - m*l*(m*l*(1/(I + m*l^2)))) */
+    double k7; /* (M + m)*(m*g + M*g - m*l*g*(m*l*(1/(I + m*l^2)))) */
 } cart_pendulum_constants_f64;
 
 /* Make the constants of this scene from its parameters; call it once.
@@ -79,8 +75,7 @@ typedef struct {
  *            none that a body can have; 5 a constant is not finite.
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
- * Cost: once; 25 operations on pairs.
- * On Cortex-M0+, -O2: 119274 to 126515 instructions, 3444 B of code, 1160 B of stack.
+ * Cost: once; 23 operations on pairs.
  */
 int cart_pendulum_setup_f64(double M, double m, double l, double I, double b, double g,
     cart_pendulum_constants_f64 *constants);
@@ -112,7 +107,6 @@ int cart_pendulum_setup_f64(double M, double m, double l, double I, double b, do
  *            1.7e-13 rad/s^2 (seen 9.5e-14); assumed: sines and cosines of our own within 0.79
  *            ulp.
  * Cost: 1 add, 4 sub, 11 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 14226 to 16006 instructions, 1216 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -136,15 +130,14 @@ void cart_pendulum_state_rate_f64(const cart_pendulum_constants_f64 *constants, 
  * Follows from, for each body: F = m a_G   [lecture step mass_centre_motion]
  * Postcondition: rho_i_N_ddot = rho_i_ddot + Omega_dot x rho_i + 2 Omega x rho_i_dot + Omega x
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
- * Error: median 0.75, largest 16 u of the largest product or sum in the equation (of jacobian;
+ * Error: median 0.76, largest 17 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: x_rate 0 m/s (seen 0),
- *            x_dot_rate 5.5e-14 m/s^2 (seen 1.8e-14), theta_rate 0 rad/s (seen 0), theta_dot_rate
- *            2.7e-13 rad/s^2 (seen 8.5e-14), jacobian 3.2e-13 (seen 1.1e-13); assumed: sines and
+ *            x_dot_rate 5.5e-14 m/s^2 (seen 1.9e-14), theta_rate 0 rad/s (seen 0), theta_dot_rate
+ *            2.7e-13 rad/s^2 (seen 8.9e-14), jacobian 3e-13 (seen 8.4e-14); assumed: sines and
  *            cosines of our own within 0.79 ulp.
- * Cost: 5 add, 6 sub, 35 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 22238 to 24090 instructions, 1724 B of code, 264 B of stack.
+ * Cost: 7 add, 2 sub, 27 mul, 1 div, 1 sin, 1 cos.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -152,9 +145,7 @@ void cart_pendulum_state_rate_jacobian_f64(const cart_pendulum_constants_f64 *co
     double x_dot, double theta, double theta_dot, double F, double *x_rate, double *x_dot_rate,
     double *theta_rate, double *theta_dot_rate, double jacobian[10]);
 
-/* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 22303 to 24123 instructions, 1736 B of code, 264 B of stack.
- */
+/* The same, the whole matrix: 20 entries. */
 void cart_pendulum_state_rate_jacobian_dense_f64(const cart_pendulum_constants_f64 *constants,
     double x_dot, double theta, double theta_dot, double F, double *x_rate, double *x_dot_rate,
     double *theta_rate, double *theta_dot_rate, double jacobian[20]);
@@ -182,7 +173,6 @@ void cart_pendulum_state_rate_jacobian_dense_f64(const cart_pendulum_constants_f
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 1.2e-16 (seen
  *            1.1e-16), damping_matrix 0 (seen 0), stiffness_matrix 1.2e-16 (seen 1.1e-16).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 37 to 38 instructions, 76 B of code, 20 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -210,7 +200,6 @@ void cart_pendulum_linearised_f64(const cart_pendulum_constants_f64 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 5.2e-15 J (seen
  *            4.1e-15); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 7 mul, 1 cos.
- * On Cortex-M0+, -O2: 12009 to 13771 instructions, 1084 B of code, 184 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass,
  *            rate_seen_from_N, rigid.
  */
@@ -240,7 +229,6 @@ void cart_pendulum_energy_f64(const cart_pendulum_constants_f64 *constants, doub
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rail 4.2e-14 N (seen 1.5e-14);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 5 add, 3 sub, 18 mul, 1 div, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 16586 to 18466 instructions, 1384 B of code, 232 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -272,7 +260,6 @@ void cart_pendulum_rail_f64(const cart_pendulum_constants_f64 *constants, double
  *            theta_dot_next 6.4e-15 rad/s (seen 1.9e-15); assumed: sines and cosines of our own
  *            within 0.79 ulp.
  * Cost: 29 add, 16 sub, 78 mul, 4 div, 4 sin, 4 cos.
- * On Cortex-M0+, -O2: 68935 to 75887 instructions, 2740 B of code, 392 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
