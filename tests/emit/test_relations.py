@@ -6,8 +6,9 @@ import pytest
 from sympy import Symbol
 
 from derive.emit.c.relations import MOST, every_relation
-from derive.emit.equations.section import Paragraph, Section
+from derive.emit.equations.section import Paragraph, Section, section
 from derive.emit.files import scene_files
+from derive.emit.page.equation import written_equations
 from derive.emit.page.glance import short_forms
 from derive.library.library import Library
 from derive.program.precision import F64
@@ -93,3 +94,11 @@ def test_equations_that_stand_on_each_other_many_times_are_followed_once() -> No
     )
     assert short_forms(one, MOST) == []
     assert short_forms(one, len(x)) == [*sides]
+
+
+def test_what_readers_are_told_of_a_function_is_made_once_a_machine() -> None:
+    one = library_of("heavy_top")
+    assert section(one, "state_rate") is section(one, "state_rate")
+    plain = one.mechanism.body_by_body
+    mine, other = (written_equations(m, "state_rate") for m in (one.mechanism, plain))
+    assert mine is not other
