@@ -23,7 +23,7 @@ from derive.verify.kept import stated_bounds
 from derive.verify.measure import exact, replayed
 from derive.verify.proved import enclosed, ranges, slopes
 from derive.verify.proved.bounds import WORK, Proof, UnprovedError, bounds_of, cutting
-from derive.verify.proved.cut import UNIT, Cutting, of_about_unit_length
+from derive.verify.proved.cut import UNIT, Cells, Cutting, of_about_unit_length
 from derive.verify.proved.ranges import Interval
 from derive.verify.proved.seen import Search
 from derive.verify.sample import Sample, samples
@@ -239,6 +239,21 @@ def test_a_bound_over_parts_is_no_less_than_at_any_point(which: tuple[str, str, 
     low, high = at.box.lows[:, None], at.box.highs[:, None]
     points = at._at(low + (high - low) * dice.random((len(low), 200)))
     assert at._certain(points).max() <= most
+
+
+def test_parts_that_are_lost_are_missed(monkeypatch: Any) -> None:
+    """A cut that forgets one of its halves leaves a bound below that at points."""
+    halved, which = Cutting._halved, ("wheel_pendulum", "state_rate", "theta_dot_rate")
+    whole = cut_of(*which)
+    assert whole.peaks.most <= whole.run().shifts.max()
+    monkeypatch.setattr(Cutting, "_halved", lambda at, parts: first_half(halved(at, parts)))
+    at = cut_of(*which)
+    assert at.peaks.most > at.run().shifts.max(initial=0.0)
+
+
+def first_half(parts: Cells) -> Cells:
+    """Return the first half of some parts."""
+    return parts.of(np.arange(parts.shifts.shape[1] // 2))
 
 
 def test_what_is_seen_keeps_to_lengths_that_bounds_assume() -> None:
