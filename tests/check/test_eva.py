@@ -66,6 +66,18 @@ def test_what_can_vanish_is_not_cut_away() -> None:
     assert cut_of("heavy_top", "state_rate", theta=(-1.0, 1.0)) is None
 
 
+def test_a_sign_that_is_asked_for_is_told_of_each_part() -> None:
+    """1 + |w| with the sign of w is nowhere 0: parts end a float below 0, and begin at it."""
+    made = library_of("attitude")
+    program = next(p for p in made.printed() if p.name == "quaternion_to_mrp")
+    cut = cut_into_parts(made, program, F32)
+    assert not isinstance(cut, str)
+    ends = [part.inputs["attitude_w"] for part in cut]
+    least = float(np.nextafter(np.float32(0), np.float32(1)))
+    assert all(high <= -least or low >= 0 for low, high in ends)
+    assert {0.0, -least} <= {end for each in ends for end in each}
+
+
 def test_every_quaternion_of_nearly_unit_length_is_given() -> None:
     """Also one with four equal components, a little short, and a little long along an axis."""
     made = library_of("attitude")

@@ -164,12 +164,23 @@ def _doubts(of: Watched, boxes: Column) -> Column:
 
 
 def _halved(of: Watched, boxes: Column) -> Column:
-    """Return boxes cut in two, each where that leaves the least in doubt."""
+    """Return boxes cut in two, each where that leaves the least in doubt.
+
+    The lower half ends a float below where the upper one begins: what is asked of a sign is told.
+    """
     rows, count = boxes.shape[1:]
     pairs = np.concatenate([boxes, boxes], axis=-1)[None].repeat(rows, axis=0)
-    for k, middle in enumerate(boxes.mean(axis=0)):
-        pairs[k, 1, k, :count] = middle
+    for k, (below, middle) in enumerate(zip(*_middles(of, boxes), strict=True)):
+        pairs[k, 1, k, :count] = below
         pairs[k, 0, k, count:] = middle
     doubts = np.array([_doubts(of, pair) for pair in pairs]).reshape(rows, 2, count)
     along = np.tile(np.argmin(doubts.max(axis=1), axis=0), 2)
     return np.asarray(pairs[along, :, :, np.arange(2 * count)].transpose(1, 2, 0))
+
+
+def _middles(of: Watched, boxes: Column) -> tuple[Column, Column]:
+    """Return the floats at the middle of each side, and those below; of a point itself, twice."""
+    middle = boxes.mean(axis=0).astype(of.function.precision.dtype)
+    below = np.nextafter(middle, middle.dtype.type(-np.inf)).astype(float)
+    fits = (boxes[0] <= below) & (middle <= boxes[1])
+    return np.where(fits, below, boxes.mean(axis=0)), np.where(fits, middle, boxes.mean(axis=0))
