@@ -70,8 +70,10 @@ UNKNOWN = OnTarget()
 
 
 def digest_of_source(text: str) -> str:
-    """Return a digest of a C file but for its first comment, which says how it was made."""
-    return sha256(text.partition("*/")[2].encode()).hexdigest()[:16]
+    """Return a digest of a C file but for how it was made, and for macros that it puts aside."""
+    lines = text.partition("*/")[2].splitlines(keepends=True)
+    kept = "".join(line for line in lines if not line.startswith("#undef "))
+    return sha256(kept.encode()).hexdigest()[:16]
 
 
 def path_of(folder: Path, scene: str) -> Path:

@@ -1,8 +1,8 @@
 """Words that no emitted name may be, and whose they are: languages, headers, and our own files.
 
 A name of a scene stands in C after whatever headers its user includes, and as a variable in Python.
-Macros that take arguments are no harm, for no name is followed by a parenthesis. ``I`` is allowed:
-a header that has it puts the macro of complex.h aside.
+Macros that take arguments are no harm, for no name is followed by a parenthesis. What a board's
+headers or complex.h have (``SP``, ``I``) is allowed: our headers put it aside (``emit/c/aside``).
 """
 
 import keyword

@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 
+from derive.emit.c.aside import is_put_aside
 from derive.emit.c.signature import CNames
 from derive.emit.operators import literal
 from derive.library.library import Library
@@ -22,17 +23,22 @@ def example(library: Library, names: CNames, precision: Precision) -> list[str]:
     if arrays:
         lines.append(
             " ".join(
-                f"{precision.scalar} {q.name}[{len(q.components)}] = {_values(q, precision)};"
+                f"{precision.scalar} {variable(q)}[{len(q.components)}] = {_values(q, precision)};"
                 for q in arrays
             )
         )
-    outputs = [f"{q.name}[{len(q.components)}]" if q.shape else q.name for q in program.outputs]
+    outputs = [variable(q) + (f"[{len(q.components)}]" if q.shape else "") for q in program.outputs]
     lines.append(f"{precision.scalar} {', '.join(outputs)};")
     constants = f"{names.scene}_fixed_{precision.name}" if library.fixed else "constants"
     passed = [_passed(q, precision, constants) for q in program.inputs]
-    passed += [q.name if q.shape else f"&{q.name}" for q in program.outputs]
+    passed += [variable(q) if q.shape else f"&{variable(q)}" for q in program.outputs]
     lines.append(f"{names.symbol(program.name, precision)}({', '.join(passed)});")
     return lines
+
+
+def variable(q: Quantity) -> str:
+    """Return what a user's file calls a quantity: nothing that is a macro there."""
+    return f"own_{q.name}" if is_put_aside(q.name) else q.name
 
 
 def _middle(q: Quantity) -> Fraction:
@@ -48,4 +54,4 @@ def _values(q: Quantity, precision: Precision) -> str:
 def _passed(q: Quantity, precision: Precision, constants: str) -> str:
     if q.role == "constants":
         return f"&{constants}"
-    return q.name if q.shape else literal(_middle(q), precision)
+    return variable(q) if q.shape else literal(_middle(q), precision)

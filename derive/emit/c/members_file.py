@@ -5,6 +5,7 @@ from fractions import Fraction
 from functools import partial
 from typing import Any
 
+from derive.emit.c.aside import put_aside
 from derive.emit.c.batch import is_prepared
 from derive.emit.c.columns import within_columns
 from derive.emit.c.comment import wrapped
@@ -23,7 +24,7 @@ from derive.emit.c.members_setup import setup_definition, setup_prototype
 from derive.emit.c.scope import require_no_symbol
 from derive.emit.c.signature import CNames
 from derive.emit.c.sines import numbers_of_sines, sines_type, takes_sines
-from derive.emit.c.source import first_line, names_declared
+from derive.emit.c.source import first_line
 from derive.emit.operators import literal
 from derive.emit.sines import TOGETHER
 from derive.emit.templates import TEMPLATES
@@ -122,7 +123,7 @@ def _header(library: Library, precision: Precision, figures: Sequence[Measuremen
             own=batch.file(precision, "h"),
             guard=batch.file(precision, "h").upper().replace(".", "_"),
             constants=bool(library.constants) and not library.fixed,
-            aside=any("I" in names_declared(p) for p in library.emitted()),
+            aside=put_aside(library.emitted()),
             struct=f"{scene.name}_constants_{precision.name}",
             scalar=precision.scalar,
             functions=[(wrapped(says), prototype) for says, prototype in found],
@@ -147,7 +148,7 @@ def _source(library: Library, precision: Precision, figures: Sequence[Measuremen
             first_line=f"/* {first_line(library, figures, (f'--{OVER_MEMBERS}',))}",
             header=batch.file(precision, "h"),
             uses_math=sines or any(kind in MATH for p in vectors for kind in p.count),
-            aside=any("I" in names_declared(p) for p in library.emitted()),
+            aside=put_aside(library.emitted()),
             sines=_sines(library, precision) if sines else "",
             vectors=bool(vectors),
             functions=texts,

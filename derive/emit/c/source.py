@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from derive import __version__
+from derive.emit.c.aside import put_aside
 from derive.emit.c.columns import within_columns
 from derive.emit.c.comment import comment, dense_comment, wrapped
 from derive.emit.c.definitions import definitions
@@ -130,7 +131,7 @@ def _header(
         digest=digest,
         guard=names.file(precision, "h").upper().replace(".", "_"),
         constants=library.constants,
-        aside=any("I" in names_declared(p) for p in library.emitted()),
+        aside=put_aside(library.emitted()),
         setup={"symbol": names.symbol("setup", precision)},
         fixed=fixed_symbol(library, precision),
         values=fixed_text(library.fixed).replace(",", ", ").replace("=", " = "),
@@ -139,13 +140,6 @@ def _header(
         scalar=precision.scalar,
         functions=described,
     )
-
-
-def names_declared(program: Program) -> set[str]:
-    """Return the names that a function's declaration and the struct of constants hold."""
-    every = (*program.inputs, *program.outputs)
-    members = {c for q in every if q.role == "constants" for c in q.components}
-    return members | {q.name for q in every}
 
 
 def _source(
@@ -161,7 +155,7 @@ def _source(
         first_line=f"/* {first_line(library, figures)}",
         header=names.file(precision, "h"),
         uses_math=any(kind in MATH for p in programs for kind in p.count),
-        aside=any("I" in names_declared(p) for p in programs),
+        aside=put_aside(programs),
         pair_functions=operations,
         apart=any(APART in text for text in operations),
         scalar=precision.scalar,

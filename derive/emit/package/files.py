@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from derive.emit.c.columns import within_columns
-from derive.emit.c.example import example
+from derive.emit.c.example import example, variable
 from derive.emit.c.signature import CNames
 from derive.emit.c.source import first_line
 from derive.emit.package.kinds import BUILD_TOOLS, Contents, rendered
@@ -71,8 +71,9 @@ def _contents(
 
 
 def _example(template: str, library: Library, of: Contents) -> str:
-    """Return a program that calls the first function, in double if the package has it."""
-    names, precision = CNames(of.scene), of.precisions[-1]
+    """Return a program that calls the first function, on boards in float if the package has it."""
+    names = CNames(of.scene)
+    precision = of.precisions[0 if template == "sketch.ino" else -1]
     text = rendered(
         template,
         of,
@@ -87,7 +88,7 @@ def _example(template: str, library: Library, of: Contents) -> str:
 def _results(program: Program) -> list[dict[str, str]]:
     """Return the first results of a function, and what C calls them."""
     return [
-        {"says": name, "value": f"{q.name}[{i}]" if q.shape else q.name}
+        {"says": name, "value": variable(q) + (f"[{i}]" if q.shape else "")}
         for q in program.outputs
         for i, name in enumerate(q.components)
     ][:MOST]

@@ -1,5 +1,7 @@
 """A scene's C of one precision as a single header, of which one source file makes the functions."""
 
+import re
+
 from derive.emit.c.columns import within_columns
 from derive.emit.c.signature import CNames
 from derive.emit.templates import TEMPLATES
@@ -14,7 +16,7 @@ def single_header(scene: str, precision: Precision, header: str, source: str) ->
         header=header.rstrip("\n"),
         body=body.strip("\n").replace(f"{file}: ", f"{single_name(scene, precision)}: "),
         own=f"{scene}_{precision.name}".upper(),
-        aside="#undef I\n" in body,
+        aside=re.findall(r"^#undef (\w+)$", body, re.MULTILINE),
         apart="#define DERIVE_APART" in body,
     )
     return within_columns(text)
