@@ -70,7 +70,7 @@ def _arduino(of: Contents) -> dict[str, str]:
 
 
 def _platformio(of: Contents) -> dict[str, str]:
-    said = {
+    said: dict[str, object] = {
         "name": of.scene,
         "version": __version__,
         "description": of.says,
@@ -82,6 +82,8 @@ def _platformio(of: Contents) -> dict[str, str]:
         "frameworks": "*",
         "platforms": "*",
     }
+    if of.uses_math:
+        said["build"] = {"flags": ["-lm"]}
     return {"library.json": json.dumps(said, indent=2, ensure_ascii=False) + "\n"}
 
 

@@ -6,7 +6,6 @@
 import shutil
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -14,41 +13,18 @@ import pytest
 from derive.check.target.build import linked
 from derive.check.target.core import CORES, FLAGS
 from derive.check.target.run import said_on_board
-from derive.emit.c.source import c_files
-from derive.emit.files import write
-from derive.emit.package.files import package_files
-from derive.emit.package.kinds import BUILD_TOOLS
 from derive.program.precision import PRECISIONS
-from tests.made import library_of
+from tests.check.target.packaged import NAME, required, told, write_package
 
 pytestmark = pytest.mark.target
-
-NAME = "heavy_top"
-"""A scene that calls the library's sines, and so needs it linked."""
 
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the folder of a package."""
     folder = tmp_path_factory.mktemp("tools") / NAME
-    made = library_of(NAME)
-    folder.mkdir()
-    write(folder, package_files(made, c_files(made, ()), (), tuple(BUILD_TOOLS), PRECISIONS))
+    write_package(folder, PRECISIONS)
     return folder
-
-
-def told(folder: Path, *command: str) -> str:
-    """Return what a command says; it must succeed."""
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout + done.stderr
-
-
-def required(*names: str) -> None:
-    """Skip a test whose tools are not here: commands, or modules of Python."""
-    for name in names:
-        if shutil.which(name) is None and find_spec(name) is None:
-            pytest.skip(f"{name} is not here")
 
 
 def cmake(folder: Path, text: str, *options: str) -> str:
