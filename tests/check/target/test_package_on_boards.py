@@ -1,4 +1,4 @@
-"""Packages in tools that build for boards, and what comes out runs: Arduino's builder, PlatformIO."""
+"""Packages in tools that build for boards, and what comes out runs there."""
 
 import re
 import shutil

@@ -2,6 +2,7 @@
 
 import re
 import shutil
+import subprocess
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
@@ -14,6 +15,7 @@ from derive.check.target.build import linked, linked_here
 from derive.check.target.core import CORES
 from derive.check.target.run import counted, said, said_on_board
 from derive.emit.c.source import c_files
+from derive.emit.files import write
 
 ROOT = Path(__file__).parents[3]
 PROGRAMS = ROOT / "docs" / "examples" / "firmware"
@@ -52,6 +54,23 @@ def ran(name: str, change: tuple[str, str] = ("", ""), *flags: str) -> list[dict
     finally:
         shutil.rmtree(folder)
     return [figures(here), figures(there)]
+
+
+def test_the_commands_of_the_page_say_what_this_machine_says(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "firmware.md").read_text(encoding="utf-8")
+    for name in ("derive", "docs"):
+        (tmp_path / name).symlink_to(ROOT / name)
+    block = re.findall(r"\n\n((?:    .*\n)+)", page[page.index("## Two programs") :])[0]
+    first, *commands = block.replace("\\\n", " ").splitlines()
+    assert first == "    derive generate docs/examples/firmware/estimator.toml --out build"
+    write(tmp_path / "build" / "estimator", generated("estimator"))
+    for command in commands:
+        done = subprocess.run(command.split(), cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+    here, there = ran("estimator")
+    told = figures(done.stdout + done.stderr)
+    assert told == there
+    assert compared(told) == compared(here)
 
 
 def compared(told: dict[str, list[int]]) -> dict[str, list[int]]:
