@@ -1,4 +1,4 @@
-"""The flash that set-up takes: within 15 % of the least at every level, and as small as is said."""
+"""The flash that set-up takes: little more at any level than at the smallest, and as is said."""
 
 from pathlib import Path
 
@@ -8,21 +8,30 @@ from derive.check.compiler import answer_of
 from derive.check.target.build import _sizes
 from derive.check.target.core import CORES, FLAGS
 from derive.emit.c.source import APART, c_files
+from derive.emit.files import manifests
 from derive.library.library import library
 from derive.scene import parse_scene
-from tests.made import library_of, text_of
+from tests.made import text_of
 
 pytestmark = pytest.mark.target
-LEAST = 1.15
-SCENES = ("rigid_body", "free_body_principal", "rolling_cone", "skewed_disc", "heavy_top")
+GENERATED = Path(__file__).parents[3] / "generated"
+SCENES = [
+    path.parent.name for path in manifests(GENERATED)
+    if "int " + path.parent.name + "_setup_f32(" in path.with_name(f"{path.stem}_f32.h").read_text()
+]  # fmt: skip
+MOST, USUAL = 1.17, 1.15
+"""Of what it takes at -Os: of any scene, and of all but one in twenty."""
+HOT = "/* With DERIVE_ALLOW_CONTRACTION"
+"""Where what is no set-up begins in a source."""
 LIMITS = {"m4f": 6500, "m0plus": 8000}
 
 
 def code(scene: str, core: str, level: str, folder: Path, mark: str = APART) -> int:
     """Return the bytes that linking a scene's set-up brings, for floats."""
-    texts = c_files(library_of(scene), ())
-    for name, text in texts.items():
-        (folder / name).write_text(text.replace(f"{APART} static", f"{mark} static"))
+    for ending in "ch":
+        text = (GENERATED / scene / f"{scene}_f32.{ending}").read_text(encoding="utf-8")
+        text = text.partition(HOT)[0].replace(f"{APART} static", f"{mark} static")
+        (folder / f"{scene}_f32.{ending}").write_text(text)
     flags = [level if flag == "-O2" else flag for flag in FLAGS]
     made = (CORES[core].tools.compiler, *CORES[core].flags, *flags, "-fstack-usage")
     answer_of((*made, "-c", f"{scene}_f32.c", "-o", "scene.o"), folder)
@@ -30,12 +39,17 @@ def code(scene: str, core: str, level: str, folder: Path, mark: str = APART) -> 
 
 
 @pytest.mark.parametrize("core", LIMITS)
-@pytest.mark.parametrize("scene", SCENES)
 def test_set_up_takes_little_more_at_any_level_than_at_the_smallest(
-    scene: str, core: str, tmp_path: Path
+    core: str, tmp_path: Path
 ) -> None:
-    least = code(scene, core, "-Os", tmp_path)
-    assert max(code(scene, core, o, tmp_path) for o in ("-O1", "-O2", "-O3")) <= LEAST * least
+    assert len(SCENES) >= 35
+    parts = {
+        scene: max(code(scene, core, o, tmp_path) for o in ("-O1", "-O2", "-O3"))
+        / code(scene, core, "-Os", tmp_path)
+        for scene in SCENES
+    }
+    assert {scene: part for scene, part in parts.items() if part > MOST} == {}
+    assert sum(part > USUAL for part in parts.values()) <= len(parts) / 20
 
 
 @pytest.mark.parametrize("core", LIMITS)
