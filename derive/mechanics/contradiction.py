@@ -42,6 +42,8 @@ def contradiction(balances: Balances) -> str:
     telling = balances.telling if balances.held else balances.spanning
     if not all(_contradicted(telling, point) for point in range(PROBES)):
         return ""
+    if idle := _idle(balances):
+        return idle
     rows = unbalanced(balances)
     if rows:
         return (f"the {rows[0].balance} does not vanish and holds no unknown: "
@@ -51,6 +53,19 @@ def contradiction(balances: Balances) -> str:
     more = f" and {len(together) - MOST_TOLD} more" if len(together) > MOST_TOLD else ""
     return (f"{told}{more} contradict each other, whatever their unknowns are: "
             "declare a load with an unknown more, or leave a motion free")  # fmt: skip
+
+
+def _idle(balances: Balances) -> str:
+    """Return a sentence on a load that is said to enforce a constraint and cannot."""
+    machine, label = balances.frames.machine, balances.frames.sheet.label
+    of = {u.name: u.load for u in machine.unknowns}
+    powers = [row for row in balances.enforced if row.balance.kind == "virtual power"]
+    working = {of.get(label(balances.unknowns[k])) for row in powers for k in row.holds}
+    for one in machine.constraints:
+        if one.load and one.load not in working:
+            rule = "has no power on any motion that the frames allow"
+            return f"load '{one.load}' cannot enforce constraint '{one.name}': it {rule}"
+    return ""
 
 
 def _least(rows: Sequence[ValuedBalance], point: int) -> Sequence[ValuedBalance]:

@@ -16,6 +16,7 @@ from derive.mechanics.constraints import Tie, ties
 from derive.mechanics.frames import Frames
 from derive.mechanics.onto import TELLING, Onto, onto
 from derive.scene import SceneError
+from derive.scene.escape import at_place
 
 STATES, TRIES = 3, 60
 SEED = "derive: states on constraints"
@@ -58,6 +59,29 @@ def bindings(frames: Frames) -> Bindings:
         frames.words.held.append(_bindings(frames))
     found: Bindings = frames.words.held[0]
     return found
+
+
+def lost(frames: Frames, place: Mapping[str, float]) -> str:
+    """Return a sentence on a condition that the others hold at a place alone, "" if none is."""
+    held, box = bindings(frames), ranges(frames.words)
+    usual = box.brought(box.trials())
+    if held.onto is None or not len(usual) or not place:
+        return ""
+    rows = [held.every.index(c) for c in held.kept]
+    point = np.array([place[name] for name in box.names])
+    row = held.onto.lost(point, usual[0], rows)
+    if row is None:
+        return ""
+    where = at_place(
+        {n: float(f"{x:.4g}") for n, x in place.items() if n in _placed(held.onto, box)}
+    )
+    rule = f"says nothing that the others do not {where.strip()}"
+    return (f"constraint '{held.every[row].name}' {rule}, so more than one motion may go on from "
+            "there; declare ranges that keep away from it")  # fmt: skip
+
+
+def _placed(brings: Onto, box: Box) -> set[str]:
+    return {box.names[k] for k in brings.places}
 
 
 def _bindings(frames: Frames) -> Bindings:

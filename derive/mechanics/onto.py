@@ -21,6 +21,7 @@ ROUNDS = 60
 CLOSE = 1e-11  # of a condition beside the size of its slopes: what floats leave of it
 FULFILLED = 1e-6  # of a range: what rates may be off by
 TELLING = 1e-7  # a singular value below this part of the largest is none
+FLAT = 1e-3  # of what it is elsewhere: a condition that changes with rates by less is lost there
 
 Doubles = NDArray[Any]
 
@@ -132,6 +133,16 @@ class Onto:
         """Return the slopes of first rates in sizes of ranges, and the length of each row."""
         scaled = self._moving(point)[1] * np.array([*self.rates.values()])
         return scaled, np.linalg.norm(scaled, axis=1)
+
+    def lost(self, point: Doubles, usual: Doubles, rows: Sequence[int]) -> int | None:
+        """Return the first of some conditions that says nothing of its own at a point, if any does.
+
+        usual : a point at which all do
+        """
+        weight = self._scaled(usual)[1][[*rows], None]
+        own = self._scaled(point)[0][[*rows]] / np.where(weight > 0, weight, 1.0)
+        least = (np.linalg.svd(own[: k + 1], compute_uv=False)[-1] for k in range(len(rows)))
+        return next((row for row, x in zip(rows, least, strict=True) if x < FLAT), None)
 
     @cached_property
     def _of_places(self) -> list[Expr]:

@@ -11,6 +11,7 @@ from derive.mechanics.balances import Balances
 from derive.mechanics.choice import chosen, clearly_told, require_no_ring
 from derive.mechanics.contradiction import contradiction
 from derive.mechanics.frames import Frames
+from derive.mechanics.held import lost
 from derive.mechanics.inertia import require_held, require_told, vanishing
 from derive.mechanics.probe import Probe
 from derive.mechanics.sweep import (
@@ -51,6 +52,8 @@ class Regular:
             worst = self._weakest(rows, unknowns)
             if not worst.vanishes:
                 return rows, unknowns
+            if says := lost(self.frames, worst.place):
+                raise SceneError(says)
             hard.append(probe_at(self.frames.words, worst.place, self.frames.sheet.definitions))
             try:
                 rows, unknowns = self._chosen(wanted, hard)

@@ -10,6 +10,8 @@ from fractions import Fraction
 from itertools import islice, product
 from typing import cast
 
+from mpmath import nstr
+
 from derive.scene.declaration import Moving, Parameter, SceneError, Sextuple, Triple
 from derive.scene.escape import at_place, brief
 from derive.scene.formula import ZERO, Formula, in_floats, symbols
@@ -52,9 +54,12 @@ def valuations_of(parameters: Iterable[Parameter], formulas: Iterable[Formula]) 
 
 def value(formula: Formula, values: Valuation, label: str) -> float:
     """Return a formula's value, finite or refused."""
-    found = float(in_floats(formula, values))
+    exact = in_floats(formula, values)
+    found = float(exact)
     if not math.isfinite(found):
-        raise SceneError(f"{label} = '{brief(formula)}' has no value{where(values, (formula,))}")
+        large = f"is {nstr(exact, 3)}, beyond what a double holds,"
+        rule = "has no value" if math.isnan(found) else large
+        raise SceneError(f"{label} = '{brief(formula)}' {rule}{where(values, (formula,))}")
     return found
 
 

@@ -14,6 +14,25 @@ CRANK = (SCENES / "slider_crank_guided.toml").read_text(encoding="utf-8")
 ZERO = 'zero = "y_dot*cos(psi) - x_dot*sin(psi)"'
 GUIDED = 'zero = "r*sin(a) + l*sin(b)"'
 PIN = 'at = ["l", "0", "0"]\nagainst = "right"'
+ARM = """
+[coordinates.q]
+unit = "rad"
+range = [-1, 1]
+[frames.arm]
+parent = "sled"
+turned = ["z q"]
+[bodies.arm]
+frame = "arm"
+shape = "rod"
+axis = "x"
+mass = "m"
+length = "a"
+[loads.pin]
+on = "arm"
+against = "sled"
+force = "?p"
+couple = ["?p_a", "?p_b", "0"]
+"""
 
 ROWS = (
     (FOUR, 'axes = ["x", "z"]', 'axes = ["x", "x"]', "must be a list of different ones of x, y"),
@@ -34,6 +53,7 @@ ROWS = (
     (SLEIGH, ZERO, 'zero = "x^2 + y^2"', "constraint 'blade' changes with nothing where it is 0"),
     (SLEIGH, ZERO, 'zero = "x_dot^2 + y_dot^2"', "constraint 'blade' changes with nothing where"),
     (CRANK, GUIDED, GUIDED.replace("l*sin", "tau*sin"), "zero uses 'tau', an input, whose rate"),
+    (SLEIGH, ZERO, f'{ZERO}\nload = "pin"\n{ARM}', "load 'pin' cannot enforce constraint 'blade'"),
     (CRANK, 'load = "guide"', 'load = "gide"', "constraint 'guided'.load must be one of main, pin"),
 )  # fmt: skip
 
@@ -50,6 +70,13 @@ def test_what_cannot_hold_is_refused_by_a_sentence(row: tuple[str, str, str, str
     assert found.startswith("scene 'held': ")
     assert says in found
     assert "\n" not in found
+
+
+def test_ranges_that_reach_where_bars_are_in_line_are_refused_with_the_place() -> None:
+    text = FOUR.replace("range = [-0.5, 0.5]", "range = [-3, 3]")
+    says = "constraint 'd along .' says nothing that the others do not at .*q_1 = -?1.571"
+    with pytest.raises(SceneError, match=says):
+        library(parse_scene(text, "held"))
 
 
 def test_a_force_that_shares_its_part_with_others_cannot_be_told() -> None:
